@@ -1,1 +1,17 @@
-//! geometry
+//! Bodies in space: meshes, node clouds, quadrature, spatial search, mesh files and mesh quality.
+//!
+//! Everything is in metres and in flat arrays; nothing here knows an approximation or a material.
+
+mod cell;
+mod mesh;
+pub mod quadrature;
+
+pub use cell::{CellKind, FaceKind};
+pub use mesh::{Facet, Mesh, MeshError};
+
+/// A position in the reference configuration, in metres.
+pub type Point3 = nalgebra::Point3<f64>;
+/// A displacement (m), a normal (-) or a traction (Pa).
+pub type Vector3 = nalgebra::Vector3<f64>;
+/// A displacement gradient (-) or a stress (Pa).
+pub type Matrix3 = nalgebra::Matrix3<f64>;

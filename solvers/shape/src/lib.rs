@@ -1,1 +1,22 @@
-//! shape
+//! The shape table: *at this point, which nodes count, with which value and which gradient?*
+//!
+//! A finite element, a moving-least-squares cloud, an inverse-distance weight and a radial basis all answer that
+//! one question, with a row. Everything downstream (kinematics, assembly, loads, supports, transfer) reads rows
+//! and never asks who filled them, which is what makes a comparison fair.
+//!
+//! Compressed rows in flat arrays; positions and gradients in the reference configuration; SI units.
+
+mod dilation;
+mod rows;
+mod tables;
+
+pub use dilation::DilationGroups;
+pub use rows::{Rows, ShapeError, Unity};
+pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+
+/// A position in the reference configuration, in metres.
+pub type Point3 = nalgebra::Point3<f64>;
+/// A displacement (m), a normal (-) or a shape gradient (1/m).
+pub type Vector3 = nalgebra::Vector3<f64>;
+/// A displacement gradient (-).
+pub type Matrix3 = nalgebra::Matrix3<f64>;

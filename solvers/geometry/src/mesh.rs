@@ -1,0 +1,241 @@
+//! A mixed mesh in flat arrays, with named cell regions and named groups of boundary facets.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::{CellKind, Point3};
+
+/// One face of one cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Facet {
+    /// Cell index.
+    pub cell: u32,
+    /// Index into [`CellKind::faces`].
+    pub face: u8,
+}
+
+/// What makes a mesh unusable.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A mesh with no cells or no points.
+    #[error("the mesh has {points} points and {cells} cells; at least one cell is needed")]
+    Empty {
+        /// Number of points given.
+        points: usize,
+        /// Number of cells given.
+        cells: usize,
+    },
+    /// A connectivity entry beyond the points.
+    #[error("cell {cell} names node {node}, but there are only {points} points (0 to {})", points - 1)]
+    NodeOutOfRange {
+        /// Cell index.
+        cell: usize,
+        /// The bad node index.
+        node: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// A coordinate that is not a finite number.
+    #[error("point {point} has a coordinate that is not finite")]
+    NotFinite {
+        /// Point index.
+        point: usize,
+    },
+    /// A cell that names one node twice.
+    #[error("cell {cell} names node {node} twice")]
+    RepeatedNode {
+        /// Cell index.
+        cell: usize,
+        /// The repeated node.
+        node: usize,
+    },
+    /// A facet group naming a face that does not exist.
+    #[error("facet group '{group}' names face {face} of cell {cell}, which does not exist")]
+    NoSuchFacet {
+        /// Group name.
+        group: String,
+        /// Cell index.
+        cell: u32,
+        /// Face index.
+        face: u8,
+    },
+}
+
+/// A mesh of tet4, tet10, hex8 and hex20 cells in any mixture; positions in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    points: Vec<Point3>,
+    kinds: Vec<CellKind>,
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    regions: Vec<u16>,
+    region_names: Vec<String>,
+    groups: BTreeMap<String, Vec<Facet>>,
+}
+
+impl Mesh {
+    /// A mesh of one region named "body", without facet groups. `cells` are (kind, node indices) pairs; the
+    /// number of indices must be the kind's own (a programming error otherwise, hence a panic).
+    pub fn new(points: Vec<Point3>, cells: &[(CellKind, Vec<u32>)]) -> Result<Mesh, MeshError> {
+        let kinds = cells.iter().map(|(kind, _)| *kind).collect();
+        let nodes = cells.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
+        Mesh::from_flat(points, kinds, nodes)
+    }
+
+    /// As [`Mesh::new`] from flat arrays: the kind of each cell and all connectivities one after another.
+    pub fn from_flat(
+        points: Vec<Point3>,
+        kinds: Vec<CellKind>,
+        nodes: Vec<u32>,
+    ) -> Result<Mesh, MeshError> {
+        if points.is_empty() || kinds.is_empty() {
+            return Err(MeshError::Empty { points: points.len(), cells: kinds.len() });
+        }
+        if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            return Err(MeshError::NotFinite { point });
+        }
+        let mut offsets = Vec::with_capacity(kinds.len() + 1);
+        offsets.push(0);
+        for kind in &kinds {
+            offsets.push(offsets.last().unwrap() + kind.node_count());
+        }
+        assert_eq!(*offsets.last().unwrap(), nodes.len(), "connectivity length does not match the cell kinds");
+        for cell in 0..kinds.len() {
+            let list = &nodes[offsets[cell]..offsets[cell + 1]];
+            for (a, &node) in list.iter().enumerate() {
+                if node as usize >= points.len() {
+                    return Err(MeshError::NodeOutOfRange { cell, node: node as usize, points: points.len() });
+                }
+                if list[..a].contains(&node) {
+                    return Err(MeshError::RepeatedNode { cell, node: node as usize });
+                }
+            }
+        }
+        let regions = vec![0; kinds.len()];
+        Ok(Mesh {
+            points,
+            kinds,
+            offsets,
+            nodes,
+            regions,
+            region_names: vec!["body".into()],
+            groups: BTreeMap::new(),
+        })
+    }
+
+    /// Replaces the regions: one index per cell into `names`.
+    pub fn with_regions(mut self, regions: Vec<u16>, names: Vec<String>) -> Mesh {
+        assert_eq!(regions.len(), self.kinds.len(), "one region per cell");
+        assert!(regions.iter().all(|&r| (r as usize) < names.len()), "every region has a name");
+        self.regions = regions;
+        self.region_names = names;
+        self
+    }
+
+    /// Adds (or replaces) a named group of facets.
+    pub fn with_group(mut self, name: &str, facets: Vec<Facet>) -> Result<Mesh, MeshError> {
+        for f in &facets {
+            let known =
+                self.kinds.get(f.cell as usize).is_some_and(|k| (f.face as usize) < k.faces().len());
+            if !known {
+                return Err(MeshError::NoSuchFacet { group: name.into(), cell: f.cell, face: f.face });
+            }
+        }
+        self.groups.insert(name.into(), facets);
+        Ok(self)
+    }
+
+    /// Node positions, in metres.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Kind of one cell.
+    pub fn kind(&self, cell: usize) -> CellKind {
+        self.kinds[cell]
+    }
+
+    /// The one kind of all cells, or `None` in a mixed mesh.
+    pub fn uniform_kind(&self) -> Option<CellKind> {
+        self.kinds.iter().all(|k| *k == self.kinds[0]).then_some(self.kinds[0])
+    }
+
+    /// Node indices of one cell.
+    pub fn cell(&self, cell: usize) -> &[u32] {
+        &self.nodes[self.offsets[cell]..self.offsets[cell + 1]]
+    }
+
+    /// Positions of one cell's nodes.
+    pub fn cell_points(&self, cell: usize) -> impl ExactSizeIterator<Item = &Point3> {
+        self.cell(cell).iter().map(|&n| &self.points[n as usize])
+    }
+
+    /// Region index of one cell.
+    pub fn region(&self, cell: usize) -> u16 {
+        self.regions[cell]
+    }
+
+    /// Names of the regions.
+    pub fn region_names(&self) -> &[String] {
+        &self.region_names
+    }
+
+    /// A named facet group.
+    pub fn group(&self, name: &str) -> Option<&[Facet]> {
+        self.groups.get(name).map(Vec::as_slice)
+    }
+
+    /// Names of all facet groups, sorted.
+    pub fn group_names(&self) -> impl Iterator<Item = &str> {
+        self.groups.keys().map(String::as_str)
+    }
+
+    /// Global node indices of a facet, corners first, counter-clockwise from outside.
+    pub fn facet_nodes(&self, facet: Facet) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let cell = self.cell(facet.cell as usize);
+        self.kind(facet.cell as usize).faces()[facet.face as usize].iter().map(|&local| cell[local])
+    }
+
+    /// All facets that belong to one cell only, in cell order.
+    pub fn boundary(&self) -> Vec<Facet> {
+        let mut seen: HashMap<[u32; 4], (Facet, u32)> = HashMap::new();
+        for (cell, kind) in self.kinds.iter().enumerate() {
+            for face in 0..kind.faces().len() {
+                let facet = Facet { cell: cell as u32, face: face as u8 };
+                // u32::MAX pads triangles, so that one key type serves both face shapes.
+                let mut key = [u32::MAX; 4];
+                for (slot, node) in
+                    key.iter_mut().zip(self.facet_nodes(facet).take(kind.face_kind().corner_count()))
+                {
+                    *slot = node;
+                }
+                key.sort_unstable();
+                seen.entry(key).and_modify(|e| e.1 += 1).or_insert((facet, 1));
+            }
+        }
+        let mut facets: Vec<Facet> = seen.into_values().filter(|(_, n)| *n == 1).map(|(f, _)| f).collect();
+        facets.sort_unstable();
+        facets
+    }
+
+    /// Sorted node indices that any of the facets touches.
+    pub fn facet_group_nodes(&self, facets: &[Facet]) -> Vec<u32> {
+        let mut nodes: Vec<u32> = facets.iter().flat_map(|&f| self.facet_nodes(f)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// The same topology at other positions (one per node).
+    pub fn moved(&self, map: impl Fn(&Point3) -> Point3) -> Result<Mesh, MeshError> {
+        let points: Vec<Point3> = self.points.iter().map(map).collect();
+        match points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            Some(point) => Err(MeshError::NotFinite { point }),
+            None => Ok(Mesh { points, ..self.clone() }),
+        }
+    }
+}

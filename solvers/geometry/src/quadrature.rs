@@ -1,0 +1,1 @@
+//! Quadrature rules on the reference tetrahedron, triangle, cube and square.

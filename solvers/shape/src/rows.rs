@@ -1,0 +1,199 @@
+//! Compressed rows of (node, value): the sparse matrix that every table here is made of.
+
+use crate::Vector3;
+
+/// What the maker of a table promises about the sum of each row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unity {
+    /// Rows sum to one within this absolute tolerance (checked).
+    Within(f64),
+    /// No promise: radial bases without a polynomial, say.
+    NotPromised,
+}
+
+/// What makes a table unusable.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// Offsets that do not start at 0, decrease, or do not end at the number of entries.
+    #[error("row offsets are broken at row {row}: {offset} (entries: {entries})")]
+    BrokenOffsets {
+        /// Row index.
+        row: usize,
+        /// Offset found there.
+        offset: usize,
+        /// Number of entries in all.
+        entries: usize,
+    },
+    /// Two arrays that should be of one length.
+    #[error("{what} has {found} entries, {expected} are needed")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it needs.
+        expected: usize,
+    },
+    /// A node index beyond the nodes.
+    #[error("row {row} names node {node} of {nodes}")]
+    NodeOutOfRange {
+        /// Row index.
+        row: usize,
+        /// Bad node.
+        node: usize,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// A NaN or an infinity.
+    #[error("{what} of row {row} is not finite")]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Row index.
+        row: usize,
+    },
+    /// A row that breaks its promise to sum to one.
+    #[error("row {row} sums to {sum}, promised is 1 within {tolerance:e}")]
+    NotUnity {
+        /// Row index.
+        row: usize,
+        /// Its sum.
+        sum: f64,
+        /// The promised tolerance.
+        tolerance: f64,
+    },
+    /// A quadrature weight that is not positive.
+    #[error("point {row} has weight {weight:e}; a positive one is needed")]
+    BadWeight {
+        /// Row index.
+        row: usize,
+        /// Its weight.
+        weight: f64,
+    },
+}
+
+/// Values of the shape functions that count at each of a list of points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    node_count: usize,
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    values: Vec<f64>,
+    uniform_len: Option<usize>,
+}
+
+impl Rows {
+    /// Checks and wraps: `offsets` (rows + 1), `nodes` and `values` (one per entry).
+    pub fn new(
+        node_count: usize,
+        offsets: Vec<usize>,
+        nodes: Vec<u32>,
+        values: Vec<f64>,
+        unity: Unity,
+    ) -> Result<Rows, ShapeError> {
+        let entries = nodes.len();
+        if values.len() != entries {
+            return Err(ShapeError::Length { what: "values", found: values.len(), expected: entries });
+        }
+        if offsets.first() != Some(&0) {
+            return Err(ShapeError::BrokenOffsets {
+                row: 0,
+                offset: offsets.first().copied().unwrap_or(usize::MAX),
+                entries,
+            });
+        }
+        for (row, pair) in offsets.windows(2).enumerate() {
+            if pair[1] < pair[0] || pair[1] > entries {
+                return Err(ShapeError::BrokenOffsets { row, offset: pair[1], entries });
+            }
+        }
+        let (row, end) = (offsets.len() - 1, *offsets.last().unwrap());
+        if end != entries {
+            return Err(ShapeError::BrokenOffsets { row, offset: end, entries });
+        }
+        let lengths = || offsets.windows(2).map(|p| p[1] - p[0]);
+        let uniform_len = lengths().next().filter(|&first| lengths().all(|n| n == first));
+        let rows = Rows { node_count, offsets, nodes, values, uniform_len };
+        for row in 0..rows.len() {
+            let (nodes, values) = rows.row(row);
+            if let Some(&node) = nodes.iter().find(|&&n| n as usize >= node_count) {
+                return Err(ShapeError::NodeOutOfRange { row, node: node as usize, nodes: node_count });
+            }
+            if !values.iter().all(|v| v.is_finite()) {
+                return Err(ShapeError::NotFinite { what: "value", row });
+            }
+            if let Unity::Within(tolerance) = unity {
+                let sum: f64 = values.iter().sum();
+                if (sum - 1.0).abs() > tolerance {
+                    return Err(ShapeError::NotUnity { row, sum, tolerance });
+                }
+            }
+        }
+        Ok(rows)
+    }
+
+    /// Number of rows (points).
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of nodes the table refers to (columns).
+    pub fn node_count(&self) -> usize {
+        self.node_count
+    }
+
+    /// Row starts, rows + 1 entries.
+    pub fn offsets(&self) -> &[usize] {
+        &self.offsets
+    }
+
+    /// Node indices of all rows, one row after another.
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
+    /// Values of all rows, one row after another.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The one length of all rows, if they share one: hot loops then run with a fixed trip count.
+    pub fn uniform_len(&self) -> Option<usize> {
+        self.uniform_len
+    }
+
+    /// Nodes and values of one row.
+    pub fn row(&self, row: usize) -> (&[u32], &[f64]) {
+        let range = self.range(row);
+        (&self.nodes[range.clone()], &self.values[range])
+    }
+
+    /// Entry range of one row.
+    pub fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.offsets[row]..self.offsets[row + 1]
+    }
+
+    /// The field with nodal parameters `u` at every row's point: `u(x_q) = sum_I N_I(x_q) u_I`.
+    pub fn apply(&self, u: &[Vector3]) -> Vec<Vector3> {
+        assert_eq!(u.len(), self.node_count, "one vector per node");
+        let mut field = vec![Vector3::zeros(); self.len()];
+        self.apply_into(u, &mut field);
+        field
+    }
+
+    /// [`Rows::apply`] into a caller's buffer: a repeated transfer allocates nothing.
+    pub fn apply_into(&self, u: &[Vector3], field: &mut [Vector3]) {
+        for (row, out) in field.iter_mut().enumerate() {
+            let (nodes, values) = self.row(row);
+            *out = Vector3::zeros();
+            for (&node, &value) in nodes.iter().zip(values) {
+                *out += value * u[node as usize];
+            }
+        }
+    }
+}

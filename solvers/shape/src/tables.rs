@@ -1,0 +1,238 @@
+//! The tables: rows with what else a point carries (position, gradients, weight, normal).
+
+use crate::{Matrix3, Point3, Rows, ShapeError, Vector3};
+
+fn check_len(what: &'static str, found: usize, expected: usize) -> Result<(), ShapeError> {
+    if found == expected { Ok(()) } else { Err(ShapeError::Length { what, found, expected }) }
+}
+
+fn check_points(points: &[Point3]) -> Result<(), ShapeError> {
+    match points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        Some(row) => Err(ShapeError::NotFinite { what: "position", row }),
+        None => Ok(()),
+    }
+}
+
+fn check_weights(weights: &[f64]) -> Result<(), ShapeError> {
+    // `!(w > 0)` and not `w <= 0`: a NaN must not pass.
+    match weights.iter().position(|&w| !(w > 0.0 && w.is_finite())) {
+        Some(row) => Err(ShapeError::BadWeight { row, weight: weights[row] }),
+        None => Ok(()),
+    }
+}
+
+fn check_normals(normals: &[Vector3]) -> Result<(), ShapeError> {
+    match normals.iter().position(|n| (n.norm() - 1.0).abs().partial_cmp(&1e-9) != Some(std::cmp::Ordering::Less)) {
+        Some(row) => Err(ShapeError::NotFinite { what: "unit normal", row }),
+        None => Ok(()),
+    }
+}
+
+/// Values at points: probes, targets of a transfer, constraint points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointRows {
+    points: Vec<Point3>,
+    rows: Rows,
+}
+
+impl PointRows {
+    /// One row per point.
+    pub fn new(points: Vec<Point3>, rows: Rows) -> Result<PointRows, ShapeError> {
+        check_len("points", points.len(), rows.len())?;
+        check_points(&points)?;
+        Ok(PointRows { points, rows })
+    }
+
+    /// Positions, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+}
+
+/// Values and gradients at points: where strain and stress are wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradRows {
+    points: Vec<Point3>,
+    rows: Rows,
+    grads: Vec<Vector3>,
+}
+
+impl GradRows {
+    /// One row per point, one gradient (1/m) per row entry.
+    pub fn new(points: Vec<Point3>, rows: Rows, grads: Vec<Vector3>) -> Result<GradRows, ShapeError> {
+        check_len("points", points.len(), rows.len())?;
+        check_len("gradients", grads.len(), rows.nodes().len())?;
+        check_points(&points)?;
+        for row in 0..rows.len() {
+            if !grads[rows.range(row)].iter().all(|g| g.iter().all(|c| c.is_finite())) {
+                return Err(ShapeError::NotFinite { what: "gradient", row });
+            }
+        }
+        Ok(GradRows { points, rows, grads })
+    }
+
+    /// Positions, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// Gradients of all rows (1/m), one row after another.
+    pub fn grads(&self) -> &[Vector3] {
+        &self.grads
+    }
+
+    /// Nodes and gradients of one row.
+    pub fn row(&self, row: usize) -> (&[u32], &[Vector3]) {
+        let range = self.rows.range(row);
+        (&self.rows.nodes()[range.clone()], &self.grads[range])
+    }
+
+    /// Displacement gradient at each point: `H_ij = sum_I u_Ii N_I,j`.
+    pub fn displacement_gradients(&self, u: &[Vector3]) -> Vec<Matrix3> {
+        assert_eq!(u.len(), self.rows.node_count(), "one vector per node");
+        (0..self.rows.len())
+            .map(|q| {
+                let (nodes, grads) = self.row(q);
+                let mut h = Matrix3::zeros();
+                for (&node, g) in nodes.iter().zip(grads) {
+                    h += u[node as usize] * g.transpose();
+                }
+                h
+            })
+            .collect()
+    }
+}
+
+/// A volume quadrature: values and gradients at points with weights (m^3).
+#[derive(Clone, Debug, PartialEq)]
+pub struct VolumeRows {
+    at: GradRows,
+    weights: Vec<f64>,
+}
+
+impl VolumeRows {
+    /// One positive weight (m^3) per row of `at`.
+    pub fn new(at: GradRows, weights: Vec<f64>) -> Result<VolumeRows, ShapeError> {
+        check_len("weights", weights.len(), at.rows.len())?;
+        check_weights(&weights)?;
+        Ok(VolumeRows { at, weights })
+    }
+
+    /// The rows without their weights.
+    pub fn at(&self) -> &GradRows {
+        &self.at
+    }
+
+    /// Positions, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.at.points
+    }
+
+    /// Values.
+    pub fn rows(&self) -> &Rows {
+        &self.at.rows
+    }
+
+    /// Gradients of all rows (1/m).
+    pub fn grads(&self) -> &[Vector3] {
+        &self.at.grads
+    }
+
+    /// Weights, m^3.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Nodes and gradients of one row.
+    pub fn row(&self, row: usize) -> (&[u32], &[Vector3]) {
+        self.at.row(row)
+    }
+}
+
+/// A surface quadrature: values at points with weights (m^2) and outward unit normals; tractions act through it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceRows {
+    at: PointRows,
+    weights: Vec<f64>,
+    normals: Vec<Vector3>,
+}
+
+impl SurfaceRows {
+    /// One positive weight (m^2) and one unit normal per row of `at`.
+    pub fn new(at: PointRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<SurfaceRows, ShapeError> {
+        check_len("weights", weights.len(), at.rows.len())?;
+        check_len("normals", normals.len(), at.rows.len())?;
+        check_weights(&weights)?;
+        check_normals(&normals)?;
+        Ok(SurfaceRows { at, weights, normals })
+    }
+
+    /// Positions, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.at.points
+    }
+
+    /// Values.
+    pub fn rows(&self) -> &Rows {
+        &self.at.rows
+    }
+
+    /// Weights, m^2.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Outward unit normals.
+    pub fn normals(&self) -> &[Vector3] {
+        &self.normals
+    }
+}
+
+/// A surface quadrature that also carries gradients: the boundary stress of Nitsche's method needs them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FluxRows {
+    at: GradRows,
+    weights: Vec<f64>,
+    normals: Vec<Vector3>,
+}
+
+impl FluxRows {
+    /// One positive weight (m^2) and one unit normal per row of `at`.
+    pub fn new(at: GradRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<FluxRows, ShapeError> {
+        check_len("weights", weights.len(), at.rows.len())?;
+        check_len("normals", normals.len(), at.rows.len())?;
+        check_weights(&weights)?;
+        check_normals(&normals)?;
+        Ok(FluxRows { at, weights, normals })
+    }
+
+    /// The rows without weights and normals.
+    pub fn at(&self) -> &GradRows {
+        &self.at
+    }
+
+    /// Positions, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.at.points
+    }
+
+    /// Weights, m^2.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Outward unit normals.
+    pub fn normals(&self) -> &[Vector3] {
+        &self.normals
+    }
+}
