@@ -1,1 +1,14 @@
-//! reports
+//! From records to tables, figures and one page.
+//!
+//! The harness hands over a [`RunSet`]; [`write_run`] puts it into a folder, [`render`] turns the folder into CSV, Markdown and
+//! LaTeX tables, SVG and PNG figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
+
+mod error;
+mod frame;
+mod record;
+mod store;
+mod table;
+
+pub use error::ReportError;
+pub use record::{Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Status, SurfaceField};
+pub use store::{read_run, write_run};

@@ -1,0 +1,61 @@
+//! What can go wrong between records and a report.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why records couldn't be written, read or rendered.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// A record holds a number that isn't finite.
+    #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
+    NotFinite {
+        /// Case of the record.
+        case: String,
+        /// Method of the record.
+        method: String,
+        /// Quantity of the record.
+        quantity: String,
+        /// Which number of the record.
+        field: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A surface field's arrays don't fit together.
+    #[error("surface field of {case}, {method}: {reason}")]
+    Field {
+        /// Case of the field.
+        case: String,
+        /// Method of the field.
+        method: String,
+        /// What doesn't fit.
+        reason: String,
+    },
+    /// A file or folder couldn't be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// A file's content isn't what it should be.
+    #[error("{}: {reason}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A figure couldn't be drawn.
+    #[error("figure {name}: {reason}")]
+    Figure {
+        /// Name of the figure.
+        name: String,
+        /// What went wrong.
+        reason: String,
+    },
+    /// The report page couldn't be filled in.
+    #[error("report page: {0}")]
+    Page(#[from] minijinja::Error),
+}

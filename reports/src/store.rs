@@ -1,0 +1,126 @@
+//! A run's folder: written once by the harness, read by the report.
+//!
+//! | file | content |
+//! |---|---|
+//! | `records.parquet`, `records.csv` | the long table, one number a row, SI; the same columns in both |
+//! | `provenance.json` | where the numbers come from, with the hash of every scene; also the Parquet key `provenance` |
+//! | `checks.csv`, `checks.json` | every bound and how it came out |
+//! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers |
+//! | `fields/CASE--METHOD.json` | surface displacements |
+//!
+//! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
+
+use std::fs;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::ReportError;
+use crate::frame;
+use crate::record::RunSet;
+use crate::table::csv_line;
+
+/// Writes a run to a folder, which is created where missing; surface fields of an earlier run there are removed.
+pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
+    run.records.iter().try_for_each(|r| r.check())?;
+    run.fields.iter().try_for_each(|f| f.check())?;
+    for check in &run.checks {
+        if let Some(value) = check.value.filter(|v| !v.is_finite()) {
+            return Err(ReportError::NotFinite {
+                case: check.case.clone(),
+                method: check.method.clone(),
+                quantity: check.metric.clone(),
+                field: "the checked value",
+                value,
+            });
+        }
+    }
+    make_dir(dir)?;
+    let mut records = run.records.clone();
+    records.sort_by(|a, b| a.order(b));
+    frame::write(dir, &records, &run.provenance)?;
+    write_json(&dir.join("provenance.json"), &run.provenance)?;
+    write_json(&dir.join("checks.json"), &run.checks)?;
+    write_json(&dir.join("plans.json"), &run.plans)?;
+    write_json(&dir.join("failures.json"), &run.failures)?;
+    let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
+    for c in &run.checks {
+        let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
+        csv.push_str(&csv_line(&[
+            &c.case,
+            &c.method,
+            &c.metric,
+            &value,
+            &c.bound,
+            c.status.name(),
+            &c.reason,
+        ]));
+    }
+    write_text(&dir.join("checks.csv"), &csv)?;
+    let fields = dir.join("fields");
+    make_dir(&fields)?;
+    for old in json_files(&fields)? {
+        fs::remove_file(&old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
+    }
+    for field in &run.fields {
+        write_json(&fields.join(format!("{}--{}.json", slug(&field.case), slug(&field.method))), field)?;
+    }
+    Ok(())
+}
+
+/// Reads a run back from its folder; surface fields in the order of their file names.
+pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
+    let fields_dir = dir.join("fields");
+    let fields = if fields_dir.is_dir() { json_files(&fields_dir)? } else { Vec::new() };
+    let run = RunSet {
+        provenance: read_json(&dir.join("provenance.json"))?,
+        records: frame::read(&dir.join("records.parquet"))?,
+        checks: read_json(&dir.join("checks.json"))?,
+        fields: fields.iter().map(|path| read_json(path)).collect::<Result<_, _>>()?,
+        plans: read_json(&dir.join("plans.json"))?,
+        failures: read_json(&dir.join("failures.json"))?,
+    };
+    run.records.iter().try_for_each(|r| r.check())?;
+    run.fields.iter().try_for_each(|f| f.check())?;
+    Ok(run)
+}
+
+pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
+    fs::create_dir_all(dir).map_err(|source| ReportError::Io { path: dir.into(), source })
+}
+
+pub(crate) fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
+    fs::write(path, text).map_err(|source| ReportError::Io { path: path.into(), source })
+}
+
+/// Lower case letters, digits, dots and dashes only: safe as a file name.
+pub(crate) fn slug(name: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
+    name.chars().map(safe).collect()
+}
+
+fn json_files(dir: &Path) -> Result<Vec<std::path::PathBuf>, ReportError> {
+    let io = |source| ReportError::Io { path: dir.into(), source };
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(dir).map_err(io)? {
+        let path = entry.map_err(io)?.path();
+        if path.extension().is_some_and(|e| e == "json") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), ReportError> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })?;
+    text.push('\n');
+    write_text(path, text)
+}
+
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
+    let text = fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+    serde_json::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
+}
