@@ -3,8 +3,13 @@
 //! Everything is in metres and in flat arrays; nothing here knows an approximation or a material.
 
 mod cell;
+pub mod generate;
+mod isoparametric;
 mod mesh;
 pub mod quadrature;
+pub mod quality;
+mod random;
+pub mod shapes;
 
 pub use cell::{CellKind, FaceKind};
 pub use mesh::{Facet, Mesh, MeshError};

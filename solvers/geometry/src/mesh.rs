@@ -82,11 +82,7 @@ impl Mesh {
     }
 
     /// As [`Mesh::new`] from flat arrays: the kind of each cell and all connectivities one after another.
-    pub fn from_flat(
-        points: Vec<Point3>,
-        kinds: Vec<CellKind>,
-        nodes: Vec<u32>,
-    ) -> Result<Mesh, MeshError> {
+    pub fn from_flat(points: Vec<Point3>, kinds: Vec<CellKind>, nodes: Vec<u32>) -> Result<Mesh, MeshError> {
         if points.is_empty() || kinds.is_empty() {
             return Err(MeshError::Empty { points: points.len(), cells: kinds.len() });
         }
@@ -98,12 +94,20 @@ impl Mesh {
         for kind in &kinds {
             offsets.push(offsets.last().unwrap() + kind.node_count());
         }
-        assert_eq!(*offsets.last().unwrap(), nodes.len(), "connectivity length does not match the cell kinds");
+        assert_eq!(
+            *offsets.last().unwrap(),
+            nodes.len(),
+            "connectivity length does not match the cell kinds"
+        );
         for cell in 0..kinds.len() {
             let list = &nodes[offsets[cell]..offsets[cell + 1]];
             for (a, &node) in list.iter().enumerate() {
                 if node as usize >= points.len() {
-                    return Err(MeshError::NodeOutOfRange { cell, node: node as usize, points: points.len() });
+                    return Err(MeshError::NodeOutOfRange {
+                        cell,
+                        node: node as usize,
+                        points: points.len(),
+                    });
                 }
                 if list[..a].contains(&node) {
                     return Err(MeshError::RepeatedNode { cell, node: node as usize });
@@ -134,8 +138,7 @@ impl Mesh {
     /// Adds (or replaces) a named group of facets.
     pub fn with_group(mut self, name: &str, facets: Vec<Facet>) -> Result<Mesh, MeshError> {
         for f in &facets {
-            let known =
-                self.kinds.get(f.cell as usize).is_some_and(|k| (f.face as usize) < k.faces().len());
+            let known = self.kinds.get(f.cell as usize).is_some_and(|k| (f.face as usize) < k.faces().len());
             if !known {
                 return Err(MeshError::NoSuchFacet { group: name.into(), cell: f.cell, face: f.face });
             }

@@ -1,0 +1,102 @@
+//! Structured meshes: boxes, balls, cylinders, sphere shells and the kidney, in every cell kind.
+//!
+//! Each is laid out as hexahedra in a space of parameters, turned into the cell kind asked for there (tetrahedra by
+//! [`to_tets`], quadratic cells by [`raise_order`]), and only then mapped to its place. All nodes go through the
+//! same map, so mid-edge nodes lie on the curved body and quadratic cells keep their order on curved boundaries.
+
+mod ball;
+mod boxes;
+mod convert;
+mod cylinder;
+mod lattice;
+mod shell;
+
+pub use ball::{ball_mesh, kidney_mesh};
+pub use boxes::{Jitter, box_mesh};
+pub use convert::{raise_order, to_tets};
+pub use cylinder::cylinder_mesh;
+pub use shell::{ShellExtent, sphere_shell_mesh};
+
+use crate::{CellKind, Mesh, MeshError, quality::InvertedElement};
+
+/// What makes a mesh impossible to generate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GenerateError {
+    /// A number of cells that is zero or beyond what 32-bit indices can count.
+    #[error("{what} is {found}; it has to be between 1 and {most}")]
+    Cells {
+        /// Which count.
+        what: &'static str,
+        /// Its value.
+        found: usize,
+        /// The most there can be.
+        most: usize,
+    },
+    /// A length, ratio or fraction outside its range.
+    #[error("{what} is {found}; it has to be {needed}")]
+    Value {
+        /// Which parameter.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// The range it needs, in words.
+        needed: &'static str,
+    },
+    /// Jitter or grading so strong that a cell turned inside out.
+    #[error(transparent)]
+    Inverted(#[from] InvertedElement),
+    /// A mesh that breaks the rules of [`Mesh`].
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Most cells along one direction, and in all: every node index of every generator stays within 32 bits.
+const MOST_CELLS: usize = 1 << 20;
+const MOST_CELLS_IN_ALL: usize = 1 << 25;
+
+fn check_cells(what: &'static str, found: usize) -> Result<(), GenerateError> {
+    if (1..=MOST_CELLS).contains(&found) {
+        Ok(())
+    } else {
+        Err(GenerateError::Cells { what, found, most: MOST_CELLS })
+    }
+}
+
+fn check_total(cells: [usize; 3]) -> Result<(), GenerateError> {
+    let found = cells.into_iter().fold(1, usize::saturating_mul);
+    if found <= MOST_CELLS_IN_ALL {
+        Ok(())
+    } else {
+        Err(GenerateError::Cells { what: "the number of cells in all", found, most: MOST_CELLS_IN_ALL })
+    }
+}
+
+fn check_positive(what: &'static str, found: f64) -> Result<(), GenerateError> {
+    if found > 0.0 && found.is_finite() {
+        Ok(())
+    } else {
+        Err(GenerateError::Value { what, found, needed: "a positive number" })
+    }
+}
+
+/// Turns a hex8 mesh into the kind asked for, mid-edge nodes halfway between their corners.
+fn into_kind(hexes: Mesh, kind: CellKind) -> Mesh {
+    match kind {
+        CellKind::Hex8 => hexes,
+        CellKind::Hex20 => raise_order(&hexes),
+        CellKind::Tet4 => to_tets(&hexes),
+        CellKind::Tet10 => raise_order(&to_tets(&hexes)),
+    }
+}
+
+/// Positions in [0, 1] of `cells + 1` nodes whose spacing grows geometrically; `ratio` = last / first interval.
+fn graded(cells: usize, ratio: f64) -> Vec<f64> {
+    let growth = if cells > 1 { ratio.powf(1.0 / (cells as f64 - 1.0)) } else { 1.0 };
+    if (growth - 1.0).abs() < 1e-12 {
+        return (0..=cells).map(|i| i as f64 / cells as f64).collect();
+    }
+    let total = growth.powi(cells as i32) - 1.0;
+    let mut t: Vec<f64> = (0..=cells).map(|i| (growth.powi(i as i32) - 1.0) / total).collect();
+    t[cells] = 1.0;
+    t
+}

@@ -1,0 +1,150 @@
+//! Hexahedra to tetrahedra, and linear to quadratic cells.
+
+use std::collections::HashMap;
+
+use crate::{CellKind, Facet, Mesh};
+
+/// Corner faces of a hexahedron as in [`CellKind::faces`], and corner faces of a tetrahedron.
+const HEX: CellKind = CellKind::Hex8;
+const TET: CellKind = CellKind::Tet4;
+
+/// Linear tetrahedra over the same body: every hexahedron becomes six, tetrahedra keep their corners. Regions and
+/// facet groups come along; nodes that only quadratic cells used are dropped.
+///
+/// Each hexahedron is a cone from its lowest-numbered node over the three faces away from that node, and every face
+/// is cut through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
+/// conforming whatever the arrangement. In a box numbered along its axes this is Kuhn's subdivision.
+pub fn to_tets(mesh: &Mesh) -> Mesh {
+    let mut cells: Vec<[u32; 4]> = Vec::new();
+    let mut regions = Vec::new();
+    let mut first = Vec::with_capacity(mesh.cell_count() + 1);
+    for cell in 0..mesh.cell_count() {
+        first.push(cells.len());
+        let nodes = mesh.cell(cell);
+        if mesh.kind(cell).is_tet() {
+            cells.push([nodes[0], nodes[1], nodes[2], nodes[3]]);
+        } else {
+            cut_hexahedron(&nodes[..8], &mut cells);
+        }
+        regions.resize(cells.len(), mesh.region(cell));
+    }
+    first.push(cells.len());
+
+    let groups: Vec<(String, Vec<Facet>)> = mesh
+        .group_names()
+        .map(|name| {
+            let facets = mesh.group(name).unwrap_or_default();
+            let tets = facets.iter().flat_map(|&f| facets_within(mesh, f, &cells, &first)).collect();
+            (name.to_string(), tets)
+        })
+        .collect();
+
+    let mut number = vec![u32::MAX; mesh.points().len()];
+    for &node in cells.iter().flatten() {
+        number[node as usize] = 0;
+    }
+    let mut points = Vec::new();
+    for (node, slot) in number.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
+        *slot = points.len() as u32;
+        points.push(mesh.points()[node]);
+    }
+    let nodes = cells.iter().flatten().map(|&n| number[n as usize]).collect();
+    rebuilt(mesh, points, vec![TET; cells.len()], nodes, regions, groups)
+}
+
+fn cut_hexahedron(nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
+    let lowest = *nodes.iter().min().unwrap_or(&0);
+    for face in HEX.faces() {
+        let n: [u32; 4] = std::array::from_fn(|i| nodes[face[i]]);
+        if n.contains(&lowest) {
+            continue;
+        }
+        let start = (0..4).min_by_key(|&i| n[i]).unwrap_or(0);
+        let around = |i: usize| n[(start + i) % 4];
+        // Seen from outside the face turns counter-clockwise, so from the apex inside it turns clockwise:
+        // listing the face backwards makes the volume positive.
+        cells.push([around(0), around(2), around(1), lowest]);
+        cells.push([around(0), around(3), around(2), lowest]);
+    }
+}
+
+/// The faces of a cell's tetrahedra that lie in one face of the cell.
+fn facets_within(mesh: &Mesh, facet: Facet, cells: &[[u32; 4]], first: &[usize]) -> Vec<Facet> {
+    let corners: Vec<u32> = mesh.facet_nodes(facet).take(4).collect();
+    let cell = facet.cell as usize;
+    if mesh.kind(cell).is_tet() {
+        return vec![Facet { cell: first[cell] as u32, face: facet.face }];
+    }
+    let mut found = Vec::new();
+    for tet in first[cell]..first[cell + 1] {
+        for (face, local) in TET.faces().iter().enumerate() {
+            if local.iter().all(|&l| corners.contains(&cells[tet][l])) {
+                found.push(Facet { cell: tet as u32, face: face as u8 });
+            }
+        }
+    }
+    found
+}
+
+/// Quadratic cells with the same corners: tet4 becomes tet10, hex8 becomes hex20, quadratic cells stay as they are.
+/// New nodes lie halfway along their edges and are numbered after the corners, in the order cells first meet them.
+pub fn raise_order(mesh: &Mesh) -> Mesh {
+    let mut points = mesh.points().to_vec();
+    let mut middle: HashMap<(u32, u32), u32> = HashMap::new();
+    // Mid-edge nodes that are there already, so that a mixed-order mesh stays conforming.
+    for cell in (0..mesh.cell_count()).filter(|&c| mesh.kind(c).order() == 2) {
+        let (kind, nodes) = (mesh.kind(cell), mesh.cell(cell));
+        for (edge, &[a, b]) in kind.edges().iter().enumerate() {
+            middle.insert(ordered(nodes[a], nodes[b]), nodes[kind.corner_count() + edge]);
+        }
+    }
+    let mut kinds = Vec::with_capacity(mesh.cell_count());
+    let mut nodes = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let (kind, list) = (mesh.kind(cell), mesh.cell(cell));
+        nodes.extend_from_slice(list);
+        kinds.push(match kind {
+            CellKind::Tet4 => CellKind::Tet10,
+            CellKind::Hex8 => CellKind::Hex20,
+            quadratic => quadratic,
+        });
+        if kind.order() == 2 {
+            continue;
+        }
+        for &[a, b] in kind.edges() {
+            let (a, b) = ordered(list[a], list[b]);
+            nodes.push(*middle.entry((a, b)).or_insert_with(|| {
+                points.push(nalgebra::center(&points[a as usize], &points[b as usize]));
+                points.len() as u32 - 1
+            }));
+        }
+    }
+    let regions = (0..mesh.cell_count()).map(|c| mesh.region(c)).collect();
+    let groups = mesh
+        .group_names()
+        .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().to_vec()))
+        .collect();
+    rebuilt(mesh, points, kinds, nodes, regions, groups)
+}
+
+fn ordered(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+/// A mesh with the names of `source`; valid because the source is.
+fn rebuilt(
+    source: &Mesh,
+    points: Vec<crate::Point3>,
+    kinds: Vec<CellKind>,
+    nodes: Vec<u32>,
+    regions: Vec<u16>,
+    groups: Vec<(String, Vec<Facet>)>,
+) -> Mesh {
+    let mut mesh = Mesh::from_flat(points, kinds, nodes)
+        .expect("cells of a valid mesh stay valid")
+        .with_regions(regions, source.region_names().to_vec());
+    for (name, facets) in groups {
+        mesh = mesh.with_group(&name, facets).expect("facets of a valid mesh stay valid");
+    }
+    mesh
+}

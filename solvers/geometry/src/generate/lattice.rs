@@ -1,0 +1,72 @@
+//! Nodes of block-structured meshes, merged where blocks meet by their integer lattice positions.
+
+use std::collections::HashMap;
+
+use crate::{CellKind, Facet, Mesh, MeshError, Point3};
+
+/// Lattice offsets of a hexahedron's corners, in node order.
+pub(super) const CORNERS: [(usize, usize, usize); 8] =
+    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
+
+/// A key that is the same for the same node in every block.
+pub(super) type Key = [u32; 4];
+
+/// A hexahedral mesh under construction.
+#[derive(Default)]
+pub(super) struct Lattice {
+    number: HashMap<Key, u32>,
+    points: Vec<Point3>,
+    nodes: Vec<u32>,
+}
+
+impl Lattice {
+    /// Adds a hexahedron by its corner keys; `place` gives the position of a key met for the first time.
+    pub(super) fn hexahedron(&mut self, corners: [Key; 8], place: impl Fn(Key) -> Point3) {
+        for key in corners {
+            let node = *self.number.entry(key).or_insert_with(|| {
+                self.points.push(place(key));
+                self.points.len() as u32 - 1
+            });
+            self.nodes.push(node);
+        }
+    }
+
+    /// The finished mesh with facet groups: a boundary facet belongs to every group whose predicate holds at all of
+    /// its corners.
+    pub(super) fn finish(self, groups: &[(&str, &dyn Fn(&Point3) -> bool)]) -> Result<Mesh, MeshError> {
+        let mut mesh = Mesh::from_flat(self.points, vec![CellKind::Hex8; self.nodes.len() / 8], self.nodes)?;
+        let boundary = mesh.boundary();
+        for (name, holds) in groups {
+            let facets: Vec<Facet> = (boundary.iter().copied())
+                .filter(|&f| mesh.facet_nodes(f).all(|n| holds(&mesh.points()[n as usize])))
+                .collect();
+            mesh = mesh.with_group(name, facets)?;
+        }
+        Ok(mesh)
+    }
+}
+
+/// All (i, j, k) below the counts, i fastest.
+pub(super) fn triples(counts: [usize; 3]) -> impl Iterator<Item = (usize, usize, usize)> {
+    let [nx, ny, nz] = counts;
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j, k))))
+}
+
+/// Lattice position (0 to n in each coordinate) of place (i, j) on a side of the cube, sides x-, x+, y-, y+, z-, z+;
+/// (i, j, outwards) is right-handed on each.
+pub(super) fn on_cube_side(side: usize, n: usize, i: usize, j: usize) -> [usize; 3] {
+    match side {
+        0 => [0, j, i],
+        1 => [n, i, j],
+        2 => [i, 0, j],
+        3 => [j, n, i],
+        4 => [j, i, 0],
+        _ => [i, j, n],
+    }
+}
+
+/// A point on the surface of the cube [-1, 1]^3 onto the unit sphere by equal angles (the equiangular cubed sphere:
+/// Ronchi, Iacono & Paolucci 1996): neighbouring cells differ less in size than under a plain central projection.
+pub(super) fn onto_sphere(u: &crate::Vector3) -> crate::Vector3 {
+    u.map(|c| if c.abs() == 1.0 { c } else { (std::f64::consts::FRAC_PI_4 * c).tan() }).normalize()
+}

@@ -1,0 +1,73 @@
+//! Thick spheres, whole or one octant.
+
+use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice};
+use crate::{CellKind, Mesh, Point3};
+
+/// How much of a sphere shell to mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShellExtent {
+    /// All of it.
+    Whole,
+    /// The part with x, y, z >= 0; its cut faces are the groups "x-min", "y-min" and "z-min".
+    Octant,
+}
+
+/// The shell between the radii `inner` and `outer` (m) around the origin.
+///
+/// `cells = [around, through]`: hexahedra along each edge of the six cube faces blown up to the sphere (for an
+/// octant: along each half edge, three quarter faces), and through the thickness. `grading` is the ratio of the
+/// outermost to the innermost interval (1: uniform). Facet groups: "inner", "outer", and the cuts of an octant.
+/// Quadratic nodes lie exactly on the two spheres.
+pub fn sphere_shell_mesh(
+    kind: CellKind,
+    inner: f64,
+    outer: f64,
+    cells: [usize; 2],
+    grading: f64,
+    extent: ShellExtent,
+) -> Result<Mesh, GenerateError> {
+    check_positive("the inner radius", inner)?;
+    check_positive("the thickness", outer - inner)?;
+    check_positive("the grading", grading)?;
+    let [around, through] = cells;
+    check_cells("the number of cells around the shell", around)?;
+    check_cells("the number of cells through the shell", through)?;
+    // The lattice of a whole cube edge; an octant uses its upper half.
+    let (n, start, sides): (usize, usize, &[usize]) = match extent {
+        ShellExtent::Whole => (around, 0, &[0, 1, 2, 3, 4, 5]),
+        ShellExtent::Octant => (2 * around, around, &[1, 3, 5]),
+    };
+    check_total([sides.len() * around, around, through])?;
+
+    let thickness = graded(through, grading);
+    // Parameters: a point on the cube's surface, scaled by 1 (inside) to 2 (outside).
+    let place = |key: lattice::Key| {
+        let scale = 1.0 + thickness[key[3] as usize];
+        let q = |c: u32| scale * (2.0 * c as f64 / n as f64 - 1.0);
+        Point3::new(q(key[0]), q(key[1]), q(key[2]))
+    };
+    let mut mesh = lattice::Lattice::default();
+    for &side in sides {
+        for (i, j, layer) in lattice::triples([around, around, through]) {
+            let key = |(a, b, c)| {
+                let [x, y, z] = lattice::on_cube_side(side, n, start + i + a, start + j + b);
+                [x, y, z, layer + c].map(|v| v as u32)
+            };
+            mesh.hexahedron(lattice::CORNERS.map(key), place);
+        }
+    }
+    let mut groups: Vec<(&str, &dyn Fn(&Point3) -> bool)> =
+        vec![("inner", &|q| q.coords.amax() == 1.0), ("outer", &|q| q.coords.amax() == 2.0)];
+    if extent == ShellExtent::Octant {
+        groups.push(("x-min", &|q| q.x == 0.0));
+        groups.push(("y-min", &|q| q.y == 0.0));
+        groups.push(("z-min", &|q| q.z == 0.0));
+    }
+    let mesh = into_kind(mesh.finish(&groups)?, kind);
+    Ok(mesh.moved(|q| {
+        let size = q.coords.amax();
+        let t = size - 1.0;
+        let radius = inner * (1.0 - t) + outer * t;
+        Point3::from(lattice::onto_sphere(&(q.coords / size)) * radius)
+    })?)
+}

@@ -1,0 +1,181 @@
+//! Mesh quality: volumes, Jacobians, dihedral angles, aspect; the worst element is always named.
+
+use crate::{CellKind, Mesh, Point3, Vector3, isoparametric, quadrature};
+
+/// A cell whose map folds over itself.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("element {element} is inverted: det J = {det_j:e} m^3 (it has to be positive)")]
+pub struct InvertedElement {
+    /// Cell index.
+    pub element: usize,
+    /// Smallest Jacobian determinant found in it, in m^3.
+    pub det_j: f64,
+}
+
+/// An extreme value and the element it occurs in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// Cell index.
+    pub element: usize,
+    /// The value there.
+    pub value: f64,
+}
+
+/// What [`check`] measures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// Volume of the whole mesh (m^3), curved cells included.
+    pub volume: f64,
+    /// Smallest cell volume (m^3).
+    pub min_volume: Extreme,
+    /// Largest cell volume (m^3).
+    pub max_volume: Extreme,
+    /// Smallest `det J` (m^3) over all nodes and quadrature points.
+    pub min_det_j: Extreme,
+    /// Smallest ratio of lowest to highest `det J` within a cell; 1 for every straight tetrahedron.
+    pub min_det_ratio: Extreme,
+    /// Smallest angle (degrees) between two faces, taken flat through their corners at the common edge.
+    pub min_dihedral: Extreme,
+    /// Largest such angle (degrees).
+    pub max_dihedral: Extreme,
+    /// Largest aspect: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the cube.
+    pub max_aspect: Extreme,
+}
+
+/// Measures a mesh; fails on the first element with `det J <= 0` at any node or quadrature point.
+pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
+    let mut quality: Option<Quality> = None;
+    let probes = CellKind::ALL.map(probe_points);
+    for element in 0..mesh.cell_count() {
+        let kind = mesh.kind(element);
+        let points: Vec<Point3> = mesh.cell_points(element).copied().collect();
+        let (rule, nodes) = &probes[kind as usize];
+        let det = |xi: &[f64; 3]| isoparametric::map(kind, &points, *xi).1.determinant();
+        let (mut low, mut high, mut volume) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for (xi, w) in rule.points.iter().zip(&rule.weights) {
+            let d = det(xi);
+            volume += w * d;
+            (low, high) = (low.min(d), high.max(d));
+        }
+        for xi in nodes {
+            let d = det(xi);
+            (low, high) = (low.min(d), high.max(d));
+        }
+        // Rounding leaves a flat cell a determinant of 1e-17 rather than 0: compare with the cell's own size.
+        let longest = longest_edge(kind, &points);
+        if low.is_nan() || low <= 1e-12 * longest.powi(3) {
+            return Err(InvertedElement { element, det_j: low });
+        }
+        let (sharp, blunt) = dihedrals(kind, &points);
+        let aspect =
+            longest * surface(kind, &points) / volume / if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
+        let at = |value| Extreme { element, value };
+        let here = Quality {
+            volume,
+            min_volume: at(volume),
+            max_volume: at(volume),
+            min_det_j: at(low),
+            min_det_ratio: at(low / high),
+            min_dihedral: at(sharp),
+            max_dihedral: at(blunt),
+            max_aspect: at(aspect),
+        };
+        quality = Some(match quality {
+            None => here,
+            Some(so_far) => so_far.joined(here),
+        });
+    }
+    Ok(quality.expect("a mesh has at least one cell"))
+}
+
+/// Volume of every cell (m^3), curved cells included; negative where a cell is inverted.
+pub fn volumes(mesh: &Mesh) -> Vec<f64> {
+    let probes = CellKind::ALL.map(probe_points);
+    (0..mesh.cell_count())
+        .map(|cell| {
+            let kind = mesh.kind(cell);
+            let points: Vec<Point3> = mesh.cell_points(cell).copied().collect();
+            let rule = &probes[kind as usize].0;
+            (rule.points.iter().zip(&rule.weights))
+                .map(|(xi, w)| w * isoparametric::map(kind, &points, *xi).1.determinant())
+                .sum()
+        })
+        .collect()
+}
+
+impl Quality {
+    fn joined(self, other: Quality) -> Quality {
+        let least = |a: Extreme, b: Extreme| if b.value < a.value { b } else { a };
+        let most = |a: Extreme, b: Extreme| if b.value > a.value { b } else { a };
+        Quality {
+            volume: self.volume + other.volume,
+            min_volume: least(self.min_volume, other.min_volume),
+            max_volume: most(self.max_volume, other.max_volume),
+            min_det_j: least(self.min_det_j, other.min_det_j),
+            min_det_ratio: least(self.min_det_ratio, other.min_det_ratio),
+            min_dihedral: least(self.min_dihedral, other.min_dihedral),
+            max_dihedral: most(self.max_dihedral, other.max_dihedral),
+            max_aspect: most(self.max_aspect, other.max_aspect),
+        }
+    }
+}
+
+/// A rule that integrates `det J` exactly (tet4: constant, tet10: degree 3, hex8: degree 2 and hex20: at most 7 per
+/// coordinate), and the nodes.
+fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, Vec<[f64; 3]>) {
+    let rule = match kind {
+        CellKind::Tet4 => quadrature::tet(1),
+        CellKind::Tet10 => quadrature::tet(8),
+        CellKind::Hex8 => Some(quadrature::hex(2)),
+        CellKind::Hex20 => Some(quadrature::hex(4)),
+    };
+    (rule.expect("a tabulated rule"), isoparametric::reference_nodes(kind))
+}
+
+fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {
+    kind.edges().iter().map(|&[a, b]| nalgebra::distance(&points[a], &points[b])).fold(0.0, f64::max)
+}
+
+/// Area of the corner polygons, each as the sum of the triangles around its corners' mean.
+fn surface(kind: CellKind, points: &[Point3]) -> f64 {
+    let corners = kind.face_kind().corner_count();
+    let face_area = |face: &[usize]| -> f64 {
+        let mean = face[..corners].iter().map(|&n| points[n].coords).sum::<Vector3>() / corners as f64;
+        (0..corners)
+            .map(|i| {
+                let (a, b) = (points[face[i]].coords - mean, points[face[(i + 1) % corners]].coords - mean);
+                0.5 * a.cross(&b).norm()
+            })
+            .sum()
+    };
+    kind.faces().iter().map(|face| face_area(face)).sum()
+}
+
+/// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a hexahedron each face is
+/// taken as the plane through the edge and the corner next to its start.
+fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
+    let corners = kind.face_kind().corner_count();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &[a, b] in kind.edges() {
+        let along = (points[b] - points[a]).normalize();
+        let mut arms = kind.faces().iter().filter_map(|face| {
+            let face = &face[..corners];
+            let at = face.iter().position(|&n| n == a)?;
+            let (next, previous) = (face[(at + 1) % corners], face[(at + corners - 1) % corners]);
+            let other = if next == b {
+                previous
+            } else if previous == b {
+                next
+            } else {
+                return None;
+            };
+            let arm = points[other] - points[a];
+            Some((arm - along * along.dot(&arm)).normalize())
+        });
+        if let (Some(u), Some(v)) = (arms.next(), arms.next()) {
+            let angle = u.dot(&v).clamp(-1.0, 1.0).acos().to_degrees();
+            (low, high) = (low.min(angle), high.max(angle));
+        }
+    }
+    (low, high)
+}
