@@ -1,0 +1,80 @@
+use geometry::CellKind;
+
+use super::Element;
+
+/// 20-node serendipity hexahedron on the cube `[-1, 1]^3`: the corners of [`super::Hex8`], then mid-edges
+/// 01 12 23 30, 45 56 67 74, 04 15 26 37.
+///
+/// With `X = x x_a` and so on: corners `N_a = (1 + X)(1 + Y)(1 + Z)(X + Y + Z - 2) / 8`; the middle of an edge
+/// along x `N_a = (1 - x^2)(1 + Y)(1 + Z) / 4`, and alike along y and z. Holds all quadratics on cells whose map is
+/// affine. Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1, section on serendipity families.
+pub struct Hex20;
+
+impl Element<20> for Hex20 {
+    const KIND: CellKind = CellKind::Hex20;
+    const NODES: [[f64; 3]; 20] = [
+        [-1.0, -1.0, -1.0],
+        [1.0, -1.0, -1.0],
+        [1.0, 1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+        [1.0, -1.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [-1.0, 1.0, 1.0],
+        [0.0, -1.0, -1.0],
+        [1.0, 0.0, -1.0],
+        [0.0, 1.0, -1.0],
+        [-1.0, 0.0, -1.0],
+        [0.0, -1.0, 1.0],
+        [1.0, 0.0, 1.0],
+        [0.0, 1.0, 1.0],
+        [-1.0, 0.0, 1.0],
+        [-1.0, -1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+    ];
+
+    #[inline]
+    fn shape([x, y, z]: [f64; 3]) -> [f64; 20] {
+        Self::NODES.map(|[a, b, c]| {
+            // Along the axis of a mid-edge node its coordinate is 0 and the bubble replaces the linear factor.
+            let (fx, fy, fz) = (factor(a, x), factor(b, y), factor(c, z));
+            if a * b * c == 0.0 {
+                0.25 * fx * fy * fz
+            } else {
+                0.125 * fx * fy * fz * (a * x + b * y + c * z - 2.0)
+            }
+        })
+    }
+
+    #[inline]
+    fn shape_grad([x, y, z]: [f64; 3]) -> [[f64; 3]; 20] {
+        Self::NODES.map(|[a, b, c]| {
+            let (fx, fy, fz) = (factor(a, x), factor(b, y), factor(c, z));
+            let (dx, dy, dz) = (slope(a, x), slope(b, y), slope(c, z));
+            if a * b * c == 0.0 {
+                [0.25 * dx * fy * fz, 0.25 * fx * dy * fz, 0.25 * fx * fy * dz]
+            } else {
+                let s = a * x + b * y + c * z - 2.0;
+                [
+                    0.125 * fy * fz * (dx * s + fx * a),
+                    0.125 * fx * fz * (dy * s + fy * b),
+                    0.125 * fx * fy * (dz * s + fz * c),
+                ]
+            }
+        })
+    }
+}
+
+/// `1 + a x` for an end node (`a` = +-1), the bubble `1 - x^2` for a middle one (`a` = 0).
+#[inline]
+fn factor(a: f64, x: f64) -> f64 {
+    if a == 0.0 { 1.0 - x * x } else { 1.0 + a * x }
+}
+
+/// Derivative of [`factor`] by x.
+#[inline]
+fn slope(a: f64, x: f64) -> f64 {
+    if a == 0.0 { -2.0 * x } else { a }
+}

@@ -1,0 +1,53 @@
+use geometry::CellKind;
+
+use super::{Element, Tet4};
+
+/// 10-node quadratic tetrahedron: the corners of [`Tet4`], then mid-edges 01, 12, 20, 03, 13, 23.
+///
+/// With the barycentric coordinates `L` of the corners: `N_a = L_a (2 L_a - 1)` at corner `a`,
+/// `N_ab = 4 L_a L_b` at the middle of edge `ab`. Complete quadratic.
+pub struct Tet10;
+
+/// Corners of each mid-edge node, as in [`CellKind::edges`].
+const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+
+impl Element<10> for Tet10 {
+    const KIND: CellKind = CellKind::Tet10;
+    const NODES: [[f64; 3]; 10] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.5, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.0],
+        [0.0, 0.0, 0.5],
+        [0.5, 0.0, 0.5],
+        [0.0, 0.5, 0.5],
+    ];
+
+    #[inline]
+    fn shape(xi: [f64; 3]) -> [f64; 10] {
+        let l = Tet4::shape(xi);
+        std::array::from_fn(|node| match node {
+            0..4 => l[node] * (2.0 * l[node] - 1.0),
+            _ => {
+                let [a, b] = EDGES[node - 4];
+                4.0 * l[a] * l[b]
+            }
+        })
+    }
+
+    #[inline]
+    fn shape_grad(xi: [f64; 3]) -> [[f64; 3]; 10] {
+        let l = Tet4::shape(xi);
+        let dl = Tet4::shape_grad(xi);
+        std::array::from_fn(|node| match node {
+            0..4 => dl[node].map(|d| (4.0 * l[node] - 1.0) * d),
+            _ => {
+                let [a, b] = EDGES[node - 4];
+                std::array::from_fn(|i| 4.0 * (l[a] * dl[b][i] + l[b] * dl[a][i]))
+            }
+        })
+    }
+}

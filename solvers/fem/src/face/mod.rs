@@ -1,0 +1,74 @@
+//! The faces of the elements: shape functions of two coordinates, on the triangle (0,0), (1,0), (0,1) or the
+//! square `[-1, 1]^2`. Restricted to a face, an element is its face element.
+
+mod quad4;
+mod quad8;
+mod tri3;
+mod tri6;
+
+pub(crate) use quad4::Quad4;
+pub(crate) use quad8::Quad8;
+pub(crate) use tri3::Tri3;
+pub(crate) use tri6::Tri6;
+
+use geometry::{CellKind, FaceKind};
+
+use crate::element;
+
+/// A Lagrange element of `N` nodes on a reference face.
+pub(crate) trait Face<const N: usize> {
+    /// Reference coordinates of the nodes, corners first.
+    const NODES: [[f64; 2]; N];
+
+    /// Shape functions at `s`.
+    fn shape(s: [f64; 2]) -> [f64; N];
+
+    /// Their gradients by `s`.
+    fn shape_grad(s: [f64; 2]) -> [[f64; 2]; N];
+}
+
+/// Runs `$body` with `$F` the face type of a face kind and `$N` its number of nodes.
+macro_rules! with_face {
+    ($kind:expr, $F:ident, $N:ident => $body:expr) => {
+        match $kind {
+            geometry::FaceKind::Tri3 => with_face!(@ $crate::face::Tri3, 3, $F, $N, $body),
+            geometry::FaceKind::Tri6 => with_face!(@ $crate::face::Tri6, 6, $F, $N, $body),
+            geometry::FaceKind::Quad4 => with_face!(@ $crate::face::Quad4, 4, $F, $N, $body),
+            geometry::FaceKind::Quad8 => with_face!(@ $crate::face::Quad8, 8, $F, $N, $body),
+        }
+    };
+    (@ $type:ty, $count:literal, $F:ident, $N:ident, $body:expr) => {{
+        #[allow(dead_code)]
+        type $F = $type;
+        #[allow(dead_code)]
+        const $N: usize = $count;
+        $body
+    }};
+}
+pub(crate) use with_face;
+
+/// True for the two triangles.
+pub(crate) fn is_triangle(kind: FaceKind) -> bool {
+    kind.corner_count() == 3
+}
+
+/// Reference coordinates in the cell of the point `s` of one of its faces. Reference faces are flat, so the
+/// corners' (bi)linear functions carry one into the other for every order.
+pub(crate) fn into_cell(kind: CellKind, face: usize, s: [f64; 2]) -> [f64; 3] {
+    let nodes = element::nodes(kind);
+    let corners = kind.faces()[face].iter();
+    let mut xi = [0.0; 3];
+    let mut add = |values: &[f64]| {
+        for (&local, n) in corners.clone().zip(values) {
+            for i in 0..3 {
+                xi[i] += n * nodes[local][i];
+            }
+        }
+    };
+    if is_triangle(kind.face_kind()) {
+        add(&Tri3::shape(s))
+    } else {
+        add(&Quad4::shape(s))
+    }
+    xi
+}

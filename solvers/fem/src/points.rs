@@ -1,0 +1,126 @@
+//! Rows at given points: probes, transfer targets, places where stress is wanted.
+
+use geometry::{Mesh, Point3, Vector3};
+use rayon::prelude::*;
+use shape::{GradRows, PointRows, Rows};
+
+use crate::FemError;
+use crate::closest::Surface;
+use crate::element::{Element, with_element};
+use crate::locate::{Locator, Place};
+use crate::map::{Nodes, cofactors, physical};
+use crate::volume::UNITY;
+
+/// Points that the mesh does not hold, answered at the nearest point of its surface instead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outside {
+    /// (index into the points asked for, distance to the mesh in metres), by ascending index.
+    pub points: Vec<(usize, f64)>,
+}
+
+impl Outside {
+    /// The farthest point and its distance, m.
+    pub fn farthest(&self) -> Option<(usize, f64)> {
+        self.points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Values at points of the mesh (m), by the inverse of the isoparametric map. A point of several cells belongs to
+/// the one of lowest index. A point outside (by more than rounding) is an error naming its distance.
+pub fn point_rows(mesh: &Mesh, points: &[Point3]) -> Result<PointRows, FemError> {
+    values(mesh, points, &inside(mesh, points)?)
+}
+
+/// Values and gradients (1/m) at points of the mesh, as [`point_rows`]. On a face, gradients are those of the
+/// cell of lowest index.
+pub fn grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<GradRows, FemError> {
+    gradients(mesh, points, &inside(mesh, points)?)
+}
+
+/// As [`point_rows`], but points outside take the values at the nearest point of the mesh surface and are listed.
+pub fn nearest_point_rows(mesh: &Mesh, points: &[Point3]) -> Result<(PointRows, Outside), FemError> {
+    let (places, outside) = nearest(mesh, points)?;
+    Ok((values(mesh, points, &places)?, outside))
+}
+
+/// As [`grad_rows`], but points outside take values and gradients at the nearest point of the mesh surface and
+/// are listed.
+pub fn nearest_grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<(GradRows, Outside), FemError> {
+    let (places, outside) = nearest(mesh, points)?;
+    Ok((gradients(mesh, points, &places)?, outside))
+}
+
+fn inside(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Place>, FemError> {
+    let found = find(mesh, points)?;
+    if let Some(point) = found.iter().position(Option::is_none) {
+        let (_, distance) = Surface::new(mesh).closest(&points[point]);
+        return Err(FemError::Outside { point, position: points[point].coords.into(), distance });
+    }
+    Ok(found.into_iter().flatten().collect())
+}
+
+fn nearest(mesh: &Mesh, points: &[Point3]) -> Result<(Vec<Place>, Outside), FemError> {
+    let found = find(mesh, points)?;
+    let missing: Vec<usize> = (0..points.len()).filter(|&i| found[i].is_none()).collect();
+    let surface = (!missing.is_empty()).then(|| Surface::new(mesh));
+    let closest: Vec<(Place, f64)> = match &surface {
+        Some(surface) => missing.par_iter().map(|&i| surface.closest(&points[i])).collect(),
+        None => Vec::new(),
+    };
+    let mut places = closest.iter().map(|c| c.0);
+    let places = found.into_iter().filter_map(|place| place.or_else(|| places.next())).collect();
+    let outside = missing.into_iter().zip(closest.iter().map(|c| c.1)).collect();
+    Ok((places, Outside { points: outside }))
+}
+
+/// One place per point, in parallel; the order of the result is that of the points.
+fn find(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Option<Place>>, FemError> {
+    if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        return Err(FemError::NotFinite { point });
+    }
+    let locator = Locator::new(mesh);
+    Ok(points.par_iter().with_min_len(64).map(|p| locator.find(p)).collect())
+}
+
+fn values(mesh: &Mesh, points: &[Point3], places: &[Place]) -> Result<PointRows, FemError> {
+    let (offsets, nodes) = pattern(mesh, places);
+    let mut values = Vec::with_capacity(nodes.len());
+    for place in places {
+        with_element!(mesh.kind(place.cell), E, N => values.extend(<E as Element<N>>::shape(place.xi)));
+    }
+    let rows = Rows::new(mesh.points().len(), offsets, nodes, values, UNITY)?;
+    Ok(PointRows::new(points.to_vec(), rows)?)
+}
+
+fn gradients(mesh: &Mesh, points: &[Point3], places: &[Place]) -> Result<GradRows, FemError> {
+    let (offsets, nodes) = pattern(mesh, places);
+    let mut values = Vec::with_capacity(nodes.len());
+    let mut grads: Vec<Vector3> = Vec::with_capacity(nodes.len());
+    for &Place { cell: element, xi } in places {
+        with_element!(mesh.kind(element), E, N => {
+            values.extend(<E as Element<N>>::shape(xi));
+            let dn = <E as Element<N>>::shape_grad(xi);
+            let x = Nodes::gather(mesh, &mesh.cell(element).as_chunks::<N>().0[0]);
+            let (det_j, c) = cofactors(&x.tangents(&dn));
+            // Not `det_j <= 0`: a NaN must not pass.
+            if !(det_j > 0.0) {
+                return Err(FemError::InvertedElement { element, det_j });
+            }
+            let grad_xi = c.map(|c| c / det_j);
+            grads.extend(dn.iter().map(|dn| physical(dn, &grad_xi)));
+        });
+    }
+    let rows = Rows::new(mesh.points().len(), offsets, nodes, values, UNITY)?;
+    Ok(GradRows::new(points.to_vec(), rows, grads)?)
+}
+
+/// Row starts and nodes: each row holds its cell's nodes, in the cell's order.
+fn pattern(mesh: &Mesh, places: &[Place]) -> (Vec<usize>, Vec<u32>) {
+    let mut offsets = vec![0];
+    let mut nodes = Vec::new();
+    for place in places {
+        nodes.extend_from_slice(mesh.cell(place.cell));
+        offsets.push(nodes.len());
+    }
+    (offsets, nodes)
+}

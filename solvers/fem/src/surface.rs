@@ -1,0 +1,145 @@
+//! Surface quadrature rows of facets: values only for loads, values and gradients for Nitsche's method.
+
+use geometry::quadrature::Rule;
+use geometry::{CellKind, FaceKind, Facet, Mesh, Point3, Vector3};
+use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows};
+
+use crate::element::{Element, with_element};
+use crate::face::{Face, into_cell, with_face};
+use crate::map::{Nodes, cofactors, physical};
+use crate::volume::UNITY;
+use crate::{FemError, SurfaceRule};
+
+/// Values, weights `w |dx/ds x dx/dt|` (m^2) and outward unit normals at the points of every facet, in the order
+/// given. Curved faces count as they are. Rows hold the facet's own nodes, in the order of
+/// [`Mesh::facet_nodes`]: no other node of the cell counts on the facet.
+pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<SurfaceRows, FemError> {
+    let rules = rules(rule)?;
+    let mut table = Table::new();
+    for &facet in facets {
+        let kind = check(mesh, facet)?.face_kind();
+        let rule = &rules[kind as usize];
+        with_face!(kind, F, N => {
+            let nodes = facet_nodes::<N>(mesh, facet);
+            let x = Nodes::gather(mesh, &nodes);
+            for (&s, &w) in rule.points.iter().zip(&rule.weights) {
+                let n = <F as Face<N>>::shape(s);
+                table.push_area(facet, x.tangents(&<F as Face<N>>::shape_grad(s)), w)?;
+                table.push_row(x.position(&n), &nodes, &n);
+            }
+        });
+    }
+    let rows = Rows::new(mesh.points().len(), table.offsets, table.nodes, table.values, UNITY)?;
+    Ok(SurfaceRows::new(PointRows::new(table.points, rows)?, table.weights, table.normals)?)
+}
+
+/// As [`surface_rows`], but each row holds all nodes of the facet's cell, in the cell's order, with gradients
+/// (1/m): the boundary stress depends on them all.
+pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<FluxRows, FemError> {
+    let rules = rules(rule)?;
+    let mut table = Table::new();
+    let mut grads = Vec::new();
+    for &facet in facets {
+        let kind = check(mesh, facet)?;
+        let rule = &rules[kind.face_kind() as usize];
+        let element = facet.cell as usize;
+        with_element!(kind, E, N => {
+            let nodes = &mesh.cell(element).as_chunks::<N>().0[0];
+            let x = Nodes::gather(mesh, nodes);
+            for (&s, &w) in rule.points.iter().zip(&rule.weights) {
+                let xi = into_cell(kind, facet.face as usize, s);
+                let (n, dn) = (<E as Element<N>>::shape(xi), <E as Element<N>>::shape_grad(xi));
+                let (det_j, c) = cofactors(&x.tangents(&dn));
+                // Not `det_j <= 0`: a NaN must not pass.
+                if !(det_j > 0.0) {
+                    return Err(FemError::InvertedElement { element, det_j });
+                }
+                let grad_xi = c.map(|c| c / det_j);
+                table.push_area(facet, facet_tangents(mesh, facet, s), w)?;
+                table.push_row(x.position(&n), nodes, &n);
+                grads.extend(dn.iter().map(|dn| physical(dn, &grad_xi)));
+            }
+        });
+    }
+    let rows = Rows::new(mesh.points().len(), table.offsets, table.nodes, table.values, UNITY)?;
+    Ok(FluxRows::new(GradRows::new(table.points, rows, grads)?, table.weights, table.normals)?)
+}
+
+/// Arrays under construction, one entry (or one run of entries) per point.
+struct Table {
+    points: Vec<Point3>,
+    weights: Vec<f64>,
+    normals: Vec<Vector3>,
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Table {
+    fn new() -> Table {
+        Table {
+            points: Vec::new(),
+            weights: Vec::new(),
+            normals: Vec::new(),
+            offsets: vec![0],
+            nodes: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
+    fn push_area(&mut self, facet: Facet, [t0, t1]: [Vector3; 2], weight: f64) -> Result<(), FemError> {
+        let normal = t0.cross(&t1);
+        let area = normal.norm();
+        if !(area > 0.0) {
+            return Err(FemError::FlatFacet { cell: facet.cell, face: facet.face, area });
+        }
+        self.weights.push(weight * area);
+        self.normals.push(normal / area);
+        Ok(())
+    }
+
+    fn push_row(&mut self, point: Point3, nodes: &[u32], values: &[f64]) {
+        self.points.push(point);
+        self.nodes.extend_from_slice(nodes);
+        self.values.extend_from_slice(values);
+        self.offsets.push(self.nodes.len());
+    }
+}
+
+/// One rule per face kind, by `FaceKind as usize`.
+fn rules(rule: &SurfaceRule) -> Result<[Rule<2>; 4], FemError> {
+    Ok([
+        rule.rule(FaceKind::Tri3)?,
+        rule.rule(FaceKind::Tri6)?,
+        rule.rule(FaceKind::Quad4)?,
+        rule.rule(FaceKind::Quad8)?,
+    ])
+}
+
+/// The kind of a facet's cell, if the mesh has such a facet.
+fn check(mesh: &Mesh, facet: Facet) -> Result<CellKind, FemError> {
+    let cells = mesh.cell_count();
+    let known =
+        (facet.cell as usize) < cells && (facet.face as usize) < mesh.kind(facet.cell as usize).faces().len();
+    if known {
+        Ok(mesh.kind(facet.cell as usize))
+    } else {
+        Err(FemError::NoSuchFacet { cell: facet.cell, face: facet.face, cells })
+    }
+}
+
+fn facet_nodes<const N: usize>(mesh: &Mesh, facet: Facet) -> [u32; N] {
+    let mut nodes = [0; N];
+    for (slot, node) in nodes.iter_mut().zip(mesh.facet_nodes(facet)) {
+        *slot = node;
+    }
+    nodes
+}
+
+/// `dx/ds` and `dx/dt` of a facet; their cross product points outwards.
+fn facet_tangents(mesh: &Mesh, facet: Facet, s: [f64; 2]) -> [Vector3; 2] {
+    with_face!(mesh.kind(facet.cell as usize).face_kind(), F, N => {
+        let x = Nodes::gather(mesh, &facet_nodes::<N>(mesh, facet));
+        x.tangents(&<F as Face<N>>::shape_grad(s))
+    })
+}
