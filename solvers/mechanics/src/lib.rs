@@ -1,1 +1,44 @@
-//! mechanics
+//! Solid mechanics over shape tables: materials, assembly, supports, constraints, factorisation, recovery.
+//!
+//! Nothing here knows an element or a kernel. A [`Body`] is a quadrature with a material, a [`LinearProblem`] is
+//! a body with loads and supports, and the stages are values of their own, so that each can be timed, kept and
+//! used again:
+//!
+//! ```text
+//! LinearProblem --assemble--> Assembled --factor--> Factored --solve--> Solution
+//! ```
+//!
+//! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its residual,
+//! and results have the same bits at any number of threads.
+
+mod body;
+mod constraint;
+mod error;
+mod linear_solver;
+mod load;
+mod material;
+mod pattern;
+mod problem;
+mod recover;
+mod rigid;
+mod solve;
+mod stiffness;
+mod support;
+mod weak;
+
+pub use body::Body;
+pub use constraint::{ConstraintRow, multiplier_rows};
+pub use error::SolveError;
+pub use linear_solver::SolverPath;
+pub use load::Load;
+pub use material::{LinearElastic, MaterialError};
+pub use pattern::BlockPattern;
+pub use problem::{Assembled, LinearProblem, assemble};
+pub use recover::{body_stress, mean_pressure, strain_energy, stress};
+pub use rigid::RigidMode;
+pub use solve::{Factored, Solution, SolveInfo};
+pub use stiffness::Stiffness;
+pub use support::FixedDof;
+pub use weak::{Weak, WeakSupport};
+
+pub use shape::{Matrix3, Point3, Vector3};

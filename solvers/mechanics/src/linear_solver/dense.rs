@@ -1,0 +1,58 @@
+//! Dense factorisation of small systems.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::{ldlt, llt};
+use faer::{Conj, Mat, MatMut, Par};
+
+use super::{FactorError, Symmetric, check_pivots};
+use crate::SolveError;
+
+/// `L L^T`, or `L D L^T` (D on the diagonal of `lower`) of a saddle matrix.
+pub(super) struct Dense {
+    lower: Mat<f64>,
+    saddle: bool,
+}
+
+impl Dense {
+    pub fn new(matrix: &Symmetric) -> Result<Dense, FactorError> {
+        let n = matrix.dim();
+        let saddle = matrix.is_saddle();
+        let regularised = saddle.then(|| matrix.regularised());
+        let values = regularised.as_ref().unwrap_or(&matrix.values);
+        let mut lower = Mat::zeros(n, n);
+        for j in 0..n {
+            for k in matrix.offsets[j]..matrix.offsets[j + 1] {
+                lower[(j, matrix.rows[k])] = values[k];
+            }
+        }
+        let (par, params) = (Par::Seq, Default::default());
+        if saddle {
+            let scratch = ldlt::factor::cholesky_in_place_scratch::<f64>(n, par, params);
+            let mut memory = MemBuffer::new(scratch);
+            let stack = MemStack::new(&mut memory);
+            ldlt::factor::cholesky_in_place(lower.as_mut(), Default::default(), par, stack, params)
+                .map_err(|_| SolveError::ZeroPivot)?;
+        } else {
+            let params = Default::default();
+            let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, par, params);
+            let mut memory = MemBuffer::new(scratch);
+            let stack = MemStack::new(&mut memory);
+            llt::factor::cholesky_in_place(lower.as_mut(), Default::default(), par, stack, params)
+                .map_err(|_| FactorError::NotDefinite)?;
+            check_pivots((0..n).map(|j| lower[(j, j)].powi(2) / matrix.diagonal(j)))?;
+        }
+        Ok(Dense { lower, saddle })
+    }
+
+    pub fn solve(&self, b: &mut [f64]) {
+        let n = b.len();
+        let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
+        let stack = MemStack::new(&mut []);
+        let lower = self.lower.as_ref();
+        if self.saddle {
+            ldlt::solve::solve_in_place_with_conj(lower, lower.diagonal(), Conj::No, rhs, Par::Seq, stack);
+        } else {
+            llt::solve::solve_in_place_with_conj(lower, Conj::No, rhs, Par::Seq, stack);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Direct solution of symmetric systems: the only module that knows faer and METIS.
+//!
+//! Factorisations are sequential, so that the bits of a result do not depend on the number of threads. Every solve
+//! ends with its residual.
+
+mod dense;
+mod ordering;
+mod sparse;
+
+use crate::SolveError;
+
+/// Up to this many unknowns the dense factorisation is the faster one (mean of assembled box and cloud matrices;
+/// figures in `benches/factor.rs`).
+pub(crate) const DENSE_LIMIT: usize = 320;
+
+/// Relative residual `|b - A x| / |b|` above which a solution is refused.
+const RESIDUAL_LIMIT: f64 = 1e-8;
+/// Refinement stops below this residual.
+const RESIDUAL_GOAL: f64 = 1e-14;
+/// Static regularisation of a saddle matrix relative to its largest entry: +- this on the diagonal.
+const REGULARISATION: f64 = 1e-9;
+/// Smallest pivot over diagonal entry of a definite matrix; rounding leaves about 1e-16 of a true zero.
+const PIVOT_LIMIT: f64 = 1e-14;
+
+/// Which factorisation served.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolverPath {
+    /// Nothing was free: no system.
+    None,
+    /// Dense Cholesky `L L^T`.
+    DenseLlt,
+    /// Dense `L D L^T` with static regularisation and refinement.
+    DenseLdlt,
+    /// Supernodal Cholesky in METIS nested-dissection order.
+    SparseLlt,
+    /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
+    SparseLdlt,
+}
+
+impl SolverPath {
+    /// The name used in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            SolverPath::None => "none",
+            SolverPath::DenseLlt => "dense-llt",
+            SolverPath::DenseLdlt => "dense-ldlt",
+            SolverPath::SparseLlt => "sparse-llt",
+            SolverPath::SparseLdlt => "sparse-ldlt",
+        }
+    }
+}
+
+/// A symmetric matrix: its upper triangle by columns, rows ascending, the diagonal entry always present. Unknowns
+/// from `multipliers` on are Lagrange multipliers (zero diagonal block).
+pub(crate) struct Symmetric {
+    pub offsets: Vec<usize>,
+    pub rows: Vec<usize>,
+    pub values: Vec<f64>,
+    pub multipliers: usize,
+    /// First unknown of each vertex of the graph (a node or a multiplier), and the number of unknowns at the end.
+    pub vertices: Vec<usize>,
+}
+
+impl Symmetric {
+    pub fn dim(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    fn is_saddle(&self) -> bool {
+        self.multipliers < self.dim()
+    }
+
+    /// `y -= A x`.
+    fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.dim() {
+            let mut sum = 0.0;
+            for k in self.offsets[j]..self.offsets[j + 1] {
+                let (i, a) = (self.rows[k], self.values[k]);
+                sum += a * x[i];
+                if i != j {
+                    y[i] -= a * x[j];
+                }
+            }
+            y[j] -= sum;
+        }
+    }
+
+    fn diagonal(&self, j: usize) -> f64 {
+        // Rows ascend and the triangle is the upper one: the diagonal entry is the last.
+        self.values[self.offsets[j + 1] - 1]
+    }
+
+    /// The values with the static regularisation added, which makes a saddle matrix quasi-definite (it then has an
+    /// `L D L^T` in any order; Vanderbei 1995).
+    fn regularised(&self) -> Vec<f64> {
+        let largest = self.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let mut values = self.values.clone();
+        for j in 0..self.dim() {
+            let shift = REGULARISATION * largest;
+            values[self.offsets[j + 1] - 1] += if j < self.multipliers { shift } else { -shift };
+        }
+        values
+    }
+}
+
+enum Factor {
+    Empty,
+    Dense(dense::Dense),
+    Sparse(sparse::Sparse),
+}
+
+/// A factored matrix; serves any number of right-hand sides.
+pub(crate) struct Factorization {
+    matrix: Symmetric,
+    factor: Factor,
+}
+
+/// What went wrong with a definite factorisation; the caller knows why it should have been definite.
+pub(crate) enum FactorError {
+    NotDefinite,
+    Other(SolveError),
+}
+
+impl From<SolveError> for FactorError {
+    fn from(error: SolveError) -> FactorError {
+        FactorError::Other(error)
+    }
+}
+
+/// Dense up to `dense_limit` unknowns, sparse above.
+pub(crate) fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
+    let n = matrix.dim();
+    let factor = if n == 0 {
+        Factor::Empty
+    } else if n <= dense_limit {
+        Factor::Dense(dense::Dense::new(&matrix)?)
+    } else {
+        Factor::Sparse(sparse::Sparse::new(&matrix)?)
+    };
+    Ok(Factorization { matrix, factor })
+}
+
+/// Refuses a pivot that is mere rounding beside its diagonal entry.
+fn check_pivots(ratios: impl Iterator<Item = f64>) -> Result<(), FactorError> {
+    let ratio = ratios.fold(f64::INFINITY, f64::min);
+    if ratio.is_nan() || ratio < PIVOT_LIMIT {
+        return Err(SolveError::NearlySingular { ratio, limit: PIVOT_LIMIT }.into());
+    }
+    Ok(())
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+impl Factorization {
+    /// Solves in place and returns the relative residual. Refines until the residual is at rounding or no longer
+    /// halves; with multipliers that takes about three steps, else none or one.
+    pub fn solve(&self, b: &mut [f64]) -> Result<f64, SolveError> {
+        let size = norm(b);
+        if size == 0.0 {
+            return Ok(0.0);
+        }
+        let mut x = vec![0.0; b.len()];
+        let mut rest = b.to_vec();
+        let mut residual = f64::INFINITY;
+        for _ in 0..12 {
+            let mut step = rest.clone();
+            self.solve_once(&mut step)?;
+            let trial: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
+            let mut left = b.to_vec();
+            self.matrix.subtract_product(&trial, &mut left);
+            let reached = norm(&left) / size;
+            // A NaN fails this comparison and keeps the last good solution, or none.
+            if !(reached < residual) {
+                break;
+            }
+            let stalled = reached > 0.5 * residual;
+            (x, rest, residual) = (trial, left, reached);
+            if residual < RESIDUAL_GOAL || stalled {
+                break;
+            }
+        }
+        if !(residual <= RESIDUAL_LIMIT) {
+            return Err(SolveError::Residual { residual, limit: RESIDUAL_LIMIT });
+        }
+        b.copy_from_slice(&x);
+        Ok(residual)
+    }
+
+    fn solve_once(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        match &self.factor {
+            Factor::Empty => Ok(()),
+            Factor::Dense(factor) => {
+                factor.solve(b);
+                Ok(())
+            }
+            Factor::Sparse(factor) => factor.solve(b),
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn dim(&self) -> usize {
+        self.matrix.dim()
+    }
+
+    /// Numbers stored in the factor.
+    pub fn nonzeros(&self) -> usize {
+        match &self.factor {
+            Factor::Empty => 0,
+            Factor::Dense(_) => self.dim() * (self.dim() + 1) / 2,
+            Factor::Sparse(factor) => factor.nonzeros(),
+        }
+    }
+
+    /// Which factorisation it is.
+    pub fn path(&self) -> SolverPath {
+        match (&self.factor, self.matrix.is_saddle()) {
+            (Factor::Empty, _) => SolverPath::None,
+            (Factor::Dense(_), false) => SolverPath::DenseLlt,
+            (Factor::Dense(_), true) => SolverPath::DenseLdlt,
+            (Factor::Sparse(_), false) => SolverPath::SparseLlt,
+            (Factor::Sparse(_), true) => SolverPath::SparseLdlt,
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! A linear problem and its assembly.
+
+use crate::body::check_len;
+use crate::constraint::{self, ConstraintRow};
+use crate::load::{Load, nodal_forces};
+use crate::pattern::BlockPattern;
+use crate::rigid;
+use crate::stiffness::{GradTable, Stiffness};
+use crate::support::{FixedDof, prescribed};
+use crate::weak::{Weak, WeakSupport, WeakTable};
+use crate::{Body, SolveError, Vector3};
+
+/// A body with its loads and supports. Any mixture of the three kinds of support will do, as long as no rigid motion
+/// is left free.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearProblem<'a> {
+    /// The body.
+    pub body: Body<'a>,
+    /// Loads; they add up.
+    pub loads: &'a [Load<'a>],
+    /// Nodal parameters held at values, eliminated exactly.
+    pub fixed: &'a [FixedDof],
+    /// General linear constraints, by Lagrange multipliers.
+    pub constraints: &'a [ConstraintRow],
+    /// Surfaces held weakly.
+    pub weak: &'a [WeakSupport<'a>],
+}
+
+/// Stiffness, forces and checked supports of a problem, ready to be factored.
+pub struct Assembled<'a> {
+    pub(crate) body: Body<'a>,
+    pub(crate) stiffness: Stiffness,
+    /// Nodal forces of the loads, N.
+    pub(crate) load: Vec<Vector3>,
+    /// Right-hand side of the weak supports, N.
+    pub(crate) weak_load: Vec<Vector3>,
+    /// Per degree of freedom `3 node + axis`.
+    pub(crate) prescribed: Vec<Option<f64>>,
+    pub(crate) rows: Vec<constraint::Row>,
+    /// Smallest Nitsche factor, if any support is of that kind.
+    pub(crate) gamma: Option<f64>,
+}
+
+/// Checks the problem, builds the pattern and sums stiffness and forces. Rigid motions left free are found here,
+/// before anything is factored.
+pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
+    let body = problem.body;
+    body.check()?;
+    let nodes = body.nodes.len();
+    for (index, support) in problem.weak.iter().enumerate() {
+        support.check(index, nodes, body.materials)?;
+    }
+    let prescribed = prescribed(nodes, problem.fixed)?;
+    let rows = constraint::sorted(problem.constraints, nodes)?;
+    let load = nodal_forces(body.volume, problem.loads)?;
+
+    let points = GradTable::points(&body);
+    let points_of = points.incidence(nodes);
+    let groups = GradTable::groups(&body)?;
+    let groups_of = groups.as_ref().map(|table| table.incidence(nodes));
+    let weak: Vec<_> = problem
+        .weak
+        .iter()
+        .map(|support| {
+            let table = WeakTable::new(support, body.materials);
+            let incidence = table.incidence(nodes);
+            (table, incidence)
+        })
+        .collect();
+
+    let mut tables = vec![(points.connectivity(), &points_of)];
+    tables.extend(groups.iter().zip(&groups_of).map(|(table, of)| (table.connectivity(), of)));
+    tables.extend(weak.iter().map(|(table, of)| (table.connectivity(), of)));
+    let pattern = BlockPattern::new(nodes, &tables);
+    if let Some(node) = (0..nodes)
+        .find(|&i| points_of.of(i).is_empty() && prescribed[3 * i..3 * i + 3].iter().any(Option::is_none))
+    {
+        return Err(SolveError::OrphanNode { node });
+    }
+    rigid::check(&body, points.connectivity(), &prescribed, &rows, problem.weak)?;
+
+    let mut stiffness = Stiffness::zeros(pattern);
+    stiffness.add_volume(&points, &points_of);
+    if let (Some(table), Some(of)) = (&groups, &groups_of) {
+        stiffness.add_volume(table, of);
+    }
+    let mut weak_load = vec![Vector3::zeros(); nodes];
+    for (table, of) in &weak {
+        table.add_stiffness(&mut stiffness, of);
+        table.add_force(of, &mut weak_load);
+    }
+    let gammas = problem.weak.iter().filter_map(|s| match s.method {
+        Weak::Nitsche { gamma } => Some(gamma),
+        Weak::Penalty { .. } => None,
+    });
+    let gamma = gammas.reduce(f64::min);
+    Ok(Assembled { body, stiffness, load, weak_load, prescribed, rows, gamma })
+}
+
+impl<'a> Assembled<'a> {
+    /// Stiffness of the free body plus the terms of weak supports; before any elimination.
+    pub fn stiffness(&self) -> &Stiffness {
+        &self.stiffness
+    }
+
+    /// Nodal forces of the loads, N.
+    pub fn load(&self) -> &[Vector3] {
+        &self.load
+    }
+
+    /// Number of free degrees of freedom and constraint rows.
+    pub fn dofs(&self) -> usize {
+        self.prescribed.iter().filter(|p| p.is_none()).count() + self.rows.len()
+    }
+
+    /// Nodal forces of other loads on the same body, N.
+    pub(crate) fn other_load(&self, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
+        let force = nodal_forces(self.body.volume, loads)?;
+        check_len("nodal forces", force.len(), self.load.len())?;
+        Ok(force)
+    }
+}

@@ -1,0 +1,216 @@
+//! Factorisation and solution of an assembled problem.
+
+use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
+use crate::load::Load;
+use crate::problem::Assembled;
+use crate::{SolveError, Stiffness, Vector3};
+
+/// What a solve did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveInfo {
+    /// Unknowns of the system: free degrees of freedom and multipliers.
+    pub dofs: usize,
+    /// Lagrange multipliers among them.
+    pub multipliers: usize,
+    /// Numbers stored in the factor.
+    pub factor_nonzeros: usize,
+    /// Relative residual `|b - A x| / |b|` of the reduced system.
+    pub residual: f64,
+    /// The factorisation that served.
+    pub path: SolverPath,
+}
+
+/// Nodal parameters and what the solve did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Nodal parameters, m; displacements only where the basis is Kronecker.
+    pub u: Vec<Vector3>,
+    /// One multiplier per constraint row: the force (N per unit of coefficient) with which the row acts against the
+    /// body, `K u + sum_k lambda_k c_k = f`. Zero for rows without a free term.
+    pub multipliers: Vec<f64>,
+    /// What the solve did.
+    pub info: SolveInfo,
+}
+
+/// A factored problem: solves for any load level or set of loads without factoring again.
+pub struct Factored<'a> {
+    problem: Assembled<'a>,
+    factorization: Factorization,
+    /// Place of each degree of freedom among the unknowns, `HELD` if prescribed.
+    place: Vec<usize>,
+    /// Constraint rows that keep a free term: index, and the scale by which they were multiplied.
+    active: Vec<(usize, f64)>,
+}
+
+const HELD: usize = usize::MAX;
+
+impl<'a> Assembled<'a> {
+    /// Eliminates the prescribed degrees of freedom, appends the constraint rows and factors: Cholesky without
+    /// constraint rows, `L D L^T` with them; dense if small.
+    pub fn factor(self) -> Result<Factored<'a>, SolveError> {
+        self.factor_with(DENSE_LIMIT)
+    }
+
+    /// As [`Assembled::factor`] with the size (unknowns) up to which the dense factorisation serves: for comparing
+    /// the two.
+    pub fn factor_with(self, dense_limit: usize) -> Result<Factored<'a>, SolveError> {
+        let mut place = vec![HELD; self.prescribed.len()];
+        let mut free = 0;
+        for dof in 0..place.len() {
+            if self.prescribed[dof].is_none() {
+                place[dof] = free;
+                free += 1;
+            }
+        }
+        let (matrix, active) = self.reduced(&place, free)?;
+        let factorization = linear_solver::factor(matrix, dense_limit).map_err(|error| match error {
+            FactorError::Other(error) => error,
+            FactorError::NotDefinite => match self.gamma {
+                Some(gamma) => SolveError::NotCoercive { gamma },
+                None => SolveError::NotPositiveDefinite,
+            },
+        })?;
+        Ok(Factored { problem: self, factorization, place, active })
+    }
+
+    /// The matrix over the free degrees of freedom and the constraint rows with a free term (with their scales).
+    fn reduced(&self, place: &[usize], free: usize) -> Result<(Symmetric, Vec<(usize, f64)>), SolveError> {
+        let nodes = self.load.len();
+        let capacity = 9 * self.stiffness.pattern().block_count();
+        let mut m = Symmetric {
+            offsets: vec![0],
+            rows: Vec::with_capacity(capacity),
+            values: Vec::with_capacity(capacity),
+            multipliers: free,
+            vertices: vec![0],
+        };
+        let mut largest = 0.0f64;
+        for i in 0..nodes {
+            let (columns, blocks) = self.stiffness.row(i);
+            for a in (0..3).filter(|a| place[3 * i + a] != HELD) {
+                for (&j, block) in columns.iter().zip(blocks) {
+                    let j = j as usize;
+                    for b in 0..3 {
+                        let at = place[3 * j + b];
+                        if at != HELD && (j < i || b <= a) {
+                            m.rows.push(at);
+                            m.values.push(block[(a, b)]);
+                        }
+                    }
+                }
+                m.offsets.push(m.rows.len());
+                largest = largest.max(m.values[m.values.len() - 1].abs());
+            }
+            if *m.vertices.last().unwrap() < m.offsets.len() - 1 {
+                m.vertices.push(m.offsets.len() - 1);
+            }
+        }
+        let mut active = Vec::new();
+        for (index, row) in self.rows.iter().enumerate() {
+            let terms = || row.terms.iter().filter(|t| place[t.0] != HELD);
+            let size = terms().fold(0.0f64, |s, t| s.max(t.1.abs()));
+            if size == 0.0 {
+                let gap = row.value - self.held_part(row);
+                let scale = row.terms.iter().fold(row.value.abs(), |s, t| s.max(t.1.abs()));
+                if gap.abs() > 1e-12 * scale {
+                    return Err(SolveError::Inconsistent { row: index, gap });
+                }
+                continue;
+            }
+            // Scaled to the size of the stiffness, so that one regularisation fits both.
+            let scale = if largest > 0.0 { largest / size } else { 1.0 / size };
+            for t in terms() {
+                m.rows.push(place[t.0]);
+                m.values.push(scale * t.1);
+            }
+            m.rows.push(m.offsets.len() - 1);
+            m.values.push(0.0);
+            m.offsets.push(m.rows.len());
+            m.vertices.push(m.offsets.len() - 1);
+            active.push((index, scale));
+        }
+        Ok((m, active))
+    }
+
+    /// The terms of a row at their prescribed values.
+    fn held_part(&self, row: &crate::constraint::Row) -> f64 {
+        row.terms.iter().filter_map(|&(dof, c)| self.prescribed[dof].map(|v| c * v)).sum()
+    }
+}
+
+impl Factored<'_> {
+    /// The solution at `factor` times all given data: loads and prescribed displacements alike.
+    pub fn solve(&self, factor: f64) -> Result<Solution, SolveError> {
+        self.solve_for(&self.problem.load, factor)
+    }
+
+    /// The solution under other loads with the same supports.
+    pub fn solve_loads(&self, loads: &[Load]) -> Result<Solution, SolveError> {
+        let force = self.problem.other_load(loads)?;
+        self.solve_for(&force, 1.0)
+    }
+
+    fn solve_for(&self, load: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
+        if !factor.is_finite() {
+            return Err(SolveError::NotFinite { what: "load factor", index: 0 });
+        }
+        let p = &self.problem;
+        let mut u: Vec<Vector3> = (0..load.len())
+            .map(|i| Vector3::from_fn(|a, _| p.prescribed[3 * i + a].unwrap_or(0.0) * factor))
+            .collect();
+        let held = p.stiffness.multiply(&u);
+        let mut b = vec![0.0; self.factorization.dim()];
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+            let (i, a) = (dof / 3, dof % 3);
+            b[at] = factor * (load[i][a] + p.weak_load[i][a]) - held[i][a];
+        }
+        let free = b.len() - self.active.len();
+        for (k, &(index, scale)) in self.active.iter().enumerate() {
+            let row = &p.rows[index];
+            b[free + k] = factor * scale * (row.value - p.held_part(row));
+        }
+        let residual = self.factorization.solve(&mut b)?;
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+            u[dof / 3][dof % 3] = b[at];
+        }
+        let mut multipliers = vec![0.0; p.rows.len()];
+        for (k, &(index, scale)) in self.active.iter().enumerate() {
+            multipliers[index] = scale * b[free + k];
+        }
+        let info = SolveInfo {
+            dofs: b.len(),
+            multipliers: self.active.len(),
+            factor_nonzeros: self.factorization.nonzeros(),
+            residual,
+            path: self.factorization.path(),
+        };
+        Ok(Solution { u, multipliers, info })
+    }
+
+    /// Forces (N) that the eliminated supports exert on the nodes at nodal parameters `u` under `factor` times the
+    /// problem's own loads: `K u - f` at prescribed degrees of freedom, less what constraint rows take there; zero
+    /// elsewhere.
+    pub fn reactions(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
+        let p = &self.problem;
+        let mut out = p.stiffness.multiply(&solution.u);
+        for i in 0..out.len() {
+            out[i] -= (p.load[i] + p.weak_load[i]) * factor;
+        }
+        for (row, lambda) in p.rows.iter().zip(&solution.multipliers) {
+            for &(dof, c) in &row.terms {
+                out[dof / 3][dof % 3] += lambda * c;
+            }
+        }
+        for (dof, &at) in self.place.iter().enumerate() {
+            if at != HELD {
+                out[dof / 3][dof % 3] = 0.0;
+            }
+        }
+        out
+    }
+
+    /// The stiffness, before elimination.
+    pub fn stiffness(&self) -> &Stiffness {
+        &self.problem.stiffness
+    }
+}

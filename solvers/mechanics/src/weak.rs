@@ -1,0 +1,178 @@
+#![allow(non_snake_case)] // Ni, Nj as in the formulas
+//! Weak supports: prescribed displacements by Nitsche's method or by penalty, for bases whose parameters are not
+//! displacements. Each axis may be held on its own (rollers).
+
+use rayon::prelude::*;
+use shape::FluxRows;
+
+use crate::body::{check_len, check_regions, region_of};
+use crate::pattern::{Connectivity, Incidence};
+use crate::stiffness::Stiffness;
+use crate::{LinearElastic, Matrix3, SolveError, Vector3};
+
+/// How a weak support holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Weak {
+    /// Symmetric Nitsche with `beta = gamma (lambda + 2 mu) / h`: consistent, and definite if gamma is large enough.
+    /// About 10 serves moving least squares with h the node spacing (Griebel & Schweitzer 2003; Fernandez-Mendez &
+    /// Huerta 2004).
+    Nitsche {
+        /// Stabilisation factor, dimensionless.
+        gamma: f64,
+    },
+    /// Penalty with `beta = factor E / h`: always definite, leaves an error of order `1 / factor`.
+    Penalty {
+        /// Penalty factor, dimensionless.
+        factor: f64,
+    },
+}
+
+/// A surface held weakly.
+#[derive(Clone, Debug)]
+pub struct WeakSupport<'a> {
+    /// Values, gradients, weights and normals on the surface.
+    pub flux: &'a FluxRows,
+    /// Which of x, y, z are held; for each of them the traction component `t_a = (sigma n)_a` enters Nitsche's terms.
+    pub axes: [bool; 3],
+    /// Prescribed displacement at each surface point, m; components along axes not held are ignored.
+    pub values: Vec<Vector3>,
+    /// Region of each surface point (index into the body's materials); empty when all are of region 0. The traction
+    /// is that of the plain law, without volumetric projection.
+    pub region: &'a [u16],
+    /// Nitsche or penalty.
+    pub method: Weak,
+    /// Length scale of the discretisation at the surface, m.
+    pub h: f64,
+}
+
+impl WeakSupport<'_> {
+    pub(crate) fn check(
+        &self,
+        support: usize,
+        node_count: usize,
+        materials: &[LinearElastic],
+    ) -> Result<(), SolveError> {
+        let points = self.flux.weights().len();
+        check_len("values of a weak support", self.values.len(), points)?;
+        check_len("nodes of a weak support", self.flux.at().rows().node_count(), node_count)?;
+        check_regions(self.region, points, materials)?;
+        let (what, value) = match self.method {
+            Weak::Nitsche { gamma } => ("gamma", gamma),
+            Weak::Penalty { factor } => ("factor", factor),
+        };
+        for (what, value) in [(what, value), ("h", self.h)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SolveError::BadWeak { support, what, value });
+            }
+        }
+        match self.values.iter().position(|v| (0..3).any(|a| self.axes[a] && !v[a].is_finite())) {
+            Some(index) => {
+                Err(SolveError::NotFinite { what: "displacement of weak support at point", index })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// One support's rows ready for assembly: nodes ascending in each row.
+pub(crate) struct WeakTable {
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    /// Shape values.
+    phi: Vec<f64>,
+    /// `P T_I` (3, 3), Pa/m: held components of the traction of node I's unit displacements; zero for a penalty.
+    traction: Vec<Matrix3>,
+    weights: Vec<f64>,
+    /// Stabilisation, Pa/m.
+    beta: Vec<f64>,
+    /// Prescribed displacement, held components only, m.
+    target: Vec<Vector3>,
+    /// `P = diag(axes)`.
+    held: Matrix3,
+}
+
+impl WeakTable {
+    pub fn new(support: &WeakSupport, materials: &[LinearElastic]) -> WeakTable {
+        let at = support.flux.at();
+        let points = support.flux.weights().len();
+        let held = Matrix3::from_diagonal(&Vector3::from_fn(|a, _| f64::from(u8::from(support.axes[a]))));
+        let mut offsets = vec![0];
+        let (mut nodes, mut phi, mut traction) = (Vec::new(), Vec::new(), Vec::new());
+        let mut beta = Vec::with_capacity(points);
+        let mut row: Vec<(u32, f64, Vector3)> = Vec::new();
+        for q in 0..points {
+            let law = &materials[region_of(support.region, q)];
+            let (lambda, mu) = (law.lambda(), law.mu());
+            let n = support.flux.normals()[q];
+            let (row_nodes, values) = at.rows().row(q);
+            row.clear();
+            row.extend(row_nodes.iter().zip(values).zip(at.row(q).1).map(|((&node, &v), &g)| (node, v, g)));
+            row.sort_by_key(|e| e.0);
+            row.dedup_by(|next, kept| {
+                let same = next.0 == kept.0;
+                if same {
+                    kept.1 += next.1;
+                    kept.2 += next.2;
+                }
+                same
+            });
+            for &(node, v, g) in &row {
+                nodes.push(node);
+                phi.push(v);
+                // t_a of a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c)
+                traction.push(match support.method {
+                    Weak::Nitsche { .. } => {
+                        held * (n * g.transpose() * lambda
+                            + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
+                    }
+                    Weak::Penalty { .. } => Matrix3::zeros(),
+                });
+            }
+            offsets.push(nodes.len());
+            beta.push(match support.method {
+                Weak::Nitsche { gamma } => gamma * (lambda + 2.0 * mu) / support.h,
+                Weak::Penalty { factor } => factor * law.young() / support.h,
+            });
+        }
+        // `held * v` would turn an ignored NaN into a NaN; the choice does not.
+        let target =
+            support.values.iter().map(|v| Vector3::from_fn(|a, _| if support.axes[a] { v[a] } else { 0.0 }));
+        let (weights, target) = (support.flux.weights().to_vec(), target.collect());
+        WeakTable { offsets, nodes, phi, traction, weights, beta, target, held }
+    }
+
+    pub fn connectivity(&self) -> Connectivity<'_> {
+        Connectivity { offsets: &self.offsets, nodes: &self.nodes }
+    }
+
+    pub fn incidence(&self, node_count: usize) -> Incidence {
+        Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
+    }
+
+    /// Adds the bilinear form `sum over held axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
+    pub fn add_stiffness(&self, stiffness: &mut Stiffness, incidence: &Incidence) {
+        stiffness.for_each_row(|i, slot, row, _| {
+            for &(q, k) in incidence.of(i) {
+                let (q, k) = (q as usize, k as usize);
+                let w = self.weights[q];
+                let (Ni, ti) = (self.phi[k], self.traction[k].transpose());
+                let stabilised = self.held * (self.beta[q] * Ni);
+                for j in self.offsets[q]..=k {
+                    let (Nj, tj) = (self.phi[j], &self.traction[j]);
+                    row[slot[self.nodes[j] as usize] as usize] += (stabilised * Nj - tj * Ni - ti * Nj) * w;
+                }
+            }
+        });
+    }
+
+    /// Adds the linear form `sum over held axes of integral of g_a (beta v_a - t_a(v))` to the nodal forces.
+    pub fn add_force(&self, incidence: &Incidence, force: &mut [Vector3]) {
+        force.par_iter_mut().enumerate().for_each(|(i, force)| {
+            for &(q, k) in incidence.of(i) {
+                let (q, k) = (q as usize, k as usize);
+                let g = self.target[q];
+                *force += (g * (self.beta[q] * self.phi[k]) - self.traction[k].tr_mul(&g)) * self.weights[q];
+            }
+        });
+    }
+}
