@@ -5,9 +5,14 @@
 
 mod error;
 mod frame;
+mod order;
+mod paper;
 mod record;
+mod select;
 mod store;
 mod table;
+mod tables;
+mod text;
 
 pub use error::ReportError;
 pub use record::{Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Status, SurfaceField};

@@ -1,16 +1,290 @@
-//! One table, three ways of writing it.
+//! One table, four ways of writing it: CSV, Markdown, LaTeX and HTML cells.
+
+use crate::text::{scientific, significant};
+
+/// How a number is shown. CSV always has every digit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cell<'a> {
+    /// Words, borrowed while a row is built.
+    Text(&'a str),
+    /// A whole number.
+    Count(u64),
+    /// Four significant digits, `1.234e-3`.
+    Scientific(Option<f64>),
+    /// So many significant digits, plain where that reads well.
+    Digits(Option<f64>, usize),
+    /// Median and spread, `1.23 ± 0.04`; two columns in CSV.
+    Spread(Option<f64>, Option<f64>),
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Column {
+    /// Words, aligned left.
+    Words,
+    /// Numbers, aligned right.
+    Number,
+    /// A median and its spread, aligned right.
+    Spread,
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    shown: String,
+    exact: Vec<String>,
+}
+
+/// A titled table; units stand in its header, what is absent is a dash explained below it.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub(crate) name: &'static str,
+    pub(crate) title: String,
+    pub(crate) caption: String,
+    header: Vec<(String, Column)>,
+    rows: Vec<Vec<Entry>>,
+    absent: bool,
+}
+
+const DASH: &str = "—";
+
+impl Table {
+    /// Columns are `(heading with its unit, what it holds)`.
+    pub(crate) fn new(name: &'static str, title: &str, caption: &str, header: &[(&str, Column)]) -> Table {
+        Table {
+            name,
+            title: title.into(),
+            caption: caption.into(),
+            header: header.iter().map(|(h, column)| (h.to_string(), *column)).collect(),
+            rows: Vec::new(),
+            absent: false,
+        }
+    }
+
+    /// Adds a row; a number that isn't finite counts as absent.
+    pub(crate) fn row(&mut self, cells: &[Cell]) {
+        debug_assert_eq!(cells.len(), self.header.len(), "table {}", self.name);
+        let mut row = Vec::with_capacity(cells.len());
+        for cell in cells {
+            let finite = |v: Option<f64>| v.filter(|v| v.is_finite());
+            let exact = |v: Option<f64>| finite(v).map(|v| format!("{v:e}")).unwrap_or_default();
+            let (shown, exact) = match *cell {
+                Cell::Text(text) => (Some(text.to_string()), vec![text.to_string()]),
+                Cell::Count(count) => (Some(count.to_string()), vec![count.to_string()]),
+                Cell::Scientific(v) => (finite(v).map(scientific), vec![exact(v)]),
+                Cell::Digits(v, digits) => (finite(v).map(|v| significant(v, digits)), vec![exact(v)]),
+                Cell::Spread(v, spread) => {
+                    let around =
+                        finite(spread).map(|s| format!(" ± {}", significant(s, 1))).unwrap_or_default();
+                    (finite(v).map(|v| significant(v, 3) + &around), vec![exact(v), exact(spread)])
+                }
+            };
+            self.absent |= shown.is_none();
+            row.push(Entry { shown: shown.unwrap_or_else(|| DASH.into()), exact });
+        }
+        self.rows.push(row);
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Headings, with what their columns hold.
+    pub(crate) fn header(&self) -> &[(String, Column)] {
+        &self.header
+    }
+
+    /// Rows as shown.
+    pub(crate) fn shown(&self) -> Vec<Vec<&str>> {
+        self.rows.iter().map(|row| row.iter().map(|e| e.shown.as_str()).collect()).collect()
+    }
+
+    /// What the dash means, where there is one.
+    pub(crate) fn note(&self) -> &'static str {
+        if self.absent { "— : not measured, not defined or not stated." } else { "" }
+    }
+
+    /// RFC 4180, every digit, an empty cell for what is absent.
+    pub(crate) fn csv(&self) -> String {
+        let mut head: Vec<String> = Vec::new();
+        for (heading, column) in &self.header {
+            head.push(heading.clone());
+            if *column == Column::Spread {
+                head.push(format!("spread of {heading}"));
+            }
+        }
+        let mut out = csv_line(&head.iter().map(String::as_str).collect::<Vec<_>>());
+        for row in &self.rows {
+            out.push_str(&csv_line(
+                &row.iter().flat_map(|e| e.exact.iter().map(String::as_str)).collect::<Vec<_>>(),
+            ));
+        }
+        out
+    }
+
+    /// A GitHub table under a heading.
+    pub(crate) fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut out = format!("# {}\n\n{}\n\n", markdown(&self.title), markdown(&self.caption));
+        out.push_str(&line(self.header.iter().map(|(h, _)| markdown(h)).collect()));
+        out.push_str(&line(
+            self.header
+                .iter()
+                .map(|(_, c)| if *c == Column::Words { "---" } else { "---:" }.to_string())
+                .collect(),
+        ));
+        for row in &self.rows {
+            out.push_str(&line(row.iter().map(|e| markdown(&e.shown)).collect()));
+        }
+        if self.absent {
+            out.push_str(&format!("\n{}\n", self.note()));
+        }
+        out
+    }
+
+    /// A `booktabs` + `longtable` table to `\input` into a paper.
+    pub(crate) fn latex(&self) -> String {
+        let columns: String =
+            self.header.iter().map(|(_, c)| if *c == Column::Words { 'l' } else { 'r' }).collect();
+        let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
+        let head = line(self.header.iter().map(|(h, _)| latex(h)).collect());
+        let mut out =
+            format!("% needs \\usepackage{{booktabs,longtable}}\n\\begin{{longtable}}{{{columns}}}\n");
+        out.push_str(&format!(
+            "\\caption{{{}. {}}}\\label{{tab:{}}}\\\\\n",
+            latex(&self.title),
+            latex(&self.caption),
+            self.name
+        ));
+        out.push_str(&format!("\\toprule\n{head}\\midrule\n\\endfirsthead\n\\toprule\n{head}\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n"));
+        for row in &self.rows {
+            out.push_str(&line(row.iter().map(|e| latex(&e.shown)).collect()));
+        }
+        out.push_str("\\end{longtable}\n");
+        if self.absent {
+            out.push_str(&format!("\\noindent{{\\footnotesize {}}}\n", latex(self.note())));
+        }
+        out
+    }
+}
 
 /// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted.
 pub(crate) fn csv_line(cells: &[&str]) -> String {
     let quoted: Vec<String> = cells
         .iter()
-        .map(|cell| {
-            if cell.contains([',', '"', '\n', '\r']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.to_string()
-            }
+        .map(|cell| match cell.contains([',', '"', '\n', '\r']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.to_string(),
         })
         .collect();
     quoted.join(",") + "\n"
+}
+
+/// Escapes what Markdown would read as markup inside a table cell; a line break becomes a space.
+pub(crate) fn markdown(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '\\' | '|' | '*' | '_' | '`' | '[' | ']' | '#' => out.extend(['\\', c]),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '\n' | '\r' => out.push(' '),
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+/// Escapes what LaTeX would read as markup, and writes the few symbols used here by name.
+pub(crate) fn latex(text: &str) -> String {
+    let mut out = String::new();
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        if let Some(first) = power(c) {
+            let mut digits = String::from(first);
+            while let Some(next) = chars.peek().copied().and_then(power) {
+                digits.push(next);
+                chars.next();
+            }
+            out.push_str(&format!("$^{{{digits}}}$"));
+            continue;
+        }
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => out.extend(['\\', c]),
+            '\\' => out.push_str("\\textbackslash{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '^' => out.push_str("\\textasciicircum{}"),
+            '<' => out.push_str("\\textless{}"),
+            '>' => out.push_str("\\textgreater{}"),
+            '|' => out.push_str("\\textbar{}"),
+            '"' => out.push_str("\\textquotedbl{}"),
+            '—' => out.push_str("---"),
+            '×' => out.push_str("$\\times$"),
+            '±' => out.push_str("$\\pm$"),
+            '≤' => out.push_str("$\\le$"),
+            '≥' => out.push_str("$\\ge$"),
+            'ν' => out.push_str("$\\nu$"),
+            'κ' => out.push_str("$\\kappa$"),
+            'µ' => out.push_str("$\\mu$"),
+            '\n' | '\r' => out.push(' '),
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+/// The plain sign behind a superscript.
+fn power(c: char) -> Option<char> {
+    let plain = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', '-'];
+    "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|s| s == c).map(|at| plain[at])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Table {
+        let mut table = Table::new(
+            "sample",
+            "Errors_& more",
+            "50 % of |u|",
+            &[("method", Column::Words), ("RMS [mm]", Column::Number)],
+        );
+        table.row(&[Cell::Text("a|b_c, \"q\" <i>"), Cell::Scientific(Some(0.00123456))]);
+        table.row(&[Cell::Text("none"), Cell::Scientific(Some(f64::NAN))]);
+        table
+    }
+
+    #[test]
+    fn markdown_escapes_pipes_and_tags() {
+        let text = sample().markdown();
+        assert!(text.contains("| a\\|b\\_c, \"q\" &lt;i&gt; | 1.235e-3 |"), "{text}");
+        assert!(text.contains("| none | — |") && text.contains("— : not measured"), "{text}");
+    }
+
+    #[test]
+    fn latex_escapes_specials() {
+        let text = sample().latex();
+        assert!(
+            text.contains(
+                "a\\textbar{}b\\_c, \\textquotedbl{}q\\textquotedbl{} \\textless{}i\\textgreater{} & 1.235e-3"
+            ),
+            "{text}"
+        );
+        assert!(text.contains("Errors\\_\\& more. 50 \\% of \\textbar{}u\\textbar{}"), "{text}");
+        assert_eq!(latex("2×10⁻¹² \\ {x}"), "2$\\times$10$^{-12}$ \\textbackslash{} \\{x\\}");
+    }
+
+    #[test]
+    fn csv_quotes_and_keeps_every_digit() {
+        assert_eq!(sample().csv(), "method,RMS [mm]\n\"a|b_c, \"\"q\"\" <i>\",1.23456e-3\nnone,\n");
+    }
+
+    #[test]
+    fn no_nan_reaches_a_reader() {
+        let table = sample();
+        for text in [table.csv(), table.markdown(), table.latex()] {
+            assert!(!text.contains("NaN"));
+        }
+    }
 }

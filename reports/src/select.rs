@@ -1,0 +1,195 @@
+//! Records gathered into runs (one discretisation) and series (one approximation at several sizes).
+
+use std::cmp::Ordering;
+
+use crate::record::Record;
+
+/// All numbers of one discretisation of one case.
+#[derive(Clone, Debug)]
+pub(crate) struct Run<'a> {
+    /// Any of its records: it carries the identity.
+    pub(crate) is: &'a Record,
+    records: Vec<&'a Record>,
+}
+
+impl<'a> Run<'a> {
+    /// A plain value, by quantity.
+    pub(crate) fn value(&self, quantity: &str) -> Option<f64> {
+        self.records.iter().find(|r| r.quantity == quantity && r.statistic == "value").map(|r| r.value)
+    }
+
+    /// Unit of a plain value.
+    pub(crate) fn unit(&self, quantity: &str) -> Option<&'a str> {
+        self.records
+            .iter()
+            .find(|r| r.quantity == quantity && r.statistic == "value")
+            .map(|r| r.unit.as_str())
+    }
+
+    /// A time in seconds by phase and statistic.
+    pub(crate) fn time(&self, phase: &str, statistic: &str) -> Option<f64> {
+        let fits = |r: &&&Record| r.quantity == "time" && r.phase == phase && r.statistic == statistic;
+        self.records.iter().find(fits).map(|r| r.value)
+    }
+
+    /// Median time of the whole run: its `total`, or else the sum of its phases.
+    pub(crate) fn total(&self) -> Option<f64> {
+        self.time("total", "median").or_else(|| {
+            let phases = ["prepare", "assemble", "factor", "solve", "transfer"];
+            let times: Vec<f64> = phases.iter().filter_map(|p| self.time(p, "median")).collect();
+            (!times.is_empty()).then(|| times.iter().sum())
+        })
+    }
+
+    /// Peak memory in bytes, however it was summarised.
+    pub(crate) fn memory(&self) -> Option<f64> {
+        self.records.iter().find(|r| r.quantity == "memory").map(|r| r.value)
+    }
+
+    /// Quantities with a plain value, in stored order.
+    pub(crate) fn quantities(&self) -> impl Iterator<Item = &'a str> + '_ {
+        self.records.iter().filter(|r| r.statistic == "value").map(|r| r.quantity.as_str())
+    }
+
+    /// The method id without an ending that only repeats the node count: `efg-83` at 83 nodes is `efg`.
+    pub(crate) fn name(&self) -> &'a str {
+        let method = self.is.method.as_str();
+        match method.rsplit_once('-') {
+            Some((name, size)) if size.parse() == Ok(self.is.nodes) => name,
+            _ => method,
+        }
+    }
+}
+
+/// One approximation, coarse to fine.
+#[derive(Clone, Debug)]
+pub(crate) struct Series<'a> {
+    /// Method id without its size.
+    pub(crate) name: &'a str,
+    /// Its runs by falling spacing.
+    pub(crate) runs: Vec<Run<'a>>,
+}
+
+impl<'a> Series<'a> {
+    /// Any of its records: case, family, variant, settings and Poisson's ratio are the same in all.
+    pub(crate) fn is(&self) -> &'a Record {
+        self.runs[0].is
+    }
+
+    /// The finest run.
+    pub(crate) fn finest(&self) -> &Run<'a> {
+        &self.runs[self.runs.len() - 1]
+    }
+
+    /// `(spacing, value)` of a quantity, coarse to fine, where both are positive.
+    pub(crate) fn points(&self, quantity: &str) -> Vec<(f64, f64)> {
+        let point = |run: &Run| run.value(quantity).map(|v| (run.is.spacing, v));
+        self.runs.iter().filter_map(point).filter(|(h, v)| *h > 0.0 && *v > 0.0).collect()
+    }
+
+    /// The order theory promises for an error, where it does: displacement p + 1, energy and pressure p.
+    pub(crate) fn theory(&self, quantity: &str) -> Option<f64> {
+        let degree = degree(self.is())?;
+        match quantity {
+            "l2" | "rms" | "rms-x" | "rms-y" | "rms-z" => Some(degree + 1.0),
+            "energy" => Some(degree),
+            _ => None,
+        }
+    }
+}
+
+/// Polynomial degree that the approximation holds completely.
+fn degree(record: &Record) -> Option<f64> {
+    match (record.family.as_str(), record.variant.as_str(), record.parameter("basis")) {
+        ("fem", "tet4" | "hex8", _) | ("efg", _, Some("linear")) => Some(1.0),
+        ("fem", "tet10" | "hex20", _) | ("efg", _, Some("quadratic")) => Some(2.0),
+        _ => None,
+    }
+}
+
+/// Keys in `parameters` that only say how large a run is.
+const SIZES: [&str; 6] = ["cells", "file", "level", "nodes", "size", "spacing"];
+
+fn settings(record: &Record) -> Vec<&str> {
+    let is_size = |pair: &&str| SIZES.contains(&pair.split('=').next().unwrap_or_default());
+    record.parameters.split(';').filter(|p| !p.is_empty() && !is_size(p)).collect()
+}
+
+/// Elements first, in the order people know them, then meshfree methods, then transfer schemes.
+fn rank(record: &Record) -> (usize, usize) {
+    let place = |list: &[&str], name: &str| list.iter().position(|n| *n == name).unwrap_or(list.len());
+    (place(&["fem", "efg"], &record.family), place(&["tet4", "tet10", "hex8", "hex20"], &record.variant))
+}
+
+fn same_run(a: &Record, b: &Record) -> Ordering {
+    let text =
+        |r: &'_ Record| (r.method.clone(), r.variant.clone(), r.parameters.clone(), r.level, r.nodes, r.seed);
+    a.case
+        .cmp(&b.case)
+        .then(a.poisson.total_cmp(&b.poisson))
+        .then(rank(a).cmp(&rank(b)))
+        .then_with(|| a.family.cmp(&b.family))
+        .then_with(|| text(a).cmp(&text(b)))
+        .then(a.spacing.total_cmp(&b.spacing))
+}
+
+/// Gathers records into runs: by case, Poisson's ratio and family, elements before clouds.
+pub(crate) fn runs(records: &[Record]) -> Vec<Run<'_>> {
+    let mut sorted: Vec<&Record> = records.iter().collect();
+    sorted.sort_by(|a, b| same_run(a, b).then_with(|| a.order(b)));
+    sorted
+        .chunk_by(|a, b| same_run(a, b) == Ordering::Equal)
+        .map(|chunk| Run { is: chunk[0], records: chunk.to_vec() })
+        .collect()
+}
+
+/// Gathers runs into series: everything equal but the size.
+pub(crate) fn series<'a>(runs: &[Run<'a>]) -> Vec<Series<'a>> {
+    let mut all: Vec<Series<'a>> = Vec::new();
+    for run in runs {
+        let found = all.iter_mut().find(|s| {
+            let is = s.is();
+            s.name == run.name()
+                && (&is.case, &is.family, &is.variant) == (&run.is.case, &run.is.family, &run.is.variant)
+                && is.poisson.total_cmp(&run.is.poisson) == Ordering::Equal
+                && is.seed == run.is.seed
+                && settings(is) == settings(run.is)
+        });
+        match found {
+            Some(series) => series.runs.push(run.clone()),
+            None => all.push(Series { name: run.name(), runs: vec![run.clone()] }),
+        }
+    }
+    for series in &mut all {
+        series.runs.sort_by(|a, b| b.is.spacing.total_cmp(&a.is.spacing).then(a.is.nodes.cmp(&b.is.nodes)));
+    }
+    all
+}
+
+/// One label per record: the given name, and where names repeat also the settings that differ.
+pub(crate) fn labels(named: &[(&str, &Record)]) -> Vec<String> {
+    named
+        .iter()
+        .map(|(name, record)| {
+            let namesakes: Vec<&Record> = named.iter().filter(|(n, _)| n == name).map(|(_, r)| *r).collect();
+            let mut extra = Vec::new();
+            if namesakes.iter().any(|r| r.variant != record.variant) {
+                extra.push(record.variant.clone());
+            }
+            for setting in settings(record) {
+                if namesakes.iter().any(|r| !settings(r).contains(&setting)) {
+                    extra.push(setting.replace('=', " "));
+                }
+            }
+            if namesakes.iter().any(|r| r.seed != record.seed) {
+                extra.push(format!("seed {}", record.seed));
+            }
+            if extra.is_empty() { name.to_string() } else { format!("{name} ({})", extra.join(", ")) }
+        })
+        .collect()
+}
+
+/// Splits into neighbouring groups that agree in a key, keeping the order.
+pub(crate) fn groups<T, K: PartialEq>(items: &[T], key: impl Fn(&T) -> K) -> Vec<&[T]> {
+    items.chunk_by(|a, b| key(a) == key(b)).collect()
+}

@@ -1,0 +1,88 @@
+//! Errors and largest displacements of every run.
+
+use super::{labelled, millimetres};
+use crate::select::Run;
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+/// Relative L2, energy and pressure errors.
+pub(super) fn relative(runs: &[Run]) -> Table {
+    rows(
+        runs,
+        "errors",
+        "Relative errors",
+        "L2 norm of the displacement, energy norm and L2 norm of the pressure, each relative to the reference; ν is Poisson's ratio, h the mean node spacing",
+        &[
+            ("L2 [1]", "l2"),
+            ("energy [1]", "energy"),
+            ("pressure [1]", "pressure"),
+            ("tip / exact [1]", "tip"),
+        ],
+        1.0,
+    )
+}
+
+/// RMS of the displacement error by direction and of its magnitude.
+pub(super) fn rms(runs: &[Run]) -> Table {
+    rows(
+        runs,
+        "rms",
+        "RMS errors",
+        "Root mean square of the displacement difference from the reference, by direction and of the magnitude",
+        &[("RMS x [mm]", "rms-x"), ("RMS y [mm]", "rms-y"), ("RMS z [mm]", "rms-z"), ("RMS |u| [mm]", "rms")],
+        1e3,
+    )
+}
+
+/// Largest displacements, and the largest error.
+pub(super) fn maxima(runs: &[Run]) -> Table {
+    rows(
+        runs,
+        "maxima",
+        "Largest displacements",
+        "Largest displacement by direction and of the magnitude, and the largest error of the magnitude",
+        &[
+            ("max x [mm]", "max-x"),
+            ("max y [mm]", "max-y"),
+            ("max z [mm]", "max-z"),
+            ("max |u| [mm]", "max"),
+            ("max error [mm]", "max-error"),
+        ],
+        1e3,
+    )
+}
+
+/// One row for every solver run that has at least one of the quantities; columns nobody fills are left out.
+fn rows(
+    runs: &[Run],
+    name: &'static str,
+    title: &str,
+    caption: &str,
+    columns: &[(&str, &str)],
+    scale: f64,
+) -> Table {
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let filled: Vec<&(&str, &str)> =
+        columns.iter().filter(|(_, q)| solved.iter().any(|r| r.value(q).is_some())).collect();
+    let mut header =
+        vec![("case", Words), ("ν [1]", Words), ("method", Words), ("nodes", Number), ("h [mm]", Number)];
+    header.extend(filled.iter().map(|(head, _)| (*head, Number)));
+    let mut table = Table::new(name, title, caption, &header);
+    for (run, label) in labelled(&solved) {
+        let values: Vec<Option<f64>> = filled.iter().map(|(_, q)| run.value(q)).collect();
+        if values.iter().all(Option::is_none) {
+            continue;
+        }
+        let poisson = run.is.poisson.to_string();
+        let mut cells = vec![
+            Cell::Text(&run.is.case),
+            Cell::Text(&poisson),
+            Cell::Text(&label),
+            Cell::Count(run.is.nodes),
+            Cell::Digits(millimetres(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
+        ];
+        cells.extend(values.iter().map(|v| Cell::Scientific(v.map(|v| v * scale))));
+        table.row(&cells);
+    }
+    table
+}

@@ -1,0 +1,50 @@
+//! Which tables there are, and what they are made of.
+
+mod conditioning;
+mod errors;
+mod kidney;
+mod orders;
+mod outcome;
+mod timing;
+mod transfer;
+
+pub(crate) use kidney::pairs as kidney_pairs;
+pub(crate) use outcome::{checks, failures};
+
+use crate::record::RunSet;
+use crate::select::{Run, groups, labels};
+use crate::table::Table;
+
+/// Every table with at least one row, in the order of the report.
+pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
+    let tables = [
+        errors::relative(runs),
+        errors::rms(runs),
+        errors::maxima(runs),
+        orders::observed(runs),
+        orders::convergence_index(runs),
+        timing::phases(runs),
+        transfer::schemes(runs),
+        conditioning::conditioning(runs),
+        kidney::beside_the_paper(runs),
+        outcome::checks(set),
+        outcome::failures(set),
+        outcome::plan(set),
+    ];
+    tables.into_iter().filter(|t| !t.is_empty()).collect()
+}
+
+/// Runs with a label each that tells them apart within their case and Poisson's ratio.
+fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
+    let mut out = Vec::new();
+    for group in groups(runs, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
+        let named: Vec<_> = group.iter().map(|r| (r.is.method.as_str(), r.is)).collect();
+        out.extend(group.iter().zip(labels(&named)));
+    }
+    out
+}
+
+/// Millimetres from metres.
+fn millimetres(value: Option<f64>) -> Option<f64> {
+    value.map(|v| v * 1e3)
+}

@@ -1,0 +1,120 @@
+//! Observed orders of convergence and the grid convergence index.
+
+use crate::order;
+use crate::select::{Run, Series, groups, labels, series};
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
+
+/// Observed order by least squares and between the finest levels.
+pub(super) fn observed(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "orders",
+        "Observed order of convergence",
+        "Slope of log error against log h by least squares with its standard error and 95 % band (Student's t), and the order between the two finest levels; \
+         asymptotic where the last two pairs agree within 0.15",
+        &[
+            ("case", Words),
+            ("ν [1]", Words),
+            ("method", Words),
+            ("error", Words),
+            ("levels", Number),
+            ("theory", Number),
+            ("least squares", Number),
+            ("standard error", Number),
+            ("95 % ±", Number),
+            ("finest pair", Number),
+            ("asymptotic", Words),
+        ],
+    );
+    for (label, series) in labelled(runs) {
+        for quantity in ERRORS {
+            let Some(order) = order::observed(&series.points(quantity)) else { continue };
+            let poisson = series.is().poisson.to_string();
+            table.row(&[
+                Cell::Text(&series.is().case),
+                Cell::Text(&poisson),
+                Cell::Text(&label),
+                Cell::Text(quantity),
+                Cell::Count(order.pairs.len() as u64 + 1),
+                Cell::Digits(series.theory(quantity), 1),
+                Cell::Digits(Some(order.fit), 3),
+                Cell::Digits(order.error, 2),
+                Cell::Digits(order.band, 2),
+                Cell::Digits(order.pairs.last().copied(), 3),
+                Cell::Text(match order.asymptotic {
+                    Some(true) => "yes",
+                    Some(false) => "no",
+                    None => "two levels only",
+                }),
+            ]);
+        }
+    }
+    table
+}
+
+/// Grid convergence index of plain outcomes.
+pub(super) fn convergence_index(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "grid-convergence",
+        "Grid convergence index",
+        "Outcomes on the three finest levels: apparent order, Richardson's extrapolation and the grid convergence index of the finest level (safety factor 1.25); \
+         GCI32 / (r^p GCI21) is near 1 in the asymptotic range",
+        &[
+            ("case", Words),
+            ("ν [1]", Words),
+            ("method", Words),
+            ("outcome", Words),
+            ("unit", Words),
+            ("finest value", Number),
+            ("order", Number),
+            ("extrapolated", Number),
+            ("GCI [%]", Number),
+            ("range ratio", Number),
+        ],
+    );
+    for (label, series) in labelled(runs) {
+        for quantity in ["tip", "strain-energy", "max", "max-x", "max-y", "max-z"] {
+            let points: Vec<(f64, f64)> = series
+                .runs
+                .iter()
+                .filter_map(|r| r.value(quantity).map(|v| (r.is.spacing, v)))
+                .filter(|(h, _)| *h > 0.0)
+                .collect();
+            let Some(gci) = order::grid_convergence(&points) else { continue };
+            let poisson = series.is().poisson.to_string();
+            let unit = if quantity.starts_with("max") {
+                "mm"
+            } else {
+                series.finest().unit(quantity).unwrap_or("1")
+            };
+            let scale = if quantity.starts_with("max") { 1e3 } else { 1.0 };
+            table.row(&[
+                Cell::Text(&series.is().case),
+                Cell::Text(&poisson),
+                Cell::Text(&label),
+                Cell::Text(quantity),
+                Cell::Text(unit),
+                Cell::Scientific(points.last().map(|p| p.1 * scale)),
+                Cell::Digits(Some(gci.order), 3),
+                Cell::Scientific(Some(gci.extrapolated * scale)),
+                Cell::Digits(Some(100.0 * gci.fine), 3),
+                Cell::Digits(Some(gci.range), 3),
+            ]);
+        }
+    }
+    table
+}
+
+/// Solver series with a label each that tells them apart within their case and Poisson's ratio.
+fn labelled<'r>(runs: &[Run<'r>]) -> Vec<(String, Series<'r>)> {
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let mut out = Vec::new();
+    for group in groups(&solved, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
+        let series = series(group);
+        let named: Vec<_> = series.iter().map(|s| (s.name, s.is())).collect();
+        out.extend(labels(&named).into_iter().zip(series));
+    }
+    out
+}

@@ -1,0 +1,51 @@
+//! What every phase cost.
+
+use super::{labelled, millimetres as milliseconds};
+use crate::select::Run;
+use crate::table::Column::{Number, Spread, Words};
+use crate::table::{Cell, Table};
+
+const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
+
+/// Median and spread of every phase, and peak memory.
+pub(super) fn phases(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "timing",
+        "Run time by phase",
+        "Median and interquartile range over repeats; peak memory of the process",
+        &[
+            ("case", Words),
+            ("ν [1]", Words),
+            ("method", Words),
+            ("nodes", Number),
+            ("points", Number),
+            ("unknowns", Number),
+            ("prepare [ms]", Spread),
+            ("assemble [ms]", Spread),
+            ("factor [ms]", Spread),
+            ("solve [ms]", Spread),
+            ("transfer [ms]", Spread),
+            ("total [ms]", Spread),
+            ("memory [MB]", Number),
+        ],
+    );
+    for (run, label) in labelled(runs) {
+        let times: Vec<_> = PHASES.map(|p| (run.time(p, "median"), run.time(p, "spread"))).into();
+        if times.iter().all(|(median, _)| median.is_none()) {
+            continue;
+        }
+        let poisson = run.is.poisson.to_string();
+        let mut cells = vec![
+            Cell::Text(&run.is.case),
+            Cell::Text(&poisson),
+            Cell::Text(&label),
+            Cell::Count(run.is.nodes),
+            Cell::Count(run.is.points),
+            Cell::Count(run.is.dofs),
+        ];
+        cells.extend(times.iter().map(|(m, s)| Cell::Spread(milliseconds(*m), milliseconds(*s))));
+        cells.push(Cell::Digits(run.memory().map(|b| b / 1e6), 3));
+        table.row(&cells);
+    }
+    table
+}

@@ -1,0 +1,106 @@
+//! Numbers and names as text, for every medium.
+
+/// Four significant digits as `1.234e-3`: what tables hold and snapshots compare.
+pub(crate) fn scientific(value: f64) -> String {
+    format!("{value:.3e}")
+}
+
+/// A number for a person: `digits` significant digits, plain between 0.001 and 100 000, scientific elsewhere.
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    // Rounding first keeps 9.996 from becoming 10.00 with one digit too many.
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    let exponent = rounded.abs().log10().floor() as i32;
+    if (-3..5).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        format!("{rounded:.decimals$}")
+    } else {
+        let text = format!("{rounded:.*e}", digits.saturating_sub(1));
+        match text.split_once('e') {
+            Some((mantissa, power)) => format!("{mantissa}×10{}", superscript(power)),
+            None => text,
+        }
+    }
+}
+
+/// A power of ten on an axis: plain from 0.01 to 1000, `10⁻³` or `2×10⁻³` elsewhere.
+pub(crate) fn tick(value: f64) -> String {
+    let exponent = (value.abs().log10() + 1e-9).floor();
+    let mantissa = value / 10f64.powf(exponent);
+    if value == 0.0 {
+        "0".into()
+    } else if (-2.0..=3.0).contains(&exponent) {
+        let decimals = (-exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else if (mantissa - 1.0).abs() < 1e-6 {
+        format!("10{}", superscript(&exponent.to_string()))
+    } else {
+        format!("{mantissa:.0}×10{}", superscript(&exponent.to_string()))
+    }
+}
+
+/// A time in the unit that reads best, from nanoseconds to hours.
+pub(crate) fn duration(seconds: f64) -> String {
+    let (scale, unit) = match seconds {
+        s if s >= 7200.0 => (3600.0, "h"),
+        s if s >= 1.0 => (1.0, "s"),
+        s if s >= 1e-3 => (1e-3, "ms"),
+        s if s >= 1e-6 => (1e-6, "µs"),
+        _ => (1e-9, "ns"),
+    };
+    format!("{} {unit}", significant(seconds / scale, 3))
+}
+
+/// A relative error in percent, or in scientific form where percent would be silly.
+pub(crate) fn percent(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-4 {
+        format!("{} %", significant(100.0 * value, 3))
+    } else {
+        significant(value, 2)
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn list(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+/// `s` unless there is exactly one.
+pub(crate) fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+fn superscript(power: &str) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    power.chars().map(|c| c.to_digit(10).map_or('⁻', |d| digits[d as usize])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(0.00123456, 3), "0.00123");
+        assert_eq!(significant(1234.5, 3), "1230");
+        assert_eq!(significant(-1.25e-7, 3), "-1.25×10⁻⁷");
+        assert_eq!(significant(0.0, 3), "0");
+        assert_eq!(scientific(0.0174314), "1.743e-2");
+        assert_eq!(tick(0.05), "0.05");
+        assert_eq!(tick(1e-6), "10⁻⁶");
+        assert_eq!(tick(2e-5), "2×10⁻⁵");
+        assert_eq!(tick(1000.0), "1000");
+        assert_eq!(duration(7200.0), "2.00 h");
+        assert_eq!(duration(0.0123), "12.3 ms");
+        assert_eq!(percent(0.0123), "1.23 %");
+        assert_eq!(percent(3e-15), "3.0×10⁻¹⁵");
+        assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+    }
+}
