@@ -88,6 +88,9 @@ fn descend(
         let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
         let det = aa * bb - ab * ab;
         let step = [(bb * a.dot(&g) - ab * b.dot(&g)) / det, (aa * b.dot(&g) - ab * a.dot(&g)) / det];
+        if !step.iter().all(|s| s.is_finite()) {
+            return s;
+        }
         let mut share = 1.0;
         loop {
             let trial = [s[0] + share * step[0], s[1] + share * step[1]];
@@ -97,8 +100,7 @@ fn descend(
                 break;
             }
             share *= 0.5;
-            // Also ends here with NaN steps, at a facet without area.
-            if !(share * step[0].abs().max(step[1].abs()) > 1e-12) {
+            if share * step[0].abs().max(step[1].abs()) < 1e-12 {
                 return s;
             }
         }
@@ -120,6 +122,9 @@ fn descend_edge(
         let [u, v] = tangents(at(t));
         let along = (b[0] - a[0]) * u + (b[1] - a[1]) * v;
         let step = along.dot(&g) / along.norm_squared();
+        if !step.is_finite() {
+            return at(t);
+        }
         let mut share = 1.0;
         loop {
             let trial = (t + share * step).clamp(0.0, 1.0);
@@ -129,7 +134,7 @@ fn descend_edge(
                 break;
             }
             share *= 0.5;
-            if !(share * step.abs() > 1e-12) {
+            if share * step.abs() < 1e-12 {
                 return at(t);
             }
         }

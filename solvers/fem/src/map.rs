@@ -54,6 +54,13 @@ pub(crate) fn cofactors([t0, t1, t2]: &[Vector3; 3]) -> (f64, [Vector3; 3]) {
     (t0.dot(&c[0]), c)
 }
 
+/// `det J` (m^3) and `grad xi_k` (1/m), or the determinant as an error if it is not positive (a NaN is not).
+#[inline]
+pub(crate) fn inverse(tangents: &[Vector3; 3]) -> Result<(f64, [Vector3; 3]), f64> {
+    let (det_j, c) = cofactors(tangents);
+    if det_j > 0.0 { Ok((det_j, c.map(|c| c / det_j))) } else { Err(det_j) }
+}
+
 /// `grad N = sum_k dN/dxi_k grad xi_k`, 1/m.
 #[inline]
 pub(crate) fn physical(dn: &[f64; 3], grad_xi: &[Vector3; 3]) -> Vector3 {

@@ -8,7 +8,7 @@ use crate::FemError;
 use crate::closest::Surface;
 use crate::element::{Element, with_element};
 use crate::locate::{Locator, Place};
-use crate::map::{Nodes, cofactors, physical};
+use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
 
 /// Points that the mesh does not hold, answered at the nearest point of its surface instead.
@@ -101,12 +101,8 @@ fn gradients(mesh: &Mesh, points: &[Point3], places: &[Place]) -> Result<GradRow
             values.extend(<E as Element<N>>::shape(xi));
             let dn = <E as Element<N>>::shape_grad(xi);
             let x = Nodes::gather(mesh, &mesh.cell(element).as_chunks::<N>().0[0]);
-            let (det_j, c) = cofactors(&x.tangents(&dn));
-            // Not `det_j <= 0`: a NaN must not pass.
-            if !(det_j > 0.0) {
-                return Err(FemError::InvertedElement { element, det_j });
-            }
-            let grad_xi = c.map(|c| c / det_j);
+            let (_, grad_xi) = inverse(&x.tangents(&dn))
+                .map_err(|det_j| FemError::InvertedElement { element, det_j })?;
             grads.extend(dn.iter().map(|dn| physical(dn, &grad_xi)));
         });
     }

@@ -6,7 +6,7 @@ use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows};
 
 use crate::element::{Element, with_element};
 use crate::face::{Face, into_cell, with_face};
-use crate::map::{Nodes, cofactors, physical};
+use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
 use crate::{FemError, SurfaceRule};
 
@@ -49,12 +49,8 @@ pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<Fl
             for (&s, &w) in rule.points.iter().zip(&rule.weights) {
                 let xi = into_cell(kind, facet.face as usize, s);
                 let (n, dn) = (<E as Element<N>>::shape(xi), <E as Element<N>>::shape_grad(xi));
-                let (det_j, c) = cofactors(&x.tangents(&dn));
-                // Not `det_j <= 0`: a NaN must not pass.
-                if !(det_j > 0.0) {
-                    return Err(FemError::InvertedElement { element, det_j });
-                }
-                let grad_xi = c.map(|c| c / det_j);
+                let (_, grad_xi) = inverse(&x.tangents(&dn))
+                    .map_err(|det_j| FemError::InvertedElement { element, det_j })?;
                 table.push_area(facet, facet_tangents(mesh, facet, s), w)?;
                 table.push_row(x.position(&n), nodes, &n);
                 grads.extend(dn.iter().map(|dn| physical(dn, &grad_xi)));
@@ -90,12 +86,13 @@ impl Table {
     fn push_area(&mut self, facet: Facet, [t0, t1]: [Vector3; 2], weight: f64) -> Result<(), FemError> {
         let normal = t0.cross(&t1);
         let area = normal.norm();
-        if !(area > 0.0) {
-            return Err(FemError::FlatFacet { cell: facet.cell, face: facet.face, area });
+        if area > 0.0 {
+            self.weights.push(weight * area);
+            self.normals.push(normal / area);
+            Ok(())
+        } else {
+            Err(FemError::FlatFacet { cell: facet.cell, face: facet.face, area })
         }
-        self.weights.push(weight * area);
-        self.normals.push(normal / area);
-        Ok(())
     }
 
     fn push_row(&mut self, point: Point3, nodes: &[u32], values: &[f64]) {

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
 
 use crate::element::{Element, with_element};
-use crate::map::{Nodes, cofactors, physical};
+use crate::map::{Nodes, inverse, physical};
 use crate::{FemError, VolumeRule};
 
-/// Shape values of all elements sum to one within a few last bits; cells far larger than this many would not.
+/// Shape values of all elements sum to one within a few last bits (20 terms of size 1: some 1e-15).
 pub(crate) const UNITY: Unity = Unity::Within(1e-12);
 
 /// Cells per task: fixed, so that the work is split the same way at any thread count. 512 tet4 take about 20 us.
@@ -19,7 +19,8 @@ const CHUNK: usize = 512;
 /// Values, gradients (1/m) and weights `w det J` (m^3) at the quadrature points of every cell.
 ///
 /// Rows hold the cell's nodes in the cell's order. Parallel over cells, each writing its own rows: the bits do
-/// not depend on the number of threads. The first cell with `det J <= 0` at one of its points is an error.
+/// not depend on the number of threads. The first cell with `det J <= 0` at one of its points is an error; a
+/// quadratic cell can fold at a corner, between these points: [`geometry::quality::check`] looks there too.
 pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemError> {
     let tables = tabulate(mesh, rule)?;
     let cells = mesh.cell_count();
@@ -164,12 +165,8 @@ impl<'a> Slots<'a> {
         let (nodes, values) = (self.nodes.as_chunks_mut::<N>().0, self.values.as_chunks_mut::<N>().0);
         let grads = self.grads.as_chunks_mut::<N>().0;
         for q in 0..table.weights.len() {
-            let (det_j, c) = cofactors(&x.tangents(&dn[q]));
-            // Not `det_j <= 0`: a NaN must not pass.
-            if !(det_j > 0.0) {
-                return Err(FemError::InvertedElement { element, det_j });
-            }
-            let grad_xi = c.map(|c| c / det_j);
+            let (det_j, grad_xi) =
+                inverse(&x.tangents(&dn[q])).map_err(|det_j| FemError::InvertedElement { element, det_j })?;
             for a in 0..N {
                 grads[q][a] = physical(&dn[q][a], &grad_xi);
             }

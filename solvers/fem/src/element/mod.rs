@@ -69,3 +69,6 @@ pub(crate) fn nodes(kind: CellKind) -> &'static [[f64; 3]] {
         &NODES
     })
 }
+
+#[cfg(test)]
+mod tests;
