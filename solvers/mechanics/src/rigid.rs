@@ -27,7 +27,11 @@ impl std::fmt::Display for RigidMode {
         };
         match v.iter().position(|c| c.abs() > 1.0 - 1e-6) {
             Some(axis) => write!(f, "{word} {}", ["x", "y", "z"][axis]),
-            None => write!(f, "{word} ({:.3}, {:.3}, {:.3})", v.x, v.y, v.z),
+            None => {
+                // No "-0.000".
+                let v = v.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
+                write!(f, "{word} ({:.3}, {:.3}, {:.3})", v.x, v.y, v.z)
+            }
         }
     }
 }

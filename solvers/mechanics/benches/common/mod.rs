@@ -1,0 +1,74 @@
+//! Boxes of tetrahedra, pressed from above and held below, and a meshless-like table.
+#![allow(dead_code)] // each bench uses its own part
+
+use fem::{SurfaceRule, VolumeRule};
+use geometry::generate::{Jitter, box_mesh};
+use geometry::{CellKind, Mesh};
+use mechanics::*;
+use shape::{DilationGroups, GradRows, Rows, SurfaceRows, Unity, VolumeRows};
+
+pub struct Pressed {
+    pub mesh: Mesh,
+    pub volume: VolumeRows,
+    pub top: SurfaceRows,
+    pub fixed: Vec<FixedDof>,
+    pub nodal: DilationGroups,
+    pub material: [LinearElastic; 1],
+}
+
+impl Pressed {
+    /// A cube of n^3 cells of six tet4: `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them held.
+    pub fn new(n: usize) -> Pressed {
+        let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
+        let max = Point3::new(0.04, 0.04, 0.04);
+        let mesh = box_mesh(CellKind::Tet4, Point3::origin(), max, [n; 3], [1.0; 3], jitter).unwrap();
+        let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+        let top = fem::surface_rows(&mesh, mesh.group("z-max").unwrap(), &SurfaceRule::STANDARD).unwrap();
+        let held = mesh.facet_group_nodes(mesh.group("z-min").unwrap());
+        let fixed = held
+            .iter()
+            .flat_map(|&node| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 }))
+            .collect();
+        let nodal = DilationGroups::nodal(&volume).unwrap();
+        Pressed { mesh, volume, top, fixed, nodal, material: [LinearElastic::new(20e3, 0.495).unwrap()] }
+    }
+
+    pub fn body(&self, projected: bool) -> Body<'_> {
+        let dilation = projected.then_some(&self.nodal);
+        Body {
+            nodes: self.mesh.points(),
+            volume: &self.volume,
+            materials: &self.material,
+            region: &[],
+            dilation,
+        }
+    }
+
+    pub fn loads(&self) -> [Load<'_>; 1] {
+        [Load::Pressure { surface: &self.top, values: vec![2e3; self.top.weights().len()] }]
+    }
+
+    pub fn assembled(&self, projected: bool) -> Assembled<'_> {
+        let (body, loads) = (self.body(projected), self.loads());
+        let problem = LinearProblem { body, loads: &loads, fixed: &self.fixed, constraints: &[], weak: &[] };
+        assemble(&problem).unwrap()
+    }
+}
+
+/// Rows of `neighbours` nodes at `points` points among `nodes` nodes, as a meshless cloud has them: the cost of
+/// assembly depends on these counts alone. The numbers are smooth nonsense.
+pub fn cloud(nodes: usize, points: usize, neighbours: usize) -> VolumeRows {
+    let (mut list, mut grads) = (Vec::new(), Vec::new());
+    for q in 0..points {
+        for k in 0..neighbours {
+            list.push(((q * 7 + k * 5) % nodes) as u32);
+            let t = (q * neighbours + k) as f64;
+            grads.push(Vector3::new((0.1 * t).sin(), (0.2 * t).cos(), (0.3 * t).sin()));
+        }
+    }
+    let offsets = (0..=points).map(|q| q * neighbours).collect();
+    let values = vec![1.0 / neighbours as f64; list.len()];
+    let rows = Rows::new(nodes, offsets, list, values, Unity::Within(1e-12)).unwrap();
+    let at = GradRows::new(vec![Point3::origin(); points], rows, grads).unwrap();
+    VolumeRows::new(at, vec![1e-9; points]).unwrap()
+}

@@ -1,0 +1,184 @@
+//! Loads, supports of each kind against one another, and the paths of the linear solver.
+
+mod common;
+
+use common::{Block, soft};
+use geometry::CellKind;
+use mechanics::*;
+use proptest::prelude::*;
+
+fn gap(a: &[Vector3], b: &[Vector3]) -> f64 {
+    let largest = b.iter().map(Vector3::norm).fold(0.0, f64::max);
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn reactions_balance_the_integral_of_the_loads() {
+    let block = Block::new(CellKind::Tet10, [3, 2, 2]);
+    let material = [soft()];
+    let body = block.body(&material);
+    let surface = block.surface(&["x-max"]);
+    // Integral of (1 + y / 0.03) over 30 x 20 mm: 1.5 x 6e-4 m^2.
+    let values = surface.points().iter().map(|x| Vector3::new(2.0, 0.0, -1.0) * (1.0 + x.y / 0.03)).collect();
+    let pressure = surface.points().iter().map(|_| 5.0).collect();
+    let weight = vec![Vector3::new(0.0, 0.0, -9810.0); block.volume.weights().len()];
+    let loads = [
+        Load::Traction { surface: &surface, values },
+        Load::Pressure { surface: &surface, values: pressure },
+        Load::Body { values: weight },
+    ];
+    let fixed = block.fix(&["x-min"], |_| Vector3::zeros());
+    let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &[] };
+    let assembled = assemble(&problem).unwrap();
+    let resultant =
+        Vector3::new(2.0, 0.0, -1.0) * 9e-4 - Vector3::x() * 5.0 * 6e-4 - Vector3::z() * 9810.0 * 2.4e-5;
+    let force: Vector3 = assembled.load().iter().sum();
+    assert!((force - resultant).norm() < 1e-14 * resultant.norm().max(1.0), "{force}");
+    let factored = assembled.factor().unwrap();
+    for factor in [1.0, -0.25] {
+        let solution = factored.solve(factor).unwrap();
+        let reaction: Vector3 = factored.reactions(&solution, factor).iter().sum();
+        assert!((reaction + resultant * factor).norm() < 1e-11 * resultant.norm(), "{reaction}");
+    }
+}
+
+#[test]
+fn constraint_rows_equal_elimination() {
+    let block = Block::new(CellKind::Tet4, [4, 3, 3]);
+    let material = [LinearElastic::new(20e3, 0.495).unwrap()];
+    let body = block.body(&material);
+    let surface = block.surface(&["x-max"]);
+    let values = vec![Vector3::new(0.0, 30.0, 40.0); surface.weights().len()];
+    let loads = [Load::Traction { surface: &surface, values }];
+    let fixed = block.fix(&["x-min"], |x| Vector3::new(0.0, 1e-3, x.y * 0.1));
+    let constraints: Vec<_> = fixed
+        .iter()
+        .map(|f| ConstraintRow {
+            terms: vec![(f.node, f.axis, -3.0), (f.node, f.axis, 0.5)],
+            value: -2.5 * f.value,
+        })
+        .collect();
+    let solve = |fixed: &[FixedDof], constraints: &[ConstraintRow], dense_limit| {
+        let problem = LinearProblem { body, loads: &loads, fixed, constraints, weak: &[] };
+        let factored = assemble(&problem).unwrap().factor_with(dense_limit).unwrap();
+        let solution = factored.solve(1.0).unwrap();
+        let reactions = factored.reactions(&solution, 1.0);
+        (solution, reactions)
+    };
+    let (eliminated, reactions) = solve(&fixed, &[], 0);
+    assert_eq!(eliminated.info.path.name(), "sparse-llt");
+    // Every second one by a row, the others eliminated; and each row twice: dependent but consistent.
+    let (some_fixed, some_rows): (Vec<_>, Vec<_>) =
+        fixed.iter().zip(&constraints).enumerate().partition(|(k, _)| k % 2 == 0);
+    let some_fixed: Vec<_> = some_fixed.into_iter().map(|(_, (f, _))| *f).collect();
+    let some_rows: Vec<_> = some_rows.into_iter().map(|(_, (_, c))| c.clone()).collect();
+    let twice: Vec<_> = constraints.iter().chain(&constraints).cloned().collect();
+    for (dense_limit, path) in [(0, "sparse-ldlt"), (usize::MAX, "dense-ldlt")] {
+        for (fixed, rows) in [(&[][..], &constraints[..]), (&some_fixed, &some_rows), (&[], &twice)] {
+            let (solution, _) = solve(fixed, rows, dense_limit);
+            assert_eq!(solution.info.path.name(), path);
+            let gap = gap(&solution.u, &eliminated.u);
+            assert!(gap < 1e-11, "{path}, {} rows: {gap:e}", rows.len());
+            assert!(solution.info.residual < 1e-12, "{:e}", solution.info.residual);
+        }
+    }
+    // The multiplier acts against the body: lambda c = -reaction.
+    let (solution, none) = solve(&[], &constraints, 0);
+    let scale = reactions.iter().map(Vector3::norm).fold(0.0, f64::max);
+    for (f, lambda) in fixed.iter().zip(&solution.multipliers) {
+        let reaction = reactions[f.node as usize][f.axis as usize];
+        assert!((lambda * -2.5 + reaction).abs() < 1e-9 * scale);
+    }
+    assert!(none.iter().all(|r| r.norm() == 0.0));
+}
+
+/// A tie across an axis: two nodes move alike. Compared with the penalty limit of the same tie.
+#[test]
+fn a_row_between_two_nodes_holds() {
+    let block = Block::new(CellKind::Tet4, [3, 3, 2]);
+    let material = [soft()];
+    let body = block.body(&material);
+    let surface = block.surface(&["x-max"]);
+    let values = surface.points().iter().map(|x| Vector3::new(x.y * 1e4, 0.0, 0.0)).collect();
+    let loads = [Load::Traction { surface: &surface, values }];
+    let fixed = block.fix(&["x-min"], |_| Vector3::zeros());
+    let (a, b) = (3, 15);
+    let tie = [ConstraintRow { terms: vec![(a, 0, 1.0), (b, 0, -1.0)], value: 1e-3 }];
+    let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &tie, weak: &[] };
+    let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
+    let (ua, ub) = (solution.u[a as usize].x, solution.u[b as usize].x);
+    assert!((ua - ub - 1e-3).abs() < 1e-14, "{ua} {ub}");
+    assert!(solution.multipliers[0].abs() > 1e-6);
+}
+
+#[test]
+fn all_held_needs_no_system() {
+    let block = Block::new(CellKind::Hex8, [1, 1, 1]);
+    let material = [soft()];
+    let fixed = block.fix(&common::SIDES, common::affine);
+    // A row over held parameters only is checked and dropped.
+    let first = fixed[0];
+    let rows = [ConstraintRow { terms: vec![(first.node, first.axis, 2.0)], value: 2.0 * first.value }];
+    let body = block.body(&material);
+    let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &rows, weak: &[] };
+    let solution = assemble(&problem).unwrap().factor().unwrap().solve(0.5).unwrap();
+    assert!(block.error(&solution.u, |x| common::affine(x) * 0.5) < 1e-15);
+    assert_eq!((solution.info.dofs, solution.info.path.name()), (0, "none"));
+}
+
+#[test]
+fn a_second_load_needs_no_second_factor() {
+    let block = Block::new(CellKind::Hex20, [2, 2, 2]);
+    let material = [soft()];
+    let body = block.body(&material);
+    let surface = block.surface(&["z-max"]);
+    let fixed = block.fix(&["z-min"], |x| Vector3::new(0.0, 0.0, 0.02 * x.x));
+    let push = |p: f64| [Load::Pressure { surface: &surface, values: vec![p; surface.weights().len()] }];
+    let (one, two) = (push(100.0), push(-300.0));
+    let problem = |loads| LinearProblem { body, loads, fixed: &fixed, constraints: &[], weak: &[] };
+    let factored = assemble(&problem(&one)).unwrap().factor().unwrap();
+    let reused = factored.solve_loads(&two).unwrap();
+    let fresh = assemble(&problem(&two)).unwrap().factor().unwrap().solve(1.0).unwrap();
+    assert!(reused == fresh);
+    assert!(gap(&factored.solve(1.0).unwrap().u, &fresh.u) > 1e-3);
+}
+
+/// Refinement and a tight residual keep near-incompressible solves at rounding.
+#[test]
+fn residuals_stay_small_near_incompressibility() {
+    for poisson in [0.3, 0.495, 0.49999] {
+        let block = Block::new(CellKind::Tet10, [3, 3, 2]);
+        let material = [LinearElastic::new(20e3, poisson).unwrap()];
+        let fixed = block.fix(&["z-min"], |_| Vector3::zeros());
+        let values = vec![Vector3::new(0.0, 0.0, -1e4); block.volume.weights().len()];
+        let loads = [Load::Body { values }];
+        let body = block.body(&material);
+        let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &[] };
+        let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
+        assert!(solution.info.residual < 1e-10, "{poisson}: {:e}", solution.info.residual);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    #[test]
+    fn dense_and_sparse_agree(
+        cells in prop::array::uniform3(1..5usize),
+        kind in prop::sample::select(CellKind::ALL.to_vec()),
+        side in 0..6usize,
+        force in prop::array::uniform3(-1.0..1.0f64),
+    ) {
+        prop_assume!(kind.order() == 1 || cells.iter().product::<usize>() <= 8);
+        let block = Block::new(kind, cells);
+        let material = [soft()];
+        let fixed = block.fix(&[common::SIDES[side]], |_| Vector3::zeros());
+        let loads = [Load::Body { values: vec![Vector3::from(force) * 1e4; block.volume.weights().len()] }];
+        let body = block.body(&material);
+        let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &[] };
+        let sparse = assemble(&problem).unwrap().factor_with(0).unwrap().solve(1.0).unwrap();
+        let dense = assemble(&problem).unwrap().factor_with(usize::MAX).unwrap().solve(1.0).unwrap();
+        prop_assert_eq!(sparse.info.path, SolverPath::SparseLlt);
+        prop_assert_eq!(dense.info.path, SolverPath::DenseLlt);
+        prop_assert!(gap(&sparse.u, &dense.u) < 1e-11);
+    }
+}
