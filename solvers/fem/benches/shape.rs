@@ -1,5 +1,5 @@
 //! The shape stage: volume rows of boxes of about 6,000 tet4, 6,000 tet10 and 1,000 hex20, and rows at 1,331
-//! points of the tet4 box. Not covered: surface and flux rows, which cost a few percent of these.
+//! points of the tet4 box. Not covered: surface and flux rows, points outside.
 
 use std::hint::black_box;
 

@@ -14,10 +14,13 @@ fn positions(mesh: &Mesh) -> Vec<Vector3> {
 
 /// Quadrature points lie anywhere in a cell, close to its curved faces too.
 fn points_inside(mesh: &Mesh) -> Vec<Point3> {
-    let rule = CellKind::ALL
+    volume_rows(mesh, &many_points()).unwrap().points().to_vec()
+}
+
+fn many_points() -> VolumeRule {
+    CellKind::ALL
         .into_iter()
-        .fold(VolumeRule::FINE, |rule, kind| rule.with(kind, if kind.is_tet() { 24 } else { 5 }).unwrap());
-    volume_rows(mesh, &rule).unwrap().points().to_vec()
+        .fold(VolumeRule::FINE, |rule, kind| rule.with(kind, if kind.is_tet() { 24 } else { 5 }).unwrap())
 }
 
 #[test]
@@ -90,13 +93,14 @@ fn strongly_distorted_cells_are_searched_from_every_side() {
                 .map(|&n| regular.points()[n as usize] + Vector3::from_fn(|_, _| amplitude * random()))
                 .collect();
             let mesh = Mesh::new(points, &[(kind, (0..kind.node_count() as u32).collect())]).unwrap();
-            if geometry::quality::check(&mesh).is_err() {
+            // Folded at a node or at one of these points: not a cell. The draw goes on until 300 are.
+            let (Ok(_), Ok(volume)) = (geometry::quality::check(&mesh), volume_rows(&mesh, &many_points()))
+            else {
                 continue;
-            }
+            };
             tried += 1;
-            let inside = points_inside(&mesh);
-            let rows = point_rows(&mesh, &inside).unwrap();
-            for (found, p) in rows.rows().apply(&positions(&mesh)).iter().zip(&inside) {
+            let rows = point_rows(&mesh, volume.points()).unwrap();
+            for (found, p) in rows.rows().apply(&positions(&mesh)).iter().zip(volume.points()) {
                 assert!((found - p.coords).norm() < 1e-12, "{kind:?}: {found} for {p}");
             }
         }

@@ -1,4 +1,4 @@
-//! The elements: one file each. A new one is a file, a line in [`with_element`] and a kind in `geometry`.
+//! The elements: one file each. A new one is a file, a line in `with_element` and a kind in `geometry`.
 
 mod hex20;
 mod hex8;
