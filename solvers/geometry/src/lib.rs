@@ -3,16 +3,21 @@
 //! Everything is in metres and in flat arrays; nothing here knows an approximation or a material.
 
 mod cell;
+mod cloud;
 pub mod generate;
 mod isoparametric;
 mod mesh;
 pub mod quadrature;
 pub mod quality;
 mod random;
+mod search;
 pub mod shapes;
 
 pub use cell::{CellKind, FaceKind};
+pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh};
 pub use mesh::{Facet, Mesh, MeshError};
+pub use search::{Neighbour, Search, SearchError};
+pub use shapes::Kidney;
 
 /// A position in the reference configuration, in metres.
 pub type Point3 = nalgebra::Point3<f64>;

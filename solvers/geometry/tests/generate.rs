@@ -6,7 +6,7 @@ use geometry::generate::{
     GenerateError, Jitter, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, kidney_mesh, raise_order,
     sphere_shell_mesh, to_tets,
 };
-use geometry::shapes::Kidney;
+use geometry::shapes::{Kidney, Shape};
 use geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
 
 fn unit_box(kind: CellKind, cells: [usize; 3], jitter: Option<Jitter>) -> Mesh {

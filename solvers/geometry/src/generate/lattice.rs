@@ -11,6 +11,9 @@ pub(super) const CORNERS: [(usize, usize, usize); 8] =
 /// A key that is the same for the same node in every block.
 pub(super) type Key = [u32; 4];
 
+/// A name for boundary facets and what holds at all of their corners.
+pub(super) type Group<'a> = (&'a str, &'a dyn Fn(&Point3) -> bool);
+
 /// A hexahedral mesh under construction.
 #[derive(Default)]
 pub(super) struct Lattice {
@@ -33,7 +36,7 @@ impl Lattice {
 
     /// The finished mesh with facet groups: a boundary facet belongs to every group whose predicate holds at all of
     /// its corners.
-    pub(super) fn finish(self, groups: &[(&str, &dyn Fn(&Point3) -> bool)]) -> Result<Mesh, MeshError> {
+    pub(super) fn finish(self, groups: &[Group]) -> Result<Mesh, MeshError> {
         let mut mesh = Mesh::from_flat(self.points, vec![CellKind::Hex8; self.nodes.len() / 8], self.nodes)?;
         let boundary = mesh.boundary();
         for (name, holds) in groups {

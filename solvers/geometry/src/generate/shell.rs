@@ -56,7 +56,7 @@ pub fn sphere_shell_mesh(
             mesh.hexahedron(lattice::CORNERS.map(key), place);
         }
     }
-    let mut groups: Vec<(&str, &dyn Fn(&Point3) -> bool)> =
+    let mut groups: Vec<lattice::Group> =
         vec![("inner", &|q| q.coords.amax() == 1.0), ("outer", &|q| q.coords.amax() == 2.0)];
     if extent == ShellExtent::Octant {
         groups.push(("x-min", &|q| q.x == 0.0));

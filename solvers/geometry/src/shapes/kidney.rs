@@ -1,6 +1,7 @@
 //! A kidney-like bean: the unit ball bent along its long axis.
 
-use crate::Point3;
+use super::{Shape, along, unit_ball, unit_sphere};
+use crate::{Point3, Vector3};
 
 /// The body `((x - k (y/b)^2)/a)^2 + (y/b)^2 + (z/c)^2 <= 1` with a = k = 160/9 mm, b = 37.5 mm, c = 15 mm: 40 x 75
 /// x 30 mm along x (lateral), y (long axis), z (anterior), hilum on +x, volume `4/3 pi 10^4` mm^3. It is the image of
@@ -26,9 +27,42 @@ impl Kidney {
         let y = p.y / Self::B;
         Point3::new(p.x / Self::A - y * y, y, p.z / Self::C)
     }
+}
 
-    /// The level function `F(p)`: negative inside, 0 on the surface, positive outside. Dimensionless.
-    pub fn level(&self, p: &Point3) -> f64 {
+impl Shape for Kidney {
+    fn volume(&self) -> f64 {
+        4.0 / 3.0 * std::f64::consts::PI * Self::A * Self::B * Self::C
+    }
+
+    /// `((x - k (y/b)^2)/a)^2 + (y/b)^2 + (z/c)^2 - 1`, dimensionless.
+    fn level(&self, p: &Point3) -> f64 {
         self.preimage(p).coords.norm_squared() - 1.0
+    }
+
+    fn bounds(&self) -> [Point3; 2] {
+        // x = a (X + Y^2) with X^2 + Y^2 <= 1 is largest at X = 1/2.
+        [Point3::new(-Self::A, -Self::B, -Self::C), Point3::new(1.25 * Self::A, Self::B, Self::C)]
+    }
+
+    fn project_to_surface(&self, p: &Point3) -> Point3 {
+        self.map(&along(self.preimage(p).coords, 1.0).into())
+    }
+
+    fn volume_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
+        // The map's Jacobian determinant is a b c everywhere: uniform stays uniform.
+        self.map(&unit_ball(unit).into())
+    }
+
+    fn surface_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
+        // Area scales by |cof(D) n| = a b c |D^-T n| with D the map's gradient; draw by rejection. On the sphere
+        // |D^-T n|^2 = (X/a)^2 + ((Y - 2 X Y)/b)^2 + (Z/c)^2, at most 1/c^2.
+        loop {
+            let n = unit_sphere(unit);
+            let stretch =
+                Vector3::new(n.x / Self::A, (n.y - 2.0 * n.x * n.y) / Self::B, n.z / Self::C).norm();
+            if unit() < stretch * Self::C {
+                return self.map(&n.into());
+            }
+        }
     }
 }
