@@ -4,10 +4,13 @@
 //! LaTeX tables, SVG and PNG figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
 
 mod error;
+mod figures;
+mod findings;
 mod frame;
 mod order;
 mod paper;
 mod record;
+mod render;
 mod select;
 mod store;
 mod table;
@@ -16,4 +19,5 @@ mod text;
 
 pub use error::ReportError;
 pub use record::{Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Status, SurfaceField};
+pub use render::{Rendered, render};
 pub use store::{read_run, write_run};

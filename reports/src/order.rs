@@ -1,7 +1,7 @@
 //! Observed order of convergence and the grid convergence index.
 
 /// Errors below this are rounding, not discretisation: they say nothing about an order.
-const ROUNDING: f64 = 1e-11;
+pub(crate) const ROUNDING: f64 = 1e-11;
 
 /// Two pairwise orders closer than this count as settled.
 const SETTLED: f64 = 0.15;

@@ -9,7 +9,6 @@ mod timing;
 mod transfer;
 
 pub(crate) use kidney::pairs as kidney_pairs;
-pub(crate) use outcome::{checks, failures};
 
 use crate::record::RunSet;
 use crate::select::{Run, groups, labels};

@@ -7,7 +7,7 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
 /// Every bound: failures first, then known failures, what wasn't run, and what held.
-pub(crate) fn checks(set: &RunSet) -> Table {
+pub(super) fn checks(set: &RunSet) -> Table {
     let mut table = Table::new(
         "checks",
         "Checks",
@@ -40,7 +40,7 @@ pub(crate) fn checks(set: &RunSet) -> Table {
 }
 
 /// Runs that gave no numbers.
-pub(crate) fn failures(set: &RunSet) -> Table {
+pub(super) fn failures(set: &RunSet) -> Table {
     let mut table = Table::new(
         "failed-runs",
         "Failed runs",

@@ -1,0 +1,143 @@
+//! Axes: where a value goes on paper, its ticks and its frame.
+
+use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE};
+use crate::text::tick;
+
+/// Size of every ordinary text, points.
+pub(crate) const TEXT: f64 = 9.0;
+
+/// One axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    label: String,
+    log: bool,
+    low: f64,
+    high: f64,
+    ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// A logarithmic axis around positive values, a little wider than they are.
+    pub(crate) fn log(label: &str, values: impl Iterator<Item = f64>) -> Axis {
+        let (mut low, mut high) = range(values.filter(|v| *v > 0.0 && v.is_finite())).unwrap_or((0.1, 1.0));
+        let margin = (high / low).powf(0.06).max(1.15);
+        (low, high) = (low / margin, high * margin);
+        let decades = (high / low).log10();
+        let steps: &[f64] = match decades {
+            d if d < 1.6 => &[1.0, 2.0, 5.0],
+            d if d < 2.2 => &[1.0, 3.0],
+            _ => &[1.0],
+        };
+        let stride = (decades / 6.0).ceil().max(1.0) as i32;
+        let mut ticks = Vec::new();
+        for power in low.log10().floor() as i32..=high.log10().ceil() as i32 {
+            for step in steps {
+                let value = step * 10f64.powi(power);
+                if (low..=high).contains(&value) && (steps.len() > 1 || power.rem_euclid(stride) == 0) {
+                    ticks.push((value, tick(value)));
+                }
+            }
+        }
+        Axis { label: label.into(), log: true, low, high, ticks }
+    }
+
+    /// A linear axis around values; `from_zero` starts it at zero.
+    pub(crate) fn linear(label: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+        let (mut low, mut high) = range(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
+        if from_zero {
+            (low, high) = (low.min(0.0), high.max(0.0));
+        }
+        let span = if high > low { high - low } else { high.abs().max(1.0) };
+        let raw = span / 4.0;
+        let power = 10f64.powf(raw.log10().floor());
+        let step =
+            [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|s| s * power).find(|s| *s >= raw).unwrap_or(raw);
+        if !from_zero || low < 0.0 {
+            low -= 0.06 * span;
+        }
+        high += 0.06 * span;
+        let decimals = (0..6)
+            .find(|d| ((step * 10f64.powi(*d)).round() - step * 10f64.powi(*d)).abs() < 1e-6)
+            .unwrap_or(6);
+        let ticks = ((low / step).ceil() as i64..=(high / step).floor() as i64)
+            .map(|i| (i as f64 * step, format!("{:.*}", decimals as usize, i as f64 * step)))
+            .collect();
+        Axis { label: label.into(), log: false, low, high, ticks }
+    }
+
+    /// Replaces the ticks.
+    pub(crate) fn with_ticks(mut self, ticks: Vec<(f64, String)>) -> Axis {
+        self.ticks = ticks;
+        self
+    }
+
+    /// Drops the label, where a neighbour already has it.
+    pub(crate) fn without_label(mut self) -> Axis {
+        self.label.clear();
+        self
+    }
+
+    pub(crate) fn low(&self) -> f64 {
+        self.low
+    }
+
+    pub(crate) fn high(&self) -> f64 {
+        self.high
+    }
+
+    fn fraction(&self, value: f64) -> f64 {
+        if self.log {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.fold(None, |range, v| match range {
+        None => Some((v, v)),
+        Some((low, high)) => Some((low.min(v), high.max(v))),
+    })
+}
+
+/// A framed plot.
+#[derive(Clone, Debug)]
+pub(crate) struct Panel {
+    /// Left, top, right, bottom of the frame, points.
+    pub(crate) frame: (f64, f64, f64, f64),
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+}
+
+impl Panel {
+    /// Where a pair of values goes on paper; beyond an axis it stays on the frame.
+    pub(crate) fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        let (left, top, right, bottom) = self.frame;
+        let (fx, fy) = (self.x.fraction(x).clamp(0.0, 1.0), self.y.fraction(y).clamp(0.0, 1.0));
+        (left + fx * (right - left), bottom - fy * (bottom - top))
+    }
+
+    /// Grid, frame, ticks, axis labels and title.
+    pub(crate) fn draw(&self, canvas: &mut Canvas, title: &str) {
+        let (left, top, right, bottom) = self.frame;
+        for (value, text) in &self.x.ticks {
+            let (at, _) = self.at(*value, self.y.low);
+            canvas.line(&[(at, top), (at, bottom)], PALE, 0.5);
+            canvas.line(&[(at, bottom), (at, bottom + 3.0)], BLACK_INK, 0.6);
+            canvas.text((at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
+        }
+        for (value, text) in &self.y.ticks {
+            let (_, at) = self.at(self.x.low, *value);
+            canvas.line(&[(left, at), (right, at)], PALE, 0.5);
+            canvas.line(&[(left - 3.0, at), (left, at)], BLACK_INK, 0.6);
+            canvas.text((left - 5.0, at), text, TEXT, BLACK_INK, Anchor::End);
+        }
+        canvas.line(&[(left, top), (left, bottom), (right, bottom)], GREY, 0.8);
+        canvas.text(((left + right) / 2.0, bottom + 22.0), &self.x.label, TEXT, BLACK_INK, Anchor::Middle);
+        if !self.y.label.is_empty() {
+            canvas.upright((left - 46.0, (top + bottom) / 2.0), &self.y.label, TEXT);
+        }
+        canvas.bold((left, top - 8.0), title, TEXT, Anchor::Start);
+    }
+}

@@ -1,0 +1,231 @@
+//! A drawing in points (1/72 inch), written as SVG by plotters and as PNG by resvg. The only file that names either.
+
+use std::sync::OnceLock;
+
+use plotters::prelude::*;
+use plotters::style::register_font;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use resvg::{tiny_skia, usvg};
+
+use crate::error::ReportError;
+
+const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
+const BOLD: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf");
+const FONT: &str = "DejaVu Sans";
+/// plotters draws on whole numbers; ten of them to a point keep curves smooth.
+const UNITS: f64 = 10.0;
+/// SVG text is given its em size, plotters takes the line height.
+const LINE_HEIGHT: f64 = 1.24;
+
+/// A colour, red, green and blue.
+pub(crate) type Colour = [u8; 3];
+
+pub(crate) const BLACK_INK: Colour = [0x20, 0x20, 0x20];
+pub(crate) const GREY: Colour = [0x75, 0x75, 0x75];
+pub(crate) const PALE: Colour = [0xe4, 0xe4, 0xe4];
+
+/// Which end of a text stands at its point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+#[derive(Clone, Debug)]
+enum Shape {
+    Line {
+        points: Vec<(f64, f64)>,
+        colour: Colour,
+        width: f64,
+    },
+    Fill {
+        points: Vec<(f64, f64)>,
+        colour: Colour,
+    },
+    Text {
+        at: (f64, f64),
+        text: String,
+        size: f64,
+        colour: Colour,
+        anchor: Anchor,
+        bold: bool,
+        upright: bool,
+    },
+}
+
+/// Shapes in the order they are drawn.
+#[derive(Clone, Debug)]
+pub(crate) struct Canvas {
+    width: f64,
+    height: f64,
+    shapes: Vec<Shape>,
+}
+
+impl Canvas {
+    pub(crate) fn new(width: f64, height: f64) -> Canvas {
+        let mut canvas = Canvas { width, height, shapes: Vec::new() };
+        canvas.fill(&[(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)], [255, 255, 255]);
+        canvas
+    }
+
+    pub(crate) fn line(&mut self, points: &[(f64, f64)], colour: Colour, width: f64) {
+        self.shapes.push(Shape::Line { points: points.to_vec(), colour, width });
+    }
+
+    /// A line of dashes: lengths drawn and left out in turn, in points; no pattern is a full line.
+    pub(crate) fn dashed(&mut self, points: &[(f64, f64)], colour: Colour, width: f64, pattern: &[f64]) {
+        if pattern.is_empty() {
+            return self.line(points, colour, width);
+        }
+        let (mut index, mut left) = (0, pattern[0]);
+        let mut piece: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
+        for ends in points.windows(2) {
+            let (mut from, to) = (ends[0], ends[1]);
+            loop {
+                let length = (to.0 - from.0).hypot(to.1 - from.1);
+                if length < left {
+                    left -= length;
+                    piece.push(to);
+                    break;
+                }
+                let at = (from.0 + (to.0 - from.0) * left / length, from.1 + (to.1 - from.1) * left / length);
+                piece.push(at);
+                if index % 2 == 0 {
+                    self.line(&piece, colour, width);
+                }
+                (piece, from) = (vec![at], at);
+                index = (index + 1) % pattern.len();
+                left = pattern[index];
+            }
+        }
+        if index % 2 == 0 && piece.len() > 1 {
+            self.line(&piece, colour, width);
+        }
+    }
+
+    pub(crate) fn fill(&mut self, points: &[(f64, f64)], colour: Colour) {
+        self.shapes.push(Shape::Fill { points: points.to_vec(), colour });
+    }
+
+    pub(crate) fn text(&mut self, at: (f64, f64), text: &str, size: f64, colour: Colour, anchor: Anchor) {
+        self.push_text(at, text, size, colour, anchor, false, false);
+    }
+
+    pub(crate) fn bold(&mut self, at: (f64, f64), text: &str, size: f64, anchor: Anchor) {
+        self.push_text(at, text, size, BLACK_INK, anchor, true, false);
+    }
+
+    /// Text that reads upwards, centred.
+    pub(crate) fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
+        self.push_text(at, text, size, BLACK_INK, Anchor::Middle, false, true);
+    }
+
+    fn push_text(
+        &mut self,
+        at: (f64, f64),
+        text: &str,
+        size: f64,
+        colour: Colour,
+        anchor: Anchor,
+        bold: bool,
+        upright: bool,
+    ) {
+        let text = text.to_string();
+        self.shapes.push(Shape::Text { at, text, size, colour, anchor, bold, upright });
+    }
+
+    /// The SVG text; `title` names it for those who can't see it.
+    pub(crate) fn svg(&self, name: &str, title: &str) -> Result<String, ReportError> {
+        let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
+        fonts().map_err(|e| wrong(e.into()))?;
+        let size = ((self.width * UNITS).round() as u32, (self.height * UNITS).round() as u32);
+        let mut svg = String::new();
+        {
+            let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+            for shape in &self.shapes {
+                draw(&area, shape).map_err(&wrong)?;
+            }
+            area.present().map_err(|e| wrong(e.to_string()))?;
+        }
+        let (head, body) =
+            svg.split_once('>').ok_or_else(|| wrong("plotters wrote no SVG element".into()))?;
+        let physical = head.replacen(
+            &format!("width=\"{}\" height=\"{}\"", size.0, size.1),
+            &format!("width=\"{}pt\" height=\"{}pt\" role=\"img\"", self.width, self.height),
+            1,
+        );
+        let title = title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        // Verdana has the same widths where DejaVu Sans isn't installed.
+        let body = body.replace(
+            &format!("font-family=\"{FONT}\""),
+            &format!("font-family=\"'{FONT}', Verdana, sans-serif\""),
+        );
+        Ok(format!("{physical}>\n<title>{title}</title>{body}"))
+    }
+}
+
+fn draw(area: &DrawingArea<SVGBackend, plotters::coord::Shift>, shape: &Shape) -> Result<(), String> {
+    let unit = |v: f64| (v * UNITS).round() as i32;
+    let scaled = |points: &[(f64, f64)]| points.iter().map(|p| (unit(p.0), unit(p.1))).collect::<Vec<_>>();
+    let ink = |c: Colour| RGBColor(c[0], c[1], c[2]);
+    match shape {
+        Shape::Line { points, colour, width } => {
+            let style = ink(*colour).stroke_width(unit(*width).max(1) as u32);
+            area.draw(&PathElement::new(scaled(points), style)).map_err(|e| e.to_string())
+        }
+        Shape::Fill { points, colour } => {
+            area.draw(&Polygon::new(scaled(points), ink(*colour).filled())).map_err(|e| e.to_string())
+        }
+        Shape::Text { at, text, size, colour, anchor, bold, upright } => {
+            let weight = if *bold { FontStyle::Bold } else { FontStyle::Normal };
+            let side = match anchor {
+                Anchor::Start => HPos::Left,
+                Anchor::Middle => HPos::Center,
+                Anchor::End => HPos::Right,
+            };
+            let colour = ink(*colour);
+            let mut style = (FONT, size * UNITS * LINE_HEIGHT, weight)
+                .into_text_style(area)
+                .color(&colour)
+                .pos(Pos::new(side, VPos::Center));
+            if *upright {
+                style = style.transform(FontTransform::Rotate270);
+            }
+            area.draw_text(text, &style, (unit(at.0), unit(at.1))).map_err(|e| e.to_string())
+        }
+    }
+}
+
+/// Width of a text in points.
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    if fonts().is_err() {
+        return 0.6 * size * text.chars().count() as f64;
+    }
+    let font: FontDesc = (FONT, size * UNITS * LINE_HEIGHT).into_font();
+    font.box_size(text)
+        .map_or(0.6 * size * text.chars().count() as f64, |(w, _)| f64::from(w) / UNITS / LINE_HEIGHT)
+}
+
+fn fonts() -> Result<(), &'static str> {
+    static DONE: OnceLock<bool> = OnceLock::new();
+    let done = DONE.get_or_init(|| {
+        register_font(FONT, FontStyle::Normal, REGULAR).is_ok()
+            && register_font(FONT, FontStyle::Bold, BOLD).is_ok()
+    });
+    if *done { Ok(()) } else { Err("the built-in fonts can't be read") }
+}
+
+/// The picture in pixels, twice the size a screen shows it.
+pub(crate) fn png(name: &str, svg: &str) -> Result<Vec<u8>, ReportError> {
+    let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
+    let mut options = usvg::Options::default();
+    options.fontdb_mut().load_font_data(REGULAR.to_vec());
+    options.fontdb_mut().load_font_data(BOLD.to_vec());
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| wrong(e.to_string()))?;
+    let size = tree.size().to_int_size().scale_by(2.0).ok_or_else(|| wrong("it is too large".into()))?;
+    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
+        .ok_or_else(|| wrong(format!("{} x {} pixels can't be held", size.width(), size.height())))?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
+    pixels.encode_png().map_err(|e| wrong(e.to_string()))
+}

@@ -1,0 +1,140 @@
+//! Conditioning and neighbours of the meshfree methods against the dilatation.
+
+use super::axes::Axis;
+use super::grid::{Content, multiples};
+use super::style::{find, styles};
+use super::{Figure, PAGE, paged};
+use crate::select::{Run, groups};
+
+/// A kernel or case as `(label, (dilatation, value, low, high))`.
+type Line = (String, Vec<(f64, f64, f64, f64)>);
+
+fn dilatation(run: &Run) -> Option<f64> {
+    run.is.parameter("dilatation").and_then(|d| d.parse().ok()).filter(|d: &f64| d.is_finite() && *d > 0.0)
+}
+
+/// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
+pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
+    let point = |r: &Run| {
+        let (median, worst) = (r.value("condition-median"), r.value("condition-max"));
+        let value = median.or(worst).filter(|v| *v > 0.0)?;
+        Some((value, median.unwrap_or(value), worst.unwrap_or(value)))
+    };
+    let label = |r: &Run| match r.is.parameter("basis") {
+        Some(basis) => format!("{}, {basis}", r.is.variant),
+        None => r.is.variant.clone(),
+    };
+    let panels = panels(runs, point, label);
+    let figure = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
+        name: paged("conditioning", page),
+        title: "Conditioning of the moment matrix".into(),
+        caption: "Median condition number over all integration points; the bar reaches up to the worst"
+            .into(),
+        canvas: canvas(
+            panels,
+            "condition number [1]",
+            true,
+            "Marker: median over the points; bar: up to the worst point.",
+        ),
+    };
+    panels.chunks(PAGE).enumerate().map(figure).collect()
+}
+
+/// Neighbours per integration point: one panel, one line per case and basis.
+pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
+    let point = |r: &Run| {
+        let mean = r.value("neighbours-mean")?;
+        Some((mean, r.value("neighbours-min").unwrap_or(mean), r.value("neighbours-max").unwrap_or(mean)))
+    };
+    let mut lines: Vec<Line> = Vec::new();
+    for (case, of_case) in panels(runs, point, |r| r.is.parameter("basis").unwrap_or("").to_string()) {
+        for (basis, points) in of_case {
+            let label = if basis.is_empty() { case.clone() } else { format!("{case}, {basis}") };
+            lines.push((label, points));
+        }
+    }
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    vec![Figure {
+        name: "neighbours".into(),
+        title: "Neighbours per integration point".into(),
+        caption: "Mean number of nodes whose support covers an integration point; the bar spans the least and the most".into(),
+        canvas: canvas(&[("Neighbours".into(), lines)], "neighbours [1]", false, "Marker: mean over the points; bar: least to most."),
+    }]
+}
+
+/// By case, then by label: at the Poisson's ratio and node count with most dilatations; one run per dilatation.
+fn panels(
+    runs: &[Run],
+    point: impl Fn(&Run) -> Option<(f64, f64, f64)>,
+    label: impl Fn(&Run) -> String,
+) -> Vec<(String, Vec<Line>)> {
+    let mut out = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let mut lines: Vec<Line> = Vec::new();
+        let mut labels: Vec<String> = case.iter().filter(|r| r.is.family == "efg").map(&label).collect();
+        labels.sort();
+        labels.dedup();
+        for name in labels {
+            let mut best: Vec<(f64, f64, f64, f64)> = Vec::new();
+            let own: Vec<&Run> = case.iter().filter(|r| r.is.family == "efg" && label(r) == name).collect();
+            let mut sizes: Vec<(u64, u64)> =
+                own.iter().map(|r| (r.is.nodes, r.is.poisson.to_bits())).collect();
+            sizes.sort();
+            sizes.dedup();
+            for size in sizes {
+                let mut points: Vec<(f64, f64, f64, f64)> = own
+                    .iter()
+                    .filter(|r| (r.is.nodes, r.is.poisson.to_bits()) == size)
+                    .filter_map(|r| point(r).zip(dilatation(r)).map(|((v, low, high), d)| (d, v, low, high)))
+                    .collect();
+                points.sort_by(|a, b| a.0.total_cmp(&b.0));
+                points.dedup_by(|a, b| a.0 == b.0);
+                if points.len() >= best.len() {
+                    best = points;
+                }
+            }
+            if !best.is_empty() {
+                lines.push((name, best));
+            }
+        }
+        if !lines.is_empty() {
+            out.push((case[0].is.case.clone(), lines));
+        }
+    }
+    out
+}
+
+fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> super::canvas::Canvas {
+    let styles =
+        styles(&panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), false))).collect::<Vec<_>>());
+    let contents = panels
+        .iter()
+        .map(|(title, lines)| {
+            let points = || lines.iter().flat_map(|l| l.1.iter());
+            let values = || points().flat_map(|p| [p.1, p.2, p.3]);
+            let styles = &styles;
+            Content {
+                title: title.clone(),
+                x: Axis::linear(
+                    "dilatation: support radius / node spacing [1]",
+                    points().map(|p| p.0),
+                    false,
+                ),
+                y: if log { Axis::log(y, values()) } else { Axis::linear(y, values(), true) },
+                plot: Box::new(move |canvas, panel| {
+                    for (label, points) in lines {
+                        let Some(style) = find(styles, label) else { continue };
+                        for p in points {
+                            canvas.line(&[panel.at(p.0, p.2), panel.at(p.0, p.3)], style.colour, 0.8);
+                        }
+                        let at: Vec<_> = points.iter().map(|p| panel.at(p.0, p.1)).collect();
+                        style.curve(canvas, &at);
+                    }
+                }),
+            }
+        })
+        .collect();
+    multiples(contents, &styles, note)
+}

@@ -1,0 +1,142 @@
+//! Error against Poisson's ratio at one size: who locks.
+
+use super::axes::{Axis, TEXT};
+use super::canvas::{Anchor, GREY};
+use super::grid::{Content, multiples};
+use super::style::{find, styles};
+use super::{Figure, PAGE, error_label, paged};
+use crate::select::{Run, groups, labels};
+
+/// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.
+pub(crate) type Sweep<'r> = (String, bool, Vec<Run<'r>>);
+
+/// Every solver of a case that was run at two or more Poisson's ratios, at its middle size.
+pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
+    let mut found: Vec<Vec<Run<'r>>> = Vec::new();
+    for run in case {
+        let same = |s: &&mut Vec<Run>| {
+            let is = s[0].is;
+            (&is.method, &is.variant, &is.parameters, is.nodes, is.seed)
+                == (&run.is.method, &run.is.variant, &run.is.parameters, run.is.nodes, run.is.seed)
+        };
+        match found.iter_mut().find(same) {
+            Some(sweep) => sweep.push(run.clone()),
+            None => found.push(vec![run.clone()]),
+        }
+    }
+    found.retain(|s| s.len() > 1);
+    let mut picked: Vec<Vec<Run<'r>>> = Vec::new();
+    let approximation = |s: &Vec<Run<'r>>| (s[0].name(), &s[0].is.variant, &s[0].is.parameters, s[0].is.seed);
+    for sweep in &found {
+        if picked.iter().any(|p| approximation(p) == approximation(sweep)) {
+            continue;
+        }
+        let mut sizes: Vec<&Vec<Run<'r>>> =
+            found.iter().filter(|s| approximation(s) == approximation(sweep)).collect();
+        let most = sizes.iter().map(|s| s.len()).max().unwrap_or(0);
+        sizes.retain(|s| s.len() == most);
+        sizes.sort_by_key(|s| s[0].is.nodes);
+        picked.push(sizes[sizes.len() / 2].clone());
+    }
+    let named: Vec<_> = picked.iter().map(|s| (s[0].name(), s[0].is)).collect();
+    let labels = labels(&named);
+    labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family != "fem", s)).collect()
+}
+
+/// Displacement error, pressure error and tip deflection of every case with such sweeps.
+pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
+    let mut panels = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let sweeps = sweeps(case);
+        for quantity in ["l2", "pressure", "tip"] {
+            let drawn =
+                sweeps.iter().any(|s| s.2.iter().filter(|r| usable(r, quantity).is_some()).count() > 1);
+            if drawn && !case[0].is.case.contains("patch") {
+                panels.push((case[0].is.case.clone(), quantity, sweeps.clone()));
+            }
+        }
+    }
+    panels.chunks(PAGE).enumerate().map(|(page, panels)| figure(page, panels)).collect()
+}
+
+fn usable(run: &Run, quantity: &str) -> Option<f64> {
+    run.value(quantity).filter(|v| quantity == "tip" || *v > crate::order::ROUNDING)
+}
+
+/// Grows without bound as the material becomes incompressible.
+fn stiffness(poisson: f64) -> f64 {
+    1.0 / (1.0 - 2.0 * poisson)
+}
+
+fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure {
+    let all: Vec<(String, bool)> =
+        panels.iter().flat_map(|p| p.2.iter().map(|s| (s.0.clone(), s.1))).collect();
+    let styles = styles(&all);
+    let contents = panels
+        .iter()
+        .map(|(case, quantity, sweeps)| {
+            let points = |s: &Sweep| -> Vec<(f64, f64)> {
+                s.2.iter().filter_map(|r| Some((r.is.poisson, usable(r, quantity)?))).collect()
+            };
+            let values = || sweeps.iter().flat_map(points);
+            let mut ratios: Vec<f64> = values().map(|p| p.0).collect();
+            ratios.sort_by(f64::total_cmp);
+            ratios.dedup();
+            let ticks = spread_out(&ratios);
+            let tip = *quantity == "tip";
+            let styles = &styles;
+            let what = match *quantity {
+                "l2" => "displacement",
+                "pressure" => "pressure",
+                _ => "tip deflection",
+            };
+            Content {
+                title: format!("{case}: {what}"),
+                x: Axis::log(
+                    "Poisson's ratio ν [1], spaced as 1/(1 − 2ν)",
+                    ratios.iter().map(|r| stiffness(*r)),
+                )
+                .with_ticks(ticks),
+                y: match tip {
+                    true => {
+                        Axis::linear("tip deflection / exact [1]", values().map(|p| p.1).chain([1.0]), true)
+                    }
+                    false => Axis::log(error_label(quantity), values().map(|p| p.1)),
+                },
+                plot: Box::new(move |canvas, panel| {
+                    if tip {
+                        let (left, right) = (panel.at(panel.x.low(), 1.0), panel.at(panel.x.high(), 1.0));
+                        canvas.dashed(&[left, right], GREY, 0.8, &[3.0, 2.0]);
+                        canvas.text((right.0 - 1.0, right.1 - 6.0), "exact", TEXT, GREY, Anchor::End);
+                    }
+                    for sweep in sweeps {
+                        if let Some(style) = find(styles, &sweep.0) {
+                            let at: Vec<_> =
+                                points(sweep).iter().map(|p| panel.at(stiffness(p.0), p.1)).collect();
+                            style.curve(canvas, &at);
+                        }
+                    }
+                }),
+            }
+        })
+        .collect();
+    Figure {
+        name: paged("locking", page),
+        title: "Locking: error against Poisson's ratio".into(),
+        caption: "Each method at one size while the material becomes incompressible; a method that locks climbs to the right, its tip deflection falls".into(),
+        canvas: multiples(contents, &styles, ""),
+    }
+}
+
+/// Ticks at the ratios themselves, leaving out those too close to the one before.
+fn spread_out(ratios: &[f64]) -> Vec<(f64, String)> {
+    let mut ticks: Vec<(f64, String)> = Vec::new();
+    let whole = ratios.last().map_or(1.0, |r| stiffness(*r).ln().max(1.0));
+    for ratio in ratios {
+        let at = stiffness(*ratio);
+        if ticks.last().is_none_or(|t| (at / t.0).ln() > 0.1 * whole) {
+            ticks.push((at, ratio.to_string()));
+        }
+    }
+    ticks
+}

@@ -1,0 +1,95 @@
+//! Which figures there are, and what they share.
+
+mod axes;
+mod bars;
+mod canvas;
+mod cloud;
+mod convergence;
+mod efficiency;
+mod grid;
+mod locking;
+mod style;
+mod surface;
+
+pub(crate) use canvas::{Canvas, png};
+pub(crate) use locking::sweeps;
+
+use crate::record::RunSet;
+use crate::select::{Run, groups};
+
+/// Panels on one figure.
+const PAGE: usize = 6;
+
+/// A named drawing.
+pub(crate) struct Figure {
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) caption: String,
+    pub(crate) canvas: Canvas,
+}
+
+/// A triangle on paper, and its value.
+struct Pictured {
+    corners: [[f64; 2]; 3],
+    value: f64,
+}
+
+/// Every figure that has something to show, in the order of the report.
+pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let mut figures = efficiency::figures(&solved);
+    figures.extend(convergence::figures(&solved));
+    figures.extend(locking::figures(&solved));
+    figures.extend(surface::figures(&set.fields));
+    figures.extend(bars::rms(&solved));
+    figures.extend(bars::transfer(runs));
+    figures.extend(cloud::conditioning(runs));
+    figures.extend(cloud::neighbours(runs));
+    figures
+}
+
+/// Solver runs of every case that isn't a patch test, titled, at the Poisson's ratios nearest 0.3 and 0.495.
+fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
+    let mut out = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let name = &case[0].is.case;
+        if name.contains("patch") {
+            continue;
+        }
+        let several = case.iter().any(|r| r.is.poisson != case[0].is.poisson);
+        let compressible = representative(case, 0.3);
+        let tissue = representative(case, 0.495);
+        for group in [compressible, tissue] {
+            let poisson = group[0].is.poisson;
+            let title = if several { format!("{name}, ν = {poisson}") } else { name.clone() };
+            if out.iter().all(|(t, _)| *t != title) {
+                out.push((title, group));
+            }
+        }
+    }
+    out
+}
+
+/// The runs of a case at the Poisson's ratio nearest to one.
+fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
+    let off = |g: &&[Run]| (g[0].is.poisson - poisson).abs();
+    groups(case, |r| r.is.poisson.to_bits())
+        .into_iter()
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .unwrap_or(case)
+}
+
+/// An error's name with its unit.
+fn error_label(quantity: &str) -> &'static str {
+    match quantity {
+        "l2" => "relative L2 error [1]",
+        "energy" => "relative energy error [1]",
+        "pressure" => "relative pressure error [1]",
+        _ => "RMS error [mm]",
+    }
+}
+
+/// Further pages of a figure carry a number.
+fn paged(name: &str, page: usize) -> String {
+    if page == 0 { name.into() } else { format!("{name}-{}", page + 1) }
+}

@@ -1,0 +1,182 @@
+//! Bodies seen from outside, deformed and coloured by displacement.
+
+use super::axes::TEXT;
+use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY};
+use super::grid::WIDTH;
+use super::{Figure, Pictured};
+use crate::record::SurfaceField;
+use crate::store::slug;
+use crate::text::significant;
+
+/// Viridis at eleven even steps (van der Walt and Smith, 2015).
+const VIRIDIS: [Colour; 11] = [
+    [68, 1, 84],
+    [72, 36, 117],
+    [65, 68, 135],
+    [53, 95, 141],
+    [42, 120, 142],
+    [33, 145, 140],
+    [34, 168, 132],
+    [68, 191, 112],
+    [122, 209, 81],
+    [189, 223, 38],
+    [253, 231, 37],
+];
+
+/// One figure per case: its fields side by side under one colour scale, true deformation.
+pub(super) fn figures(fields: &[SurfaceField]) -> Vec<Figure> {
+    let mut cases: Vec<&str> = fields.iter().map(|f| f.case.as_str()).collect();
+    cases.sort();
+    cases.dedup();
+    cases
+        .into_iter()
+        .map(|case| {
+            let mut own: Vec<&SurfaceField> =
+                fields.iter().filter(|f| f.case == case && !f.triangles.is_empty()).collect();
+            own.sort_by_key(|f| (f.method.starts_with("efg"), &f.method));
+            (case, own)
+        })
+        .filter(|(_, own)| !own.is_empty())
+        .map(|(case, own)| figure(case, &own))
+        .collect()
+}
+
+fn magnitude(u: &[f64; 3]) -> f64 {
+    (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()
+}
+
+fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
+    let largest = fields.iter().flat_map(|f| f.displacement.iter()).map(magnitude).fold(0.0, f64::max);
+    let columns = fields.len().min(3);
+    let rows = fields.len().div_ceil(columns);
+    let (bar, gap) = (76.0, 8.0);
+    let width = (WIDTH - bar - gap * (columns as f64 + 1.0)) / columns as f64;
+    let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f)).collect();
+    let corners = || seen.iter().flatten().flat_map(|t| t.corners.iter());
+    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+    for c in corners() {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(c[axis]);
+            high[axis] = high[axis].max(c[axis]);
+        }
+    }
+    let size = [(high[0] - low[0]).max(1e-12), (high[1] - low[1]).max(1e-12)];
+    let scale = ((width - 10.0) / size[0]).min(300.0 / size[1]);
+    let height = size[1] * scale + 44.0;
+    let mut canvas = Canvas::new(WIDTH, height * rows as f64 + 34.0);
+    for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
+        let left = gap + (i % columns) as f64 * (width + gap);
+        let top = (i / columns) as f64 * height;
+        let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
+        canvas.bold((left + width / 2.0, top + 12.0), &field.title, TEXT, Anchor::Middle);
+        let text = format!("max |u| {} mm", significant(own * 1e3, 3));
+        canvas.text((left + width / 2.0, top + 25.0), &text, TEXT, GREY, Anchor::Middle);
+        let origin = (left + (width - size[0] * scale) / 2.0, top + 36.0 + size[1] * scale);
+        let place = |c: &[f64; 2]| (origin.0 + (c[0] - low[0]) * scale, origin.1 - (c[1] - low[1]) * scale);
+        for t in triangles {
+            let at = t.corners.map(|c| place(&c));
+            let centre = ((at[0].0 + at[1].0 + at[2].0) / 3.0, (at[0].1 + at[1].1 + at[2].1) / 3.0);
+            // A third of a point wider all round, or hairlines show between neighbours.
+            let grown = at.map(|p| {
+                let (dx, dy) = (p.0 - centre.0, p.1 - centre.1);
+                let more = 1.0 + 0.35 / dx.hypot(dy).max(0.35);
+                (centre.0 + dx * more, centre.1 + dy * more)
+            });
+            canvas.fill(&grown, viridis(if largest > 0.0 { t.value / largest } else { 0.0 }));
+        }
+    }
+    let bottom = height * rows as f64;
+    axes(&mut canvas, (30.0, bottom + 6.0));
+    canvas.text(
+        (74.0, bottom + 12.0),
+        "True deformation, orthographic view; one colour scale.",
+        TEXT,
+        GREY,
+        Anchor::Start,
+    );
+    colour_bar(&mut canvas, (WIDTH - bar + 6.0, 40.0), (height - 60.0).clamp(80.0, 300.0), largest);
+    Figure {
+        name: format!("surface-{}", slug(case)),
+        title: format!("Surface displacement, {case}"),
+        caption: "Surface coloured by the magnitude of its displacement, shown at true deformation under one colour scale".into(),
+        canvas,
+    }
+}
+
+/// Right, up and towards the viewer: the long axis upright, seen from the front and a little from the right and above.
+fn view() -> [[f64; 3]; 3] {
+    let (turn, tilt) = (35f64.to_radians(), 18f64.to_radians());
+    let towards = [turn.sin() * tilt.cos(), tilt.sin(), turn.cos() * tilt.cos()];
+    let right = [turn.cos(), 0.0, -turn.sin()];
+    let up = [
+        towards[1] * right[2] - towards[2] * right[1],
+        towards[2] * right[0] - towards[0] * right[2],
+        towards[0] * right[1] - towards[1] * right[0],
+    ];
+    [right, up, towards]
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Triangles that face the viewer, farthest first.
+fn project(field: &SurfaceField) -> Vec<Pictured> {
+    let [right, up, towards] = view();
+    let mut seen: Vec<(f64, Pictured)> = Vec::new();
+    for triangle in &field.triangles {
+        let p = triangle.map(|t| {
+            let (x, u) = (field.points[t as usize], field.displacement[t as usize]);
+            [x[0] + u[0], x[1] + u[1], x[2] + u[2]]
+        });
+        let corners = p.map(|x| [dot(&x, &right), dot(&x, &up)]);
+        let [a, b, c] = corners;
+        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if area > 0.0 {
+            let value =
+                triangle.iter().map(|t| magnitude(&field.displacement[*t as usize])).sum::<f64>() / 3.0;
+            seen.push((p.iter().map(|x| dot(x, &towards)).sum(), Pictured { corners, value }));
+        }
+    }
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    seen.into_iter().map(|(_, t)| t).collect()
+}
+
+fn viridis(fraction: f64) -> Colour {
+    let at = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let (low, rest) = (at.floor() as usize, at.fract());
+    let high = (low + 1).min(VIRIDIS.len() - 1);
+    std::array::from_fn(|i| {
+        (f64::from(VIRIDIS[low][i]) * (1.0 - rest) + f64::from(VIRIDIS[high][i]) * rest).round() as u8
+    })
+}
+
+fn colour_bar(canvas: &mut Canvas, at: (f64, f64), height: f64, largest: f64) {
+    let steps = 64;
+    for i in 0..steps {
+        let (from, to) = (i as f64 / steps as f64, (i + 1) as f64 / steps as f64);
+        let (top, bottom) = (at.1 + height * (1.0 - to) - 0.2, at.1 + height * (1.0 - from));
+        canvas.fill(
+            &[(at.0, top), (at.0 + 12.0, top), (at.0 + 12.0, bottom), (at.0, bottom)],
+            viridis((from + to) / 2.0),
+        );
+    }
+    for i in 0..=4 {
+        let fraction = f64::from(i) / 4.0;
+        let y = at.1 + height * (1.0 - fraction);
+        canvas.line(&[(at.0 + 12.0, y), (at.0 + 15.0, y)], BLACK_INK, 0.6);
+        let text = significant(largest * 1e3 * fraction, 3);
+        canvas.text((at.0 + 18.0, y), &text, TEXT, BLACK_INK, Anchor::Start);
+    }
+    canvas.text((at.0, at.1 - 14.0), "|u| [mm]", TEXT, BLACK_INK, Anchor::Start);
+}
+
+/// The three axes as the viewer sees them.
+fn axes(canvas: &mut Canvas, at: (f64, f64)) {
+    let [right, up, _] = view();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let (dx, dy) = (right[axis] * 18.0, -up[axis] * 18.0);
+        canvas.line(&[at, (at.0 + dx, at.1 + dy)], BLACK_INK, 1.0);
+        canvas.text((at.0 + dx * 1.45, at.1 + dy * 1.45), name, TEXT, BLACK_INK, Anchor::Middle);
+    }
+}

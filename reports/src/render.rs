@@ -1,0 +1,156 @@
+//! A run's folder turned into tables, figures and one page.
+
+use std::path::{Path, PathBuf};
+
+use minijinja::Environment;
+use minijinja::value::{Serde, Value};
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::figures;
+use crate::findings;
+use crate::record::{Provenance, RunSet, Status};
+use crate::select;
+use crate::store::{make_dir, read_run, write_text};
+use crate::table::{Column, Table};
+use crate::tables;
+
+const PAGE: &str = include_str!("../assets/report.html");
+
+/// What rendering wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rendered {
+    /// The page to open first.
+    pub page: PathBuf,
+    /// Every file, in the order written, the page last.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads a run's folder and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png}` and `report.html` to another (or the same).
+///
+/// The same records give the same bytes. Nothing is solved or timed again.
+pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
+    let set = read_run(results)?;
+    let runs = select::runs(&set.records);
+    let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
+    make_dir(&table_dir)?;
+    make_dir(&figure_dir)?;
+    let mut files = Vec::new();
+    let mut write = |path: PathBuf, bytes: &[u8]| -> Result<(), ReportError> {
+        write_text(&path, bytes)?;
+        files.push(path);
+        Ok(())
+    };
+    let tables = tables::all(&set, &runs);
+    for table in &tables {
+        for (ending, text) in [("csv", table.csv()), ("md", table.markdown()), ("tex", table.latex())] {
+            write(table_dir.join(format!("{}.{ending}", table.name)), text.as_bytes())?;
+        }
+    }
+    let mut shown = Vec::new();
+    for figure in figures::all(&set, &runs) {
+        let svg = figure.canvas.svg(&figure.name, &figure.title)?;
+        write(figure_dir.join(format!("{}.svg", figure.name)), svg.as_bytes())?;
+        write(figure_dir.join(format!("{}.png", figure.name)), &figures::png(&figure.name, &svg)?)?;
+        shown.push(FigureView { name: figure.name, title: figure.title, caption: figure.caption, svg });
+    }
+    let page = out.join("report.html");
+    write(page.clone(), page_text(&set, &runs, &tables, &shown)?.as_bytes())?;
+    Ok(Rendered { page, files })
+}
+
+#[derive(Serialize)]
+struct FigureView {
+    name: String,
+    title: String,
+    caption: String,
+    svg: String,
+}
+
+#[derive(Serialize)]
+struct TableView<'a> {
+    name: &'a str,
+    title: &'a str,
+    caption: &'a str,
+    header: Vec<(&'a str, bool)>,
+    rows: Vec<Vec<&'a str>>,
+    note: &'a str,
+}
+
+#[derive(Serialize)]
+struct TopicView {
+    title: &'static str,
+    sentences: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    cases: usize,
+    runs: usize,
+    numbers: usize,
+    failures: usize,
+    pass: usize,
+    fail: usize,
+    known: usize,
+    not_run: usize,
+}
+
+#[derive(Serialize)]
+struct PageView<'a> {
+    provenance: &'a Provenance,
+    findings: Vec<TopicView>,
+    tables: Vec<TableView<'a>>,
+    figures: &'a [FigureView],
+    counts: Counts,
+}
+
+fn page_text(
+    set: &RunSet,
+    runs: &[select::Run],
+    tables: &[Table],
+    figures: &[FigureView],
+) -> Result<String, ReportError> {
+    let findings: Vec<TopicView> = findings::all(set, runs)
+        .into_iter()
+        .map(|t| TopicView { title: t.title, sentences: t.sentences })
+        .collect();
+    let tables: Vec<TableView> = tables
+        .iter()
+        .map(|t| TableView {
+            name: t.name,
+            title: &t.title,
+            caption: &t.caption,
+            header: t
+                .header()
+                .iter()
+                .map(|(head, column)| (head.as_str(), *column != Column::Words))
+                .collect(),
+            rows: t.shown(),
+            note: t.note(),
+        })
+        .collect();
+    let count = |status: Status| set.checks.iter().filter(|c| c.status == status).count();
+    let mut cases: Vec<&str> = set.records.iter().map(|r| r.case.as_str()).collect();
+    cases.sort();
+    cases.dedup();
+    let mut environment = Environment::new();
+    environment.add_template("report.html", PAGE)?;
+    let view = PageView {
+        provenance: &set.provenance,
+        findings,
+        tables,
+        figures,
+        counts: Counts {
+            cases: cases.len(),
+            runs: runs.len(),
+            numbers: set.records.len(),
+            failures: set.failures.len(),
+            pass: count(Status::Pass),
+            fail: count(Status::Fail),
+            known: count(Status::KnownFailure),
+            not_run: count(Status::NotRun),
+        },
+    };
+    let page = environment.get_template("report.html")?.render(Value::from(Serde(&view)))?;
+    Ok(page)
+}
