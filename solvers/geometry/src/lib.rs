@@ -6,7 +6,9 @@ mod cell;
 mod cloud;
 pub mod generate;
 mod isoparametric;
+mod locate;
 mod mesh;
+pub mod msh;
 pub mod quadrature;
 pub mod quality;
 mod random;
@@ -15,6 +17,7 @@ pub mod shapes;
 
 pub use cell::{CellKind, FaceKind};
 pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh};
+pub use locate::{LocateError, Location, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};
 pub use shapes::Kidney;

@@ -1,0 +1,10 @@
+//! Gmsh 2.2 ASCII mesh files: tet4, tet10, hex8 and hex20 cells, physical groups as regions and facet groups.
+
+mod error;
+mod order;
+mod read;
+mod write;
+
+pub use error::{MshError, MshProblem};
+pub use read::{read, read_text};
+pub use write::write;

@@ -1,0 +1,71 @@
+//! Gmsh's element types and node orders beside ours.
+//!
+//! Gmsh lists the mid-edge nodes of a tet10 on edges 01 12 02 03 23 13 (ours: .. 03 13 23) and those of a hex20 on
+//! edges 01 03 04 12 15 23 26 37 45 47 56 67 (Gmsh reference manual, section "Node ordering").
+
+use crate::CellKind;
+
+const TET10: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
+const HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14];
+const PLAIN: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+/// What an element of the file becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Element {
+    Cell(CellKind),
+    /// A face with this many corners and nodes.
+    Face {
+        corners: usize,
+        nodes: usize,
+    },
+    /// A point or line: read over.
+    Ignored {
+        nodes: usize,
+    },
+}
+
+pub(super) fn element(kind: u64) -> Option<Element> {
+    Some(match kind {
+        4 => Element::Cell(CellKind::Tet4),
+        5 => Element::Cell(CellKind::Hex8),
+        11 => Element::Cell(CellKind::Tet10),
+        17 => Element::Cell(CellKind::Hex20),
+        2 => Element::Face { corners: 3, nodes: 3 },
+        3 => Element::Face { corners: 4, nodes: 4 },
+        9 => Element::Face { corners: 3, nodes: 6 },
+        16 => Element::Face { corners: 4, nodes: 8 },
+        1 => Element::Ignored { nodes: 2 },
+        8 => Element::Ignored { nodes: 3 },
+        15 => Element::Ignored { nodes: 1 },
+        _ => return None,
+    })
+}
+
+impl Element {
+    pub(super) fn node_count(self) -> usize {
+        match self {
+            Element::Cell(kind) => kind.node_count(),
+            Element::Face { nodes, .. } | Element::Ignored { nodes } => nodes,
+        }
+    }
+}
+
+/// Gmsh's type number of a cell and of its faces.
+pub(super) fn type_numbers(kind: CellKind) -> (u64, u64) {
+    match kind {
+        CellKind::Tet4 => (4, 2),
+        CellKind::Hex8 => (5, 3),
+        CellKind::Tet10 => (11, 9),
+        CellKind::Hex20 => (17, 16),
+    }
+}
+
+/// Entry g: the place in our list of the node at place g in Gmsh's, `ours[order[g]] = gmsh[g]`.
+pub(super) fn order(kind: CellKind) -> &'static [usize] {
+    match kind {
+        CellKind::Tet4 => &PLAIN[..4],
+        CellKind::Hex8 => &PLAIN,
+        CellKind::Tet10 => &TET10,
+        CellKind::Hex20 => &HEX20,
+    }
+}

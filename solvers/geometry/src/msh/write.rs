@@ -1,0 +1,70 @@
+//! The writer.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::error::MshError;
+use super::order::{order, type_numbers};
+use crate::Mesh;
+
+/// Writes Gmsh 2.2 ASCII; `unit` is the length of the file's unit in metres (0.001 for millimetres). Regions and
+/// facet groups become physical groups by their names. Numbers are written so that they read back to the same bits
+/// (for `unit = 1`; else to the rounding of one division and one product).
+pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), MshError> {
+    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
+        return Err(MshError::Unit { file: file.to_path_buf(), unit });
+    }
+    let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
+    if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r'])) {
+        return Err(MshError::Name { file: file.to_path_buf(), name: name.into() });
+    }
+    std::fs::write(file, text(mesh, unit)).map_err(|source| MshError::Io { file: file.to_path_buf(), source })
+}
+
+fn text(mesh: &Mesh, unit: f64) -> String {
+    let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+    // Writing to a string can't fail.
+    macro_rules! line {
+        ($($arg:tt)*) => { let _ = writeln!(out, $($arg)*); };
+    }
+    let regions = mesh.region_names();
+    let groups: Vec<&str> = mesh.group_names().collect();
+    line!("$PhysicalNames\n{}", regions.len() + groups.len());
+    for (tag, name) in groups.iter().enumerate() {
+        line!("2 {} \"{name}\"", regions.len() + tag + 1);
+    }
+    for (tag, name) in regions.iter().enumerate() {
+        line!("3 {} \"{name}\"", tag + 1);
+    }
+    line!("$EndPhysicalNames\n$Nodes\n{}", mesh.points().len());
+    for (node, p) in mesh.points().iter().enumerate() {
+        line!("{} {} {} {}", node + 1, p.x / unit, p.y / unit, p.z / unit);
+    }
+    let group = |name: &str| mesh.group(name).unwrap_or_default();
+    let faces: usize = groups.iter().map(|name| group(name).len()).sum();
+    line!("$EndNodes\n$Elements\n{}", faces + mesh.cell_count());
+    let mut number = 0;
+    for (tag, name) in groups.iter().enumerate() {
+        let tag = regions.len() + tag + 1;
+        for &facet in group(name) {
+            number += 1;
+            let kind = type_numbers(mesh.kind(facet.cell as usize)).1;
+            let _ = write!(out, "{number} {kind} 2 {tag} {tag}");
+            for node in mesh.facet_nodes(facet) {
+                let _ = write!(out, " {}", node + 1);
+            }
+            out.push('\n');
+        }
+    }
+    for cell in 0..mesh.cell_count() {
+        number += 1;
+        let (kind, tag, nodes) = (mesh.kind(cell), u32::from(mesh.region(cell)) + 1, mesh.cell(cell));
+        let _ = write!(out, "{number} {} 2 {tag} {tag}", type_numbers(kind).0);
+        for &local in order(kind) {
+            let _ = write!(out, " {}", nodes[local] + 1);
+        }
+        out.push('\n');
+    }
+    out.push_str("$EndElements\n");
+    out
+}

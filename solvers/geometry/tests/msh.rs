@@ -1,0 +1,242 @@
+//! Mesh files: round trips, the kidney, Gmsh's node order, and every way a file can be broken.
+
+use std::path::Path;
+
+use geometry::generate::{box_mesh, kidney_mesh};
+use geometry::msh::{self, MshError, MshProblem};
+use geometry::{CellKind, Mesh, Point3, quality};
+use proptest::prelude::*;
+
+const NAME: &str = "some/file.msh";
+
+fn parse(text: &str) -> Result<Mesh, MshError> {
+    msh::read_text(text, Path::new(NAME), 0.001)
+}
+
+#[test]
+fn the_kidney_reads_as_described() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/kidney-1331.msh");
+    let mesh = msh::read(&file, 0.001).unwrap();
+    assert_eq!((mesh.points().len(), mesh.cell_count()), (1331, 6190));
+    assert_eq!(mesh.uniform_kind(), Some(CellKind::Tet4));
+    assert_eq!(mesh.region_names(), ["kidney"]);
+    assert_eq!(mesh.group_names().collect::<Vec<_>>(), ["surface"]);
+    assert_eq!(mesh.group("surface").unwrap(), mesh.boundary());
+    assert_eq!(mesh.points()[0], Point3::new(0.0, 0.0, 0.015));
+    let quality = quality::check(&mesh).unwrap();
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e-5;
+    let loss = 1.0 - quality.volume / exact;
+    // Flat triangles inscribed in a curved surface lose a little, never gain.
+    assert!((0.001..0.04).contains(&loss), "volume {} m^3, loss {loss}", quality.volume);
+}
+
+#[test]
+fn meshes_survive_a_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in CellKind::ALL {
+        let file = folder.path().join(format!("{}.msh", kind.name()));
+        let mesh = kidney_mesh(kind, 2).unwrap();
+        let count = mesh.cell_count();
+        let regions = (0..count).map(|c| u16::from(c > count / 2)).collect();
+        let mesh = mesh.with_regions(regions, vec!["cortex".into(), "inner medulla".into()]);
+        msh::write(&mesh, &file, 1.0).unwrap();
+        assert_eq!(msh::read(&file, 1.0).unwrap(), mesh, "{}", kind.name());
+        msh::write(&mesh, &file, 0.001).unwrap();
+        let scaled = msh::read(&file, 0.001).unwrap();
+        for (p, q) in mesh.points().iter().zip(scaled.points()) {
+            assert!((p - q).norm() < 1e-17);
+        }
+    }
+}
+
+/// Gmsh's own edge lists (reference manual, node ordering), independent of the tables in the reader.
+#[test]
+fn quadratic_nodes_are_put_where_gmsh_means_them() {
+    let tet_edges = [[0, 1], [1, 2], [2, 0], [3, 0], [3, 2], [3, 1]];
+    let hex_edges =
+        [[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]];
+    let tet = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
+    let hex = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [1., 1., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [1., 0., 1.],
+        [1., 1., 1.],
+        [0., 1., 1.],
+    ];
+    type Case<'a> = (u64, CellKind, &'a [[f64; 3]], &'a [[usize; 2]]);
+    let cases: [Case; 2] = [(11, CellKind::Tet10, &tet, &tet_edges), (17, CellKind::Hex20, &hex, &hex_edges)];
+    for (number, kind, corners, edges) in cases {
+        let mut points = corners.to_vec();
+        points.extend(
+            edges
+                .iter()
+                .map(|&[a, b]| std::array::from_fn::<_, 3, _>(|d| 0.5 * (corners[a][d] + corners[b][d]))),
+        );
+        let nodes: String = points
+            .iter()
+            .enumerate()
+            .map(|(i, p)| format!("{} {} {} {}\n", i + 1, p[0], p[1], p[2]))
+            .collect();
+        let list: String = (1..=points.len()).map(|n| format!(" {n}")).collect();
+        let text = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{nodes}$EndNodes\n$Elements\n1\n1 {number} 0{list}\n$EndElements",
+            points.len()
+        );
+        let mesh = parse(&text).unwrap();
+        let at = mesh.cell_points(0).copied().collect::<Vec<_>>();
+        for (e, &[a, b]) in kind.edges().iter().enumerate() {
+            let middle = nalgebra::center(&at[a], &at[b]);
+            assert!((at[kind.corner_count() + e] - middle).norm() < 1e-18, "{} edge {e}", kind.name());
+        }
+        assert_eq!(mesh.region_names(), ["body"]);
+        quality::check(&mesh).unwrap();
+    }
+}
+
+/// One tetrahedron with everything a file may hold; the last line has no line break.
+const GOOD: &str = "$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Comments
+anything
+$EndComments
+$PhysicalNames
+2
+2 7 \"outer face\"
+3 9 \"soft tissue\"
+$EndPhysicalNames
+$Nodes
+5
+10 0 0 0
+20 1e1 0 0
+30 0 10.0 0
+99 5 5 5
+40 0 0 10
+$EndNodes
+$Elements
+4
+1 15 2 0 1 99
+2 1 2 0 1 10 20
+3 2 2 7 1 10 30 20
+4 4 3 9 1 0 10 20 30 40
+$EndElements";
+
+#[test]
+fn a_small_file_with_all_its_parts() {
+    for text in
+        [GOOD.to_string(), GOOD.replace('\n', "\r\n"), format!("\n{GOOD}\n\n"), GOOD.replace('\n', "\n\n")]
+    {
+        let mesh = parse(&text).unwrap();
+        assert_eq!(mesh.points().len(), 4, "node 99 belongs to no solid");
+        assert_eq!(mesh.points()[3], Point3::new(0.0, 0.0, 0.01));
+        assert_eq!(mesh.region_names(), ["soft tissue"]);
+        let face = mesh.group("outer face").unwrap();
+        assert_eq!((face.len(), face[0].face), (1, 0));
+    }
+    let unnamed = parse(&GOOD.replace("2 7 \"outer", "2 8 \"outer").replace("3 9 \"s", "3 1 \"s")).unwrap();
+    assert_eq!(unnamed.region_names(), ["region-9"]);
+    assert!(unnamed.group("surface-7").is_some());
+}
+
+#[test]
+fn broken_files_name_the_line() {
+    // (what to replace, by what, line of the complaint, words in the message)
+    let cases = [
+        ("$MeshFormat", "$Mesh", 1, "expected $MeshFormat"),
+        ("2.2 0 8", "4.1 0 8", 2, "only Gmsh 2.2 ASCII"),
+        ("2.2 0 8", "2.2 1 8", 2, "only Gmsh 2.2 ASCII"),
+        ("$EndMeshFormat", "$EndFormat", 3, "expected $EndMeshFormat, found '$EndFormat'"),
+        ("$EndComments", "$EndComment", 27, "file ends where the end of a section"),
+        ("$Comments", "Comments", 4, "expected the start of a section, found 'Comments'"),
+        ("2\n2 7", "two\n2 7", 8, "expected the number of physical names, found 'two'"),
+        ("\"outer face\"", "outer", 9, "expected a name in quotes, found 'outer'"),
+        ("\"outer face\"", "\"", 9, "expected a name in quotes"),
+        ("3 9 \"soft", "2 7 \"soft", 10, "physical tag 7 comes a second time"),
+        ("2 7 \"outer", "2 x \"outer", 9, "expected the tag of a physical name, found 'x'"),
+        ("5\n10 0", "-5\n10 0", 13, "expected the number of nodes, found '-5'"),
+        ("5\n10 0", "6\n10 0", 19, "expected a node number, found '$EndNodes'"),
+        ("5\n10 0", "4\n10 0", 18, "expected $EndNodes, found '40 0 0 10'"),
+        ("5\n10 0", "99999999999999999999\n10 0", 13, "expected the number of nodes"),
+        ("20 1e1 0 0", "20 1,5 0 0", 15, "expected a coordinate, found '1,5'"),
+        ("20 1e1 0 0", "20 1e1 0", 15, "expected a coordinate, found 'the end of the line'"),
+        ("20 1e1 0 0", "20 1e1 0 0 0", 15, "expected the end of the line, found '0'"),
+        ("20 1e1 0 0", "20 nan 0 0", 15, "node 20 has a coordinate that is not finite"),
+        ("20 1e1 0 0", "20 1e999 0 0", 15, "node 20 has a coordinate that is not finite"),
+        ("20 1e1 0 0", "10 1e1 0 0", 15, "node 10 comes a second time"),
+        ("$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", 20, "section $Nodes comes a second time"),
+        ("4\n1 15", "5\n1 15", 26, "expected an element number, found '$EndElements'"),
+        ("4\n1 15", "3\n1 15", 25, "expected $EndElements"),
+        (
+            "4 4 3 9 1 0 10 20 30 40",
+            "4 4 3 9 1 0 10 20 30",
+            25,
+            "element 4 of type 4 has 9 numbers on its line instead of 10",
+        ),
+        ("4 4 3 9 1 0 10 20 30 40", "4 4 3 9 1 0 10 20 30 40 50", 25, "11 numbers"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 4 18446744073709551615 9", 25, "instead of 18446744073709551615"),
+        (
+            "4 4 3 9 1 0 10 20 30 40",
+            "4 4 3 9 1 0 10 20 30 41",
+            25,
+            "element 4 names node 41, which the file does not have",
+        ),
+        ("4 4 3 9 1 0 10 20 30 40", "4 4 3 9 1 0 10 20 30 30", 25, "element 4 names node 30 twice"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 4 3 nine 1 0 10 20 30 40", 25, "expected a tag, found 'nine'"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 6 3 9 1 0 10 20 30 40", 25, "element 4 has type 6"),
+        ("4 4 3 9 1 0 10 20 30 40", "3 4 3 9 1 0 10 20 30 40", 25, "element 3 comes a second time"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 2 2 0 0 10 20 30", 26, "no tetrahedra or hexahedra"),
+        ("3 2 2 7 1 10 30 20", "3 2 2 7 1 10 30 99", 24, "surface element 3 is not a face of any cell"),
+        ("\n$EndElements", "", 26, "file ends where $EndElements"),
+    ];
+    for (from, to, line, words) in cases {
+        assert!(GOOD.contains(from), "{from}");
+        let message = parse(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();
+        let start = format!("{NAME}:{line}: ");
+        assert!(message.starts_with(&start) && message.contains(words), "{from} -> {to}: {message}");
+    }
+    let cut = |at: &str| parse(&GOOD[..GOOD.find(at).unwrap()]).unwrap_err();
+    for (at, section) in [("$Nodes", "$Nodes"), ("$Elements", "$Elements")] {
+        let MshError::Syntax { problem, .. } = cut(at) else { panic!() };
+        assert_eq!(problem, MshProblem::Missing { section });
+    }
+    let nodes = GOOD.find("$Nodes").unwrap();
+    let elements = GOOD.find("$Elements").unwrap();
+    let swapped = format!("{}{}", &GOOD[..nodes], &GOOD[elements..]);
+    assert!(parse(&swapped).unwrap_err().to_string().contains(":12: the file has no $Nodes section"));
+    assert!(parse("").unwrap_err().to_string().contains(":1: the file ends where $MeshFormat"));
+}
+
+#[test]
+fn files_units_and_names_that_cannot_be() {
+    let missing = msh::read(Path::new("no/such/file.msh"), 1.0).unwrap_err();
+    assert!(missing.to_string().starts_with("no/such/file.msh: "), "{missing}");
+    let folder = tempfile::tempdir().unwrap();
+    let binary = folder.path().join("binary.msh");
+    std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
+    assert!(matches!(msh::read(&binary, 1.0), Err(MshError::Io { .. })));
+    let mesh = box_mesh(CellKind::Tet4, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [1; 3], [1.0; 3], None)
+        .unwrap();
+    for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(msh::read_text(GOOD, Path::new(NAME), unit), Err(MshError::Unit { .. })));
+        assert!(matches!(msh::write(&mesh, &binary, unit), Err(MshError::Unit { .. })));
+    }
+    let quoted = mesh.with_group("a \"b\"", vec![]).unwrap();
+    assert!(msh::write(&quoted, &binary, 1.0).unwrap_err().to_string().contains("quotation mark"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    /// Whatever is done to the text, the reader answers; it never panics.
+    #[test]
+    fn mangled_text_never_panics(at in 0usize..460, cut in 0usize..40, insert in "[0-9a-z$\" \n.e+-]{0,12}") {
+        let at = at.min(GOOD.len());
+        let end = (at + cut).min(GOOD.len());
+        let text = format!("{}{insert}{}", &GOOD[..at], &GOOD[end..]);
+        if let Ok(mesh) = parse(&text) {
+            prop_assert!(mesh.cell_count() > 0);
+        }
+    }
+}
