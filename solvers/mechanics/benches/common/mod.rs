@@ -48,10 +48,8 @@ impl Pressed {
         [Load::Pressure { surface: &self.top, values: vec![2e3; self.top.weights().len()] }]
     }
 
-    pub fn assembled(&self, projected: bool) -> Assembled<'_> {
-        let (body, loads) = (self.body(projected), self.loads());
-        let problem = LinearProblem { body, loads: &loads, fixed: &self.fixed, constraints: &[], weak: &[] };
-        assemble(&problem).unwrap()
+    pub fn problem<'a>(&'a self, loads: &'a [Load<'a>], projected: bool) -> LinearProblem<'a> {
+        LinearProblem { body: self.body(projected), loads, fixed: &self.fixed, constraints: &[], weak: &[] }
     }
 }
 

@@ -106,7 +106,7 @@ impl Symmetric {
 enum Factor {
     Empty,
     Dense(dense::Dense),
-    Sparse(sparse::Sparse),
+    Sparse(Box<sparse::Sparse>),
 }
 
 /// A factored matrix; serves any number of right-hand sides.
@@ -135,7 +135,7 @@ pub(crate) fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorizat
     } else if n <= dense_limit {
         Factor::Dense(dense::Dense::new(&matrix)?)
     } else {
-        Factor::Sparse(sparse::Sparse::new(&matrix)?)
+        Factor::Sparse(Box::new(sparse::Sparse::new(&matrix)?))
     };
     Ok(Factorization { matrix, factor })
 }

@@ -108,8 +108,8 @@ impl Graph {
                 place.as_mut_ptr(),
             )
         };
-        if status != metis::rstatus_et_METIS_OK as i32 {
-            return Err(SolveError::Ordering { status: status as i32 });
+        if status != metis::rstatus_et_METIS_OK {
+            return Err(SolveError::Ordering { status });
         }
         Ok(order.into_iter().map(|v| v as usize).collect())
     }
