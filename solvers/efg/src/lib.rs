@@ -1,1 +1,43 @@
-//! efg
+//! Element-free Galerkin: a cloud of nodes, a kernel and a polynomial basis make moving-least-squares shape
+//! functions; background cells or a grid make the integration points. What comes out are shape tables, as from
+//! finite elements, so that assembly, supports and output are the same code.
+//!
+//! ```
+//! use efg::{Approximation, Basis, Kernel, Support};
+//! use shape::Point3;
+//! let nodes: Vec<Point3> =
+//!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
+//! let radii = Support::Dilatation { factor: 1.6 }.radii(&nodes, &vec![1e-3; 27])?;
+//! let mls = Approximation::new(nodes, radii, Kernel::CubicSpline, Basis::Linear)?;
+//! let (rows, info) = mls.point_rows(&[Point3::new(0.9e-3, 1.2e-3, 0.4e-3)])?;
+//! assert!(info.neighbours_min >= 4 && info.enlarged == 0);
+//! let x: f64 = rows.rows().row(0).0.iter().zip(rows.rows().row(0).1).map(|(&i, v)| (i % 3) as f64 * 1e-3 * v).sum();
+//! assert!((x - 0.9e-3).abs() < 1e-15); // linear fields are reproduced
+//! # Ok::<(), efg::EfgError>(())
+//! ```
+
+mod approximation;
+mod basis;
+mod buckets;
+mod cells;
+mod error;
+mod facets;
+mod gauss;
+mod grid;
+mod info;
+mod kernel;
+mod ldlt;
+mod mls;
+mod smoothed;
+mod support;
+
+pub use approximation::Approximation;
+pub use basis::Basis;
+pub use error::EfgError;
+pub use facets::{flux_rows, surface_rows};
+pub use gauss::{gauss_regions, gauss_rows};
+pub use grid::{GridInfo, grid_rows};
+pub use info::MlsInfo;
+pub use kernel::Kernel;
+pub use smoothed::{smoothed_regions, smoothed_rows};
+pub use support::Support;

@@ -1,0 +1,143 @@
+//! What makes a cloud, a support or a background unusable. Lengths in metres.
+
+use geometry::CellKind;
+use shape::{Point3, ShapeError};
+
+/// What makes an approximation or its integration impossible.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EfgError {
+    /// Two lists that must be of one length.
+    #[error("{what}: {found} given, {expected} are needed (one per node)")]
+    Length {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it needs.
+        expected: usize,
+    },
+    /// Fewer nodes in all than the basis has terms.
+    #[error("the cloud has {found} nodes; the basis needs at least {needed}")]
+    TooFewNodes {
+        /// Nodes in the cloud.
+        found: usize,
+        /// Terms of the basis.
+        needed: usize,
+    },
+    /// A node whose coordinates are not finite.
+    #[error("node {node} has a coordinate that is not finite")]
+    NotFinite {
+        /// Node index.
+        node: usize,
+    },
+    /// A support radius that is not a positive number.
+    #[error("node {node} has support radius {radius:e} m; a positive one is needed")]
+    BadRadius {
+        /// Node index.
+        node: usize,
+        /// Its radius, m.
+        radius: f64,
+    },
+    /// A parameter outside its range.
+    #[error("{what} is {value}; {allowed} is needed")]
+    BadParameter {
+        /// Which parameter.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed, in words.
+        allowed: &'static str,
+    },
+    /// A point that too few nodes cover, even with the supports enlarged as far as allowed.
+    #[error(
+        "point ({:e}, {:e}, {:e}) m has {found} neighbours with supports enlarged {enlargement:.2} times; {needed} are needed",
+        point.x, point.y, point.z
+    )]
+    TooFewNeighbours {
+        /// Position, m.
+        point: Point3,
+        /// Neighbours found.
+        found: usize,
+        /// Terms of the basis asked for.
+        needed: usize,
+        /// Factor on the support radii at which they were counted.
+        enlargement: f64,
+    },
+    /// A point whose neighbours do not span the basis (they lie in one plane, say), after the whole ladder.
+    #[error(
+        "the {found} neighbours of point ({:e}, {:e}, {:e}) m do not span the linear basis, supports enlarged {enlargement:.2} times \
+         (do they lie in one plane?); the basis asked for has {needed} terms",
+        point.x, point.y, point.z
+    )]
+    SingularMoment {
+        /// Position, m.
+        point: Point3,
+        /// Neighbours found.
+        found: usize,
+        /// Terms of the basis asked for.
+        needed: usize,
+        /// Factor on the support radii at the last attempt.
+        enlargement: f64,
+    },
+    /// A cell kind that this integration cannot use.
+    #[error("cell {cell} is a {}; {what} takes {allowed}", kind.name())]
+    CellKind {
+        /// Cell index.
+        cell: usize,
+        /// Its kind.
+        kind: CellKind,
+        /// The integration that refuses it.
+        what: &'static str,
+        /// The kinds it takes.
+        allowed: &'static str,
+    },
+    /// A background cell with no positive volume at an integration point.
+    #[error("background cell {cell} is inverted or flat: det J = {det_j:e} m^3")]
+    InvertedCell {
+        /// Cell index.
+        cell: usize,
+        /// Jacobian determinant of the map from the reference cell, m^3.
+        det_j: f64,
+    },
+    /// A facet with no area.
+    #[error("face {face} of background cell {cell} has no area")]
+    FlatFacet {
+        /// Cell index.
+        cell: u32,
+        /// Face index.
+        face: u8,
+    },
+    /// A number of points for which there is no rule.
+    #[error("no {what} rule has {points} points; offered: {offered}")]
+    NoRule {
+        /// Which shape of cell or face.
+        what: &'static str,
+        /// Points asked for.
+        points: usize,
+        /// What is offered.
+        offered: &'static str,
+    },
+    /// A grid none of whose points lies in the body.
+    #[error(
+        "none of the {points} grid points lies in the body; the grid spacing {spacing:e} m is too coarse"
+    )]
+    EmptyGrid {
+        /// Grid points tried.
+        points: usize,
+        /// Grid spacing asked for, m.
+        spacing: f64,
+    },
+    /// A grid too large to be meant.
+    #[error("a grid spacing of {spacing:e} m makes {points:e} points; at most {limit:e} are allowed")]
+    HugeGrid {
+        /// Grid points it would take.
+        points: f64,
+        /// Grid spacing asked for, m.
+        spacing: f64,
+        /// Most points allowed.
+        limit: f64,
+    },
+    /// A table that breaks a promise.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+}

@@ -1,0 +1,68 @@
+//! Gauss points in the cells of a background mesh.
+
+use geometry::quadrature::{self, Rule};
+use geometry::{CellKind, Mesh};
+use shape::VolumeRows;
+
+use crate::cells::{hex_points, tet_points};
+use crate::{Approximation, EfgError, MlsInfo};
+
+/// The rules of the two cell kinds for one number of points, as far as the mesh needs them.
+enum CellRule {
+    Tet(Rule<3>),
+    Hex(Rule<3>),
+}
+
+/// Values and gradients at `points_per_cell` points in every cell, in cell order, `w = w_ref det J` (m^3).
+///
+/// Tet4 cells take the symmetric rules of [`quadrature::tet`]; hex8 cells `n^3` Gauss points. The nodes of the
+/// cloud need not be those of the mesh. Shape functions are rational and their supports overlap cells at will, so no
+/// number of points integrates them exactly: a linear patch test is passed to 1e-3 with 4 points per tet4, not to rounding.
+pub fn gauss_rows(
+    approximation: &Approximation,
+    background: &Mesh,
+    points_per_cell: usize,
+) -> Result<(VolumeRows, MlsInfo), EfgError> {
+    let (mut points, mut weights) = (Vec::new(), Vec::new());
+    let mut known: Option<(CellKind, CellRule)> = None;
+    for cell in 0..background.cell_count() {
+        let kind = background.kind(cell);
+        if known.as_ref().is_none_or(|(k, _)| *k != kind) {
+            known = Some((kind, rule(cell, kind, points_per_cell)?));
+        }
+        match &known {
+            Some((_, CellRule::Tet(rule))) => tet_points(background, cell, rule, &mut points, &mut weights)?,
+            Some((_, CellRule::Hex(rule))) => hex_points(background, cell, rule, &mut points, &mut weights)?,
+            None => unreachable!("the rule was set above"),
+        }
+    }
+    let (at, info) = approximation.grad_rows(&points)?;
+    Ok((VolumeRows::new(at, weights)?, info))
+}
+
+/// Region of the background at every point of [`gauss_rows`].
+pub fn gauss_regions(background: &Mesh, points_per_cell: usize) -> Vec<u16> {
+    (0..background.cell_count())
+        .flat_map(|cell| std::iter::repeat_n(background.region(cell), points_per_cell))
+        .collect()
+}
+
+fn rule(cell: usize, kind: CellKind, points: usize) -> Result<CellRule, EfgError> {
+    match kind {
+        CellKind::Tet4 => quadrature::tet(points).map(CellRule::Tet).ok_or(EfgError::NoRule {
+            what: "tetrahedron",
+            points,
+            offered: "see geometry::quadrature::TET_RULES",
+        }),
+        CellKind::Hex8 => {
+            let n = (1..=10).find(|n| n * n * n == points);
+            let offered = "1, 8, 27, .. 1000";
+            n.map(|n| CellRule::Hex(quadrature::hex(n))).ok_or(EfgError::NoRule {
+                what: "hexahedron",
+                points,
+                offered,
+            })
+        }
+        _ => Err(EfgError::CellKind { cell, kind, what: "Gauss integration", allowed: "tet4 and hex8" }),
+    }
+}

@@ -1,0 +1,76 @@
+//! How far a node reaches: support radii by dilatation or by the k-th neighbour.
+
+use rayon::prelude::*;
+use shape::Point3;
+
+use crate::EfgError;
+
+/// Rule for the support radius of every node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// `R_I = factor * spacing_I`, the local mean spacing at the node.
+    Dilatation {
+        /// The dilatation, 1.2 to 3 as a rule.
+        factor: f64,
+    },
+    /// `R_I = factor *` distance to the `count`-th nearest other node.
+    Neighbours {
+        /// Which neighbour, from 1.
+        count: usize,
+        /// Factor on its distance, 1.2 to 1.6 as a rule.
+        factor: f64,
+    },
+}
+
+impl Support {
+    /// Radii (m), one per node. `spacing` (m, one per node) is the cloud's; [`Support::Neighbours`] ignores it.
+    pub fn radii(self, nodes: &[Point3], spacing: &[f64]) -> Result<Vec<f64>, EfgError> {
+        if let Some(node) = nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            return Err(EfgError::NotFinite { node });
+        }
+        let (Support::Dilatation { factor } | Support::Neighbours { factor, .. }) = self;
+        if !(factor > 0.0 && factor.is_finite()) {
+            let what = "support factor";
+            return Err(EfgError::BadParameter { what, value: factor, allowed: "a positive number" });
+        }
+        let radii: Vec<f64> = match self {
+            Support::Dilatation { factor } => {
+                if spacing.len() != nodes.len() {
+                    let (found, expected) = (spacing.len(), nodes.len());
+                    return Err(EfgError::Length { what: "spacings", found, expected });
+                }
+                spacing.iter().map(|h| factor * h).collect()
+            }
+            Support::Neighbours { count, factor } => {
+                if count == 0 {
+                    let (what, value) = ("neighbour count", 0.0);
+                    return Err(EfgError::BadParameter { what, value, allowed: "1 or more" });
+                }
+                if count >= nodes.len() {
+                    return Err(EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 });
+                }
+                kth_distances(nodes, count).into_iter().map(|d| factor * d).collect()
+            }
+        };
+        check(&radii)?;
+        Ok(radii)
+    }
+}
+
+/// Refuses radii that are not positive numbers.
+pub(crate) fn check(radii: &[f64]) -> Result<(), EfgError> {
+    match radii.iter().position(|&r| !(r > 0.0 && r.is_finite())) {
+        Some(node) => Err(EfgError::BadRadius { node, radius: radii[node] }),
+        None => Ok(()),
+    }
+}
+
+/// Distance (m) from every node to its `count`-th nearest other node.
+fn kth_distances(nodes: &[Point3], count: usize) -> Vec<f64> {
+    let at = |node: usize| {
+        let mut squares: Vec<f64> = nodes.iter().map(|p| (p - nodes[node]).norm_squared()).collect();
+        // The node itself, at zero, takes the place of index 0.
+        squares.select_nth_unstable_by(count, f64::total_cmp).1.sqrt()
+    };
+    (0..nodes.len()).into_par_iter().map(at).collect()
+}
