@@ -298,9 +298,12 @@ fn patch(runs: &[Run]) -> Vec<String> {
                 if missed.len() > 6 { format!(" and {} more", missed.len() - 6) } else { String::new() };
             let who = if more.is_empty() { list(&names) } else { names.join(", ") + &more };
             text += &format!(
-                "; not passing: {who}, relative error {} to {}",
-                significant(low, 2),
-                significant(high, 2)
+                "; not passing: {who}, relative error {}",
+                if low < high {
+                    format!("{} to {}", significant(low, 2), significant(high, 2))
+                } else {
+                    significant(high, 2)
+                }
             );
         }
         out.push(text + ".");

@@ -46,18 +46,17 @@ impl<'a> Run<'a> {
         self.records.iter().find(|r| r.quantity == "memory").map(|r| r.value)
     }
 
-    /// Quantities with a plain value, in stored order.
-    pub(crate) fn quantities(&self) -> impl Iterator<Item = &'a str> + '_ {
-        self.records.iter().filter(|r| r.statistic == "value").map(|r| r.quantity.as_str())
-    }
-
-    /// The method id without an ending that only repeats the node count: `efg-83` at 83 nodes is `efg`.
+    /// The method id without an ending that only repeats the node count.
     pub(crate) fn name(&self) -> &'a str {
-        let method = self.is.method.as_str();
-        match method.rsplit_once('-') {
-            Some((name, size)) if size.parse() == Ok(self.is.nodes) => name,
-            _ => method,
-        }
+        sizeless(self.is)
+    }
+}
+
+/// The method id without an ending that only repeats the node count: `efg-83` at 83 nodes is `efg`.
+fn sizeless(record: &Record) -> &str {
+    match record.method.rsplit_once('-') {
+        Some((name, size)) if size.parse() == Ok(record.nodes) => name,
+        _ => &record.method,
     }
 }
 
@@ -122,8 +121,10 @@ fn rank(record: &Record) -> (usize, usize) {
 }
 
 fn same_run(a: &Record, b: &Record) -> Ordering {
-    let text =
-        |r: &'_ Record| (r.method.clone(), r.variant.clone(), r.parameters.clone(), r.level, r.nodes, r.seed);
+    let text = |r: &'_ Record| {
+        let settings = (sizeless(r).to_string(), r.variant.clone(), r.parameters.clone(), r.seed);
+        (settings, r.level, r.nodes, r.method.clone())
+    };
     a.case
         .cmp(&b.case)
         .then(a.poisson.total_cmp(&b.poisson))

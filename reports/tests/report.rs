@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use reports::{ReportError, read_run, render, write_run};
+use reports::{RunSet, read_run, render, write_run};
 
 fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
@@ -19,6 +19,32 @@ fn a_run_survives_its_folder() {
     let back = read_run(dir.path()).unwrap();
     set.records.sort_by(|a, b| a.order(b));
     assert_eq!(back, set);
+    // A second run in the same folder leaves nothing of the first.
+    set.fields.truncate(1);
+    write_run(dir.path(), &set).unwrap();
+    assert_eq!(read_run(dir.path()).unwrap(), set);
+}
+
+#[test]
+fn values_carry_no_thread_count_but_times_do() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut set = common::study();
+    let table = |set: &RunSet, name: &str| -> Vec<String> {
+        write_run(&dir.path().join(name), set).unwrap();
+        text(&dir.path().join(name).join("records.csv")).lines().map(str::to_string).collect()
+    };
+    let two = table(&set, "two");
+    set.provenance.threads = 1;
+    let one = table(&set, "one");
+    assert!(two[0].starts_with("case,method,family,variant,parameters,poisson,level,nodes"), "{}", two[0]);
+    assert!(two[0].ends_with("commit,rustc,cpu,features,profile,threads"), "{}", two[0]);
+    let (mut same, mut other) = (0, 0);
+    for (a, b) in one.iter().zip(&two) {
+        let measured = a.contains(",time,") || a.contains(",memory,");
+        assert_eq!(a != b, measured, "{a}\n{b}");
+        if measured { other += 1 } else { same += 1 }
+    }
+    assert!(same > 1000 && other > 1000);
 }
 
 #[test]
@@ -40,7 +66,147 @@ fn the_same_records_give_the_same_bytes() {
         let read = |run: &str| fs::read(dir.path().join(run).join(file)).unwrap();
         assert!(read("run") == read("run2"), "{file} differs");
     }
-    if let Ok(keep) = std::env::var("KEEP_REPORT") {
-        render(&dir.path().join("run"), Path::new(&keep)).unwrap();
+}
+
+#[test]
+fn every_table_and_figure_appears_and_is_linked() {
+    let dir = tempfile::tempdir().unwrap();
+    write_run(dir.path(), &common::study()).unwrap();
+    let rendered = render(dir.path(), dir.path()).unwrap();
+    let page = text(&rendered.page);
+    for table in [
+        "errors",
+        "rms",
+        "maxima",
+        "orders",
+        "grid-convergence",
+        "timing",
+        "transfer",
+        "conditioning",
+        "kidney",
+        "checks",
+        "failed-runs",
+        "plan",
+    ] {
+        for ending in ["csv", "md", "tex"] {
+            let name = format!("tables/{table}.{ending}");
+            assert!(rendered.files.contains(&dir.path().join(&name)) && page.contains(&name), "{name}");
+        }
     }
+    for figure in [
+        "efficiency",
+        "convergence-l2",
+        "convergence-energy",
+        "convergence-pressure",
+        "locking",
+        "surface-kidney-paper",
+        "rms-kidney-paper",
+        "transfer-kidney-paper",
+        "conditioning",
+        "neighbours",
+    ] {
+        for ending in ["svg", "png"] {
+            let name = format!("figures/{figure}.{ending}");
+            assert!(rendered.files.contains(&dir.path().join(&name)) && page.contains(&name), "{name}");
+        }
+        let svg = text(&dir.path().join(format!("figures/{figure}.svg")));
+        assert!(svg.starts_with("<svg width=\"504pt\"") && svg.contains("<title>"), "{figure}");
+    }
+    for file in rendered.files.iter().filter(|f| f.extension().is_some_and(|e| e != "png")) {
+        assert!(!text(file).contains("NaN") && !text(file).contains("inf,"), "{}", file.display());
+    }
+}
+
+#[test]
+fn the_page_stands_alone_and_escapes_what_it_shows() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut set = common::study();
+    set.failures[0].reason = "<script>alert(1)</script> & \"quotes\"".into();
+    write_run(dir.path(), &set).unwrap();
+    let page = text(&render(dir.path(), dir.path()).unwrap().page);
+    for request in ["src=", "<script", "@import", "url(", "<link"] {
+        assert!(!page.contains(request), "{request}");
+    }
+    let addresses = page.matches("http").count();
+    assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    assert!(page.contains("&lt;script&gt;alert(1)&lt;&#x2f;script&gt; &amp; &quot;quotes&quot;"));
+    assert!(page.contains("Example CPU &lt;model&gt; &amp; co"));
+}
+
+#[test]
+fn findings_state_what_the_records_hold() {
+    let dir = tempfile::tempdir().unwrap();
+    write_run(dir.path(), &common::study()).unwrap();
+    let page = text(&render(dir.path(), dir.path()).unwrap().page);
+    for sentence in [
+        "cantilever: hex20 reaches a relative L2 error of 1 % cheapest, 0.495 % in 1.27 ms (57 nodes); next is tet10, 1.9 times slower.",
+        "pure-bending: from ν = 0 to 0.495 the relative L2 error more than doubles for tet4 (0.622 % to 15.6 %",
+        // 3.20 ms against 23 s, and 0.56 * 8 ms against 10 s.
+        "time to prepare EFG: 3.20 ms here, 23.0 s published, 7200 times faster",
+        "time to solve EFG: 4.48 ms here, 10.0 s published, 2200 times faster",
+        "linear field: best thin-plate (rounding only), worst nearest (0.90 mm RMS); inverse distance, the published scheme, adds 0.50 mm RMS.",
+        "patch-displacement: 3 of 4 methods within 10⁻¹²; not passing: efg-gauss, relative error 0.0014.",
+        "1 of 4 checks held.",
+        "Failed: pure-bending, tet4: order-l2 is 1.40, bound at least 1.85. It locks | at ν = 0.495.",
+    ] {
+        assert!(page.contains(sentence), "{sentence}");
+    }
+}
+
+#[test]
+fn what_was_not_recorded_is_not_claimed() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut set = common::study();
+    set.records.retain(|r| r.quantity != "time" && r.case != "kidney-paper");
+    set.fields.clear();
+    write_run(dir.path(), &set).unwrap();
+    let rendered = render(dir.path(), dir.path()).unwrap();
+    let page = text(&rendered.page);
+    for claim in ["Cheapest way", "times faster", "Transfer schemes", "Run time by phase", "surface-"] {
+        assert!(!page.contains(claim), "{claim}");
+    }
+    assert!(page.contains("Locking"));
+    // Nothing at all still gives a page.
+    write_run(dir.path(), &RunSet { provenance: set.provenance, ..RunSet::default() }).unwrap();
+    let empty = render(dir.path(), &dir.path().join("empty")).unwrap();
+    assert_eq!(empty.files.len(), 1);
+    assert!(text(&empty.page).contains("0 runs"));
+}
+
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut set = common::study();
+        set.records[7].value = bad;
+        let message = write_run(dir.path(), &set).unwrap_err().to_string();
+        assert!(
+            message.contains("isn't a finite number") && message.contains(&set.records[7].quantity),
+            "{message}"
+        );
+        let mut set = common::study();
+        set.checks[0].value = Some(bad);
+        assert!(write_run(dir.path(), &set).is_err());
+    }
+    let mut set = common::study();
+    set.fields[0].triangles[0][0] = 1_000_000;
+    assert!(write_run(dir.path(), &set).unwrap_err().to_string().contains("names point 1000000"));
+    let mut set = common::study();
+    set.fields[0].displacement.pop();
+    assert!(write_run(dir.path(), &set).is_err());
+}
+
+#[test]
+fn a_folder_that_is_no_run_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let message = read_run(dir.path()).unwrap_err().to_string();
+    assert!(message.contains("provenance.json"), "{message}");
+    write_run(dir.path(), &common::study()).unwrap();
+    fs::write(dir.path().join("records.parquet"), "not a table").unwrap();
+    let message = read_run(dir.path()).unwrap_err().to_string();
+    assert!(message.contains("records.parquet"), "{message}");
+    write_run(dir.path(), &common::study()).unwrap();
+    fs::write(dir.path().join("checks.json"), "[{").unwrap();
+    let message = read_run(dir.path()).unwrap_err().to_string();
+    assert!(message.contains("checks.json"), "{message}");
 }

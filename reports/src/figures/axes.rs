@@ -77,6 +77,11 @@ impl Axis {
         self
     }
 
+    /// Tick values with their texts.
+    pub(crate) fn ticks(&self) -> &[(f64, String)] {
+        &self.ticks
+    }
+
     pub(crate) fn low(&self) -> f64 {
         self.low
     }

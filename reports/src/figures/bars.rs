@@ -10,9 +10,11 @@ use super::{Figure, representative};
 use crate::paper::PUBLISHED;
 use crate::select::{Run, groups, labels, series};
 use crate::store::slug;
-use crate::text::significant;
+use crate::text::{significant, tick};
 
-const ROW: f64 = 15.0;
+const ROW: f64 = 16.0;
+/// Height of a row with several markers.
+const LINE: f64 = 20.0;
 const DIRECTIONS: [(&str, &str); 4] =
     [("rms-x", "RMS x [mm]"), ("rms-y", "RMS y [mm]"), ("rms-z", "RMS z [mm]"), ("rms", "RMS |u| [mm]")];
 
@@ -72,7 +74,12 @@ fn rms_figure(rows: &[Run]) -> Figure {
             let end = x + v * scale;
             let colour: Colour = if run.is.family == "fem" { [0x00, 0x72, 0xb2] } else { [0x00, 0x9e, 0x73] };
             canvas.fill(&[(x, y + 3.0), (end, y + 3.0), (end, y + ROW - 3.0), (x, y + ROW - 3.0)], colour);
-            canvas.text((end + 3.0, y + ROW / 2.0), &significant(v * 1e3, 2), TEXT, BLACK_INK, Anchor::Start);
+            let number = significant(v * 1e3, 2);
+            let (right, middle) = (end + 4.0 + text_width(&number, TEXT), y + ROW / 2.0);
+            // White behind the number where the published line runs through it.
+            let (top, foot) = (middle - 5.0, middle + 5.0);
+            canvas.fill(&[(end + 0.5, top), (right, top), (right, foot), (end + 0.5, foot)], [255, 255, 255]);
+            canvas.text((end + 3.0, middle), &number, TEXT, BLACK_INK, Anchor::Start);
         }
     }
     if kidney {
@@ -123,11 +130,13 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     };
     let names: Vec<String> = runs.iter().map(scheme).collect::<BTreeSet<_>>().into_iter().collect();
     let styles = styles(&runs.iter().map(|r| (source(r), false)).collect::<Vec<_>>());
-    let rounding = 1e-13;
-    let values: Vec<f64> =
-        runs.iter().filter_map(|r| r.value(quantity)).map(|v| (v * scale).max(rounding)).collect();
+    let raw: Vec<f64> = runs.iter().filter_map(|r| r.value(quantity)).map(|v| v * scale).collect();
+    // Schemes that are exact to rounding would squeeze all others into a corner.
+    let largest = raw.iter().copied().fold(0.0, f64::max).max(1e-9);
+    let floor = 10f64.powf((largest * 1e-3).log10().floor());
+    let values: Vec<f64> = raw.iter().map(|v| v.max(floor)).collect();
     let left = 14.0 + names.iter().map(|n| text_width(n, TEXT)).fold(40.0, f64::max).min(250.0);
-    let bottom = 26.0 + ROW * names.len() as f64;
+    let bottom = 26.0 + LINE * names.len() as f64;
     let below = 34.0 + legend_height(&styles, WIDTH - 20.0);
     let mut canvas = Canvas::new(WIDTH, bottom + below + 18.0);
     let rows = Axis::linear("", [0.0, 1.0].into_iter(), true).with_ticks(Vec::new());
@@ -135,7 +144,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
         Panel { frame: (left, 22.0, WIDTH - 16.0, bottom), x: Axis::log(label, values.into_iter()), y: rows };
     panel.draw(&mut canvas, &runs[0].is.case);
     for (row, name) in names.iter().enumerate() {
-        let y = 24.0 + ROW * (row as f64 + 0.5);
+        let y = 24.0 + LINE * (row as f64 + 0.5);
         canvas.text((left - 8.0, y), name, TEXT, BLACK_INK, Anchor::End);
         canvas.line(&[(left, y), (WIDTH - 16.0, y)], PALE, 0.5);
     }
@@ -143,19 +152,16 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
         let (Some(v), Some(row)) = (run.value(quantity), names.iter().position(|n| *n == scheme(run))) else {
             continue;
         };
-        let x = panel.at((v * scale).max(rounding), 0.0).0;
-        if let Some(style) = styles.iter().find(|s| s.label == source(run)) {
-            style.mark(&mut canvas, (x, 24.0 + ROW * (row as f64 + 0.5)));
+        let x = panel.at((v * scale).max(floor), 0.0).0;
+        if let Some(which) = styles.iter().position(|s| s.label == source(run)) {
+            let aside = 4.5 * (which as f64 - 0.5 * (styles.len() as f64 - 1.0))
+                / (styles.len() as f64 / 2.0).max(1.0);
+            styles[which].mark(&mut canvas, (x, 24.0 + LINE * (row as f64 + 0.5) + aside));
         }
     }
+    let note = format!("Errors below {} are drawn at that value; the table has them all.", tick(floor));
     legend(&mut canvas, &styles, (12.0, bottom + 34.0), WIDTH - 20.0);
-    canvas.text(
-        (12.0, bottom + below + 8.0),
-        "Errors below 10⁻¹³ are drawn there: exact to rounding.",
-        TEXT,
-        GREY,
-        Anchor::Start,
-    );
+    canvas.text((12.0, bottom + below + 8.0), &note, TEXT, GREY, Anchor::Start);
     let case = &runs[0].is.case;
     Some(Figure {
         name: format!("transfer-{}", slug(case)),

@@ -16,6 +16,8 @@ const FONT: &str = "DejaVu Sans";
 const UNITS: f64 = 10.0;
 /// SVG text is given its em size, plotters takes the line height.
 const LINE_HEIGHT: f64 = 1.24;
+/// Ascent and descent of DejaVu Sans over its em: plotters measures a font whose whole height is the size asked for.
+const FONT_HEIGHT: f64 = 1.164;
 
 /// A colour, red, green and blue.
 pub(crate) type Colour = [u8; 3];
@@ -202,9 +204,8 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     if fonts().is_err() {
         return 0.6 * size * text.chars().count() as f64;
     }
-    let font: FontDesc = (FONT, size * UNITS * LINE_HEIGHT).into_font();
-    font.box_size(text)
-        .map_or(0.6 * size * text.chars().count() as f64, |(w, _)| f64::from(w) / UNITS / LINE_HEIGHT)
+    let font: FontDesc = (FONT, size * UNITS * FONT_HEIGHT).into_font();
+    font.box_size(text).map_or(0.6 * size * text.chars().count() as f64, |(w, _)| f64::from(w) / UNITS)
 }
 
 fn fonts() -> Result<(), &'static str> {

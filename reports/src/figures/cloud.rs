@@ -121,15 +121,22 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
                     "dilatation: support radius / node spacing [1]",
                     points().map(|p| p.0),
                     false,
-                ),
+                )
+                .with_ticks(ticks(points().map(|p| p.0).collect())),
                 y: if log { Axis::log(y, values()) } else { Axis::linear(y, values(), true) },
                 plot: Box::new(move |canvas, panel| {
-                    for (label, points) in lines {
+                    for (i, (label, points)) in lines.iter().enumerate() {
                         let Some(style) = find(styles, label) else { continue };
+                        // Side by side, or the bars hide each other.
+                        let aside = 2.4 * (i as f64 - 0.5 * (lines.len() as f64 - 1.0));
+                        let place = |x: f64, y: f64| {
+                            let at = panel.at(x, y);
+                            (at.0 + aside, at.1)
+                        };
                         for p in points {
-                            canvas.line(&[panel.at(p.0, p.2), panel.at(p.0, p.3)], style.colour, 0.8);
+                            canvas.line(&[place(p.0, p.2), place(p.0, p.3)], style.colour, 0.8);
                         }
-                        let at: Vec<_> = points.iter().map(|p| panel.at(p.0, p.1)).collect();
+                        let at: Vec<_> = points.iter().map(|p| place(p.0, p.1)).collect();
                         style.curve(canvas, &at);
                     }
                 }),
@@ -137,4 +144,12 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
         })
         .collect();
     multiples(contents, &styles, note)
+}
+
+/// Ticks at the dilatations themselves.
+fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
+    values.sort_by(f64::total_cmp);
+    let span = values.last().zip(values.first()).map_or(0.0, |(high, low)| high - low);
+    values.dedup_by(|next, kept| *next - *kept <= 0.06 * span);
+    values.into_iter().map(|v| (v, v.to_string())).collect()
 }

@@ -87,14 +87,17 @@ fn slopes(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
     let span = (panel.x.high() / panel.x.low()).ln();
     let tall = (panel.y.high() / panel.y.low()).ln();
     let steepest = orders.last().copied().unwrap_or(1.0);
-    let run = (0.26 * span).min(0.42 * tall / steepest);
+    let run = (0.4 * span).min(0.5 * tall / steepest);
     let right = panel.x.high() / (0.08 * span).exp();
     let (left, foot) = (right / run.exp(), panel.y.low() * (0.06 * tall).exp());
     let base = panel.at(left, foot);
+    let mut lowest = f64::MAX;
     for order in &orders {
         let top = panel.at(right, foot * (run * order).exp());
         canvas.line(&[base, top], GREY, 1.0);
-        canvas.text((top.0 + 3.0, top.1), &format!("{order}"), TEXT, GREY, Anchor::Start);
+        // Labels at least a line apart.
+        lowest = top.1.min(lowest - TEXT);
+        canvas.text((top.0 + 3.0, lowest), &format!("{order}"), TEXT, GREY, Anchor::Start);
     }
     if !orders.is_empty() {
         canvas.line(&[base, panel.at(right, foot)], GREY, 0.5);

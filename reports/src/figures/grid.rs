@@ -42,8 +42,3 @@ pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> C
     }
     canvas
 }
-
-/// One panel alone across the page width: its frame.
-pub(crate) fn single(top: f64, height: f64) -> (f64, f64, f64, f64) {
-    (LEFT, top, WIDTH - 14.0, top + height)
-}

@@ -1,7 +1,7 @@
 //! Error against Poisson's ratio at one size: who locks.
 
-use super::axes::{Axis, TEXT};
-use super::canvas::{Anchor, GREY};
+use super::axes::Axis;
+use super::canvas::GREY;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Figure, PAGE, error_label, paged};
@@ -107,7 +107,6 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
                     if tip {
                         let (left, right) = (panel.at(panel.x.low(), 1.0), panel.at(panel.x.high(), 1.0));
                         canvas.dashed(&[left, right], GREY, 0.8, &[3.0, 2.0]);
-                        canvas.text((right.0 - 1.0, right.1 - 6.0), "exact", TEXT, GREY, Anchor::End);
                     }
                     for sweep in sweeps {
                         if let Some(style) = find(styles, &sweep.0) {

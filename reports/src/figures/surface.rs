@@ -1,6 +1,6 @@
 //! Bodies seen from outside, deformed and coloured by displacement.
 
-use super::axes::TEXT;
+use super::axes::{Axis, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY};
 use super::grid::WIDTH;
 use super::{Figure, Pictured};
@@ -75,14 +75,7 @@ fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
         let place = |c: &[f64; 2]| (origin.0 + (c[0] - low[0]) * scale, origin.1 - (c[1] - low[1]) * scale);
         for t in triangles {
             let at = t.corners.map(|c| place(&c));
-            let centre = ((at[0].0 + at[1].0 + at[2].0) / 3.0, (at[0].1 + at[1].1 + at[2].1) / 3.0);
-            // A third of a point wider all round, or hairlines show between neighbours.
-            let grown = at.map(|p| {
-                let (dx, dy) = (p.0 - centre.0, p.1 - centre.1);
-                let more = 1.0 + 0.35 / dx.hypot(dy).max(0.35);
-                (centre.0 + dx * more, centre.1 + dy * more)
-            });
-            canvas.fill(&grown, viridis(if largest > 0.0 { t.value / largest } else { 0.0 }));
+            canvas.fill(&grown(at), viridis(if largest > 0.0 { t.value / largest } else { 0.0 }));
         }
     }
     let bottom = height * rows as f64;
@@ -116,28 +109,68 @@ fn view() -> [[f64; 3]; 3] {
     [right, up, towards]
 }
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+fn dot(a: &[f64; 4], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+/// A triangle with every side a quarter of a point further out, or hairlines show between neighbours.
+fn grown(at: [(f64, f64); 3]) -> [(f64, f64); 3] {
+    let unit = |a: (f64, f64), b: (f64, f64)| {
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let length = dx.hypot(dy).max(1e-9);
+        (dx / length, dy / length)
+    };
+    std::array::from_fn(|i| {
+        let (here, next, last) = (at[i], at[(i + 1) % 3], at[(i + 2) % 3]);
+        let (to_next, to_last) = (unit(here, next), unit(here, last));
+        // Away from both neighbours; a mitre that would run far out at a sharp corner is cut short.
+        let sine = (to_next.0 * to_last.1 - to_next.1 * to_last.0).abs().max(0.3);
+        let reach = 0.25 / sine;
+        (here.0 - reach * (to_next.0 + to_last.0), here.1 - reach * (to_next.1 + to_last.1))
+    })
+}
+
+/// How many triangles a picture may be cut into for the sake of smooth colours.
+const FINEST: usize = 6000;
+
+/// Cuts every triangle into four, its values linear between the corners, as often as the count stays moderate.
+fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
+    while !triangles.is_empty() && triangles.len() * 4 <= FINEST {
+        let half = |a: &[f64; 4], b: &[f64; 4]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+        triangles = triangles
+            .iter()
+            .flat_map(|[a, b, c]| {
+                let (ab, bc, ca) = (half(a, b), half(b, c), half(c, a));
+                [[*a, ab, ca], [ab, *b, bc], [ca, bc, *c], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    triangles
+}
+
+/// Deformed position and value at three corners.
+type Corners = [[f64; 4]; 3];
 
 /// Triangles that face the viewer, farthest first.
 fn project(field: &SurfaceField) -> Vec<Pictured> {
     let [right, up, towards] = view();
-    let mut seen: Vec<(f64, Pictured)> = Vec::new();
-    for triangle in &field.triangles {
-        let p = triangle.map(|t| {
+    let deformed = |triangle: &[u32; 3]| -> Corners {
+        triangle.map(|t| {
             let (x, u) = (field.points[t as usize], field.displacement[t as usize]);
-            [x[0] + u[0], x[1] + u[1], x[2] + u[2]]
-        });
-        let corners = p.map(|x| [dot(&x, &right), dot(&x, &up)]);
-        let [a, b, c] = corners;
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if area > 0.0 {
-            let value =
-                triangle.iter().map(|t| magnitude(&field.displacement[*t as usize])).sum::<f64>() / 3.0;
-            seen.push((p.iter().map(|x| dot(x, &towards)).sum(), Pictured { corners, value }));
-        }
-    }
+            [x[0] + u[0], x[1] + u[1], x[2] + u[2], magnitude(&u)]
+        })
+    };
+    let flat = |c: &Corners| c.map(|x| [dot(&x, &right), dot(&x, &up)]);
+    let faces = |c: &Corners| {
+        let [a, b, c] = flat(c);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
+    };
+    let visible: Vec<Corners> = field.triangles.iter().map(deformed).filter(faces).collect();
+    let picture = |c: Corners| {
+        let depth: f64 = c.iter().map(|x| dot(x, &towards)).sum();
+        (depth, Pictured { corners: flat(&c), value: c.iter().map(|x| x[3]).sum::<f64>() / 3.0 })
+    };
+    let mut seen: Vec<(f64, Pictured)> = refined(visible).into_iter().map(picture).collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
     seen.into_iter().map(|(_, t)| t).collect()
 }
@@ -161,12 +194,13 @@ fn colour_bar(canvas: &mut Canvas, at: (f64, f64), height: f64, largest: f64) {
             viridis((from + to) / 2.0),
         );
     }
-    for i in 0..=4 {
-        let fraction = f64::from(i) / 4.0;
-        let y = at.1 + height * (1.0 - fraction);
-        canvas.line(&[(at.0 + 12.0, y), (at.0 + 15.0, y)], BLACK_INK, 0.6);
-        let text = significant(largest * 1e3 * fraction, 3);
-        canvas.text((at.0 + 18.0, y), &text, TEXT, BLACK_INK, Anchor::Start);
+    for (value, text) in Axis::linear("", [0.0, largest * 1e3].into_iter(), true).ticks() {
+        let fraction = value / (largest * 1e3).max(1e-12);
+        if fraction <= 1.0 + 1e-9 {
+            let y = at.1 + height * (1.0 - fraction);
+            canvas.line(&[(at.0 + 12.0, y), (at.0 + 15.0, y)], BLACK_INK, 0.6);
+            canvas.text((at.0 + 18.0, y), text, TEXT, BLACK_INK, Anchor::Start);
+        }
     }
     canvas.text((at.0, at.1 - 14.0), "|u| [mm]", TEXT, BLACK_INK, Anchor::Start);
 }
