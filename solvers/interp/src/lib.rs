@@ -1,1 +1,51 @@
-//! interp
+//! Transfer of a nodal field to other points, by the schemes in common use.
+//!
+//! A scheme is a table from nodes to targets: built once from positions alone, applied to any field as a
+//! sparse product. What a scheme reproduces and whether it interpolates is stated with it
+//! ([`Scheme::exact_degree`], [`Scheme::interpolates`]) and tested.
+//!
+//! ```
+//! use interp::Scheme;
+//! use shape::{Point3, Vector3};
+//! let nodes: Vec<Point3> =
+//!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
+//! let target = [Point3::new(0.3e-3, 1.6e-3, 0.5e-3)];
+//! let field: Vec<Vector3> = nodes.iter().map(|x| 0.1 * x.coords).collect();
+//! let error = |scheme: Scheme| -> Result<f64, interp::InterpError> {
+//!     let (rows, _) = scheme.rows(&nodes, None, &target)?;
+//!     Ok((rows.rows().apply(&field)[0] - 0.1 * target[0].coords).norm())
+//! };
+//! assert!(error(Scheme::Cubic)? < 1e-15); // exact for linear fields
+//! assert!(error(Scheme::InverseDistance { neighbours: 4, power: 2.0 })? > 1e-6); // exact for constants only
+//! # Ok::<(), interp::InterpError>(())
+//! ```
+
+mod barycentric;
+mod error;
+mod inverse_distance;
+mod mls;
+mod nearest;
+mod neighbours;
+mod radial;
+mod scheme;
+mod shepard;
+
+pub use barycentric::barycentric;
+pub use error::InterpError;
+pub use inverse_distance::inverse_distance;
+pub use mls::mls;
+pub use nearest::nearest;
+pub use radial::{Radial, radial};
+pub use scheme::Scheme;
+pub use shepard::shepard;
+
+/// What a scheme met on the way; nothing here is an error, and nothing is silent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TransferInfo {
+    /// Targets outside the mesh, extrapolated from the nearest cell (barycentric only; the other schemes know
+    /// no mesh and hence no outside).
+    pub outside: usize,
+    /// Targets that needed another than the plain formula: an enlarged support (Shepard, moving least
+    /// squares), a regularised or reduced basis (moving least squares).
+    pub fallbacks: usize,
+}

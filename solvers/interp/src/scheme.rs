@@ -1,0 +1,123 @@
+//! The schemes as values: what a scene file names and a study sweeps.
+
+use efg::{Basis, Support};
+use geometry::Mesh;
+use shape::{Point3, PointRows};
+
+use crate::{InterpError, Radial, TransferInfo};
+
+/// A transfer scheme with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scheme {
+    /// [`crate::nearest`].
+    Nearest,
+    /// [`crate::inverse_distance`].
+    InverseDistance {
+        /// How many nearest nodes count.
+        neighbours: usize,
+        /// Power `p` of the distance.
+        power: f64,
+    },
+    /// [`crate::shepard`].
+    Shepard {
+        /// Support radius over mean spacing.
+        dilatation: f64,
+    },
+    /// [`crate::mls`] with the linear basis.
+    MlsLinear {
+        /// Support radius over mean spacing.
+        dilatation: f64,
+    },
+    /// [`crate::mls`] with the quadratic basis.
+    MlsQuadratic {
+        /// Support radius over mean spacing.
+        dilatation: f64,
+    },
+    /// [`crate::radial`] with [`Radial::ThinPlate`].
+    ThinPlate,
+    /// [`crate::radial`] with [`Radial::Cubic`].
+    Cubic,
+    /// [`crate::barycentric`].
+    Barycentric,
+}
+
+impl Scheme {
+    /// Every scheme, in the order tables list them; parameters as in the transfer study of the kidney.
+    pub const ALL: [Scheme; 8] = [
+        Scheme::Nearest,
+        Scheme::InverseDistance { neighbours: 4, power: 2.0 },
+        Scheme::Shepard { dilatation: 1.6 },
+        Scheme::MlsLinear { dilatation: 1.6 },
+        Scheme::MlsQuadratic { dilatation: 2.5 },
+        Scheme::ThinPlate,
+        Scheme::Cubic,
+        Scheme::Barycentric,
+    ];
+
+    /// The name used in scene files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Scheme::Nearest => "nearest",
+            Scheme::InverseDistance { .. } => "inverse-distance",
+            Scheme::Shepard { .. } => "shepard",
+            Scheme::MlsLinear { .. } => "mls-linear",
+            Scheme::MlsQuadratic { .. } => "mls-quadratic",
+            Scheme::ThinPlate => "rbf-thin-plate",
+            Scheme::Cubic => "rbf-cubic",
+            Scheme::Barycentric => "barycentric",
+        }
+    }
+
+    /// The scheme of that name with the parameters of [`Scheme::ALL`].
+    pub fn from_name(name: &str) -> Option<Scheme> {
+        Scheme::ALL.into_iter().find(|scheme| scheme.name() == name)
+    }
+
+    /// Degree of the polynomials it transfers exactly: 0, 1 or 2.
+    pub fn exact_degree(self) -> usize {
+        match self {
+            Scheme::Nearest | Scheme::InverseDistance { .. } | Scheme::Shepard { .. } => 0,
+            Scheme::MlsLinear { .. } | Scheme::ThinPlate | Scheme::Cubic | Scheme::Barycentric => 1,
+            Scheme::MlsQuadratic { .. } => 2,
+        }
+    }
+
+    /// True if a target at a node gets that node's value.
+    pub fn interpolates(self) -> bool {
+        !matches!(self, Scheme::Shepard { .. } | Scheme::MlsLinear { .. } | Scheme::MlsQuadratic { .. })
+    }
+
+    /// The table from `nodes` to `targets` (m). Only [`Scheme::Barycentric`] reads `mesh`, whose points
+    /// `nodes` must be.
+    pub fn rows(
+        self,
+        nodes: &[Point3],
+        mesh: Option<&Mesh>,
+        targets: &[Point3],
+    ) -> Result<(PointRows, TransferInfo), InterpError> {
+        let plain = |rows: PointRows| (rows, TransferInfo::default());
+        let by = |factor: f64| Support::Dilatation { factor };
+        match self {
+            Scheme::Nearest => crate::nearest(nodes, targets).map(plain),
+            Scheme::InverseDistance { neighbours, power } => {
+                crate::inverse_distance(nodes, neighbours, power, targets).map(plain)
+            }
+            Scheme::Shepard { dilatation } => crate::shepard(nodes, by(dilatation), targets),
+            Scheme::MlsLinear { dilatation } => crate::mls(nodes, Basis::Linear, by(dilatation), targets),
+            Scheme::MlsQuadratic { dilatation } => {
+                crate::mls(nodes, Basis::Quadratic, by(dilatation), targets)
+            }
+            Scheme::ThinPlate => crate::radial(nodes, Radial::ThinPlate, targets).map(plain),
+            Scheme::Cubic => crate::radial(nodes, Radial::Cubic, targets).map(plain),
+            Scheme::Barycentric => {
+                let mesh = mesh.ok_or(InterpError::NeedsMesh { scheme: self.name() })?;
+                let points = mesh.points();
+                if points != nodes {
+                    let first = points.iter().zip(nodes).take_while(|(a, b)| a == b).count();
+                    return Err(InterpError::MeshMismatch { mesh: points.len(), nodes: nodes.len(), first });
+                }
+                crate::barycentric(mesh, targets)
+            }
+        }
+    }
+}

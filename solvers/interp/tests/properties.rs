@@ -1,0 +1,186 @@
+//! One list of properties, every scheme.
+
+use geometry::generate::{Jitter, box_mesh};
+use geometry::{CellKind, Mesh};
+use interp::{Scheme, TransferInfo};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
+use shape::{Point3, PointRows};
+
+/// A box of 40 x 30 x 20 mm, 6 x 5 x 4 cells of 6 tetrahedra, inner nodes jittered: 210 nodes.
+fn mesh() -> Mesh {
+    let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
+    let (low, high) = (Point3::origin(), Point3::new(0.04, 0.03, 0.02));
+    box_mesh(CellKind::Tet4, low, high, [6, 5, 4], [1.0; 3], jitter).unwrap()
+}
+
+/// Every scheme of the list, and some with other parameters.
+fn schemes() -> Vec<Scheme> {
+    let mut all = Scheme::ALL.to_vec();
+    all.extend([
+        Scheme::InverseDistance { neighbours: 8, power: 1.0 },
+        Scheme::InverseDistance { neighbours: 210, power: 3.5 },
+        Scheme::Shepard { dilatation: 1.2 },
+        Scheme::MlsLinear { dilatation: 2.5 },
+        Scheme::MlsQuadratic { dilatation: 2.0 },
+    ]);
+    all
+}
+
+fn rows(scheme: Scheme, mesh: &Mesh, targets: &[Point3]) -> (PointRows, TransferInfo) {
+    scheme.rows(mesh.points(), Some(mesh), targets).unwrap_or_else(|error| panic!("{scheme:?}: {error}"))
+}
+
+/// Largest error of a transferred field, relative to its largest value at the targets.
+fn error(scheme: Scheme, mesh: &Mesh, targets: &[Point3], field: impl Fn(&Point3) -> Vector3<f64>) -> f64 {
+    let nodal: Vec<_> = mesh.points().iter().map(&field).collect();
+    let (rows, _) = rows(scheme, mesh, targets);
+    let exact: Vec<_> = targets.iter().map(&field).collect();
+    let largest = exact.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    rows.rows().apply(&nodal).iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
+}
+
+fn quadratic(x: &Point3) -> Vector3<f64> {
+    // Pure bending, curvature 0.5 per metre, and a twist.
+    Vector3::new(0.5 * x.x * x.y, -0.25 * (x.x * x.x + 0.3 * (x.y * x.y - x.z * x.z)), 0.7 * x.z * x.x)
+}
+
+fn config() -> ProptestConfig {
+    let beside = Box::new(FileFailurePersistence::WithSource("proptest-regressions"));
+    ProptestConfig { failure_persistence: Some(beside), ..ProptestConfig::with_cases(32) }
+}
+
+prop_compose! {
+    fn inside()(x in 0.0..0.04, y in 0.0..0.03, z in 0.0..0.02) -> Point3 { Point3::new(x, y, z) }
+}
+prop_compose! {
+    fn affine()(h in prop::array::uniform9(-1.0..1.0f64), c in prop::array::uniform3(-0.01..0.01f64))
+        -> (Matrix3<f64>, Vector3<f64>) { (Matrix3::from_row_slice(&h), Vector3::from(c)) }
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn rows_sum_to_one(targets in prop::collection::vec(inside(), 1..12)) {
+        let mesh = mesh();
+        for scheme in schemes() {
+            let (rows, _) = rows(scheme, &mesh, &targets);
+            prop_assert_eq!(rows.points(), &targets[..]);
+            for row in 0..targets.len() {
+                let sum: f64 = rows.rows().row(row).1.iter().sum();
+                prop_assert!((sum - 1.0).abs() < 1e-12, "{:?}: {}", scheme, sum);
+            }
+        }
+    }
+
+    #[test]
+    fn polynomials_up_to_the_promised_degree_are_exact(
+        targets in prop::collection::vec(inside(), 12..24),
+        (h, c) in affine(),
+    ) {
+        let mesh = mesh();
+        for scheme in schemes() {
+            // 1e-12 relative to the field: the worst conditioned is the quadratic basis, 1e3 times rounding.
+            let constant = error(scheme, &mesh, &targets, |_| Vector3::new(3.0, -2.0, 1.0));
+            prop_assert!(constant < 1e-12, "{:?}: constant {:e}", scheme, constant);
+            let linear = error(scheme, &mesh, &targets, |x| h * x.coords + c);
+            let bent = error(scheme, &mesh, &targets, quadratic);
+            // And not beyond it: the promise is no smaller than the truth.
+            prop_assert_eq!(linear < 1e-12, scheme.exact_degree() >= 1, "{:?}: linear {:e}", scheme, linear);
+            prop_assert_eq!(bent < 1e-11, scheme.exact_degree() >= 2, "{:?}: quadratic {:e}", scheme, bent);
+        }
+    }
+
+    #[test]
+    fn nodes_do_not_feel_the_unit_or_the_origin(targets in prop::collection::vec(inside(), 1..8)) {
+        let mesh = mesh();
+        // Millimetres, and an origin 200 mm away.
+        let moved = |x: &Point3| Point3::from(1e3 * x.coords + Vector3::new(200.0, -100.0, 50.0));
+        let mesh_moved = mesh.moved(moved).unwrap();
+        let targets_moved: Vec<_> = targets.iter().map(moved).collect();
+        for scheme in schemes() {
+            let here = dense(&rows(scheme, &mesh, &targets).0);
+            let there = dense(&rows(scheme, &mesh_moved, &targets_moved).0);
+            let gap = here.iter().zip(&there).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            prop_assert!(gap < 1e-9, "{:?}: {:e}", scheme, gap);
+        }
+    }
+
+    #[test]
+    fn nodes_may_come_in_any_order(
+        targets in prop::collection::vec(inside(), 1..8),
+        stride in prop::sample::select(vec![11usize, 13, 47, 101, 209]),
+    ) {
+        let mesh = mesh();
+        let n = mesh.points().len();
+        // Strides without a common divisor with the 210 nodes visit each of them once.
+        let order: Vec<usize> = (0..n).map(|i| i * stride % n).collect();
+        let shuffled: Vec<Point3> = order.iter().map(|&i| mesh.points()[i]).collect();
+        for scheme in schemes().into_iter().filter(|s| *s != Scheme::Barycentric) {
+            let here = dense(&rows(scheme, &mesh, &targets).0);
+            let there = dense(&scheme.rows(&shuffled, None, &targets).unwrap().0);
+            for row in 0..targets.len() {
+                for (column, &node) in order.iter().enumerate() {
+                    let gap = (here[row * n + node] - there[row * n + column]).abs();
+                    prop_assert!(gap < 1e-10, "{:?}: node {} by {:e}", scheme, node, gap);
+                }
+            }
+        }
+    }
+}
+
+fn dense(table: &PointRows) -> Vec<f64> {
+    let rows = table.rows();
+    let mut full = vec![0.0; rows.len() * rows.node_count()];
+    for row in 0..rows.len() {
+        let (nodes, values) = rows.row(row);
+        for (&node, value) in nodes.iter().zip(values) {
+            full[row * rows.node_count() + node as usize] += value;
+        }
+    }
+    full
+}
+
+#[test]
+fn targets_at_nodes_get_the_nodal_value_where_promised() {
+    let mesh = mesh();
+    for scheme in schemes() {
+        let error = error(scheme, &mesh, mesh.points(), |x| {
+            let x = x.coords * 200.0;
+            Vector3::new(x.x.sin(), (x.y + x.z).cos(), x.z.sin() * x.x)
+        });
+        if scheme.interpolates() {
+            // Radial bases: the condition of their dense system, some 1e4, times rounding.
+            assert!(error < 1e-10, "{scheme:?}: {error:e}");
+        } else {
+            assert!(error > 1e-4, "{scheme:?}: {error:e}: it interpolates, but does not say so");
+        }
+    }
+}
+
+#[test]
+fn the_same_table_on_every_run() {
+    let mesh = mesh();
+    let targets: Vec<Point3> = mesh.points().iter().map(|x| Point3::from(x.coords * 0.97)).collect();
+    for scheme in schemes() {
+        assert_eq!(rows(scheme, &mesh, &targets), rows(scheme, &mesh, &targets), "{scheme:?}");
+    }
+}
+
+#[test]
+fn no_targets_make_an_empty_table() {
+    let mesh = mesh();
+    for scheme in schemes() {
+        assert!(rows(scheme, &mesh, &[]).0.rows().is_empty(), "{scheme:?}");
+    }
+}
+
+#[test]
+fn names_are_unique_and_read_back() {
+    for scheme in Scheme::ALL {
+        assert_eq!(Scheme::from_name(scheme.name()), Some(scheme));
+    }
+    assert_eq!(Scheme::from_name("kriging"), None);
+}
