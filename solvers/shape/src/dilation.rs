@@ -42,7 +42,10 @@ impl DilationGroups {
                 total[point] += shares[k];
             }
         }
-        match total.iter().position(|t| !((t - 1.0).abs() < 1e-12)) {
+        // As a negation: a NaN must not pass.
+        #[allow(clippy::neg_cmp_op_on_partial_ord)]
+        let lost = total.iter().position(|t| !((t - 1.0).abs() < 1e-12));
+        match lost {
             Some(row) => Err(ShapeError::NotUnity { row, sum: total[row], tolerance: 1e-12 }),
             None => Ok(DilationGroups { offsets, points, shares, point_count }),
         }
