@@ -22,11 +22,11 @@ fn benches(c: &mut Criterion) {
     let material = [LinearElastic::new(20e3, 0.495).unwrap()];
     for (nodes, points, neighbours) in [(83, 4000, 30), (1331, 24760, 30)] {
         let volume = cloud(nodes, points, neighbours);
-        let at: Vec<Point3> =
-            (0..nodes).map(|i| Point3::new(i as f64, (i * i) as f64, (i % 7) as f64)).collect();
+        let at = vec![Point3::origin(); nodes];
         let body = Body { nodes: &at, volume: &volume, materials: &material, region: &[], dilation: None };
-        let fixed: Vec<_> =
-            (0..9).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
+        let fixed: Vec<_> = (0..3 * nodes as u32)
+            .map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 })
+            .collect();
         let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
         group.bench_function(format!("cloud, {nodes} nodes, {points} points of {neighbours}"), |b| {
             b.iter(|| assemble(&problem).unwrap())

@@ -158,8 +158,9 @@ impl Stiffness {
         &mut self,
         gather: impl Fn(usize, &[u32], &mut [Matrix3], &mut Vec<[f64; 12]>) + Sync,
     ) {
-        /// Rows per task: small enough to balance, large enough that a task outweighs its bookkeeping.
-        const CHUNK: usize = 32;
+        /// Rows per task. Late rows of a lower triangle are the long ones: 83 nodes in tasks of 32 keep one of two
+        /// threads waiting.
+        const CHUNK: usize = 8;
         let pattern = &self.pattern;
         let mut rest = &mut self.blocks[..];
         let mut tasks = Vec::with_capacity(pattern.node_count() / CHUNK + 1);
@@ -195,28 +196,37 @@ impl Stiffness {
         self.for_each_row(|i, slot, row, sums| {
             sums.clear();
             sums.resize(row.len(), [0.0; 12]);
-            let seen = incidence.of(i);
-            for (at, &(q, k)) in seen.iter().enumerate() {
-                let (q, k) = (q as usize, k as usize);
-                let start = table.offsets[q];
-                let w = table.weights[q];
-                let gi = table.grads[k];
-                let (x, y, z) = (w * gi[0], w * gi[1], w * gi[2]);
-                for (&j, gj) in table.nodes[start..=k].iter().zip(&table.grads[start..=k]) {
-                    let G = &mut sums[slot[j as usize] as usize];
-                    for c in 0..4 {
-                        G[c] += x * gj[c];
-                        G[4 + c] += y * gj[c];
-                        G[8 + c] += z * gj[c];
-                    }
-                }
-                let law = table.law[q];
-                let last_of_law = seen.get(at + 1).is_none_or(|&(next, _)| table.law[next as usize] != law);
-                if last_of_law {
-                    flush(sums, row, table.moduli[law as usize]);
-                }
+            let mut seen = incidence.of(i);
+            while let Some(&(first, _)) = seen.first() {
+                let law = table.law[first as usize];
+                let (alike, rest) =
+                    seen.split_at(seen.partition_point(|&(q, _)| table.law[q as usize] == law));
+                gather(table, alike, slot, sums);
+                flush(sums, row, table.moduli[law as usize]);
+                seen = rest;
             }
         });
+    }
+}
+
+/// `G_ij += w g_i g_j^T` over the points `seen` that node i sees and their nodes j <= i: the inner loop.
+///
+/// It waits for memory rather than arithmetic: the same loop compiled for AVX2 took 8.6 ms beside 8.8 ms (83 nodes,
+/// 4000 points of 30 neighbours), and rows of one fixed length have nothing to gain either, as the trip count is
+/// that of the triangle, 1 to n.
+fn gather(table: &GradTable, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[f64; 12]]) {
+    for &(q, k) in seen {
+        let (q, k) = (q as usize, k as usize);
+        let start = table.offsets[q];
+        let [x, y, z, _] = table.grads[k].map(|g| table.weights[q] * g);
+        for (&j, gj) in table.nodes[start..=k].iter().zip(&table.grads[start..=k]) {
+            let G = &mut sums[slot[j as usize] as usize];
+            for c in 0..4 {
+                G[c] += x * gj[c];
+                G[4 + c] += y * gj[c];
+                G[8 + c] += z * gj[c];
+            }
+        }
     }
 }
 
