@@ -8,21 +8,21 @@ const SETTLED: f64 = 0.15;
 
 /// What a series of errors says about its order.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Order {
+pub struct Order {
     /// ln(e1/e2) / ln(h1/h2) of neighbouring levels, coarse to fine.
-    pub(crate) pairs: Vec<f64>,
+    pub pairs: Vec<f64>,
     /// Slope of ln e over ln h by least squares.
-    pub(crate) fit: f64,
+    pub fit: f64,
     /// Standard error of the slope; needs three levels.
-    pub(crate) error: Option<f64>,
+    pub error: Option<f64>,
     /// Half width of its 95 % confidence band (Student's t, n - 2 degrees of freedom).
-    pub(crate) band: Option<f64>,
+    pub band: Option<f64>,
     /// Whether the last two pairwise orders agree within 0.15; needs three levels.
-    pub(crate) asymptotic: Option<bool>,
+    pub asymptotic: Option<bool>,
 }
 
 /// Order of `(h, error)` pairs, coarse to fine; `None` with fewer than two usable levels.
-pub(crate) fn observed(points: &[(f64, f64)]) -> Option<Order> {
+pub fn observed(points: &[(f64, f64)]) -> Option<Order> {
     let mut logs: Vec<(f64, f64)> = Vec::new();
     for &(h, e) in points {
         let x = h.ln();

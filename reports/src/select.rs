@@ -86,9 +86,10 @@ impl<'a> Series<'a> {
         self.runs.iter().filter_map(point).filter(|(h, v)| *h > 0.0 && *v > 0.0).collect()
     }
 
-    /// The order theory promises for an error, where it does: displacement p + 1, energy and pressure p.
+    /// The order theory promises for an error, where it does: displacement p + 1, energy p. The kidney's pressed footprints end
+    /// in a jump of the load, so nothing is promised there.
     pub(crate) fn theory(&self, quantity: &str) -> Option<f64> {
-        let degree = degree(self.is())?;
+        let degree = degree(self.is()).filter(|_| !self.is().case.contains("kidney"))?;
         match quantity {
             "l2" | "rms" | "rms-x" | "rms-y" | "rms-z" => Some(degree + 1.0),
             "energy" => Some(degree),

@@ -63,8 +63,19 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     for old in json_files(&fields)? {
         fs::remove_file(&old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
     }
+    let mut taken = Vec::new();
     for field in &run.fields {
-        write_json(&fields.join(format!("{}--{}.json", slug(&field.case), slug(&field.method))), field)?;
+        let name = format!("{}--{}.json", slug(&field.case), slug(&field.method));
+        if taken.contains(&name) {
+            let reason = format!("another field already has the file name {name}");
+            return Err(ReportError::Field {
+                case: field.case.clone(),
+                method: field.method.clone(),
+                reason,
+            });
+        }
+        write_json(&fields.join(&name), field)?;
+        taken.push(name);
     }
     Ok(())
 }

@@ -194,6 +194,9 @@ fn numbers_that_are_none_are_refused() {
     let mut set = common::study();
     set.fields[0].displacement.pop();
     assert!(write_run(dir.path(), &set).is_err());
+    let mut set = common::study();
+    set.fields[1].method = set.fields[0].method.to_uppercase();
+    assert!(write_run(dir.path(), &set).unwrap_err().to_string().contains("already has the file name"));
 }
 
 #[test]

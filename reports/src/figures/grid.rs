@@ -11,13 +11,16 @@ const GAP: f64 = 66.0;
 const HEIGHT: f64 = 150.0;
 const STEP: f64 = 206.0;
 
+/// Draws into a frame.
+pub(crate) type Plot<'a> = Box<dyn Fn(&mut Canvas, &Panel) + 'a>;
+
 /// What one panel shows.
 pub(crate) struct Content<'a> {
     pub(crate) title: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     /// Draws the data into the frame.
-    pub(crate) plot: Box<dyn Fn(&mut Canvas, &Panel) + 'a>,
+    pub(crate) plot: Plot<'a>,
 }
 
 /// Panels, two to a row, a legend and a note below.

@@ -67,7 +67,7 @@ pub(super) fn beside_the_paper(runs: &[Run]) -> Table {
     let (low, high) = ABSTRACT_RMS;
     let caption = format!(
         "Published numbers with their place, and ours for the matching discretisation. The published abstract gives an RMS range of {} to {} mm, its text \
-         other values. Ours is linear elastic and the geometry and supports are a reading of the publication, not an identification",
+         other values. Our RMS is against the case's reference. Ours is linear elastic and the geometry and supports are a reading of the publication, not an identification",
         low * 1e3,
         high * 1e3
     );

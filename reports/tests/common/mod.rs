@@ -150,7 +150,7 @@ fn clouds(set: &mut RunSet) {
                     spacing: 5e-3,
                     ..base("cloud-quality", &format!("efg-{kernel}"), "efg", kernel, &parameters)
                 };
-                let neighbours = 8.5 * (dilatation as f64).powi(3);
+                let neighbours = 8.5 * f64::powi(dilatation, 3);
                 let condition =
                     (30.0 + 60.0 * k as f64) * if basis == "linear" { 1.0 } else { 90.0 } / dilatation;
                 push(set, &run, "neighbours-min", "1", (0.4 * neighbours).floor());

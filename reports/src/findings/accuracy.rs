@@ -1,0 +1,150 @@
+//! Locking, patch tests and orders of convergence.
+
+use std::collections::BTreeMap;
+
+use super::cases;
+use crate::figures::sweeps;
+use crate::order;
+use crate::select::{Run, groups, labels, series};
+use crate::text::{list, percent, plural, significant};
+
+/// An error that grows more than this from the most compressible to the least compressible material counts as locking.
+const LOCKS: f64 = 2.0;
+
+/// Who locks, with numbers, and who does not.
+pub(super) fn locking(runs: &[Run]) -> Vec<String> {
+    let mut out = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !c[0].is.case.contains("patch")) {
+        let (mut locked, mut free) = (Vec::new(), Vec::new());
+        let mut span = None;
+        for (label, _, sweep) in sweeps(case) {
+            // 0.495 is tissue; beyond it is a stress test.
+            let usable: Vec<&Run> =
+                sweep.iter().filter(|r| r.is.poisson <= 0.4951 && r.value("l2").is_some()).collect();
+            let [first, .., last] = usable.as_slice() else { continue };
+            let (Some(before), Some(after)) = (first.value("l2"), last.value("l2")) else { continue };
+            span = Some((first.is.poisson, last.is.poisson));
+            if after > LOCKS * before && after > 1e-3 {
+                let tip = last
+                    .value("tip")
+                    .map(|t| format!(", tip at {} of exact", percent(t)))
+                    .unwrap_or_default();
+                let pressure = last
+                    .value("pressure")
+                    .map(|p| format!(", pressure error {}", percent(p)))
+                    .unwrap_or_default();
+                locked.push(format!("{label} ({} to {}{tip}{pressure})", percent(before), percent(after)));
+            } else {
+                free.push(label);
+            }
+        }
+        let Some((from, to)) = span else { continue };
+        let name = &case[0].is.case;
+        if !locked.is_empty() {
+            out.push(format!(
+                "{name}: from ν = {from} to {to} the relative L2 error more than doubles for {}.",
+                list(&locked)
+            ));
+        }
+        if !free.is_empty() {
+            let many = free.len() > 8;
+            let who = if many { format!("{} methods", free.len()) } else { list(&free) };
+            out.push(format!("{name}: from ν = {from} to {to} it doesn't for {who}."));
+        }
+    }
+    out
+}
+
+/// Rounding in a patch test, relative.
+const EXACT: f64 = 1e-12;
+
+/// How many methods pass each patch test.
+pub(super) fn patch(runs: &[Run]) -> Vec<String> {
+    let mut out = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| c[0].is.case.contains("patch")) {
+        let named: Vec<_> = case.iter().map(|r| (r.is.method.as_str(), r.is)).collect();
+        let mut worst: BTreeMap<String, f64> = BTreeMap::new();
+        for (label, run) in labels(&named).into_iter().zip(case) {
+            if let Some(error) = run.value("l2") {
+                let entry = worst.entry(label).or_insert(error);
+                *entry = entry.max(error);
+            }
+        }
+        if worst.is_empty() {
+            continue;
+        }
+        let missed: Vec<_> = worst.iter().filter(|(_, e)| **e > EXACT).collect();
+        let mut text = format!(
+            "{}: {} of {} methods within 10⁻¹²",
+            case[0].is.case,
+            worst.len() - missed.len(),
+            worst.len()
+        );
+        if !missed.is_empty() {
+            let low = missed.iter().map(|m| *m.1).fold(f64::MAX, f64::min);
+            let high = missed.iter().map(|m| *m.1).fold(0.0, f64::max);
+            let names: Vec<String> = missed.iter().take(6).map(|m| m.0.clone()).collect();
+            let more =
+                if missed.len() > 6 { format!(" and {} more", missed.len() - 6) } else { String::new() };
+            let who = if more.is_empty() { list(&names) } else { names.join(", ") + &more };
+            text += &format!(
+                "; not passing: {who}, relative error {}",
+                if low < high {
+                    format!("{} to {}", significant(low, 2), significant(high, 2))
+                } else {
+                    significant(high, 2)
+                }
+            );
+        }
+        out.push(text + ".");
+    }
+    out
+}
+
+/// An order this far below theory is worth a sentence.
+const SLACK: f64 = 0.15;
+
+/// How many observed orders meet theory, and which do not.
+pub(super) fn orders(runs: &[Run]) -> Vec<String> {
+    let (mut held, mut below, mut short) = (0, Vec::new(), 0);
+    for (name, group) in cases(runs) {
+        let all = series(group);
+        let named: Vec<_> = all.iter().map(|s| (s.name, s.is())).collect();
+        for (label, s) in labels(&named).into_iter().zip(&all) {
+            for quantity in ["l2", "energy"] {
+                let (Some(order), Some(theory)) = (order::observed(&s.points(quantity)), s.theory(quantity))
+                else {
+                    continue;
+                };
+                let Some(finest) = order.pairs.last().copied() else { continue };
+                if order.pairs.len() < 2 {
+                    short += 1;
+                } else if finest >= theory - SLACK {
+                    held += 1;
+                } else {
+                    below.push(format!(
+                        "{label} in {name} ({quantity} {} of {theory})",
+                        significant(finest, 2)
+                    ));
+                }
+            }
+        }
+    }
+    let mut out = Vec::new();
+    if held + below.len() > 0 {
+        out.push(format!(
+            "Between the two finest levels {held} of {} observed orders are no more than {SLACK} below theory.",
+            held + below.len()
+        ));
+    }
+    if !below.is_empty() {
+        let more = below.len().saturating_sub(10);
+        below.truncate(10);
+        let tail = if more > 0 { format!(", and {more} more in the table") } else { String::new() };
+        out.push(format!("Below theory: {}{tail}.", below.join("; ")));
+    }
+    if short > 0 {
+        out.push(format!("{short} further pair{} of levels: too few to judge an order.", plural(short)));
+    }
+    out
+}

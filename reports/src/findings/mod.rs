@@ -1,0 +1,48 @@
+//! What the records say, in sentences. A sentence whose numbers aren't there isn't written.
+
+mod accuracy;
+mod cheapest;
+mod kidney;
+mod outcome;
+
+use crate::record::RunSet;
+use crate::select::{Run, groups};
+
+/// Findings under one heading.
+pub(crate) struct Topic {
+    pub(crate) title: &'static str,
+    pub(crate) sentences: Vec<String>,
+}
+
+/// Every topic with something to say.
+pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Topic> {
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let topics = [
+        Topic { title: "Cheapest way to one percent", sentences: cheapest::cheapest(&solved) },
+        Topic { title: "Locking", sentences: accuracy::locking(&solved) },
+        Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
+        Topic { title: "Transfer", sentences: kidney::transfer(runs) },
+        Topic { title: "Patch tests", sentences: accuracy::patch(&solved) },
+        Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },
+        Topic { title: "Checks", sentences: outcome::checks(set) },
+    ];
+    topics.into_iter().filter(|t| !t.sentences.is_empty()).collect()
+}
+
+/// `case` or `case at ν = 0.3`, with its runs; patch tests left out.
+fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
+    let mut out = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !c[0].is.case.contains("patch")) {
+        let by_ratio = groups(case, |r| r.is.poisson.to_bits());
+        for group in &by_ratio {
+            let is = group[0].is;
+            let name = if by_ratio.len() > 1 {
+                format!("{} at ν = {}", is.case, is.poisson)
+            } else {
+                is.case.clone()
+            };
+            out.push((name, *group));
+        }
+    }
+    out
+}

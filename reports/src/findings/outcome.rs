@@ -1,0 +1,41 @@
+//! Checks and failed runs.
+
+use std::collections::BTreeMap;
+
+use crate::record::{RunSet, Status};
+use crate::text::significant;
+
+/// How many checks held, and every one that did not with its reason.
+pub(super) fn checks(set: &RunSet) -> Vec<String> {
+    let mut out = Vec::new();
+    if set.checks.is_empty() && set.failures.is_empty() {
+        return out;
+    }
+    let with = |status: Status| set.checks.iter().filter(move |c| c.status == status);
+    if !set.checks.is_empty() {
+        out.push(format!("{} of {} checks held.", with(Status::Pass).count(), set.checks.len()));
+    }
+    for c in with(Status::Fail) {
+        let value = c.value.map(|v| format!(" is {}", significant(v, 3))).unwrap_or_default();
+        out.push(format!(
+            "Failed: {}, {}: {}{value}, bound {}. {}",
+            c.case, c.method, c.metric, c.bound, c.reason
+        ));
+    }
+    for (status, word) in [(Status::KnownFailure, "Known failure"), (Status::NotRun, "Not run")] {
+        let mut by_reason: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for c in with(status) {
+            by_reason.entry(&c.reason).or_default().push(format!("{}, {}: {}", c.case, c.method, c.metric));
+        }
+        for (reason, mut which) in by_reason {
+            let more = which.len().saturating_sub(4);
+            which.truncate(4);
+            let tail = if more > 0 { format!("; and {more} more") } else { String::new() };
+            out.push(format!("{word}: {}{tail}. {reason}", which.join("; ")));
+        }
+    }
+    for f in &set.failures {
+        out.push(format!("No result: {}, {}. {}", f.case, f.method, f.reason));
+    }
+    out
+}
