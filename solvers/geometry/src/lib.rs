@@ -1,6 +1,19 @@
 //! Bodies in space: meshes, node clouds, quadrature, spatial search, mesh files and mesh quality.
 //!
 //! Everything is in metres and in flat arrays; nothing here knows an approximation or a material.
+//!
+//! ```
+//! use geometry::{CellKind, Kidney, Search, cloud, generate::kidney_mesh, quality};
+//!
+//! let mesh = kidney_mesh(CellKind::Tet10, 4)?;
+//! let quality = quality::check(&mesh)?;
+//! assert!((quality.volume * 1e9 - 41_888.0).abs() < 25.0); // 4/3 pi 10^4 mm^3
+//!
+//! let nodes = cloud(&Kidney, 83, 1, &[])?;
+//! let nearest = Search::new(&nodes.points)?.nearest(&mesh.points()[0], 14);
+//! assert_eq!((nodes.points.len(), nearest.len()), (83, 14));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod cell;
 mod cloud;

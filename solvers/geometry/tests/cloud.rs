@@ -174,17 +174,20 @@ fn shapes_hold_together() {
     }
 }
 
-/// Surface samples are uniform: the share of a cap equals its share of the area, found by fine triangulation.
+/// Surface samples are uniform: the share of a part equals its share of the area, found by fine triangulation.
 #[test]
 fn kidney_surface_samples_are_uniform() {
     let mesh = geometry::generate::kidney_mesh(CellKind::Tet4, 24).unwrap();
-    let (mut area, mut low) = (0.0, 0.0);
+    let parts: [fn(&Point3) -> bool; 4] =
+        [|p| p.x < 0.0, |p| p.y.abs() < 0.015, |p| p.z.abs() < 0.005, |p| p.x > 0.012 && p.y.abs() > 0.015];
+    let (mut area, mut share) = (0.0, [0.0; 4]);
     for &f in mesh.group("surface").unwrap() {
         let p: Vec<Point3> = mesh.facet_nodes(f).map(|n| mesh.points()[n as usize]).collect();
         let a = 0.5 * (p[1] - p[0]).cross(&(p[2] - p[0])).norm();
+        let middle = Point3::from((p[0].coords + p[1].coords + p[2].coords) / 3.0);
         area += a;
-        if (p[0].x + p[1].x + p[2].x) / 3.0 < 0.0 {
-            low += a;
+        for (share, part) in share.iter_mut().zip(parts) {
+            *share += if part(&middle) { a } else { 0.0 };
         }
     }
     let mut state = 9u64;
@@ -192,11 +195,13 @@ fn kidney_surface_samples_are_uniform() {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
-    let samples = 60_000;
-    let hits = (0..samples).filter(|_| Kidney.surface_sample(&mut unit).x < 0.0).count();
-    let (found, exact) = (hits as f64 / samples as f64, low / area);
-    // Four standard deviations (0.8 %) and the mesh's own 0.3 %.
-    assert!((found - exact).abs() < 0.011, "{found} {exact}");
+    let samples: Vec<Point3> = (0..60_000).map(|_| Kidney.surface_sample(&mut unit)).collect();
+    for (i, (share, part)) in share.iter().zip(parts).enumerate() {
+        let found = samples.iter().filter(|p| part(p)).count() as f64 / samples.len() as f64;
+        let exact = share / area;
+        // Four standard deviations (0.8 %) and the mesh's own 0.3 %.
+        assert!((found - exact).abs() < 0.011, "part {i}: {found} for {exact}");
+    }
 }
 
 #[test]
@@ -211,4 +216,30 @@ fn kidney_map_and_box() {
     assert!((Kidney.map(&Point3::new(1.0, 0.0, 0.0)).x - 0.16 / 9.0).abs() < 1e-17);
     assert!(Kidney.inside(&Point3::new(0.0222, 0.0375 * 0.75f64.sqrt(), 0.0)));
     assert!(!Kidney.inside(&Point3::new(0.0222, 0.0, 0.0)));
+}
+
+#[test]
+fn surface_samples_divide_by_area() {
+    let mut state = 5u64;
+    let mut unit = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut share = |shape: &dyn Shape, part: &dyn Fn(&Point3) -> bool| {
+        (0..20_000).filter(|_| part(&shape.surface_sample(&mut unit))).count() as f64 / 20_000.0
+    };
+    let cylinder = Cylinder { radius: 0.2, height: 0.5 };
+    let shell = SphereShell { inner: 0.3, outer: 0.5 };
+    let cuboid = Cuboid { min: Point3::origin(), max: Point3::new(2.0, 0.7, 0.8) };
+    let found = [
+        (share(&cylinder, &|p| p.z > 0.0 && p.z < 0.5), 0.5 / 0.7),
+        (share(&cylinder, &|p| p.z == 0.5), 0.1 / 0.7),
+        (share(&shell, &|p| p.coords.norm() < 0.4), 0.09 / 0.34),
+        (share(&cuboid, &|p| p.x == 0.0), 0.56 / (2.0 * (1.4 + 1.6 + 0.56))),
+        (share(&cuboid, &|p| p.z == 0.8), 1.4 / (2.0 * (1.4 + 1.6 + 0.56))),
+    ];
+    for (found, exact) in found {
+        // Four standard deviations of 20 000 draws.
+        assert!((found - exact).abs() < 0.0142, "{found} for {exact}");
+    }
 }

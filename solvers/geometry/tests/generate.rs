@@ -248,3 +248,40 @@ fn bad_parameters_are_named() {
     assert!(cylinder_mesh(CellKind::Hex8, 1.0, f64::INFINITY, [1, 1], 1.0).is_err());
     assert!(sphere_shell_mesh(CellKind::Hex8, 1.0, 0.5, [1, 1], 1.0, ShellExtent::Whole).is_err());
 }
+
+#[test]
+fn the_coarsest_meshes_are_sound() {
+    for kind in CellKind::ALL {
+        for n in 1..=5 {
+            if (kind, n) == (CellKind::Tet10, 1) {
+                assert!(matches!(kidney_mesh(kind, n), Err(GenerateError::Inverted(_))));
+                continue;
+            }
+            let meshes = [
+                ball_mesh(kind, 1.0, n).unwrap(),
+                kidney_mesh(kind, n).unwrap(),
+                cylinder_mesh(kind, 1.0, 1.0, [n, n], 1.0).unwrap(),
+                sphere_shell_mesh(kind, 0.5, 1.0, [n, n], 1.0, ShellExtent::Octant).unwrap(),
+                sphere_shell_mesh(kind, 0.5, 1.0, [n + 1, n], 1.0, ShellExtent::Whole).unwrap(),
+            ];
+            for (i, mesh) in meshes.iter().enumerate() {
+                quality::check(mesh).unwrap_or_else(|e| panic!("{} n = {n}, mesh {i}: {e}", kind.name()));
+            }
+        }
+    }
+}
+
+#[test]
+fn surface_cells_are_of_like_size() {
+    let areas = |mesh: &Mesh, group: &str| {
+        let areas = mesh.group(group).unwrap().iter().map(|&f| area_vector(mesh, f).norm());
+        areas.fold((f64::INFINITY, 0.0f64), |(low, high), a| (low.min(a), high.max(a)))
+    };
+    // By equal angles 1.4; by plain central projection 4.
+    let shell = sphere_shell_mesh(CellKind::Hex8, 0.5, 1.0, [16, 1], 1.0, ShellExtent::Whole).unwrap();
+    let ball = ball_mesh(CellKind::Hex8, 1.0, 16).unwrap();
+    for (mesh, group) in [(&shell, "inner"), (&shell, "outer"), (&ball, "surface")] {
+        let (low, high) = areas(mesh, group);
+        assert!(high / low < 1.5, "{group}: {low} to {high}");
+    }
+}

@@ -41,6 +41,25 @@ fn inside_outside_and_on_the_border() {
     }
 }
 
+/// Points of shared faces are in the mesh, though rounding may put them outside both cells.
+#[test]
+fn nothing_falls_between_cells() {
+    let mesh = kidney_mesh(CellKind::Tet4, 5).unwrap();
+    let shares = [[0.2, 0.3, 0.5], [0.71, 0.18, 0.11], [0.5, 0.5, 0.0]];
+    let mut points = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let at: Vec<Point3> = mesh.cell_points(cell).copied().collect();
+        for face in CellKind::Tet4.faces() {
+            for s in shares {
+                points.push(Point3::from((0..3).map(|i| at[face[i]].coords * s[i]).sum::<Vector3>()));
+            }
+        }
+    }
+    for (p, at) in points.iter().zip(locate(&mesh, &points).unwrap()) {
+        assert_eq!(at.outside, 0.0, "{p}");
+    }
+}
+
 #[test]
 fn the_lowest_cell_wins_and_curved_bodies_are_covered() {
     let mesh = unit_cube(CellKind::Tet4);

@@ -1,7 +1,7 @@
 //! The ball as seven blocks (a cube in the middle, six pyramids' frustums around it), and the kidney as its image.
 
 use super::{GenerateError, check_cells, check_positive, check_total, into_kind, lattice};
-use crate::{CellKind, Mesh, Point3, Vector3, shapes::Kidney};
+use crate::{CellKind, Mesh, Point3, Vector3, quality, shapes::Kidney};
 
 /// Half side of the inner cube in the parameter space, where the whole ball is the cube [-1, 1]^3.
 const INNER: f64 = 0.5;
@@ -21,9 +21,14 @@ pub fn ball_mesh(kind: CellKind, radius: f64, n: usize) -> Result<Mesh, Generate
 }
 
 /// The kidney: the unit ball of [`ball_mesh`] through [`Kidney::map`], every node (mid-edge ones too) exactly on
-/// its image. Facet group: "surface".
+/// its image. Facet group: "surface". Tet10 cells need `n` of at least 2.
 pub fn kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
-    Ok(unit_ball(kind, n)?.moved(|p| Kidney.map(p))?)
+    let mesh = unit_ball(kind, n)?.moved(|p| Kidney.map(p))?;
+    if n == 1 {
+        // So few tet10 can't follow the bend and turn inside out; from n = 2 on all kinds are sound.
+        quality::check(&mesh)?;
+    }
+    Ok(mesh)
 }
 
 fn unit_ball(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {

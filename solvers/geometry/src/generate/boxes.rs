@@ -17,7 +17,8 @@ pub struct Jitter {
 /// `grading` is the ratio of the last to the first interval per axis (1: uniform; spacing grows geometrically).
 /// `jitter` moves corner nodes inside the box by up to `fraction` of the smaller adjoining interval, per axis; mid-
 /// edge nodes stay halfway. Facet groups: "x-min", "x-max", "y-min", "y-max", "z-min", "z-max". Corner nodes are
-/// numbered with x fastest. Fails when jitter turns a cell inside out.
+/// numbered with x fastest. Fails when jitter or grading leaves a cell
+/// inside out or flat.
 pub fn box_mesh(
     kind: CellKind,
     min: Point3,
@@ -53,7 +54,7 @@ pub fn box_mesh(
         shift_inner_nodes(&mut points, &axes, jitter)?;
     }
     let mesh = into_kind(hexahedra(points, cells)?, kind);
-    if jitter.is_some() {
+    if jitter.is_some() || grading != [1.0; 3] {
         quality::check(&mesh)?;
     }
     Ok(mesh)
