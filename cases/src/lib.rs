@@ -1,1 +1,3 @@
 //! cases
+
+pub mod exact;

@@ -1,0 +1,97 @@
+//! Thick sphere under internal and external pressure (Lame).
+//!
+//! ```text
+//! Source      Lame (1852); Timoshenko & Goodier, Theory of Elasticity, spherical container under pressure.
+//!
+//!        .-"""-.
+//!      .'  .-.  '.        radii a < r < b, centred on the origin
+//!     |   ( p )   | q     p inside, q outside, both pushing on the wall
+//!      '.  '-'  .'
+//!        '-...-'
+//!
+//! Field       u = (A + B / r^3) x,   A = (p a^3 - q b^3) / (3 kappa (b^3 - a^3)),  B = (p - q) a^3 b^3 / (4 mu (b^3 - a^3)).
+//! Conditions  the two pressures; symmetry planes of an octant (u_n = 0), or rigid motion removed otherwise.
+//! Must hold   sigma_rr = -p at a and -q at b; the mean stress is constant, (p a^3 - q b^3) / (b^3 - a^3), whatever
+//!             nu is, so locking shows at once in the pressure. Defined for r > 0.
+//! ```
+
+use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+
+/// Lame's sphere centred on the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThickSphere {
+    elastic: Elastic,
+    mean_stress: f64,
+    /// `4 mu B`, N m: the deviatoric part falls as `1 / r^3`.
+    source: f64,
+}
+
+impl ThickSphere {
+    /// Radii `0 < inner < outer` (m) and the pressures on the inner and the outer wall (Pa, positive pushes).
+    pub fn new(
+        elastic: Elastic,
+        [inner, outer]: [f64; 2],
+        [inner_pressure, outer_pressure]: [f64; 2],
+    ) -> Result<ThickSphere, ExactError> {
+        if !(inner > 0.0 && inner.is_finite()) {
+            let need = "above zero".into();
+            return Err(ExactError::BadParameter { solution: NAME, name: "inner", value: inner, need });
+        }
+        if !(outer > inner && outer.is_finite()) {
+            let need = format!("above the inner radius of {inner} m");
+            return Err(ExactError::BadParameter { solution: NAME, name: "outer", value: outer, need });
+        }
+        let (a, b) = (inner.powi(3), outer.powi(3));
+        let mean_stress = (inner_pressure * a - outer_pressure * b) / (b - a);
+        let source = (inner_pressure - outer_pressure) * a * b / (b - a);
+        Ok(ThickSphere { elastic, mean_stress, source })
+    }
+
+    /// `A` (dimensionless) and `B / r^3` at a radius.
+    fn terms(&self, r: f64) -> (f64, f64) {
+        (self.mean_stress / (3.0 * self.elastic.bulk()), self.source / (4.0 * self.elastic.mu() * r.powi(3)))
+    }
+}
+
+/// `I - 3 n n^T` with `n = x / r`: the shape of the gradient of `x / r^3`.
+fn quadrupole(x: &Point3, r: f64) -> Matrix3 {
+    let n = x.coords / r;
+    Matrix3::identity() - 3.0 * n * n.transpose()
+}
+
+impl Exact for ThickSphere {
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    fn displacement(&self, x: &Point3) -> Vector3 {
+        let (a, b) = self.terms(x.coords.norm());
+        (a + b) * x.coords
+    }
+
+    fn gradient(&self, x: &Point3) -> Matrix3 {
+        let r = x.coords.norm();
+        let (a, b) = self.terms(r);
+        a * Matrix3::identity() + b * quadrupole(x, r)
+    }
+
+    /// Mean stress plus `2 mu B / r^3 (I - 3 n n^T)`, written out: Hooke's law would lose digits as nu nears 0.5.
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        let r = x.coords.norm();
+        self.mean_stress * Matrix3::identity() + 0.5 * self.source / r.powi(3) * quadrupole(x, r)
+    }
+}
+
+const NAME: &str = "thick-sphere";
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::required("inner", "m", "inner radius"),
+    Parameter::required("outer", "m", "outer radius"),
+    Parameter::optional("inner-pressure", "Pa", "pressure on the inner wall", 0.0),
+    Parameter::optional("outer-pressure", "Pa", "pressure on the outer wall", 0.0),
+];
+
+pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
+    let radii = [values.at(0), values.at(1)];
+    Ok(Box::new(ThickSphere::new(elastic, radii, [values.at(2), values.at(3)])?))
+}

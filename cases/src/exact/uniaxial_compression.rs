@@ -1,0 +1,62 @@
+//! Free-slip compression: a prism or cylinder shortened between frictionless plates.
+//!
+//! ```text
+//! Source      Hooke's law; the homogeneous state of any textbook.
+//!
+//!   z   ======= plate =======
+//!   |     |           |  ^
+//!   |     |           |  |  h -> h (1 - e)     sides free, plates slip
+//!   +--   |           |  |
+//!       ======= plate =======                  z = 0 stays
+//!
+//! Field       u = (nu e x, nu e y, -e z),   sigma_zz = -E e, all else zero.
+//! Conditions  u_z = 0 on z = 0 and u_z = -e h on z = h (or the pressure E e), the axis held against drift and turning.
+//! Must hold   every consistent method returns it to rounding at every nu; the plate force is E e times the area.
+//! ```
+
+use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+
+/// Homogeneous uniaxial stress along z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UniaxialCompression {
+    elastic: Elastic,
+    strain: f64,
+}
+
+impl UniaxialCompression {
+    /// The state of a shortening `e` per unit height; negative stretches.
+    pub fn new(elastic: Elastic, strain: f64) -> UniaxialCompression {
+        UniaxialCompression { elastic, strain }
+    }
+
+    fn stretches(&self) -> Vector3 {
+        let lateral = self.elastic.poisson() * self.strain;
+        Vector3::new(lateral, lateral, -self.strain)
+    }
+}
+
+impl Exact for UniaxialCompression {
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    fn displacement(&self, x: &Point3) -> Vector3 {
+        self.stretches().component_mul(&x.coords)
+    }
+
+    fn gradient(&self, _x: &Point3) -> Matrix3 {
+        Matrix3::from_diagonal(&self.stretches())
+    }
+
+    /// `sigma_zz = -E e`, written out: by way of Hooke's law, digits cancel as nu nears 0.5.
+    fn stress(&self, _x: &Point3) -> Matrix3 {
+        Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.elastic.young() * self.strain))
+    }
+}
+
+pub(super) const PARAMETERS: &[Parameter] =
+    &[Parameter::required("strain", "", "shortening per unit height along z, positive in compression")];
+
+pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
+    Ok(Box::new(UniaxialCompression::new(elastic, values.at(0))))
+}
