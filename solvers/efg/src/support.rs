@@ -1,5 +1,6 @@
 //! How far a node reaches: support radii by dilatation or by the k-th neighbour.
 
+use geometry::Search;
 use rayon::prelude::*;
 use shape::Point3;
 
@@ -49,7 +50,9 @@ impl Support {
                 if count >= nodes.len() {
                     return Err(EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 });
                 }
-                kth_distances(nodes, count).into_iter().map(|d| factor * d).collect()
+                let nodes_missing = |_| EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 };
+                let search = Search::new(nodes).map_err(nodes_missing)?;
+                kth_distances(nodes, &search, count).into_iter().map(|d| factor * d).collect()
             }
         };
         check(&radii)?;
@@ -66,11 +69,8 @@ pub(crate) fn check(radii: &[f64]) -> Result<(), EfgError> {
 }
 
 /// Distance (m) from every node to its `count`-th nearest other node.
-fn kth_distances(nodes: &[Point3], count: usize) -> Vec<f64> {
-    let at = |node: usize| {
-        let mut squares: Vec<f64> = nodes.iter().map(|p| (p - nodes[node]).norm_squared()).collect();
-        // The node itself, at zero, takes the place of index 0.
-        squares.select_nth_unstable_by(count, f64::total_cmp).1.sqrt()
-    };
-    (0..nodes.len()).into_par_iter().map(at).collect()
+fn kth_distances(nodes: &[Point3], search: &Search, count: usize) -> Vec<f64> {
+    // The node itself, at zero, is the first of `count + 1`.
+    let at = |node: &Point3| search.nearest(node, count + 1).last().map_or(0.0, |n| n.distance);
+    nodes.par_iter().map(at).collect()
 }

@@ -1,0 +1,125 @@
+//! Shape functions: moving least squares with gradients per point, against a plain loop over dynamic matrices, and
+//! the whole preparation of a kidney-sized cloud. Not covered: search structures of millions of nodes, other
+//! kernels (exponentials add about 5 ns per neighbour).
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use efg::{Approximation, Basis, Kernel, Support, gauss_rows, smoothed_rows};
+use geometry::generate::kidney_mesh;
+use geometry::{CellKind, cloud_from_mesh};
+use nalgebra::{DMatrix, DVector};
+use shape::{Point3, Vector3};
+
+/// Points per measurement: one parallel task, so that one thread does the work.
+const POINTS: usize = 128;
+
+/// A lattice of 12^3 nodes and points well inside, at which the mean number of neighbours comes out near `wanted`.
+fn lattice(wanted: usize, basis: Basis) -> (Approximation, Vec<Point3>) {
+    let n = 12;
+    let node = |i: usize| Point3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64) * 0.01;
+    let nodes: Vec<Point3> = (0..n * n * n).map(node).collect();
+    let radius = 0.01 * (wanted as f64 * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
+    let radii = vec![radius; nodes.len()];
+    // Low-discrepancy: multiples of irrational steps.
+    let at = |q: usize, step: f64| 0.03 + 0.05 * (q as f64 * step).fract();
+    let points =
+        (1..=POINTS).map(|q| Point3::new(at(q, 0.8191725), at(q, 0.6710436), at(q, 0.5497005))).collect();
+    (Approximation::new(nodes, radii, Kernel::CubicSpline, basis).unwrap(), points)
+}
+
+/// The textbook: dynamic matrices, moment derivatives as matrices, one LU per point; neighbours known beforehand.
+fn textbook(
+    mls: &Approximation,
+    x: &Point3,
+    neighbours: &[u32],
+    values: &mut Vec<f64>,
+    grads: &mut Vec<Vector3>,
+) {
+    let m = mls.basis().terms();
+    let s = mls.radius(neighbours[0] as usize);
+    let terms = |p: &Point3| {
+        let d = (p - x) / s;
+        let all = [1.0, d.x, d.y, d.z, d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.y * d.z, d.z * d.x];
+        DVector::from_column_slice(&all[..m])
+    };
+    let mut a = DMatrix::zeros(m, m);
+    let mut da = [DMatrix::zeros(m, m), DMatrix::zeros(m, m), DMatrix::zeros(m, m)];
+    let mut list = Vec::with_capacity(neighbours.len());
+    for &node in neighbours {
+        let p = &mls.nodes()[node as usize];
+        let (r, radius) = (x - p, mls.radius(node as usize));
+        let d = r.norm();
+        let (w, slope) = mls.kernel().eval(d / radius);
+        let dw = if d > 0.0 { r * (slope / (d * radius)) } else { Vector3::zeros() };
+        let t = terms(p);
+        let outer = &t * t.transpose();
+        a += &outer * w;
+        for axis in 0..3 {
+            da[axis] += &outer * dw[axis];
+        }
+        list.push((t, w, dw));
+    }
+    let lu = a.lu();
+    let solve = |b: DVector<f64>| lu.solve(&b).expect("well determined");
+    let unit = |i: usize, v: f64| DVector::from_fn(m, |k, _| if k == i { v } else { 0.0 });
+    let c = solve(unit(0, 1.0));
+    let dc: Vec<DVector<f64>> = (0..3).map(|axis| solve(unit(axis + 1, 1.0 / s) - &da[axis] * &c)).collect();
+    for (t, w, dw) in list {
+        let fit = c.dot(&t);
+        values.push(w * fit);
+        grads.push(Vector3::from_fn(|axis, _| w * dc[axis].dot(&t) + dw[axis] * fit));
+    }
+}
+
+fn points(criterion: &mut Criterion) {
+    for (basis, wanted) in [(Basis::Linear, 24), (Basis::Quadratic, 35)] {
+        let (mls, points) = lattice(wanted, basis);
+        let (rows, info) = mls.grad_rows(&points).unwrap();
+        assert_eq!(info.fallbacks(), 0, "{info:?}");
+        let mut group =
+            criterion.benchmark_group(format!("mls-{}-{:.1}-neighbours", basis.name(), info.neighbours_mean));
+        group.throughput(Throughput::Elements(POINTS as u64));
+        let (mut values, mut grads) = (Vec::new(), Vec::new());
+        let mut all = |values: &mut Vec<f64>, grads: &mut Vec<Vector3>| {
+            values.clear();
+            grads.clear();
+            for (q, x) in points.iter().enumerate() {
+                textbook(&mls, x, rows.rows().row(q).0, values, grads);
+            }
+        };
+        all(&mut values, &mut grads);
+        // Both must compute the same thing for the comparison to mean anything.
+        let off = values.iter().zip(rows.rows().values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let steep = grads.iter().zip(rows.grads()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(off < 1e-11 && steep < 1e-8, "{off:e} {steep:e}");
+        group.bench_function("dynamic-matrices-without-search", |b| b.iter(|| all(&mut values, &mut grads)));
+        group.bench_function("search-shape-gradient", |b| {
+            b.iter(|| mls.grad_rows(black_box(&points)).unwrap())
+        });
+        group.finish();
+    }
+}
+
+fn prepare(criterion: &mut Criterion) {
+    // 83 nodes of a kidney mesh's cloud would need the cloud generator; the mesh of 3 intervals has about as many.
+    let background = kidney_mesh(CellKind::Tet4, 3).unwrap();
+    let cloud = cloud_from_mesh(&background);
+    let make = || {
+        let radii = Support::Dilatation { factor: 1.6 }.radii(&cloud.points, &cloud.spacing).unwrap();
+        Approximation::new(cloud.points.clone(), radii, Kernel::CubicSpline, Basis::Linear).unwrap()
+    };
+    let name = format!("prepare-{}-nodes-{}-cells", cloud.points.len(), background.cell_count());
+    let mut group = criterion.benchmark_group(name);
+    group.bench_function("supports-and-buckets", |b| b.iter(make));
+    group.bench_function("gauss-4", |b| b.iter(|| gauss_rows(&make(), &background, 4).unwrap()));
+    group.bench_function("cell-smoothed", |b| b.iter(|| smoothed_rows(&make(), &background, 1).unwrap()));
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20).measurement_time(std::time::Duration::from_secs(2)).warm_up_time(std::time::Duration::from_millis(500));
+    targets = points, prepare
+}
+criterion_main!(benches);
