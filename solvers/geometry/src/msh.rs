@@ -1,6 +1,7 @@
 //! Gmsh 2.2 ASCII mesh files: tet4, tet10, hex8 and hex20 cells, physical groups as regions and facet groups.
 
 mod error;
+mod lines;
 mod order;
 mod read;
 mod write;

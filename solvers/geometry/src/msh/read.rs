@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
-use std::str::FromStr;
 
 use super::error::{MshError, MshProblem};
+use super::lines::{Lines, Parsed};
 use super::order::{Element, element, order};
 use crate::{CellKind, Facet, Mesh, Point3};
 
@@ -32,52 +32,6 @@ pub fn read_text(text: &str, file: &Path, unit: f64) -> Result<Mesh, MshError> {
     content.into_mesh(unit, file)
 }
 
-type Parsed<T> = Result<T, (usize, MshProblem)>;
-
-/// Lines with their numbers.
-struct Lines<'a> {
-    lines: std::str::Lines<'a>,
-    number: usize,
-}
-
-impl<'a> Lines<'a> {
-    /// The next line that isn't blank.
-    fn next(&mut self) -> Option<&'a str> {
-        loop {
-            let line = self.lines.next()?.trim();
-            self.number += 1;
-            if !line.is_empty() {
-                return Some(line);
-            }
-        }
-    }
-
-    fn need(&mut self, expected: &'static str) -> Parsed<&'a str> {
-        self.next().ok_or((self.number + 1, MshProblem::End { expected }))
-    }
-
-    fn fail<T>(&self, problem: MshProblem) -> Parsed<T> {
-        Err((self.number, problem))
-    }
-
-    fn number<T: FromStr>(&self, token: Option<&str>, expected: &'static str) -> Parsed<T> {
-        let found = token.unwrap_or("the end of the line");
-        match token.and_then(|t| t.parse().ok()) {
-            Some(value) => Ok(value),
-            None => self.fail(MshProblem::Expected { expected, found: found.into() }),
-        }
-    }
-
-    fn exactly(&mut self, expected: &'static str) -> Parsed<()> {
-        let line = self.need(expected)?;
-        if line == expected {
-            Ok(())
-        } else {
-            self.fail(MshProblem::Expected { expected, found: line.into() })
-        }
-    }
-}
-
 #[derive(Default)]
 struct Content {
     points: Vec<Point3>,
@@ -92,7 +46,7 @@ struct Content {
 type Names = HashMap<(u64, u64), String>;
 
 fn parse(text: &str) -> Parsed<Content> {
-    let mut lines = Lines { lines: text.lines(), number: 0 };
+    let mut lines = Lines::new(text);
     let mut content = Content::default();
     let mut names = Names::new();
     let mut nodes: Option<HashMap<u64, u32>> = None;
@@ -124,7 +78,6 @@ fn parse(text: &str) -> Parsed<Content> {
             }
         }
     }
-    lines.number += 1;
     if !formatted {
         return lines.fail(MshProblem::End { expected: "$MeshFormat" });
     }

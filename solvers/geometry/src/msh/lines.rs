@@ -1,0 +1,59 @@
+//! Lines of a text file with their numbers, and complaints that carry them.
+
+use std::str::FromStr;
+
+use super::error::MshProblem;
+
+/// A result whose error knows its line.
+pub(super) type Parsed<T> = Result<T, (usize, MshProblem)>;
+
+/// Lines with their numbers.
+pub(super) struct Lines<'a> {
+    lines: std::str::Lines<'a>,
+    pub(super) number: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(text: &'a str) -> Lines<'a> {
+        Lines { lines: text.lines(), number: 0 }
+    }
+
+    /// The next line that isn't blank; after the last one, `number` is one past the end.
+    pub(super) fn next(&mut self) -> Option<&'a str> {
+        loop {
+            self.number += 1;
+            let line = self.lines.next()?.trim();
+            if !line.is_empty() {
+                return Some(line);
+            }
+        }
+    }
+
+    pub(super) fn need(&mut self, expected: &'static str) -> Parsed<&'a str> {
+        match self.next() {
+            Some(line) => Ok(line),
+            None => self.fail(MshProblem::End { expected }),
+        }
+    }
+
+    pub(super) fn fail<T>(&self, problem: MshProblem) -> Parsed<T> {
+        Err((self.number, problem))
+    }
+
+    pub(super) fn number<T: FromStr>(&self, token: Option<&str>, expected: &'static str) -> Parsed<T> {
+        let found = token.unwrap_or("the end of the line");
+        match token.and_then(|t| t.parse().ok()) {
+            Some(value) => Ok(value),
+            None => self.fail(MshProblem::Expected { expected, found: found.into() }),
+        }
+    }
+
+    pub(super) fn exactly(&mut self, expected: &'static str) -> Parsed<()> {
+        let line = self.need(expected)?;
+        if line == expected {
+            Ok(())
+        } else {
+            self.fail(MshProblem::Expected { expected, found: line.into() })
+        }
+    }
+}
