@@ -92,7 +92,7 @@ fn constraint_rows_equal_elimination() {
     assert!(none.iter().all(|r| r.norm() == 0.0));
 }
 
-/// A tie across an axis: two nodes move alike. Compared with the penalty limit of the same tie.
+/// A tie between two free nodes, and one between a free and a held node.
 #[test]
 fn a_row_between_two_nodes_holds() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);
@@ -101,12 +101,14 @@ fn a_row_between_two_nodes_holds() {
     let surface = block.surface(&["x-max"]);
     let values = surface.points().iter().map(|x| Vector3::new(x.y * 1e4, 0.0, 0.0)).collect();
     let loads = [Load::Traction { surface: &surface, values }];
-    let fixed = block.fix(&["x-min"], |_| Vector3::zeros());
-    let (a, b) = (3, 15);
-    let tie = [ConstraintRow { terms: vec![(a, 0, 1.0), (b, 0, -1.0)], value: 1e-3 }];
-    let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &tie, weak: &[] };
+    let fixed = block.fix(&["x-min"], |_| Vector3::new(2e-3, 0.0, 0.0));
+    let (a, b, held) = (3, 15, 0);
+    let tie = |a, b, value| ConstraintRow { terms: vec![(a, 0, 1.0), (b, 0, -1.0)], value };
+    let ties = [tie(a, b, 1e-3), tie(b, held, 5e-4)];
+    let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &ties, weak: &[] };
     let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
     let (ua, ub) = (solution.u[a as usize].x, solution.u[b as usize].x);
+    assert!((ub - 2.5e-3).abs() < 1e-14, "{ub}");
     assert!((ua - ub - 1e-3).abs() < 1e-14, "{ua} {ub}");
     assert!(solution.multipliers[0].abs() > 1e-6);
 }
