@@ -22,7 +22,8 @@ fn benches(c: &mut Criterion) {
     let material = [LinearElastic::new(20e3, 0.495).unwrap()];
     for (nodes, points, neighbours) in [(83, 4000, 30), (1331, 24760, 30)] {
         let volume = cloud(nodes, points, neighbours);
-        let at = vec![Point3::origin(); nodes];
+        let at: Vec<Point3> =
+            (0..nodes).map(|i| Point3::new((i % 7) as f64, (i / 7 % 7) as f64, (i / 49) as f64)).collect();
         let body = Body { nodes: &at, volume: &volume, materials: &material, region: &[], dilation: None };
         let fixed: Vec<_> = (0..3 * nodes as u32)
             .map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 })

@@ -201,6 +201,10 @@ fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, 
     for (x, &p) in nodes.iter().zip(&piece_of).filter(|(_, p)| **p != NOWHERE) {
         pieces[p].size = pieces[p].size.max((x - pieces[p].centre).norm());
     }
+    for piece in &mut pieces {
+        // All nodes at one place: no size to divide by. Its rotations are then felt nowhere, and refused as free.
+        piece.size = if piece.size > 0.0 { piece.size } else { 1.0 };
+    }
     let mut find = Pieces((0..pieces.len()).collect());
     for row in rows {
         let mut ids = row.terms.iter().map(|t| piece_of[t.0 / 3]).filter(|&p| p != NOWHERE);

@@ -128,6 +128,17 @@ fn each_piece_is_checked() {
 }
 
 #[test]
+fn nodes_at_one_place_are_refused_and_not_divided_by() {
+    let (nodes, volume) = two_pieces();
+    let material = [soft()];
+    let same = vec![nodes[0]; 8];
+    let body = Body { nodes: &same, volume: &volume, materials: &material, region: &[], dilation: None };
+    let fixed: Vec<_> = (0..24).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
+    let turns = ["rotation about x", "rotation about y", "rotation about z"];
+    assert_eq!(free_modes(attempt(body, &[], &fixed, &[], &[])), turns);
+}
+
+#[test]
 fn zero_energy_modes_are_not_solved_through() {
     // One point per hexahedron: hourglass modes, though no rigid motion is free.
     let mesh = Block::new(CellKind::Hex8, [2, 2, 2]).mesh;
