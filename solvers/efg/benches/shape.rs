@@ -81,7 +81,7 @@ fn points(criterion: &mut Criterion) {
             criterion.benchmark_group(format!("mls-{}-{:.1}-neighbours", basis.name(), info.neighbours_mean));
         group.throughput(Throughput::Elements(POINTS as u64));
         let (mut values, mut grads) = (Vec::new(), Vec::new());
-        let mut all = |values: &mut Vec<f64>, grads: &mut Vec<Vector3>| {
+        let all = |values: &mut Vec<f64>, grads: &mut Vec<Vector3>| {
             values.clear();
             grads.clear();
             for (q, x) in points.iter().enumerate() {

@@ -108,7 +108,7 @@ impl Kernel {
     }
 
     /// [`Kernel::eval`] over a list, all `q < 1`: one branch on the kind for the list, not one per node.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn eval_all(self, q: &[f64], w: &mut [f64], dw: &mut [f64]) {
         match self {
             Kernel::CubicSpline => each(q, w, dw, cubic),

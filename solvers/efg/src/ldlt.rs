@@ -62,7 +62,10 @@ impl<const M: usize> Ldlt<M> {
     /// Largest column sum of `|A^-1|`, from `M` solves in one go.
     #[inline(always)]
     pub(crate) fn inverse_norm(&self) -> f64 {
-        let mut inverse: [[f64; M]; M] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
+        let mut inverse = [[0.0; M]; M];
+        for i in 0..M {
+            inverse[i][i] = 1.0;
+        }
         self.solve(&mut inverse);
         norm(&inverse)
     }

@@ -38,6 +38,16 @@ pub(crate) struct Workspace {
     /// `1/(q R^2)` (1/m^2), or zero at the node itself.
     chain: Vec<f64>,
     scale: f64,
+    staged: Vec<Staged>,
+}
+
+/// A candidate as first looked at.
+#[derive(Clone, Copy, Default)]
+struct Staged {
+    offset: [f64; 3],
+    square: f64,
+    radius: f64,
+    node: u32,
 }
 
 /// A node and its support, side by side in memory.
@@ -57,43 +67,47 @@ impl Workspace {
         balls: &[Ball],
         enlargement: f64,
     ) {
-        let room = candidates.len().next_multiple_of(LANES);
-        self.nodes.resize(room, 0);
+        self.staged.resize(candidates.len(), Staged::default());
+        let mut n = 0;
+        for node in candidates {
+            let Ball { at, radius } = balls[node as usize];
+            let radius = radius * enlargement;
+            let offset = [at[0] - x.x, at[1] - x.y, at[2] - x.z];
+            let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+            // Written always, counted if covered: half of the candidates are not, and a branch would be mispredicted.
+            self.staged[n] = Staged { offset, square, radius, node };
+            n += usize::from(square < radius * radius);
+        }
+        let staged = &self.staged[..n];
+        let padded = n.next_multiple_of(LANES);
+        self.nodes.resize(n, 0);
         for list in self.offset.iter_mut().chain([&mut self.relative, &mut self.chain]) {
-            list.resize(room, 0.0);
+            list.resize(padded, 0.0);
         }
         let [ox, oy, oz] = &mut self.offset;
-        let (ox, oy, oz) = (&mut ox[..room], &mut oy[..room], &mut oz[..room]);
+        let (ox, oy, oz) = (&mut ox[..padded], &mut oy[..padded], &mut oz[..padded]);
         let (nodes, relative, chain) =
-            (&mut self.nodes[..room], &mut self.relative[..room], &mut self.chain[..room]);
-        let mut n = 0;
-        let mut scale = 0.0_f64;
-        for node in candidates {
-            let ball = balls[node as usize];
-            let radius = ball.radius * enlargement;
-            let (dx, dy, dz) = (ball.at[0] - x.x, ball.at[1] - x.y, ball.at[2] - x.z);
-            let square = dx * dx + dy * dy + dz * dz;
-            // Written always, counted if covered: half of the candidates are not, and a branch would be mispredicted.
-            (nodes[n], ox[n], oy[n], oz[n]) = (node, dx, dy, dz);
-            (relative[n], chain[n]) = (square, radius);
-            let covered = square < radius * radius;
-            scale = if covered { scale.max(radius) } else { scale };
-            n += usize::from(covered);
+            (&mut self.nodes[..n], &mut self.relative[..padded], &mut self.chain[..padded]);
+        let mut scale = 0.0;
+        for s in staged {
+            scale = if s.radius > scale { s.radius } else { scale };
         }
-        self.nodes.truncate(n);
         self.scale = scale;
         let inverse = 1.0 / scale;
-        let padded = n.next_multiple_of(LANES);
-        for k in 0..n {
-            (ox[k], oy[k], oz[k]) = (ox[k] * inverse, oy[k] * inverse, oz[k] * inverse);
-            let (d, inverse_radius) = (relative[k].sqrt(), 1.0 / chain[k]);
-            // Rounding must not lift q to 1, where kernels written for q < 1 need not vanish.
-            let q = (d * inverse_radius).min(1.0);
-            relative[k] = q;
-            chain[k] = if q > 0.0 { inverse_radius * inverse_radius / q } else { 0.0 };
+        for (k, s) in staged.iter().enumerate() {
+            nodes[k] = s.node;
+            (ox[k], oy[k], oz[k]) = (s.offset[0] * inverse, s.offset[1] * inverse, s.offset[2] * inverse);
+            (relative[k], chain[k]) = (s.square, s.radius);
         }
         for k in n..padded {
-            (ox[k], oy[k], oz[k], relative[k], chain[k]) = (0.0, 0.0, 0.0, 1.0, 0.0);
+            (ox[k], oy[k], oz[k], relative[k], chain[k]) = (0.0, 0.0, 0.0, 1.0, 1.0);
+        }
+        for (relative, chain) in relative.iter_mut().zip(chain) {
+            let inverse_radius = 1.0 / *chain;
+            // Rounding must not lift q beyond 1, where kernels written for q < 1 need not vanish.
+            let q = (relative.sqrt() * inverse_radius).min(1.0);
+            *relative = q;
+            *chain = if q > 0.0 { inverse_radius * inverse_radius / q } else { 0.0 };
         }
     }
 
@@ -122,7 +136,11 @@ impl Workspace {
         let mut c0 = [[0.0]; M];
         c0[0][0] = 1.0;
         ldlt.solve(&mut c0);
-        let c0: [f64; M] = c0.map(|c| c[0]);
+        let mut column = [0.0; M];
+        for i in 0..M {
+            column[i] = c0[i][0];
+        }
+        let c0 = column;
         for i in 0..M {
             let residual = (0..M).map(|j| a[i][j] * c0[j]).sum::<f64>() - f64::from(i == 0);
             // A NaN must not pass.
@@ -273,8 +291,11 @@ fn derivative_moment<const M: usize>(
             }
         }
     }
-    let mut r: [[f64; 3]; M] = std::array::from_fn(|i| std::array::from_fn(|axis| lane_sum(&sums[i][axis])));
+    let mut r = [[0.0; 3]; M];
     for axis in 0..3 {
+        for i in 0..M {
+            r[i][axis] = lane_sum(&sums[i][axis]);
+        }
         let extra = mu * lane_sum(&weight_sums[axis]);
         for i in 4..M {
             r[i][axis] += extra * c0[i];
