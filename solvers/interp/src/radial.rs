@@ -34,8 +34,8 @@ impl Radial {
 
     fn name(self) -> &'static str {
         match self {
-            Radial::ThinPlate => "rbf-thin-plate",
-            Radial::Cubic => "rbf-cubic",
+            Radial::ThinPlate => "thin-plate",
+            Radial::Cubic => "cubic",
         }
     }
 }
@@ -90,6 +90,8 @@ struct System {
     scale: f64,
     nodes: Vec<Point3>,
     l_inverse: DMatrix<f64>,
+    /// A copy: the library's product with a transpose is a loop of dot products, three times slower.
+    l_inverse_transposed: DMatrix<f64>,
     phi_b: MatrixXx4<f64>,
     y: MatrixXx4<f64>,
     b: MatrixXx4<f64>,
@@ -134,7 +136,9 @@ impl System {
         if !factor.l_dirty().solve_lower_triangular_mut(&mut l_inverse) {
             return Err(coincident(pivot_ratio));
         }
-        Ok(System { radial, centre, scale, l_inverse, phi_b: phi * &b, y, b, nodes })
+        let l_inverse_transposed = l_inverse.transpose();
+        let phi_b = phi * &b;
+        Ok(System { radial, centre, scale, l_inverse, l_inverse_transposed, phi_b, y, b, nodes })
     }
 
     /// All rows, one after another; parallel over chunks of targets, each of which makes its own rows.
@@ -162,7 +166,7 @@ impl System {
         phi.gemm(-1.0, &self.phi_b, &polynomial, 1.0);
         // K^-1 as L^-T L^-1 and not as one matrix, whose rounding grows with the square of the condition: two
         // nodes a millionth of the extent apart spoil a smooth field by 1e-9 this way, and by 1e-3 the other.
-        let mut rows = self.l_inverse.tr_mul(&(&self.l_inverse * phi));
+        let mut rows = &self.l_inverse_transposed * (&self.l_inverse * phi);
         project_columns(&self.y, &mut rows);
         rows.gemm(1.0, &self.b, &polynomial, 1.0);
         rows

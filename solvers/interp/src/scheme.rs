@@ -62,8 +62,8 @@ impl Scheme {
             Scheme::Shepard { .. } => "shepard",
             Scheme::MlsLinear { .. } => "mls-linear",
             Scheme::MlsQuadratic { .. } => "mls-quadratic",
-            Scheme::ThinPlate => "rbf-thin-plate",
-            Scheme::Cubic => "rbf-cubic",
+            Scheme::ThinPlate => "thin-plate",
+            Scheme::Cubic => "cubic",
             Scheme::Barycentric => "barycentric",
         }
     }
