@@ -136,6 +136,10 @@ fn a_flat_cloud_carries_no_linear_field() {
             "{scheme:?}: {error}"
         );
     }
+    let mut almost = nodes.clone();
+    almost.iter_mut().step_by(2).for_each(|x| x.z += 1e-11);
+    let error = Scheme::Cubic.rows(&almost, None, &target).unwrap_err();
+    assert!(matches!(error, InterpError::FlatCloud { .. }), "{error}");
     let linear = Scheme::MlsLinear { dilatation: 1.6 };
     assert!(matches!(
         linear.rows(&nodes, None, &target),
