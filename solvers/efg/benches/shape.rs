@@ -1,6 +1,6 @@
 //! Shape functions: moving least squares with gradients per point, against a plain loop over dynamic matrices, and
 //! the whole preparation of a kidney-sized cloud. Not covered: search structures of millions of nodes, other
-//! kernels (exponentials add about 5 ns per neighbour).
+//! kernels.
 
 use std::hint::black_box;
 

@@ -10,7 +10,7 @@ use crate::{Basis, EfgError, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
-/// Rows sum to one within this; those of sound supports do within 1e-15.
+/// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
 /// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
 const BEYOND_NEIGHBOUR: f64 = 1.4;
@@ -153,7 +153,7 @@ impl Approximation {
         Ok((rows, grads, MlsInfo::new(&outcomes)))
     }
 
-    /// The same arithmetic in the same order on either path, so the same bits; wide registers take 0.7 of the time.
+    /// The same arithmetic in the same order on either path, so the same bits; wide registers take 0.8 of the time.
     /// Fused multiply-add is left off on purpose: it would change last bits from machine to machine.
     fn batch<const GRAD: bool>(&self, points: &[Point3], batch: &mut Batch) -> Result<(), EfgError> {
         #[cfg(target_arch = "x86_64")]

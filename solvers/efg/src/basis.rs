@@ -39,7 +39,7 @@ impl Basis {
 #[inline(always)]
 pub(crate) fn terms<const M: usize>([x, y, z]: [f64; 3]) -> [f64; M] {
     let all = [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, z * x];
-    // A loop, not `array::from_fn`: that is not always inlined, and here it costs a tenth of the whole.
+    // A loop, not `array::from_fn`: that is not always inlined, and then not on wide registers.
     let mut first = [0.0; M];
     first.copy_from_slice(&all[..M]);
     first

@@ -14,7 +14,7 @@ use crate::ldlt::{Ldlt, norm};
 /// their order, and with it the last bit, does not depend on the vector width of the machine.
 const LANES: usize = 4;
 
-/// Smallest pivot relative to its diagonal entry. Sound supports have 1e-2 (linear) to 1e-6 (quadratic).
+/// Smallest pivot relative to its diagonal entry; rounding leaves 1e-16 where neighbours do not span the basis.
 const PIVOT_TOLERANCE: f64 = 1e-10;
 
 /// Largest error of reproduction of the basis at which a solution is accepted.
@@ -74,7 +74,7 @@ impl Workspace {
             let radius = radius * enlargement;
             let offset = [at[0] - x.x, at[1] - x.y, at[2] - x.z];
             let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
-            // Written always, counted if covered: half of the candidates are not, and a branch would be mispredicted.
+            // Written always, counted if covered: about half of the candidates are not, and a branch would be mispredicted.
             self.staged[n] = Staged { offset, square, radius, node };
             n += usize::from(square < radius * radius);
         }

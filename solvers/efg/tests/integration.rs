@@ -76,7 +76,15 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
         assert_eq!(volume.weights().len(), mesh.cell_count());
         assert_eq!(smoothed_regions(&mesh).len(), mesh.cell_count());
         assert!((volume.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
+        let (plain, _) = mls.point_rows(volume.points()).unwrap();
         for q in 0..mesh.cell_count() {
+            let centroid = mesh.cell_points(q).map(|p| p.coords).sum::<Vector3>() / 4.0;
+            assert!((volume.points()[q].coords - centroid).norm() < 1e-17);
+            // Values are those at the centroid, with zeros for nodes that only the faces see.
+            let (nodes, values) = volume.rows().row(q);
+            let nonzero = nodes.iter().zip(values).filter(|(_, v)| **v != 0.0);
+            let at_centroid = plain.rows().row(q).0.iter().zip(plain.rows().row(q).1);
+            assert!(nonzero.eq(at_centroid.filter(|(_, v)| **v != 0.0)), "cell {q}");
             let (nodes, grads) = volume.row(q);
             let mut slope = Vector3::zeros();
             for (&node, grad) in nodes.iter().zip(grads) {

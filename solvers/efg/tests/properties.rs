@@ -72,6 +72,15 @@ proptest! {
             }
             let mls = on_mesh(mesh(), dilatation(basis), kernel, basis);
             let h = 2e-4 * SPACING;
+            // Kernels have kinks: the Gaussian's slope jumps at the rim, the cubic spline's third derivative at half
+            // the radius. A difference taken across one is no derivative.
+            let near_kink = |n: usize| {
+                let d = (mls.nodes()[n] - x).norm();
+                [1.0, 0.5].iter().any(|part| (d - part * mls.radius(n)).abs() < 2.5 * h)
+            };
+            if (0..mls.nodes().len()).any(near_kink) {
+                continue;
+            }
             let shifted = |t: f64| { let mut p = x; p[axis] += t * h; p };
             let points = [x, shifted(1.0), shifted(-1.0), shifted(2.0), shifted(-2.0)];
             let (rows, _) = mls.grad_rows(&points).unwrap();
@@ -87,8 +96,8 @@ proptest! {
             let largest = grad.iter().fold(0.0f64, |m, g| m.max(g.abs()));
             for node in 0..grad.len() {
                 let difference = (8.0 * (at[1][node] - at[2][node]) - at[3][node] + at[4][node]) / (12.0 * h);
-                // Kernels are only C2 at the rim and at the cubic spline's knot, hence no tighter.
-                prop_assert!((difference - grad[node]).abs() < 2e-6 * largest, "{} {}: node {} {} or {}", kernel.name(), basis.name(), node, grad[node], difference);
+                // At most 1e-9 over 3000 points.
+                prop_assert!((difference - grad[node]).abs() < 1e-7 * largest, "{} {}: node {} {} or {}", kernel.name(), basis.name(), node, grad[node], difference);
             }
         }
     }
