@@ -1,1 +1,33 @@
-//! harness
+//! Scene to plan to run to records; studies and their checks; the command line.
+//!
+//! Data flows one way: a scene (TOML, checked) becomes a [`scenario::Scenario`], that a [`setup::Setup`] and a
+//! [`discretise::Discretisation`], these the tables of [`prepare::prepare`], and the solution of [`run::run`] an
+//! [`outcome::Outcome`] of records. Nothing here draws; nothing in `reports` solves.
+
+pub mod body;
+pub mod check;
+pub mod cli;
+pub mod command;
+pub mod discretise;
+mod error;
+mod grading;
+pub mod group;
+pub mod json;
+pub mod list;
+mod memory;
+pub mod mesh_files;
+pub mod norms;
+pub mod outcome;
+pub mod place;
+pub mod plan;
+pub mod prepare;
+pub mod provenance;
+pub mod run;
+pub mod scenario;
+pub mod setup;
+pub mod study;
+pub mod task;
+pub mod timing;
+pub mod transfer;
+
+pub use error::Failure;

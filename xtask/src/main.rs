@@ -80,7 +80,8 @@ fn ci() -> Result<u8> {
 
 /// Runs the release binary, building it first if needed.
 fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
-    let mut line = vec!["run", "--release", "--locked", "--quiet", "--package", "tissuebench-harness", "--", command];
+    let mut line =
+        vec!["run", "--release", "--locked", "--quiet", "--package", "tissuebench-harness", "--", command];
     line.extend(args.iter().map(String::as_str));
     eprintln!("xtask: building the release binary (minutes the first time), then: tissuebench {command}");
     cargo(&line, &[])
@@ -110,7 +111,9 @@ fn keep_gallery() -> Result<()> {
         std::fs::remove_file(old?.path())?;
     }
     for folder in ["figures", "tables"] {
-        for entry in std::fs::read_dir(from.join(folder)).with_context(|| format!("no {folder} in results"))? {
+        for entry in
+            std::fs::read_dir(from.join(folder)).with_context(|| format!("no {folder} in results"))?
+        {
             let path = entry?.path();
             if path.extension().is_some_and(|e| e == "svg" || e == "md") {
                 std::fs::copy(&path, to.join(path.file_name().expect("a file")))?;

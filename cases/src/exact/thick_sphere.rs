@@ -56,7 +56,7 @@ impl ThickSphere {
 /// `I - 3 n n^T` with `n = x / r`: the shape of the gradient of `x / r^3`.
 fn quadrupole(x: &Point3, r: f64) -> Matrix3 {
     let n = x.coords / r;
-    Matrix3::identity() - 3.0 * n * n.transpose()
+    Matrix3::identity() - 3.0 * (n * n.transpose())
 }
 
 impl Exact for ThickSphere {

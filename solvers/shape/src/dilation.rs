@@ -1,7 +1,7 @@
 //! Dilation groups: which quadrature points share one volume change. The cure of volumetric locking is a second,
 //! small table, filled alike by finite elements (one group per element, or per node) and by meshless clouds.
 
-use crate::{ShapeError, VolumeRows, Vector3};
+use crate::{ShapeError, Vector3, VolumeRows};
 
 /// Groups of (point, share): group `a` averages the dilation of its points with the weights
 /// `share * w_q`, `V_a = sum_q share_aq w_q`. Shares of one point over all groups sum to one, so that no volume is

@@ -22,7 +22,10 @@ fn check_weights(weights: &[f64]) -> Result<(), ShapeError> {
 }
 
 fn check_normals(normals: &[Vector3]) -> Result<(), ShapeError> {
-    match normals.iter().position(|n| (n.norm() - 1.0).abs().partial_cmp(&1e-9) != Some(std::cmp::Ordering::Less)) {
+    match normals
+        .iter()
+        .position(|n| (n.norm() - 1.0).abs().partial_cmp(&1e-9) != Some(std::cmp::Ordering::Less))
+    {
         Some(row) => Err(ShapeError::NotFinite { what: "unit normal", row }),
         None => Ok(()),
     }

@@ -1,0 +1,321 @@
+//! A spanned TOML value against the schema of the types it will become: every unknown key, missing key, wrong type and
+//! unreadable quantity at its place, not only the first.
+
+use std::ops::Range;
+
+use serde_json::{Map, Value};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::document::written;
+use super::error::{Problem, suggest};
+use super::expression::Expression;
+use super::region::Region;
+use super::units::Dimension;
+
+/// A problem at a place.
+#[derive(Debug)]
+pub(crate) struct Finding {
+    pub key: String,
+    pub span: Range<usize>,
+    pub problem: Problem,
+}
+
+/// Everything in `value` that `schema` doesn't allow.
+pub(crate) fn check(value: &DeValue<'_>, span: Range<usize>, schema: &Value) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    any(value, span, "", schema, &mut findings);
+    findings
+}
+
+/// `method[1]` and `size` into `method[1].size`.
+pub(crate) fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
+}
+
+fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, findings: &mut Vec<Finding>) {
+    let mut forms = Vec::new();
+    flatten(schema, &mut forms);
+    let fitting: Vec<_> = forms.iter().copied().filter(|form| fits(value, form)).collect();
+    let mut add = |problem| findings.push(Finding { key: path.to_string(), span: span.clone(), problem });
+    match (value, fitting.as_slice()) {
+        (_, []) if forms.is_empty() => {}
+        (_, []) => add(wrong_type(value, &forms)),
+        (_, [form]) => one(value, span, path, form, findings),
+        (DeValue::Table(table), several) => match tagged(table, several) {
+            Ok(form) => one(value, span, path, form, findings),
+            Err((at, key, problem)) => {
+                findings.push(Finding { key: join(path, &key), span: at.unwrap_or(span), problem });
+            }
+        },
+        (_, several) => {
+            let words: Vec<&str> = several.iter().flat_map(|form| words(form)).collect();
+            if matches!(value, DeValue::String(text) if words.contains(&text.as_ref())) {
+                return;
+            }
+            match several.iter().find(|form| words_of(form).is_none()) {
+                Some(form) => one(value, span, path, form, findings),
+                None => add(not_one_of(value, &words)),
+            }
+        }
+    }
+}
+
+/// Alternatives of a schema, `null` left out: an absent key is all that `null` means in TOML.
+fn flatten<'s>(schema: &'s Value, forms: &mut Vec<&'s Map<String, Value>>) {
+    let Some(map) = schema.as_object() else { return };
+    match map.get("anyOf").or(map.get("oneOf")).and_then(Value::as_array) {
+        Some(list) => list.iter().for_each(|schema| flatten(schema, forms)),
+        None if map.get("type").and_then(Value::as_str) == Some("null") => {}
+        None => forms.push(map),
+    }
+}
+
+fn types(form: &Map<String, Value>) -> Vec<&str> {
+    match form.get("type") {
+        Some(Value::String(name)) => vec![name],
+        Some(Value::Array(names)) => {
+            names.iter().filter_map(Value::as_str).filter(|n| *n != "null").collect()
+        }
+        _ => vec![],
+    }
+}
+
+fn fits(value: &DeValue<'_>, form: &Map<String, Value>) -> bool {
+    let types = types(form);
+    types.is_empty()
+        || types.iter().any(|name| match value {
+            DeValue::String(_) => *name == "string",
+            DeValue::Integer(_) => *name == "integer" || *name == "number",
+            DeValue::Float(_) => *name == "number",
+            DeValue::Boolean(_) => *name == "boolean",
+            DeValue::Array(_) => *name == "array",
+            DeValue::Table(_) => *name == "object",
+            DeValue::Datetime(_) => false,
+        })
+}
+
+fn wrong_type(value: &DeValue<'_>, forms: &[&Map<String, Value>]) -> Problem {
+    let text = written(value);
+    let quantity = forms.iter().find_map(|form| form.get("x-quantity")).and_then(Value::as_str);
+    if let (DeValue::Integer(_) | DeValue::Float(_), Some(dimension), Some(text)) =
+        (value, quantity.and_then(Dimension::from_name), &text)
+    {
+        return Problem::new("has no unit").found(text).help(dimension.fix(text));
+    }
+    let mut wanted: Vec<String> = forms.iter().map(|form| describe(form)).collect();
+    wanted.dedup();
+    let found = match value {
+        DeValue::Table(_) => "a table",
+        DeValue::Array(_) => "a list",
+        DeValue::String(_) => "text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date",
+    };
+    let problem = Problem::new(format!("is {found}, where {} belongs", wanted.join(" or ")));
+    match text {
+        Some(text) => problem.found(text),
+        None => problem,
+    }
+}
+
+fn describe(form: &Map<String, Value>) -> String {
+    if let Some(dimension) = form.get("x-quantity").and_then(Value::as_str).and_then(Dimension::from_name) {
+        return format!(
+            "a {} with its unit in quotes (such as \"1 {}\")",
+            dimension.name(),
+            dimension.si_unit()
+        );
+    }
+    if form.contains_key("x-region") {
+        return "a region such as \"z == 0 mm and x >= 3 mm\"".into();
+    }
+    if form.contains_key("x-expression") {
+        return "an expression in quotes such as \"z^2\"".into();
+    }
+    if let Some(words) = words_of(form) {
+        return format!("one of \"{}\"", words.join("\", \""));
+    }
+    match types(form).first() {
+        Some(&"string") => "text in quotes".into(),
+        Some(&"integer") => "a whole number".into(),
+        Some(&"number") => "a number without quotes".into(),
+        Some(&"boolean") => "true or false".into(),
+        Some(&"array") => match form.get("minItems").and_then(Value::as_u64) {
+            Some(n) => format!("a list of {n}"),
+            None => "a list".into(),
+        },
+        Some(&"object") => match form.get("properties").and_then(Value::as_object) {
+            Some(keys) => format!("a table {{ {} }}", keys.keys().cloned().collect::<Vec<_>>().join(", ")),
+            None => "a table".into(),
+        },
+        _ => "something else".into(),
+    }
+}
+
+/// The words a form is limited to, if it is.
+fn words_of(form: &Map<String, Value>) -> Option<Vec<&str>> {
+    if let Some(word) = form.get("const").and_then(Value::as_str) {
+        return Some(vec![word]);
+    }
+    Some(form.get("enum")?.as_array()?.iter().filter_map(Value::as_str).collect())
+}
+
+fn words<'s>(form: &&'s Map<String, Value>) -> Vec<&'s str> {
+    words_of(form).unwrap_or_default()
+}
+
+fn not_one_of(value: &DeValue<'_>, words: &[&str]) -> Problem {
+    let text = written(value).unwrap_or_default();
+    Problem::new("is not known").found(&text).help(suggest(&text, words))
+}
+
+/// Of several tables told apart by the word under one key (`shape = "box"`), the one meant.
+fn tagged<'s>(
+    table: &DeTable<'_>,
+    forms: &[&'s Map<String, Value>],
+) -> Result<&'s Map<String, Value>, (Option<Range<usize>>, String, Problem)> {
+    let variants: Vec<(&str, &str, &'s Map<String, Value>)> = forms
+        .iter()
+        .filter_map(|form| {
+            let keys = form.get("properties")?.as_object()?;
+            let (tag, word) =
+                keys.iter().find_map(|(key, s)| Some((key.as_str(), s.get("const")?.as_str()?)))?;
+            Some((tag, word, *form))
+        })
+        .collect();
+    let tag = variants.first().map_or("", |variant| variant.0);
+    let words: Vec<&str> = variants.iter().map(|variant| variant.1).collect();
+    let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref().as_ref() == tag) else {
+        let help = format!("add {tag} = \"...\", one of: {}", words.join(", "));
+        return Err((None, tag.to_string(), Problem::new("is missing").help(help)));
+    };
+    let word = written(value.get_ref()).unwrap_or_default();
+    match variants.iter().find(|variant| variant.1 == word) {
+        Some(variant) => Ok(variant.2),
+        None => Err((Some(value.span()), tag.to_string(), not_one_of(value.get_ref(), &words))),
+    }
+}
+
+fn one(
+    value: &DeValue<'_>,
+    span: Range<usize>,
+    path: &str,
+    form: &Map<String, Value>,
+    findings: &mut Vec<Finding>,
+) {
+    let result = match value {
+        DeValue::Table(table) => return keys(table, span, path, form, findings),
+        DeValue::Array(array) => return items(array, span, path, form, findings),
+        DeValue::String(text) => string(text, form),
+        DeValue::Integer(_) | DeValue::Float(_) => number(value, form),
+        DeValue::Boolean(_) | DeValue::Datetime(_) => Ok(()),
+    };
+    if let Err(problem) = result {
+        findings.push(Finding { key: path.to_string(), span, problem });
+    }
+}
+
+fn string(text: &str, form: &Map<String, Value>) -> Result<(), Problem> {
+    let dimension = |key: &str| form.get(key).and_then(Value::as_str).and_then(Dimension::from_name);
+    if let Some(dimension) = dimension("x-quantity") {
+        return dimension.read(text).map(drop);
+    }
+    if let Some(dimension) = dimension("x-unit") {
+        return dimension.read_unit(text).map(drop);
+    }
+    if form.contains_key("x-region") {
+        return Region::read(text).map(drop);
+    }
+    if form.contains_key("x-expression") {
+        return Expression::read(text).map(drop);
+    }
+    match words_of(form) {
+        Some(words) if !words.contains(&text) => {
+            Err(Problem::new("is not known").found(text).help(suggest(text, &words)))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn number(value: &DeValue<'_>, form: &Map<String, Value>) -> Result<(), Problem> {
+    let text = written(value).unwrap_or_default();
+    let bad = |problem: String| Err(Problem::new(problem).found(&text));
+    let whole = types(form).contains(&"integer");
+    let parsed = match value {
+        DeValue::Integer(number) => {
+            i64::from_str_radix(number.as_str(), number.radix()).ok().map(|n| n as f64)
+        }
+        _ => text.parse::<f64>().ok().filter(|v| v.is_finite()),
+    };
+    let Some(number) = parsed else {
+        return bad(if whole { "is too large".into() } else { "is not a finite number".into() });
+    };
+    if form.get("minimum").and_then(Value::as_f64).is_some_and(|minimum| number < minimum) {
+        return bad("is negative".into());
+    }
+    let narrow = form.get("format").and_then(Value::as_str) == Some("uint32");
+    if narrow && number > f64::from(u32::MAX) {
+        return bad(format!("is larger than {}", u32::MAX));
+    }
+    Ok(())
+}
+
+fn items(
+    array: &[Spanned<DeValue<'_>>],
+    span: Range<usize>,
+    path: &str,
+    form: &Map<String, Value>,
+    findings: &mut Vec<Finding>,
+) {
+    let bound = |key: &str| form.get(key).and_then(Value::as_u64);
+    let count = array.len() as u64;
+    let wrong = match (bound("minItems"), bound("maxItems")) {
+        (Some(low), Some(high)) if low == high && count != low => {
+            Some(format!("has {count} entries, not {low}"))
+        }
+        (Some(low), _) if count < low => Some(format!("has {count} entries, at least {low} are needed")),
+        _ => None,
+    };
+    if let Some(problem) = wrong {
+        findings.push(Finding { key: path.to_string(), span, problem: Problem::new(problem) });
+    }
+    if let Some(schema) = form.get("items") {
+        for (i, item) in array.iter().enumerate() {
+            any(item.get_ref(), item.span(), &format!("{path}[{i}]"), schema, findings);
+        }
+    }
+}
+
+fn keys(
+    table: &DeTable<'_>,
+    span: Range<usize>,
+    path: &str,
+    form: &Map<String, Value>,
+    findings: &mut Vec<Finding>,
+) {
+    let empty = Map::new();
+    let known = form.get("properties").and_then(Value::as_object).unwrap_or(&empty);
+    for (key, value) in table {
+        let name = key.get_ref().as_ref();
+        let other = form.get("additionalProperties").filter(|schema| !schema.is_boolean());
+        if let Some(schema) = known.get(name).or(other) {
+            any(value.get_ref(), value.span(), &join(path, name), schema, findings);
+        } else {
+            let names: Vec<&str> = known.keys().map(String::as_str).collect();
+            let problem = Problem::new("is not a known key").help(suggest(name, &names));
+            findings.push(Finding { key: join(path, name), span: key.span(), problem });
+        }
+    }
+    for name in form.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+    {
+        if !table.keys().any(|key| key.get_ref().as_ref() == name) {
+            let mut forms = Vec::new();
+            known.get(name).into_iter().for_each(|schema| flatten(schema, &mut forms));
+            let wanted: Vec<String> = forms.iter().map(|form| describe(form)).collect();
+            let problem = Problem::new("is missing").help(format!("add {}", wanted.join(" or ")));
+            findings.push(Finding { key: join(path, name), span: span.clone(), problem });
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! What is wrong with a scene or a study: where, which key, what was found and what would be right.
+
+use std::fmt;
+
+/// Whether a file is wrong, or right but ahead of what can run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The input is wrong: exit code 2.
+    Invalid,
+    /// The input is well formed, but asks for something that can't run yet: exit code 3.
+    NotAvailable,
+}
+
+/// One finding about an input file. Prints as `file:line: key 'path': 'found' problem; help`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    /// Invalid, or not available yet.
+    pub kind: ErrorKind,
+    /// File name as given by the caller.
+    pub file: String,
+    /// Line, from 1; 0 when the file could not be read at all.
+    pub line: usize,
+    /// Column in characters, from 1; 0 when the file could not be read at all.
+    pub column: usize,
+    /// Path of the key, such as `method[1].size.spacing` (tables of a list count from 0); empty for a syntax error.
+    pub key: String,
+    /// The value as the file has it.
+    pub found: Option<String>,
+    /// What is wrong with it.
+    pub problem: String,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.file)?;
+        if self.line > 0 {
+            write!(f, "{}:", self.line)?;
+        }
+        if !self.key.is_empty() {
+            write!(f, " key '{}':", self.key)?;
+        }
+        if let Some(found) = &self.found {
+            write!(f, " '{found}'")?;
+        }
+        write!(f, " {}", self.problem)?;
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+/// A finding that doesn't know its place yet.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Problem {
+    pub found: Option<String>,
+    pub problem: String,
+    pub help: Option<String>,
+}
+
+impl Problem {
+    pub fn new(problem: impl Into<String>) -> Problem {
+        Problem { found: None, problem: problem.into(), help: None }
+    }
+
+    pub fn found(mut self, found: impl fmt::Display) -> Problem {
+        self.found = Some(clip(&found.to_string()));
+        self
+    }
+
+    pub fn help(mut self, help: impl Into<String>) -> Problem {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// One line of at most 80 characters.
+pub(crate) fn clip(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(80) {
+        Some((end, _)) => format!("{}...", &line[..end]),
+        None => line,
+    }
+}
+
+/// The known name nearest to `name`, if near enough to be what was meant.
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = clip(name);
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&name, candidate), candidate))
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 3)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// `did you mean 'x'?` where something is near, and the list of what is known.
+pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
+    let list = format!("known here: {}", known.join(", "));
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean '{near}'? ({list})"),
+        None => list,
+    }
+}

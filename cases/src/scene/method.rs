@@ -1,0 +1,300 @@
+//! Methods of a scene: finite elements and element-free Galerkin, every setting stated.
+
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::region::Region;
+
+/// A way to solve the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// Unique within the scene.
+    pub id: String,
+    /// Its family and settings.
+    pub family: Family,
+}
+
+/// Family of a method.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Family {
+    /// Finite elements.
+    Fem(Fem),
+    /// Element-free Galerkin.
+    Efg(Efg),
+}
+
+/// Settings of a finite element method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fem {
+    /// Element type.
+    pub element: Element,
+    /// Treatment of the volume change.
+    pub dilation: Dilation,
+    /// How fine.
+    pub size: Size,
+    /// Random displacement of inner nodes.
+    pub jitter: Option<Jitter>,
+}
+
+/// Settings of an element-free Galerkin method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Efg {
+    /// Where the nodes are.
+    pub cloud: Cloud,
+    /// Kernel and its parameters.
+    pub kernel: Kernel,
+    /// Support radius.
+    pub support: SupportRule,
+    /// Polynomial basis.
+    pub basis: Basis,
+    /// Integration rule.
+    pub integration: Integration,
+    /// How prescribed displacements are imposed.
+    pub essential: Essential,
+    /// Treatment of the volume change.
+    pub dilation: Dilation,
+    /// Mesh to integrate over, where it is not the one the cloud is taken from.
+    pub background: Option<Size>,
+}
+
+/// Element types.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs)] // the names are the field's words
+pub enum Element {
+    Tet4,
+    Tet10,
+    Hex8,
+    Hex20,
+}
+
+impl Element {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Element::Tet4 => "tet4",
+            Element::Tet10 => "tet10",
+            Element::Hex8 => "hex8",
+            Element::Hex20 => "hex20",
+        }
+    }
+}
+
+/// Treatment of the volume change: which integration points share one dilation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Dilation {
+    /// Each point its own.
+    Standard,
+    /// One per element (B-bar).
+    ElementMean,
+    /// One per node.
+    NodalMean,
+    /// An independent pressure field.
+    Mixed,
+}
+
+impl Dilation {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dilation::Standard => "standard",
+            Dilation::ElementMean => "element-mean",
+            Dilation::NodalMean => "nodal-mean",
+            Dilation::Mixed => "mixed",
+        }
+    }
+}
+
+/// How fine a mesh or cloud is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Size {
+    /// About this many nodes.
+    Nodes(usize),
+    /// Mean edge length in metres.
+    Spacing(f64),
+    /// Level of a family of meshes, from 1; each is twice as fine as the one before.
+    Level(u32),
+    /// Cells along the axes of a structured mesh.
+    Cells {
+        /// Number along x, y, z.
+        cells: [usize; 3],
+        /// Ratio of the last to the first cell along x, y, z; 1 is uniform.
+        grading: [f64; 3],
+    },
+    /// A Gmsh file.
+    File(MeshFile),
+}
+
+/// A mesh file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// Path, relative ones taken from the folder of the scene.
+    pub path: PathBuf,
+    /// Metres per unit of its numbers.
+    pub unit: f64,
+}
+
+/// Random displacement of inner nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jitter {
+    /// Largest displacement along each axis over the cell size.
+    pub fraction: f64,
+    /// Seed of the generator.
+    pub seed: u64,
+}
+
+/// Where the nodes of a cloud are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cloud {
+    /// The nodes of a mesh.
+    Mesh {
+        /// Size of the mesh.
+        size: Size,
+        /// Random displacement of inner nodes.
+        jitter: Option<Jitter>,
+    },
+    /// Quasi-uniform, of an exact count.
+    Uniform {
+        /// Number of nodes.
+        nodes: usize,
+        /// Seed of the generator.
+        seed: u64,
+    },
+    /// Denser towards a region, of an exact count.
+    Graded {
+        /// Number of nodes.
+        nodes: usize,
+        /// Seed of the generator.
+        seed: u64,
+        /// The region it is denser in.
+        towards: Region,
+    },
+}
+
+/// Kernel names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs)] // the names are the field's words
+pub enum KernelName {
+    CubicSpline,
+    QuarticSpline,
+    Gaussian,
+    Exponential,
+    WendlandC2,
+    WendlandC4,
+    RegularisedInterpolating,
+}
+
+impl KernelName {
+    /// Every kernel, in the order tables list them.
+    pub const ALL: [KernelName; 7] = [
+        KernelName::CubicSpline,
+        KernelName::QuarticSpline,
+        KernelName::Gaussian,
+        KernelName::Exponential,
+        KernelName::WendlandC2,
+        KernelName::WendlandC4,
+        KernelName::RegularisedInterpolating,
+    ];
+
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            KernelName::CubicSpline => "cubic-spline",
+            KernelName::QuarticSpline => "quartic-spline",
+            KernelName::Gaussian => "gaussian",
+            KernelName::Exponential => "exponential",
+            KernelName::WendlandC2 => "wendland-c2",
+            KernelName::WendlandC4 => "wendland-c4",
+            KernelName::RegularisedInterpolating => "regularised-interpolating",
+        }
+    }
+}
+
+/// A kernel; parameters left out take the defaults of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kernel {
+    /// Which one.
+    pub name: KernelName,
+    /// Width relative to the support radius (gaussian, exponential).
+    pub alpha: Option<f64>,
+    /// Exponent (exponential).
+    pub power: Option<u32>,
+    /// Regularisation (regularised interpolating).
+    pub eps: Option<f64>,
+}
+
+/// How the support radius of a node is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SupportRule {
+    /// This factor times the local spacing.
+    Dilatation(f64),
+    /// This factor times the distance to the k-th neighbour.
+    Neighbours {
+        /// Which neighbour.
+        k: usize,
+        /// Factor on its distance.
+        factor: f64,
+    },
+}
+
+/// Polynomial bases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs)] // the names are the field's words
+pub enum Basis {
+    Linear,
+    Quadratic,
+}
+
+impl Basis {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Basis::Linear => "linear",
+            Basis::Quadratic => "quadratic",
+        }
+    }
+}
+
+/// Integration rules of element-free Galerkin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integration {
+    /// Gauss points in the cells of the background mesh.
+    Gauss {
+        /// Points per cell.
+        points: usize,
+    },
+    /// Gauss points in the cells of a grid, those outside the body left out.
+    Grid {
+        /// Points per cell, a cube number.
+        points: usize,
+        /// Edge of a cell in metres; the mean node spacing unless given.
+        spacing: Option<f64>,
+    },
+    /// Conforming smoothing over the tetrahedra of the background mesh.
+    CellSmoothed {
+        /// Points per face: 1, 3 or 6.
+        face_points: usize,
+    },
+}
+
+/// How prescribed displacements are imposed; a factor left out takes the default of the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Essential {
+    /// Nitsche's method.
+    Nitsche {
+        /// Stabilisation factor.
+        factor: Option<f64>,
+    },
+    /// Penalty.
+    Penalty {
+        /// Penalty factor.
+        factor: Option<f64>,
+    },
+    /// Lagrange multipliers.
+    Multipliers,
+}

@@ -1,0 +1,108 @@
+//! The metrics that checks may name.
+
+use super::error::{Problem, suggest};
+use super::units::Dimension;
+
+/// A number computed from one run, or from a family of runs at several levels.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Metric {
+    /// Name in files and tables.
+    pub name: &'static str,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// What it needs.
+    pub needs: Needs,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// What a metric needs to be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// A run alone.
+    Run,
+    /// A `[reference]`.
+    Reference,
+    /// A `[reference]` and probes.
+    Probes,
+    /// A `[reference]` and a study with several levels.
+    Levels,
+    /// A transfer.
+    Transfer,
+}
+
+const fn metric(name: &'static str, dimension: Dimension, needs: Needs, meaning: &'static str) -> Metric {
+    Metric { name, dimension, needs, meaning }
+}
+
+impl Metric {
+    /// Every metric.
+    pub const ALL: &'static [Metric] = &[
+        metric(
+            "rms-x",
+            Dimension::Length,
+            Needs::Reference,
+            "root mean square error of the displacement along x",
+        ),
+        metric(
+            "rms-y",
+            Dimension::Length,
+            Needs::Reference,
+            "root mean square error of the displacement along y",
+        ),
+        metric(
+            "rms-z",
+            Dimension::Length,
+            Needs::Reference,
+            "root mean square error of the displacement along z",
+        ),
+        metric("rms", Dimension::Length, Needs::Reference, "root mean square error of the displacement"),
+        metric("max-error", Dimension::Length, Needs::Reference, "largest error of the displacement"),
+        metric(
+            "relative-max",
+            Dimension::None,
+            Needs::Reference,
+            "largest error over the largest exact displacement",
+        ),
+        metric("l2", Dimension::None, Needs::Reference, "relative L2 error of the displacement"),
+        metric("energy", Dimension::None, Needs::Reference, "relative error in the energy norm"),
+        metric("stress", Dimension::None, Needs::Reference, "relative L2 error of the stress"),
+        metric("pressure", Dimension::None, Needs::Reference, "relative L2 error of the pressure"),
+        metric("probe-error", Dimension::None, Needs::Probes, "largest relative error at the probes"),
+        metric("tip", Dimension::None, Needs::Probes, "computed over exact displacement at the first probe"),
+        metric("order-l2", Dimension::None, Needs::Levels, "observed order of the L2 error"),
+        metric("order-energy", Dimension::None, Needs::Levels, "observed order of the energy error"),
+        metric("order-pressure", Dimension::None, Needs::Levels, "observed order of the pressure error"),
+        metric("transfer-rms", Dimension::Length, Needs::Transfer, "root mean square error after transfer"),
+        metric("max-x", Dimension::Length, Needs::Run, "largest displacement along x, either way"),
+        metric("max-y", Dimension::Length, Needs::Run, "largest displacement along y, either way"),
+        metric("max-z", Dimension::Length, Needs::Run, "largest displacement along z, either way"),
+        metric("max", Dimension::Length, Needs::Run, "largest displacement"),
+        metric("strain-energy", Dimension::Energy, Needs::Run, "strain energy"),
+        metric("residual", Dimension::None, Needs::Run, "relative residual of the linear solve"),
+        metric("condition", Dimension::None, Needs::Run, "largest condition estimate of a moment matrix"),
+        metric(
+            "fallbacks",
+            Dimension::None,
+            Needs::Run,
+            "points at which the approximation had to fall back",
+        ),
+        metric("time-prepare", Dimension::Time, Needs::Run, "seconds for search and shape functions"),
+        metric("time-assemble", Dimension::Time, Needs::Run, "seconds to assemble"),
+        metric("time-factor", Dimension::Time, Needs::Run, "seconds to factor"),
+        metric("time-solve", Dimension::Time, Needs::Run, "seconds to solve"),
+        metric("time-transfer", Dimension::Time, Needs::Transfer, "seconds to apply the transfer"),
+        metric("time-total", Dimension::Time, Needs::Run, "seconds for all phases but reading files"),
+    ];
+
+    /// The metric of that name.
+    pub fn named(name: &str) -> Option<&'static Metric> {
+        Metric::ALL.iter().find(|metric| metric.name == name)
+    }
+
+    pub(crate) fn find(name: &str) -> Result<&'static Metric, Problem> {
+        let names: Vec<&str> = Metric::ALL.iter().map(|metric| metric.name).collect();
+        Metric::named(name)
+            .ok_or_else(|| Problem::new("is not a known metric").found(name).help(suggest(name, &names)))
+    }
+}

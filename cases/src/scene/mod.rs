@@ -1,0 +1,86 @@
+//! Scene and study files: read, checked and turned into plain numbers in SI, or refused with every finding at its place.
+//!
+//! A scene is one TOML file. Its keys are types (`keys`), the schema is generated from them, and a file is checked
+//! against that schema, so that the two can't drift apart. What passes is turned into [`Scene`], in which no text is
+//! left to parse.
+
+mod available;
+mod conform;
+mod document;
+mod error;
+mod expression;
+mod field;
+mod keys;
+mod method;
+mod metric;
+mod model;
+mod output;
+mod region;
+mod resolve;
+mod study;
+mod tool;
+mod units;
+mod validate;
+
+use std::path::Path;
+
+pub use document::Origin;
+pub use error::{ErrorKind, SceneError};
+pub use expression::{Expression, NotFinite};
+pub use field::{Prescribed, ScalarField, VectorField};
+pub use method::{
+    Basis, Cloud, Dilation, Efg, Element, Essential, Family, Fem, Integration, Jitter, Kernel, KernelName,
+    MeshFile, Method, Size, SupportRule,
+};
+pub use metric::{Metric, Needs};
+pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Scene, Support};
+pub use output::{Bound, Check, Output, Parameter, Reference, SchemeName, Target, Transfer};
+pub use region::{Comparison, Region, Relation};
+pub use study::{Run, Study, load_study, parse_study};
+pub use tool::{Drive, Procedure, ProcedureKind, Tool, ToolShape};
+pub use units::{Dimension, Exponents, Quantity};
+
+/// Reads the scene in a file. The name in messages is `path` as given.
+pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
+    parse(&text_of(path)?, &path.display().to_string())
+}
+
+/// Reads a scene from text. `file` names it in messages; paths in the scene are relative to the folder of `file`.
+pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
+    let (keys, origin) = document::read::<keys::SceneKeys>(text, file)?;
+    let mut report = resolve::Report::new(&origin);
+    let scene = resolve::scene(keys, &mut report);
+    if let Some(scene) = &scene {
+        validate::scene(scene, &mut report);
+    }
+    let errors = report.finish();
+    match scene {
+        Some(scene) if errors.is_empty() => Ok(scene),
+        _ => Err(errors),
+    }
+}
+
+/// The JSON schema of scene files.
+pub fn schema() -> serde_json::Value {
+    document::schema::<keys::SceneKeys>()
+}
+
+/// The JSON schema of study files.
+pub fn study_schema() -> serde_json::Value {
+    document::schema::<study::StudyKeys>()
+}
+
+fn text_of(path: &Path) -> Result<String, Vec<SceneError>> {
+    std::fs::read_to_string(path).map_err(|bad| {
+        vec![SceneError {
+            kind: ErrorKind::Invalid,
+            file: path.display().to_string(),
+            line: 0,
+            column: 0,
+            key: String::new(),
+            found: None,
+            problem: format!("can't be read: {bad}"),
+            help: None,
+        }]
+    })
+}

@@ -1,0 +1,234 @@
+//! A scene as the program works with it: every quantity an f64 in SI, every choice an enum.
+
+use super::document::Origin;
+use super::error::{ErrorKind, Problem, SceneError};
+use super::field::{Prescribed, ScalarField, VectorField};
+use super::method::{MeshFile, Method};
+use super::output::{Check, Output, Reference};
+use super::region::Region;
+use super::tool::{Procedure, Tool};
+
+/// A checked scene.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// One line that says what the scene is.
+    pub title: String,
+    /// Where the case and its reference come from.
+    pub source: Option<String>,
+    /// The body in its undeformed state.
+    pub body: Body,
+    /// The material wherever no region has its own.
+    pub material: Material,
+    /// Parts of the body with a material of their own; later ones win.
+    pub regions: Vec<MaterialRegion>,
+    /// Prescribed displacements.
+    pub supports: Vec<Support>,
+    /// Given loads.
+    pub loads: Vec<Load>,
+    /// Rigid tools.
+    pub tools: Vec<Tool>,
+    /// How the scene is stepped.
+    pub procedure: Procedure,
+    /// At least one, with unique ids.
+    pub methods: Vec<Method>,
+    /// What to report.
+    pub output: Output,
+    /// What to compare with.
+    pub reference: Option<Reference>,
+    /// What must hold.
+    pub checks: Vec<Check>,
+    pub(crate) origin: Origin,
+}
+
+impl Scene {
+    /// Name of the file, as given to [`load`](super::load) or [`parse`](super::parse).
+    pub fn file(&self) -> &str {
+        self.origin.file()
+    }
+
+    /// The method of that id.
+    pub fn method(&self, id: &str) -> Option<&Method> {
+        self.methods.iter().find(|method| method.id == id)
+    }
+
+    /// An error about `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from 0), found
+    /// only while running: an empty region, an inverted element. It names file, line and value.
+    pub fn error(&self, key: &str, problem: &str, help: Option<&str>) -> SceneError {
+        let problem = Problem { found: None, problem: problem.to_string(), help: help.map(str::to_string) };
+        self.origin.error(ErrorKind::Invalid, key, problem)
+    }
+}
+
+/// Bodies; lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// An axis-parallel box.
+    Box {
+        /// Lower corner.
+        min: [f64; 3],
+        /// Upper corner.
+        max: [f64; 3],
+    },
+    /// About the z axis, the base at z = 0.
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Height.
+        height: f64,
+    },
+    /// About the origin.
+    Ball {
+        /// Radius.
+        radius: f64,
+    },
+    /// A thick sphere about the origin.
+    SphereShell {
+        /// Inner radius.
+        inner: f64,
+        /// Outer radius.
+        outer: f64,
+        /// Only x, y, z >= 0.
+        octant: bool,
+    },
+    /// The kidney, by its map from the ball.
+    Kidney,
+    /// The mesh of a file.
+    File(MeshFile),
+}
+
+impl Body {
+    /// The name of the shape in files and tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Body::Box { .. } => "box",
+            Body::Cylinder { .. } => "cylinder",
+            Body::Ball { .. } => "ball",
+            Body::SphereShell { .. } => "sphere-shell",
+            Body::Kidney => "kidney",
+            Body::File(_) => "file",
+        }
+    }
+
+    /// Names of the parts of its surface; `None` where only the mesh file knows them. "surface" is all of it.
+    pub fn surfaces(&self) -> Option<&'static [&'static str]> {
+        match self {
+            Body::Box { .. } => Some(&["x-min", "x-max", "y-min", "y-max", "z-min", "z-max", "surface"]),
+            Body::Cylinder { .. } => Some(&["bottom", "top", "side", "surface"]),
+            Body::Ball { .. } | Body::Kidney => Some(&["surface"]),
+            Body::SphereShell { octant: false, .. } => Some(&["inner", "outer", "surface"]),
+            Body::SphereShell { octant: true, .. } => {
+                Some(&["inner", "outer", "x-min", "y-min", "z-min", "surface"])
+            }
+            Body::File(_) => None,
+        }
+    }
+}
+
+/// Young's modulus (Pa), Poisson's ratio and density (kg/m3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus in pascals, positive.
+    pub young: f64,
+    /// Poisson's ratio, above -1 and below 0.5.
+    pub poisson: f64,
+    /// Density in kilograms per cubic metre.
+    pub density: Option<f64>,
+}
+
+/// Material laws.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// Linear elasticity at small strain.
+    Linear(Elastic),
+    /// St. Venant-Kirchhoff.
+    SaintVenantKirchhoff(Elastic),
+    /// Neo-Hookean.
+    NeoHookean(Elastic),
+    /// Hencky, in logarithmic strain.
+    Hencky(Elastic),
+    /// Mooney-Rivlin; pascals, kilograms per cubic metre.
+    MooneyRivlin {
+        /// Constant of the first invariant.
+        c10: f64,
+        /// Constant of the second invariant.
+        c01: f64,
+        /// Bulk modulus.
+        bulk: f64,
+        /// Density.
+        density: Option<f64>,
+    },
+    /// Ogden; pascals, kilograms per cubic metre.
+    Ogden {
+        /// Shear constant and exponent of each term.
+        terms: Vec<(f64, f64)>,
+        /// Bulk modulus.
+        bulk: f64,
+        /// Density.
+        density: Option<f64>,
+    },
+}
+
+impl Material {
+    /// The name of the law in files and tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Material::Linear(_) => "linear",
+            Material::SaintVenantKirchhoff(_) => "saint-venant-kirchhoff",
+            Material::NeoHookean(_) => "neo-hookean",
+            Material::Hencky(_) => "hencky",
+            Material::MooneyRivlin { .. } => "mooney-rivlin",
+            Material::Ogden { .. } => "ogden",
+        }
+    }
+}
+
+/// A part of the body with a material of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialRegion {
+    /// Its name in tables.
+    pub name: String,
+    /// Where it is; names are those of volumes in the mesh file.
+    pub place: Place,
+    /// Its material.
+    pub material: Material,
+}
+
+/// Where something acts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// On named parts.
+    On(Vec<String>),
+    /// Where comparisons hold.
+    Where(Region),
+    /// Everywhere (body forces).
+    Everywhere,
+}
+
+/// Prescribed displacement of a part of the body.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Where.
+    pub place: Place,
+    /// Along x, y, z; free where `None`. At least one is prescribed.
+    pub motion: [Option<Prescribed>; 3],
+}
+
+/// A given load.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub kind: LoadKind,
+}
+
+/// Kinds of loads.
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// Force per area, in pascals.
+    Traction(VectorField),
+    /// Pressure along the inner normal, in pascals.
+    Pressure(ScalarField),
+    /// Force per volume, in newtons per cubic metre.
+    Body(VectorField),
+}

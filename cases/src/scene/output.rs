@@ -1,0 +1,161 @@
+//! What a scene reports, what it compares with, and what must hold.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::method::{MeshFile, Size};
+use super::metric::Metric;
+use super::units::Quantity;
+
+/// What a scene reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Points to report, in metres.
+    pub probes: Vec<[f64; 3]>,
+    /// Transfers of the nodal displacements to other points.
+    pub transfers: Vec<Transfer>,
+}
+
+/// A transfer of nodal displacements to other points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transfer {
+    /// The points.
+    pub to: Target,
+    /// The scheme.
+    pub scheme: SchemeName,
+    /// Neighbours per point, where the scheme has them.
+    pub neighbours: Option<usize>,
+    /// Power of the inverse distance.
+    pub power: Option<f64>,
+    /// Support radius over the local spacing, where the scheme has one.
+    pub dilatation: Option<f64>,
+}
+
+/// Points of a transfer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// The nodes of the reference method.
+    ReferenceNodes,
+    /// The probes.
+    Probes,
+    /// The nodes of a mesh file.
+    File(MeshFile),
+}
+
+/// Transfer schemes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs)] // the names are the field's words
+pub enum SchemeName {
+    Nearest,
+    InverseDistance,
+    Shepard,
+    MlsLinear,
+    MlsQuadratic,
+    ThinPlate,
+    Cubic,
+    Barycentric,
+    /// The solver's own rows
+    Own,
+}
+
+impl SchemeName {
+    /// Every scheme, in the order tables list them.
+    pub const ALL: [SchemeName; 9] = [
+        SchemeName::Nearest,
+        SchemeName::InverseDistance,
+        SchemeName::Shepard,
+        SchemeName::MlsLinear,
+        SchemeName::MlsQuadratic,
+        SchemeName::ThinPlate,
+        SchemeName::Cubic,
+        SchemeName::Barycentric,
+        SchemeName::Own,
+    ];
+
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            SchemeName::Nearest => "nearest",
+            SchemeName::InverseDistance => "inverse-distance",
+            SchemeName::Shepard => "shepard",
+            SchemeName::MlsLinear => "mls-linear",
+            SchemeName::MlsQuadratic => "mls-quadratic",
+            SchemeName::ThinPlate => "thin-plate",
+            SchemeName::Cubic => "cubic",
+            SchemeName::Barycentric => "barycentric",
+            SchemeName::Own => "own",
+        }
+    }
+}
+
+/// What results are compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reference {
+    /// An exact solution.
+    Exact {
+        /// Its name.
+        name: String,
+        /// Its parameters.
+        parameters: BTreeMap<String, Parameter>,
+    },
+    /// A method of this scene.
+    Method {
+        /// Its id.
+        id: String,
+        /// Another size to run it at.
+        size: Option<Size>,
+    },
+    /// A stored record.
+    Record(PathBuf),
+}
+
+/// A parameter of an exact solution.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parameter {
+    /// A bare number.
+    Number(f64),
+    /// A quantity with its dimension.
+    Quantity(Quantity),
+    /// A truth value.
+    Truth(bool),
+    /// A name.
+    Text(String),
+    /// A list.
+    List(Vec<Parameter>),
+}
+
+/// What must hold of the results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The metric.
+    pub metric: &'static Metric,
+    /// Ids of the methods it holds for; all of them where empty.
+    pub methods: Vec<String>,
+    /// The bound, in the SI unit of the metric.
+    pub bound: Bound,
+}
+
+/// Bound of a metric.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bound {
+    /// Passes if no value is beyond.
+    Within {
+        /// Smallest value allowed.
+        at_least: Option<f64>,
+        /// Largest value allowed.
+        at_most: Option<f64>,
+    },
+    /// A known defect: the value is reported as not passing, and the check holds only while it stays in the band.
+    KnownBand {
+        /// Low end.
+        low: f64,
+        /// High end.
+        high: f64,
+        /// Why the method can't do better.
+        reason: String,
+    },
+}

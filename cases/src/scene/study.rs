@@ -1,0 +1,127 @@
+//! Studies: many scenes and methods, with what is varied and what must hold.
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::error::{Problem, SceneError};
+use super::keys::CheckKeys;
+use super::method::KernelName;
+use super::output::Check;
+use super::resolve::{Report, checks};
+use super::{document, text_of};
+
+/// A study.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// One line that says what the study is.
+    pub title: String,
+    /// Its runs, in order.
+    pub runs: Vec<Run>,
+}
+
+/// One scene with what is varied of it: methods times levels (or node counts) times kernels times Poisson's ratios.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Ids of its methods; all of them where empty.
+    pub methods: Vec<String>,
+    /// Levels in place of the methods' own sizes; their own where empty.
+    pub levels: Vec<u32>,
+    /// Poisson's ratios in place of the scene's; its own where empty.
+    pub poisson: Vec<f64>,
+    /// Node counts of clouds; their own where empty.
+    pub nodes: Vec<usize>,
+    /// Kernels of clouds; their own where empty.
+    pub kernels: Vec<KernelName>,
+    /// Whether the run belongs to the quick tier.
+    pub quick: bool,
+    /// What must hold, beside the scene's own checks.
+    pub checks: Vec<Check>,
+}
+
+/// A study file
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StudyKeys {
+    pub title: String,
+    #[serde(default)]
+    pub run: Vec<RunKeys>,
+}
+
+/// One scene with what is varied
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunKeys {
+    /// The scene file, relative to the study's folder
+    pub scene: String,
+    /// Ids of methods; all unless given
+    #[serde(default)]
+    pub methods: Vec<String>,
+    /// Levels in place of the methods' own sizes
+    #[serde(default)]
+    pub levels: Vec<u32>,
+    /// Poisson's ratios in place of the scene's
+    #[serde(default)]
+    pub poisson: Vec<f64>,
+    /// Node counts of clouds
+    #[serde(default)]
+    pub nodes: Vec<u32>,
+    /// Kernels of clouds
+    #[serde(default)]
+    pub kernels: Vec<KernelName>,
+    /// Part of the quick tier
+    #[serde(default)]
+    pub quick: bool,
+    #[serde(default)]
+    pub check: Vec<CheckKeys>,
+}
+
+/// Reads the study in a file. The name in messages is `path` as given.
+pub fn load_study(path: &Path) -> Result<Study, Vec<SceneError>> {
+    parse_study(&text_of(path)?, &path.display().to_string())
+}
+
+/// Reads a study from text. `file` names it in messages; scenes are relative to the folder of `file`.
+pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
+    let (keys, origin) = document::read::<StudyKeys>(text, file)?;
+    let mut report = Report::new(&origin);
+    if keys.run.is_empty() {
+        report.add("run", Problem::new("is missing").help("add a [[run]] with scene = \"...\""));
+    }
+    let runs = keys.run.into_iter().enumerate().map(|(i, run)| self::run(run, i, &mut report)).collect();
+    let errors = report.finish();
+    if errors.is_empty() { Ok(Study { title: keys.title, runs }) } else { Err(errors) }
+}
+
+fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
+    let key = format!("run[{index}]");
+    let scene = report.path(&keys.scene);
+    if !scene.is_file() {
+        let help = format!("no file at {}; scenes are relative to the study's folder", scene.display());
+        report.add(&format!("{key}.scene"), Problem::new("can't be found").help(help));
+    }
+    if keys.levels.iter().any(|l| !(1..=8).contains(l)) {
+        report.add(&format!("{key}.levels"), Problem::new("holds no level").help("levels are 1 to 8"));
+    }
+    if keys.poisson.iter().any(|nu| !(*nu > -1.0 && *nu < 0.5)) {
+        let help = "give ratios above -1 and below 0.5, such as 0.4999";
+        report.add(&format!("{key}.poisson"), Problem::new("holds no Poisson's ratio").help(help));
+    }
+    if !keys.levels.is_empty() && !keys.nodes.is_empty() {
+        let help = "vary levels or node counts, not both";
+        report.add(&format!("{key}.nodes"), Problem::new("stands beside levels").help(help));
+    }
+    Run {
+        scene,
+        methods: keys.methods,
+        levels: keys.levels,
+        poisson: keys.poisson,
+        nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
+        kernels: keys.kernels,
+        quick: keys.quick,
+        checks: checks(keys.check, &format!("{key}.check"), report),
+    }
+}

@@ -1,0 +1,252 @@
+//! One list of properties over every exact solution, then the boundary conditions that make each one what it is.
+
+use cases::exact::{
+    CantileverPlaneStrain, Elastic, Exact, ExactError, Matrix3, Params, Point3, PureBending, ThickSphere,
+    UniaxialCompression, Vector3, exact_by_name, exact_names, exact_parameters,
+};
+use proptest::prelude::*;
+
+/// A solution's name, its parameters, and the box its points are drawn from (for the sphere: outside of the hole).
+type Sample = (&'static str, &'static [(&'static str, f64)], [[f64; 2]; 3]);
+
+const UNIT: [[f64; 2]; 3] = [[-1.0, 1.0]; 3];
+const SAMPLES: [Sample; 10] = [
+    ("affine", &[("hxy", 0.2), ("hzz", -0.1), ("ty", 0.3)], UNIT),
+    ("affine", &[], UNIT),
+    ("quadratic-patch", &[("amplitude", 0.02)], UNIT),
+    ("pure-bending", &[("curvature", 0.5)], UNIT),
+    (
+        "cantilever-plane-strain",
+        &[("load", 7.0), ("length", 4.0), ("depth", 1.2)],
+        [[0.0, 4.0], [-0.6, 0.6], [-1.0, 1.0]],
+    ),
+    (
+        "saint-venant-flexure",
+        &[("load", 3.0), ("length", 5.0), ("depth", 1.0), ("width", 1.0)],
+        [[0.0, 5.0], [-0.45, 0.45], [-0.45, 0.45]],
+    ),
+    (
+        "saint-venant-flexure",
+        &[("load", 3.0), ("length", 5.0), ("depth", 0.6), ("width", 1.4)],
+        [[0.0, 5.0], [-0.27, 0.27], [-0.65, 0.65]],
+    ),
+    ("uniaxial-compression", &[("strain", 0.1)], UNIT),
+    (
+        "thick-sphere",
+        &[("inner", 1.0), ("outer", 3.0), ("inner-pressure", 20.0), ("outer-pressure", 5.0)],
+        [[0.6, 1.6]; 3],
+    ),
+    ("rigid", &[], UNIT),
+];
+
+const YOUNG: f64 = 1000.0;
+
+fn params(poisson: f64, values: &[(&str, f64)]) -> Params {
+    Params { young: YOUNG, poisson, values: values.iter().map(|(k, v)| (k.to_string(), *v)).collect() }
+}
+
+fn build(sample: &Sample, poisson: f64) -> Box<dyn Exact> {
+    exact_by_name(sample.0, &params(poisson, sample.1)).unwrap()
+}
+
+fn place(bounds: &[[f64; 2]; 3], s: [f64; 3]) -> Point3 {
+    Point3::from(Vector3::from_fn(|i, _| bounds[i][0] + s[i] * (bounds[i][1] - bounds[i][0])))
+}
+
+/// Fourth-order central difference of a field along an axis, of step 1e-3 m: exact up to quartic fields.
+fn slope<T>(field: impl Fn(&Point3) -> T, x: &Point3, axis: usize) -> T
+where
+    T: std::ops::Sub<Output = T> + std::ops::Mul<f64, Output = T>,
+{
+    const H: f64 = 1e-3;
+    let at = |steps: f64| {
+        let mut p = *x;
+        p[axis] += steps * H;
+        field(&p)
+    };
+    (at(1.0) - at(-1.0)) * (8.0 / (12.0 * H)) - (at(2.0) - at(-2.0)) * (1.0 / (12.0 * H))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn every_solution_solves_its_equations(
+        s in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],
+        poisson in prop_oneof![Just(0.0), Just(0.3), Just(0.4999), -0.5..0.5f64],
+    ) {
+        for sample in &SAMPLES {
+            let exact = build(sample, poisson);
+            let (name, x) = (sample.0, place(&sample.2, s));
+            let elastic = exact.elastic();
+            prop_assert_eq!(elastic, Elastic::new(YOUNG, poisson).unwrap());
+            let gradient = exact.gradient(&x);
+            let size = gradient.norm();
+
+            // The gradient is that of the displacement. Rounding of u over the step: 1e-16 u / 1e-3.
+            let differences = Matrix3::from_columns(&[0, 1, 2].map(|j| slope(|p| exact.displacement(p), &x, j)));
+            let error = (differences - gradient).norm();
+            prop_assert!(error < 1e-9 * size, "{name}: gradient off by {error:e} of {size:e} at {x}");
+
+            // Hooke's law. lambda multiplies the rounding of tr(H).
+            let hooke = elastic.stress(&gradient);
+            let stress = exact.stress(&x);
+            let error = (hooke - stress).norm();
+            let allowed = 1e-14 * (elastic.lambda().abs() + elastic.mu()) * size;
+            prop_assert!(error <= allowed, "{name}: Hooke's law off by {error:e}, allowed {allowed:e}");
+            prop_assert!((stress - stress.transpose()).norm() == 0.0, "{name}: unsymmetric stress");
+
+            // Equilibrium: div sigma + b = 0, against the sizes that cancel in it.
+            let slopes = [0, 1, 2].map(|j| slope(|p| exact.stress(p), &x, j));
+            let divergence: Vector3 = (0..3).map(|j| slopes[j].column(j).into_owned()).sum();
+            let sizes: f64 = slopes.iter().map(|s| s.norm()).sum::<f64>() + stress.norm() + hooke.norm();
+            let error = (divergence + exact.body_force(&x)).norm();
+            prop_assert!(error <= 1e-9 * sizes + 1e-9 * allowed, "{name}: out of balance by {error:e} of {sizes:e}");
+
+            let n = Vector3::new(0.6, 0.0, -0.8);
+            prop_assert_eq!(exact.traction(&x, &n), stress * n);
+        }
+    }
+}
+
+#[test]
+fn the_list_holds_every_solution() {
+    for name in exact_names() {
+        assert!(SAMPLES.iter().any(|s| s.0 == name), "{name} is not sampled");
+    }
+}
+
+#[test]
+fn stresses_of_prescribed_loads_do_not_depend_on_poisson() {
+    // Two of these have stresses that are free of nu: locking is judged against them, so no digit may be lost.
+    let x = Point3::new(0.7, 0.2, -0.4);
+    for name in ["pure-bending", "uniaxial-compression"] {
+        let sample = SAMPLES.iter().find(|s| s.0 == name).unwrap();
+        let reference = build(sample, 0.0).stress(&x);
+        for poisson in [0.3, 0.495, 0.4999, 0.499_999_99] {
+            assert_eq!(build(sample, poisson).stress(&x), reference, "{name} at nu = {poisson}");
+        }
+    }
+}
+
+#[test]
+fn pure_bending_is_a_couple() {
+    let exact = PureBending::new(Elastic::new(2e4, 0.495).unwrap(), 0.5);
+    let x = Point3::new(0.3, 0.02, -0.01);
+    assert_eq!(exact.traction(&x, &Vector3::y()), Vector3::zeros());
+    assert_eq!(exact.traction(&x, &Vector3::z()), Vector3::zeros());
+    assert_eq!(exact.traction(&x, &Vector3::x()), Vector3::new(2e4 * 0.5 * 0.02, 0.0, 0.0));
+    assert_eq!(exact.displacement(&Point3::new(0.08, 0.0, 0.0)).y, -0.5 * 0.5 * 0.08 * 0.08);
+}
+
+#[test]
+fn plane_strain_cantilever_carries_its_load() {
+    let (load, length, depth) = (1000.0, 48.0, 12.0);
+    for poisson in [0.0, 0.3, 0.4999] {
+        let elastic = Elastic::new(3e7, poisson).unwrap();
+        let exact = CantileverPlaneStrain::new(elastic, load, length, depth).unwrap();
+        let face = Point3::new(17.0, 0.5 * depth, 2.0);
+        assert!(exact.traction(&face, &Vector3::y()).norm() < 1e-12 * load);
+        let inner = Point3::new(17.0, 1.3, 2.0);
+        let on_plane = exact.traction(&inner, &Vector3::z());
+        assert_eq!((on_plane.x, on_plane.y, exact.displacement(&inner).z), (0.0, 0.0, 0.0));
+        // The parabola is integrated exactly by two Gauss points.
+        let y = 0.5 * depth / 3f64.sqrt();
+        let [low, high] = [-y, y].map(|y| exact.traction(&Point3::new(length, y, 0.0), &Vector3::x()));
+        assert!((0.5 * depth * (low + high) - Vector3::new(0.0, load, 0.0)).norm() < 1e-12 * load);
+        // Moment about z at the root is -P L.
+        let root = [-y, y].map(|y| exact.stress(&Point3::new(0.0, y, 0.0))[(0, 0)]);
+        let moment = 0.5 * depth * (root[1] - root[0]) * y;
+        assert!((moment + load * length).abs() < 1e-12 * load * length);
+    }
+}
+
+#[test]
+fn plane_strain_cantilever_has_the_classic_tip_deflection() {
+    // Plane stress with P = 1000, E = 3e7, nu = 0.3, D = 12, L = 48 gives .008533 + .000367 = .0089 (Timoshenko's
+    // beam data); these E and nu make plane strain the same problem: E / (1 - nu^2) = 3e7, nu / (1 - nu) = 0.3.
+    let poisson: f64 = 0.3 / 1.3;
+    let elastic = Elastic::new(3e7 * (1.0 - poisson * poisson), poisson).unwrap();
+    let exact = CantileverPlaneStrain::new(elastic, 1000.0, 48.0, 12.0).unwrap();
+    let tip = exact.displacement(&Point3::new(48.0, 0.0, 0.0)).y;
+    assert!((tip - 0.0089).abs() < 5e-8, "tip {tip}");
+}
+
+#[test]
+fn compressed_prism_has_free_sides() {
+    let exact = UniaxialCompression::new(Elastic::new(2e4, 0.4999).unwrap(), 0.1);
+    let x = Point3::new(0.01, -0.02, 0.03);
+    assert_eq!(exact.traction(&x, &Vector3::x()), Vector3::zeros());
+    assert_eq!(exact.traction(&x, &Vector3::z()), Vector3::new(0.0, 0.0, -2e3));
+    assert!((exact.displacement(&x).z + 0.003).abs() < 1e-17);
+}
+
+#[test]
+fn thick_sphere_carries_both_pressures() {
+    let (inner, outer, pressures) = (0.02, 0.05, [3e3, 1e3]);
+    for poisson in [0.0, 0.3, 0.4999] {
+        let exact = ThickSphere::new(Elastic::new(2e4, poisson).unwrap(), [inner, outer], pressures).unwrap();
+        let n = Vector3::new(0.48, -0.6, 0.64);
+        for (r, pressure) in [(inner, pressures[0]), (outer, pressures[1])] {
+            let traction = exact.traction(&Point3::from(r * n), &n);
+            assert!((traction + pressure * n).norm() < 1e-12 * pressure, "r = {r}: {traction}");
+        }
+    }
+    // A thin wall carries p r / (2 t) as hoop stress.
+    let thin = ThickSphere::new(Elastic::new(2e4, 0.3).unwrap(), [1.0, 1.001], [1.0, 0.0]).unwrap();
+    let hoop = thin.stress(&Point3::new(1.0005, 0.0, 0.0))[(1, 1)];
+    assert!((hoop / 500.0 - 1.0).abs() < 2e-3, "hoop {hoop}");
+}
+
+#[test]
+fn affine_components_go_where_their_names_say() {
+    let exact = build(&SAMPLES[0], 0.3);
+    let h = exact.gradient(&Point3::origin());
+    assert_eq!(h, Matrix3::new(0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.1));
+    assert_eq!(exact.displacement(&Point3::new(0.0, 1.0, 1.0)), Vector3::new(0.2, 0.3, -0.1));
+}
+
+#[test]
+fn a_rigid_motion_strains_nothing() {
+    let sample = SAMPLES.iter().find(|s| s.0 == "rigid").unwrap();
+    let exact = build(sample, 0.3);
+    assert_eq!(exact.stress(&Point3::new(0.1, 0.2, 0.3)), Matrix3::zeros());
+    let values = [("tx", 1.0), ("rz", 0.5)];
+    let exact = exact_by_name("rigid", &params(0.3, &values)).unwrap();
+    assert_eq!(exact.displacement(&Point3::new(2.0, 4.0, 0.0)), Vector3::new(1.0 - 2.0, 1.0, 0.0));
+}
+
+#[test]
+fn bad_requests_are_named() {
+    let message = |name: &str, poisson: f64, values: &[(&str, f64)]| {
+        exact_by_name(name, &params(poisson, values)).map(|_| ()).unwrap_err().to_string()
+    };
+    let bar = [("load", 1.0), ("length", 5.0), ("depth", 1.0)];
+    let with = |extra: (&'static str, f64)| [bar.as_slice(), &[extra]].concat();
+    for (text, parts) in [
+        (message("thick-spere", 0.3, &[]), ["'thick-spere'", "did you mean 'thick-sphere'"]),
+        (message("saint-venant-flexure", 0.3, &bar), ["needs 'width'", "(m)"]),
+        (message("saint-venant-flexure", 0.3, &with(("widht", 1.0))), ["'widht'", "did you mean 'width'"]),
+        (message("saint-venant-flexure", 0.3, &with(("width", 0.0))), ["'width' is 0", "above zero"]),
+        (message("saint-venant-flexure", 0.3, &with(("width", 60.0))), ["'depth' is 1", "0.02 of the width"]),
+        (message("saint-venant-flexure", 0.3, &with(("width", f64::NAN))), ["'width' is NaN", "finite"]),
+        (
+            message("thick-sphere", 0.3, &[("inner", 2.0), ("outer", 1.0)]),
+            ["'outer' is 1", "above the inner"],
+        ),
+        (message("pure-bending", 0.3, &[]), ["needs 'curvature'", "(1/m)"]),
+        (message("uniaxial-compression", 0.3, &[]), ["needs 'strain'", "plain number"]),
+        (message("cantilever-plane-strain", 0.3, &bar[..2]), ["needs 'depth'", "(m)"]),
+        (message("affine", 0.3, &[("hyx2", 1.0)]), ["takes no 'hyx2'", "did you mean 'hyx'"]),
+        (message("affine", 0.5, &[]), ["'poisson' is 0.5", "below 0.5"]),
+        (message("affine", -1.0, &[]), ["'poisson' is -1", "above -1"]),
+    ] {
+        for part in parts {
+            assert!(text.contains(part), "'{part}' is not in: {text}");
+        }
+    }
+    assert!(matches!(Elastic::new(-1.0, 0.3), Err(ExactError::Material { what: "young", .. })));
+    assert!(matches!(Elastic::new(f64::NAN, 0.3), Err(ExactError::Material { what: "young", .. })));
+    assert_eq!(exact_parameters("pure-bending").unwrap()[0].unit, "1/m");
+    assert!(exact_parameters("x").is_err());
+}

@@ -1,0 +1,177 @@
+//! The scene's body as a mesh of the size asked for, or as a closed form for clouds.
+
+use cases::scene::{Body, Jitter, MeshFile, Size};
+use geometry::generate::{
+    self, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, kidney_mesh, raise_order, sphere_shell_mesh,
+};
+use geometry::shapes::{Ball, Cuboid, Cylinder, Kidney, Shape, SphereShell};
+use geometry::{CellKind, Mesh, Point3, msh, quality};
+
+use crate::Failure;
+
+/// More nodes than this are a typing error rather than a wish on one machine.
+const MOST_NODES: usize = 3_000_000;
+
+/// A mesh of the body in cells of one kind, checked for inverted cells.
+pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
+    let mesh = unchecked(body, kind, size, jitter)?;
+    quality::check(&mesh).map_err(|bad| Failure::Run(bad.to_string()))?;
+    Ok(mesh)
+}
+
+/// The body in closed form; `None` for a mesh file and for the octant of a shell.
+pub fn shape(body: &Body) -> Option<Box<dyn Shape + Send + Sync>> {
+    match *body {
+        Body::Box { min, max } => Some(Box::new(Cuboid { min: min.into(), max: max.into() })),
+        Body::Cylinder { radius, height } => Some(Box::new(Cylinder { radius, height })),
+        Body::Ball { radius } => Some(Box::new(Ball { radius })),
+        Body::SphereShell { inner, outer, octant: false } => Some(Box::new(SphereShell { inner, outer })),
+        Body::SphereShell { octant: true, .. } | Body::File(_) => None,
+        Body::Kidney => Some(Box::new(Kidney)),
+    }
+}
+
+fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
+    if let Size::File(file) = size {
+        return from_file(file, kind);
+    }
+    if let (Some(_), true) = (jitter, !matches!(body, Body::Box { .. })) {
+        return Err(Failure::Input(format!("jitter is for boxes; a {} has none", body.name())));
+    }
+    let family = |n: usize| -> Result<Mesh, Failure> {
+        let mesh = match *body {
+            Body::Box { min, max } => {
+                let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
+                let h = extent.iter().copied().fold(f64::MAX, f64::min) / n as f64;
+                let cells = extent.map(|e| (e / h).round().max(1.0) as usize);
+                cuboid(kind, min, max, cells, [1.0; 3], jitter)
+            }
+            Body::Cylinder { radius, height } => {
+                let along = (height / (2.0 * radius) * 2.0 * n as f64).round().max(1.0) as usize;
+                cylinder_mesh(kind, radius, height, [n, along], 1.0).and_then(named_ends)
+            }
+            Body::Ball { radius } => ball_mesh(kind, radius, n),
+            Body::SphereShell { inner, outer, octant } => {
+                let extent = if octant { ShellExtent::Octant } else { ShellExtent::Whole };
+                sphere_shell_mesh(kind, inner, outer, [n, n], 1.0, extent)
+            }
+            Body::Kidney => kidney_mesh(kind, n),
+            Body::File(ref file) => {
+                return Err(Failure::Input(format!(
+                    "the body is the mesh of {}; its methods take size = {{ file = \"...\" }}",
+                    file.path.display()
+                )));
+            }
+        };
+        let mesh = mesh?;
+        if mesh.points().len() > MOST_NODES {
+            return Err(Failure::Input(format!(
+                "{} nodes are asked for; at most {MOST_NODES} are made",
+                mesh.points().len()
+            )));
+        }
+        Ok(mesh)
+    };
+    match *size {
+        Size::Level(level) => family(base(body) << (level - 1).min(16)),
+        Size::Nodes(wanted) => nearest_count(family, wanted),
+        Size::Spacing(spacing) => {
+            let n = narrowest(body) / spacing;
+            if !(n.is_finite() && n < 1e3) {
+                return Err(Failure::Input(format!(
+                    "a spacing of {spacing} m makes {n:.0} cells across the body"
+                )));
+            }
+            family(n.round().max(1.0) as usize)
+        }
+        Size::Cells { cells, grading } => match *body {
+            Body::Box { min, max } => Ok(cuboid(kind, min, max, cells, grading, jitter)?),
+            _ => Err(Failure::Input(format!(
+                "cells = [nx, ny, nz] is for boxes; a {} takes level, nodes or spacing",
+                body.name()
+            ))),
+        },
+        Size::File(_) => unreachable!("returned above"),
+    }
+}
+
+fn cuboid(
+    kind: CellKind,
+    min: [f64; 3],
+    max: [f64; 3],
+    cells: [usize; 3],
+    grading: [f64; 3],
+    jitter: Option<Jitter>,
+) -> Result<Mesh, generate::GenerateError> {
+    let jitter = jitter.map(|j| generate::Jitter { fraction: j.fraction, seed: j.seed });
+    box_mesh(kind, min.into(), max.into(), cells, grading, jitter)
+}
+
+/// The ends of an upright cylinder under the names that scenes know.
+fn named_ends(mesh: Mesh) -> Result<Mesh, generate::GenerateError> {
+    let [bottom, top] = ["z-min", "z-max"].map(|name| mesh.group(name).unwrap_or_default().to_vec());
+    Ok(mesh.with_group("bottom", bottom)?.with_group("top", top)?)
+}
+
+/// Cells across the narrowest extent at level 1. Levels double it.
+fn base(body: &Body) -> usize {
+    match body {
+        // Two cells of depth: one cannot bend.
+        Body::Box { .. }
+        | Body::Cylinder { .. }
+        | Body::Ball { .. }
+        | Body::Kidney
+        | Body::SphereShell { .. } => 2,
+        Body::File(_) => 1,
+    }
+}
+
+/// The extent (m) that a size's number of cells divides.
+fn narrowest(body: &Body) -> f64 {
+    match *body {
+        Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
+        Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
+        Body::SphereShell { inner, outer, .. } => outer - inner,
+        Body::Kidney => Kidney::C,
+        Body::File(_) => 0.0,
+    }
+}
+
+/// The member of a family whose node count comes nearest.
+fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize) -> Result<Mesh, Failure> {
+    let off = |mesh: &Mesh| mesh.points().len().abs_diff(wanted);
+    let mut best = family(1)?;
+    for n in 2.. {
+        if best.points().len() >= wanted {
+            break;
+        }
+        let next = family(n)?;
+        if off(&next) > off(&best) {
+            break;
+        }
+        best = next;
+    }
+    Ok(best)
+}
+
+/// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.
+fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
+    let mesh = msh::read(&file.path, file.unit).map_err(|bad| Failure::Input(bad.to_string()))?;
+    let fits = |mesh: &Mesh, kind| (0..mesh.cell_count()).all(|c| mesh.kind(c) == kind);
+    match kind {
+        _ if fits(&mesh, kind) => Ok(mesh),
+        CellKind::Tet10 if fits(&mesh, CellKind::Tet4) => Ok(raise_order(&mesh)),
+        CellKind::Hex20 if fits(&mesh, CellKind::Hex8) => Ok(raise_order(&mesh)),
+        _ => Err(Failure::Input(format!(
+            "{} holds {} cells, not {}",
+            file.path.display(),
+            mesh.uniform_kind().map_or("mixed", CellKind::name),
+            kind.name()
+        ))),
+    }
+}
+
+/// Corner coordinates as a point.
+pub fn point(x: [f64; 3]) -> Point3 {
+    Point3::from(x)
+}

@@ -1,0 +1,147 @@
+//! The command line. Stable: others script against it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
+/// same scenes.
+///
+/// Exit codes: 0 all held; 1 a check failed; 2 bad usage or input; 3 could not run or did not converge; 4 nothing ran;
+/// 5 incomplete.
+#[derive(Parser)]
+#[command(name = "tissuebench", version, max_term_width = 100)]
+pub struct Cli {
+    /// Threads of the solvers (default: all cores)
+    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run one scene, with some or all of its methods
+    Run(RunArgs),
+    /// Print the stages a scene needs, those it does not, and why
+    Plan {
+        /// The scene file
+        scene: PathBuf,
+        /// Only this method (may be given several times)
+        #[arg(long = "method", value_name = "ID")]
+        methods: Vec<String>,
+    },
+    /// Run a study: many scenes and methods; its checks gate the exit code
+    Verify(VerifyArgs),
+    /// Render tables, figures and the report of stored results
+    Report {
+        /// A folder that `verify` wrote
+        results: PathBuf,
+        /// Where to put the report (default: RESULTS/report)
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// List cases, elements, kernels, transfer schemes and exact solutions
+    List,
+    /// Print the JSON schema of scene files
+    Schema,
+    /// Inspect and convert mesh files
+    Mesh {
+        /// What to do with them
+        #[command(subcommand)]
+        action: MeshAction,
+    },
+}
+
+/// Arguments of `run`.
+#[derive(Args)]
+pub struct RunArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// What to print on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+    /// Also write records, tables and figures to this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `verify`.
+#[derive(Args)]
+pub struct VerifyArgs {
+    /// The study file (default: cases/verify.toml)
+    pub study: Option<PathBuf>,
+    /// Only the runs of the quick tier
+    #[arg(long)]
+    pub quick: bool,
+    /// Only runs whose case or method contains this text
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Only the K-th of N equal shares of the runs
+    #[arg(long, value_name = "K/N", value_parser = shard)]
+    pub shard: Option<(usize, usize)>,
+    /// Runs at a time; more than 1 spoils the timings
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
+    /// Keep stored results of runs whose scene, method and program have not changed
+    #[arg(long)]
+    pub resume: bool,
+    /// Where to put records, tables, figures and the report
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+}
+
+/// What `run` prints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table for people
+    Table,
+    /// One JSON object per run, one per line
+    Json,
+}
+
+/// What to do with mesh files.
+#[derive(Subcommand)]
+pub enum MeshAction {
+    /// Print counts, volume and quality
+    Info {
+        /// Gmsh 2.2 files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Length unit of the coordinates
+        #[arg(long, default_value = "mm", value_parser = length_unit)]
+        unit: f64,
+    },
+    /// Read one mesh file, write it as another kind of cells
+    Convert {
+        /// The file to read (Gmsh 2.2)
+        from: PathBuf,
+        /// The file to write (Gmsh 2.2)
+        to: PathBuf,
+        /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
+        #[arg(long)]
+        element: Option<String>,
+    },
+}
+
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let fix = "write it as K/N with K from 1 to N, such as 1/4";
+    let (k, n) = text.split_once('/').ok_or(fix)?;
+    let (k, n): (usize, usize) = (k.parse().map_err(|_| fix)?, n.parse().map_err(|_| fix)?);
+    if (1..=n).contains(&k) { Ok((k, n)) } else { Err(fix.into()) }
+}
+
+fn length_unit(text: &str) -> Result<f64, String> {
+    match text {
+        "m" => Ok(1.0),
+        "cm" => Ok(1e-2),
+        "mm" => Ok(1e-3),
+        "um" => Ok(1e-6),
+        _ => Err("a length unit: m, cm, mm or um".into()),
+    }
+}

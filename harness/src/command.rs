@@ -1,0 +1,250 @@
+//! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
+//! 4 nothing ran, 5 incomplete.
+
+use std::path::Path;
+
+use cases::scene::{self, ErrorKind, Scene, SceneError};
+use reports::{RunSet, Status};
+
+use crate::cli::{Cli, Command, Format, RunArgs, VerifyArgs};
+use crate::group::{Group, case_name};
+use crate::json::RunObject;
+use crate::outcome::Outcome;
+use crate::run::Repeats;
+use crate::study::Plan;
+use crate::{Failure, check, list, mesh_files, provenance};
+
+/// Repeats of a single run's timings.
+const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
+
+/// Runs one command and returns its exit code.
+pub fn main(cli: Cli) -> u8 {
+    if let Some(threads) = cli.threads
+        && let Err(bad) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
+    {
+        eprintln!("tissuebench: {bad}");
+        return 3;
+    }
+    match cli.command {
+        Command::Run(args) => run(&args),
+        Command::Plan { scene, methods } => plan(&scene, &methods),
+        Command::Verify(args) => verify(&args),
+        Command::Report { results, out } => {
+            let out = out.unwrap_or_else(|| results.join("report"));
+            report(&results, &out)
+        }
+        Command::List => {
+            list::print();
+            0
+        }
+        Command::Schema => {
+            println!("{}", serde_json::to_string_pretty(&scene::schema()).expect("a JSON value"));
+            0
+        }
+        Command::Mesh { action } => match mesh_files::act(&action) {
+            Ok(()) => 0,
+            Err(failure) => fail(&failure),
+        },
+    }
+}
+
+fn fail(failure: &Failure) -> u8 {
+    eprintln!("tissuebench: {failure}");
+    failure.exit_code()
+}
+
+/// Prints what is wrong with an input file; 2, or 3 if it is only ahead of what can run.
+fn refuse(errors: &[SceneError]) -> u8 {
+    for error in errors {
+        eprintln!("{error}");
+    }
+    if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
+}
+
+/// The scene, and the indices of the methods asked for.
+fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
+    let scene = scene::load(path).map_err(|errors| refuse(&errors))?;
+    let ahead = scene.unavailable();
+    if !ahead.is_empty() {
+        return Err(refuse(&ahead));
+    }
+    let mut chosen = Vec::new();
+    for id in methods {
+        match scene.methods.iter().position(|m| m.id == *id) {
+            Some(index) => chosen.push(index),
+            None => {
+                let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
+                eprintln!("{}: no method '{id}'; it has {}", path.display(), known.join(", "));
+                return Err(2);
+            }
+        }
+    }
+    if methods.is_empty() {
+        chosen = (0..scene.methods.len()).collect();
+    }
+    Ok((scene, chosen))
+}
+
+fn run(args: &RunArgs) -> u8 {
+    let (scene, chosen) = match open(&args.scene, &args.methods) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    let case = case_name(&scene);
+    let group = match Group::new(&scene, None, REPEATS) {
+        Ok(group) => group,
+        Err(failure) => return fail(&failure),
+    };
+    let mut code = 0;
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    let mut set = RunSet::default();
+    for index in chosen {
+        let method = &scene.methods[index];
+        match group.run(&group.scenario(method.clone(), 0), args.out.is_some()) {
+            Ok(outcome) => {
+                if args.format == Format::Json {
+                    print_json(&RunObject::finished(&outcome));
+                }
+                set.records.extend(outcome.records());
+                set.plans.extend(outcome.plan_entries());
+                set.fields.extend(outcome.field.clone());
+                let records = outcome.records();
+                for check in &scene.checks {
+                    if check::needs_levels(check)
+                        || !(check.methods.is_empty() || check.methods.contains(&method.id))
+                    {
+                        continue;
+                    }
+                    let value = check::value(check.metric.name, &records);
+                    set.checks.push(check::judge(check, &case, &method.id, value));
+                }
+                outcomes.push(outcome);
+            }
+            Err(failure) => {
+                eprintln!("{case} {}: {failure}", method.id);
+                if args.format == Format::Json {
+                    print_json(&RunObject::failed(&case, &method.id, failure.to_string(), &[]));
+                }
+                set.failures.push(reports::Failure {
+                    case: case.clone(),
+                    method: method.id.clone(),
+                    reason: failure.to_string(),
+                });
+                code = code.max(failure.exit_code());
+            }
+        }
+    }
+    if args.format == Format::Table && !outcomes.is_empty() {
+        println!("{}", list::outcomes(&outcomes));
+    }
+    for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
+        eprintln!("{}", list::verdict(check));
+        code = code.max(1);
+    }
+    if let Some(out) = &args.out {
+        let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+        set.provenance = provenance::provenance(&[(case, text)], 0);
+        match reports::write_run(out, &set) {
+            Ok(()) => code = code.max(report(out, &out.join("report"))),
+            Err(bad) => {
+                eprintln!("tissuebench: {bad}");
+                return 3;
+            }
+        }
+    }
+    code
+}
+
+fn print_json(object: &RunObject) {
+    println!("{}", serde_json::to_string(object).expect("finite numbers and text"));
+}
+
+fn plan(path: &Path, methods: &[String]) -> u8 {
+    let (scene, chosen) = match open(path, methods) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    let mut code = 0;
+    for index in chosen {
+        let method = &scene.methods[index];
+        // A plan needs no reference: only what the run itself would do.
+        let stages = Group::unreferenced(&scene, REPEATS)
+            .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
+        match stages {
+            Ok(stages) => print!("{}", list::stages(&method.id, &stages)),
+            Err(failure) => code = code.max(fail(&failure)),
+        }
+    }
+    code
+}
+
+fn verify(args: &VerifyArgs) -> u8 {
+    let path = args.study.clone().unwrap_or_else(|| "cases/verify.toml".into());
+    let study = match scene::load_study(&path) {
+        Ok(study) => study,
+        Err(errors) => {
+            if args.study.is_none() && !path.exists() {
+                eprintln!(
+                    "tissuebench: run from the project's folder, or name a study: tissuebench verify STUDY.toml"
+                );
+            }
+            return refuse(&errors);
+        }
+    };
+    let mut plan = match Plan::new(study) {
+        Ok(plan) => plan,
+        Err(errors) => return refuse(&errors),
+    };
+    plan.select(args);
+    if plan.is_empty() {
+        eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
+        return 4;
+    }
+    eprintln!("{}: {} runs", path.display(), plan.len());
+    let finished = plan.execute(args);
+    let set = finished.set;
+    if let Err(bad) = reports::write_run(&args.out, &set) {
+        eprintln!("tissuebench: {bad}");
+        return 3;
+    }
+    let rendered = report(&args.out, &args.out.join("report"));
+    for failure in &set.failures {
+        eprintln!("could not run: {} {}: {}", failure.case, failure.method, failure.reason);
+    }
+    let count = |status| set.checks.iter().filter(|c| c.status == status).count();
+    for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
+        eprintln!("{}", list::verdict(check));
+    }
+    let (failed, not_run) = (count(Status::Fail), count(Status::NotRun));
+    println!(
+        "{} runs, {} records; checks: {} passed, {} failed, {} known not to pass, {} not run",
+        finished.ran,
+        set.records.len(),
+        count(Status::Pass),
+        failed,
+        count(Status::KnownFailure),
+        not_run
+    );
+    println!("records  {}", args.out.join("records.csv").display());
+    println!("report   {}", args.out.join("report").join("report.html").display());
+    match () {
+        () if failed > 0 => 1,
+        () if !finished.failed.is_empty() => finished.failed.iter().copied().max().unwrap_or(3),
+        () if rendered != 0 => rendered,
+        () if not_run > 0 => 5,
+        () => 0,
+    }
+}
+
+fn report(results: &Path, out: &Path) -> u8 {
+    match reports::render(results, out) {
+        Ok(rendered) => {
+            eprintln!("{} files in {}", rendered.files.len(), out.display());
+            0
+        }
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            2
+        }
+    }
+}

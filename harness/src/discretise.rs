@@ -1,0 +1,264 @@
+//! One method on one body: nodes, cells, and the tables they fill. From here on finite elements and meshless clouds
+//! look the same.
+
+use efg::{Approximation, Basis, Kernel, MlsInfo, Support};
+use fem::{SurfaceRule, VolumeRule};
+use geometry::shapes::Shape;
+use geometry::{CellKind, Cloud, FaceKind, Facet, Mesh, Point3};
+use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+
+use crate::Failure;
+
+/// Which quadrature points share a dilation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dilation {
+    /// Every point its own: the plain displacement method.
+    Standard,
+    /// One per element or integration cell.
+    Element,
+    /// One per node, shared out by the shape values.
+    Nodal,
+}
+
+/// How a cloud is integrated over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integration {
+    /// Gauss points in each background cell.
+    Gauss {
+        /// Points per tetrahedron.
+        points: usize,
+    },
+    /// Gauss points in the cells of a regular grid, those outside the body dropped.
+    Grid {
+        /// Edge of a grid cell, m.
+        spacing: f64,
+        /// Points along each axis of a cell.
+        points: usize,
+    },
+    /// Conforming cell smoothing: one point per tetrahedron, its gradient averaged from the faces.
+    CellSmoothed {
+        /// Points per triangular face.
+        face_points: usize,
+    },
+}
+
+/// How a cloud is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Essential {
+    /// Symmetric Nitsche with this factor.
+    Nitsche(f64),
+    /// Penalty with this factor.
+    Penalty(f64),
+    /// Lagrange multipliers on the surface.
+    Multipliers,
+}
+
+/// Finite elements on a mesh.
+pub struct Fem {
+    /// The mesh; its nodes are the method's.
+    pub mesh: Mesh,
+    /// Volumetric projection.
+    pub dilation: Dilation,
+}
+
+/// Element-free Galerkin on a cloud.
+pub struct Efg {
+    /// The nodes with their spacing.
+    pub cloud: Cloud,
+    /// Linear tetrahedra that fill the body.
+    pub background: Mesh,
+    /// The body in closed form, where it has one.
+    pub shape: Option<Box<dyn Shape + Send + Sync>>,
+    /// Kernel.
+    pub kernel: Kernel,
+    /// Basis.
+    pub basis: Basis,
+    /// Supports.
+    pub support: Support,
+    /// Integration.
+    pub integration: Integration,
+    /// Essential conditions.
+    pub essential: Essential,
+    /// Volumetric projection.
+    pub dilation: Dilation,
+}
+
+/// One method on one body.
+pub enum Discretisation {
+    /// Finite elements.
+    Fem(Fem),
+    /// Element-free Galerkin.
+    Efg(Efg),
+}
+
+/// The volume tables of a discretisation.
+pub struct Volume {
+    /// The quadrature.
+    pub rows: VolumeRows,
+    /// Region of each point.
+    pub region: Vec<u16>,
+    /// Points that share a dilation.
+    pub groups: Option<DilationGroups>,
+    /// The cloud's approximation; `None` for elements.
+    pub approximation: Option<Approximation>,
+    /// What moving least squares met; `None` for elements.
+    pub mls: Option<MlsInfo>,
+    /// Volume that the grid rule lost or gained, relative; `None` for other rules.
+    pub volume_error: Option<f64>,
+}
+
+impl Discretisation {
+    /// Positions that nodal parameters belong to, m.
+    pub fn nodes(&self) -> &[Point3] {
+        match self {
+            Discretisation::Fem(fem) => fem.mesh.points(),
+            Discretisation::Efg(efg) => &efg.cloud.points,
+        }
+    }
+
+    /// The mesh that carries facets and regions: the elements, or the background cells.
+    pub fn mesh(&self) -> &Mesh {
+        match self {
+            Discretisation::Fem(fem) => &fem.mesh,
+            Discretisation::Efg(efg) => &efg.background,
+        }
+    }
+
+    /// Mean node spacing `h = (V / N)^(1/3)`, m: one definition for meshes and clouds.
+    pub fn spacing(&self, volume: &VolumeRows) -> f64 {
+        (volume.weights().iter().sum::<f64>() / self.nodes().len() as f64).cbrt()
+    }
+
+    /// Fills the volume tables (and, for a cloud, builds the supports first).
+    pub fn volume(&self) -> Result<Volume, Failure> {
+        match self {
+            Discretisation::Fem(fem) => {
+                let rows = fem::volume_rows(&fem.mesh, &VolumeRule::STANDARD)?;
+                let groups = match fem.dilation {
+                    Dilation::Standard => None,
+                    Dilation::Element => Some(fem::element_dilation(&fem.mesh, &VolumeRule::STANDARD)?),
+                    Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
+                };
+                let region = fem::regions(&fem.mesh, &VolumeRule::STANDARD);
+                Ok(Volume { rows, region, groups, approximation: None, mls: None, volume_error: None })
+            }
+            Discretisation::Efg(efg) => efg.volume(),
+        }
+    }
+
+    /// Values on facets, with the method's own surface rule.
+    pub fn surface(&self, volume: &Volume, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
+        match (self, &volume.approximation) {
+            (Discretisation::Efg(efg), Some(approximation)) => {
+                Ok(efg::surface_rows(approximation, &efg.background, facets, efg.face_points())?.0)
+            }
+            _ => Ok(fem::surface_rows(self.mesh(), facets, &SurfaceRule::FINE)?),
+        }
+    }
+
+    /// Values and gradients on facets, for weak supports.
+    pub fn flux(&self, volume: &Volume, facets: &[Facet]) -> Result<FluxRows, Failure> {
+        match (self, &volume.approximation) {
+            (Discretisation::Efg(efg), Some(approximation)) => {
+                Ok(efg::flux_rows(approximation, &efg.background, facets, efg.face_points())?.0)
+            }
+            _ => Ok(fem::flux_rows(self.mesh(), facets, &SurfaceRule::FINE)?),
+        }
+    }
+
+    /// Values at points of the body. Points outside an element mesh (a coarse mesh is smaller than its curved body)
+    /// take the value at the nearest point of its surface; their number is returned.
+    pub fn at_points(&self, volume: &Volume, points: &[Point3]) -> Result<(PointRows, usize), Failure> {
+        match &volume.approximation {
+            Some(approximation) => Ok((approximation.point_rows(points)?.0, 0)),
+            None => {
+                let (rows, outside) = fem::nearest_point_rows(self.mesh(), points)?;
+                Ok((rows, outside.points.len()))
+            }
+        }
+    }
+
+    /// Values and gradients at points, as [`Discretisation::at_points`].
+    pub fn gradients_at(&self, volume: &Volume, points: &[Point3]) -> Result<GradRows, Failure> {
+        match &volume.approximation {
+            Some(approximation) => Ok(approximation.grad_rows(points)?.0),
+            None => Ok(fem::nearest_grad_rows(self.mesh(), points)?.0),
+        }
+    }
+
+    /// A quadrature finer than the solver's own, for error norms.
+    pub fn error_rows(&self, volume: &Volume) -> Result<(VolumeRows, Vec<u16>), Failure> {
+        match (self, &volume.approximation) {
+            (Discretisation::Efg(efg), Some(approximation)) => {
+                let (rows, _) = efg::gauss_rows(approximation, &efg.background, ERROR_POINTS)?;
+                Ok((rows, efg::gauss_regions(&efg.background, ERROR_POINTS)))
+            }
+            _ => {
+                let rule = VolumeRule::FINE.with(CellKind::Hex20, 5)?;
+                Ok((fem::volume_rows(self.mesh(), &rule)?, fem::regions(self.mesh(), &rule)))
+            }
+        }
+    }
+}
+
+/// Points per background tetrahedron of the error quadrature of clouds (degree 5).
+const ERROR_POINTS: usize = 14;
+
+impl Efg {
+    fn volume(&self) -> Result<Volume, Failure> {
+        let radii = self.support.radii(&self.cloud.points, &self.cloud.spacing)?;
+        let approximation = Approximation::new(self.cloud.points.clone(), radii, self.kernel, self.basis)?;
+        let (rows, mls, region, volume_error) = match self.integration {
+            Integration::Gauss { points } => {
+                let (rows, mls) = efg::gauss_rows(&approximation, &self.background, points)?;
+                (rows, mls, efg::gauss_regions(&self.background, points), None)
+            }
+            Integration::Grid { spacing, points } => {
+                let Some(shape) = &self.shape else {
+                    return Err(Failure::Unsupported(
+                        "integration over a clipped grid needs a body in closed form; a mesh file has no inside \
+                         test, so use rule = \"gauss\" or \"cell-smoothed\""
+                            .into(),
+                    ));
+                };
+                let [min, max] = shape.bounds();
+                let inside = |x: &Point3| shape.inside(x);
+                let (rows, grid, mls) = efg::grid_rows(&approximation, inside, (min, max), spacing, points)?;
+                (rows, mls, Vec::new(), Some(grid.volume / shape.volume() - 1.0))
+            }
+            Integration::CellSmoothed { face_points } => {
+                let (rows, mls) = efg::smoothed_rows(&approximation, &self.background, face_points)?;
+                (rows, mls, efg::smoothed_regions(&self.background), None)
+            }
+        };
+        let groups = match self.dilation {
+            Dilation::Standard => None,
+            Dilation::Element => Some(self.cell_groups(rows.weights().len())?),
+            Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
+        };
+        Ok(Volume { rows, region, groups, approximation: Some(approximation), mls: Some(mls), volume_error })
+    }
+
+    /// One group per background cell: the points of a cell stand together, equally many in each.
+    fn cell_groups(&self, points: usize) -> Result<DilationGroups, Failure> {
+        let cells = self.background.cell_count();
+        let each = points / cells;
+        let offsets = (0..=cells).map(|c| c * each).collect();
+        Ok(DilationGroups::new(points, offsets, (0..points as u32).collect(), vec![1.0; points])?)
+    }
+
+    /// Face points of surface integrals: those of the smoothing, so that the integration constraint holds to
+    /// rounding; 6 (degree 4) for other rules, whose boundary terms shall not be what limits them.
+    pub fn face_points(&self) -> usize {
+        match self.integration {
+            Integration::CellSmoothed { face_points } => face_points,
+            _ => 6,
+        }
+    }
+
+    /// Linear shape functions of the background's own nodes at the same face points: the multiplier basis.
+    pub fn multiplier_basis(&self, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
+        let rule = SurfaceRule::STANDARD.with(FaceKind::Tri3, self.face_points())?;
+        Ok(fem::surface_rows(&self.background, facets, &rule)?)
+    }
+}

@@ -1,0 +1,33 @@
+//! A region of comparisons as a ball that a cloud is denser in.
+
+use cases::scene::{Region, Relation};
+use geometry::shapes::Shape;
+use geometry::{Point3, Refinement};
+
+use crate::Failure;
+
+/// Coarse over fine spacing of a graded cloud.
+const RATIO: f64 = 2.5;
+
+/// The ball around the part of the body's bounding box in which the region's comparisons hold.
+pub fn refinement(shape: &(dyn Shape + Send + Sync), region: &Region) -> Result<Refinement, Failure> {
+    let [low, high] = shape.bounds();
+    let (mut from, mut to) = (low, high);
+    for c in &region.comparisons {
+        let a = c.axis;
+        match c.relation {
+            Relation::Greater | Relation::GreaterEqual => from[a] = from[a].max(c.value),
+            Relation::Less | Relation::LessEqual => to[a] = to[a].min(c.value),
+            Relation::Equal => (from[a], to[a]) = (from[a].max(c.value), to[a].min(c.value)),
+        }
+    }
+    if (0..3).any(|a| from[a] > to[a]) {
+        return Err(Failure::Input(format!(
+            "graded-towards = \"{}\" holds nowhere in the body, which spans {low} to {high} m",
+            region.text
+        )));
+    }
+    let centre = Point3::from((from.coords + to.coords) / 2.0);
+    let radius = (to - from).norm() / 2.0;
+    Ok(Refinement { centre, radius, reach: (high - low).norm() / 4.0, ratio: RATIO })
+}

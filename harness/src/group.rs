@@ -1,0 +1,185 @@
+//! One scene at one Poisson's ratio: its reference first, then its methods against it.
+
+use std::path::Path;
+
+use cases::scene::{self, Family, Output, Reference, Scene, Size, Target};
+use geometry::{Point3, msh};
+use interp::Scheme;
+
+use crate::discretise::Discretisation;
+use crate::outcome::Outcome;
+use crate::plan::{Wants, plan};
+use crate::run::{self, Asks, Repeats, run};
+use crate::scenario::Scenario;
+use crate::{Failure, body};
+
+/// What every run of a scene shares.
+pub struct Group<'a> {
+    scene: &'a Scene,
+    case: String,
+    poisson: Option<f64>,
+    probes: Vec<Point3>,
+    targets: Vec<Point3>,
+    schemes: Vec<(String, Scheme)>,
+    reference: Option<run::Reference>,
+    repeats: Repeats,
+}
+
+/// The case name of a scene: its file's stem.
+pub fn case_name(scene: &Scene) -> String {
+    Path::new(scene.file()).file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+}
+
+impl<'a> Group<'a> {
+    /// Runs the reference method, if the scene compares with one, and finds the target points.
+    pub fn new(scene: &'a Scene, poisson: Option<f64>, repeats: Repeats) -> Result<Group<'a>, Failure> {
+        let mut group = Group::unreferenced(scene, repeats)?;
+        group.poisson = poisson;
+        match &scene.reference {
+            Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
+            Some(Reference::Record(path)) => {
+                return Err(Failure::Unsupported(format!(
+                    "reference = {{ record = \"{}\" }} is not available yet; exact solutions and methods are",
+                    path.display()
+                )));
+            }
+            Some(Reference::Exact { .. }) | None => {}
+        }
+        Ok(group)
+    }
+
+    /// The scene without its reference: enough for a plan.
+    pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
+        let probes: Vec<Point3> = scene.output.probes.iter().map(|&x| body::point(x)).collect();
+        Ok(Group {
+            scene,
+            case: case_name(scene),
+            poisson: None,
+            targets: targets(&scene.output, &probes)?,
+            probes,
+            schemes: schemes(&scene.output)?,
+            reference: None,
+            repeats,
+        })
+    }
+
+    fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<(), Failure> {
+        let mut method = self.scene.method(id).expect("validated").clone();
+        if let Some(size) = size {
+            resize(&mut method, size);
+        }
+        let scenario = self.scenario(method, 0);
+        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+        if self.targets.is_empty() {
+            self.targets = discretisation.nodes().to_vec();
+        }
+        let asks = Asks {
+            probes: &[],
+            targets: &self.targets,
+            schemes: &[],
+            picture: false,
+            repeats: Repeats { most: 1, seconds: 0.0 },
+            reference: None,
+        };
+        let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)?;
+        self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
+        Ok(())
+    }
+
+    /// One of the scene's methods, as a run of this group.
+    pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'a> {
+        Scenario { case: self.case.clone(), scene: self.scene, method, level, poisson: self.poisson }
+    }
+
+    /// Runs one method; `picture` keeps its surface displacement.
+    pub fn run(&self, scenario: &Scenario, picture: bool) -> Result<Outcome, Failure> {
+        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+        let stages = plan(&discretisation, &setup, self.wants());
+        let asks = Asks {
+            probes: &self.probes,
+            targets: &self.targets,
+            schemes: self.schemes_for(&discretisation),
+            picture,
+            repeats: self.repeats,
+            reference: self.reference.as_ref(),
+        };
+        Ok(run(scenario.identity(), stages, &discretisation, &setup, &asks)?.outcome)
+    }
+
+    /// The plan of one method, without running it.
+    pub fn plan(&self, scenario: &Scenario) -> Result<Vec<crate::outcome::Stage>, Failure> {
+        Ok(plan(&scenario.discretise()?, &scenario.setup()?, self.wants()))
+    }
+
+    fn wants(&self) -> Wants {
+        Wants { targets: !self.targets.is_empty(), schemes: !self.schemes.is_empty() }
+    }
+
+    fn schemes_for(&self, method: &Discretisation) -> &[(String, Scheme)] {
+        match method {
+            Discretisation::Efg(_) => &self.schemes,
+            Discretisation::Fem(_) => &[],
+        }
+    }
+}
+
+/// Gives a method another size; a cloud of an exact count becomes the nodes of a mesh of that size.
+pub fn resize(method: &mut scene::Method, size: &Size) {
+    match &mut method.family {
+        Family::Fem(fem) => fem.size = size.clone(),
+        Family::Efg(efg) => match (&mut efg.cloud, size) {
+            (scene::Cloud::Uniform { nodes, .. } | scene::Cloud::Graded { nodes, .. }, Size::Nodes(n)) => {
+                *nodes = *n
+            }
+            (scene::Cloud::Mesh { size: old, .. }, _) => *old = size.clone(),
+            (cloud, _) => *cloud = scene::Cloud::Mesh { size: size.clone(), jitter: None },
+        },
+    }
+}
+
+fn targets(output: &Output, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
+    for transfer in &output.transfers {
+        match &transfer.to {
+            Target::ReferenceNodes => {}
+            Target::Probes => return Ok(probes.to_vec()),
+            Target::File(file) => {
+                let mesh = msh::read(&file.path, file.unit).map_err(|bad| Failure::Input(bad.to_string()))?;
+                return Ok(mesh.points().to_vec());
+            }
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// Schemes with their settings; the method's own rows are always compared with them.
+fn schemes(output: &Output) -> Result<Vec<(String, Scheme)>, Failure> {
+    let mut list = Vec::new();
+    for transfer in &output.transfers {
+        if transfer.scheme == scene::SchemeName::Own {
+            continue;
+        }
+        let default = Scheme::from_name(transfer.scheme.name()).ok_or_else(|| {
+            Failure::Unsupported(format!("transfer scheme \"{}\" is not available", transfer.scheme.name()))
+        })?;
+        let pick = |dilatation: f64| transfer.dilatation.unwrap_or(dilatation);
+        list.push(match default {
+            Scheme::InverseDistance { neighbours, power } => {
+                let (n, p) = (transfer.neighbours.unwrap_or(neighbours), transfer.power.unwrap_or(power));
+                (format!("neighbours={n};power={p}"), Scheme::InverseDistance { neighbours: n, power: p })
+            }
+            Scheme::Shepard { dilatation } => {
+                (format!("dilatation={}", pick(dilatation)), Scheme::Shepard { dilatation: pick(dilatation) })
+            }
+            Scheme::MlsLinear { dilatation } => (
+                format!("dilatation={}", pick(dilatation)),
+                Scheme::MlsLinear { dilatation: pick(dilatation) },
+            ),
+            Scheme::MlsQuadratic { dilatation } => (
+                format!("dilatation={}", pick(dilatation)),
+                Scheme::MlsQuadratic { dilatation: pick(dilatation) },
+            ),
+            other => (String::new(), other),
+        });
+    }
+    Ok(list)
+}

@@ -1,0 +1,100 @@
+//! The JSON object of one run, as scripts read it.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+use crate::outcome::{Outcome, Stage};
+
+/// One run as `tissuebench run --format json` prints it.
+#[derive(Serialize)]
+pub struct RunObject<'a> {
+    scene: &'a str,
+    method: &'a str,
+    /// `ok` or `failed`.
+    status: &'static str,
+    /// Why it failed; absent on success.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+    nodes: u64,
+    elements: u64,
+    dofs: u64,
+    metrics: BTreeMap<&'a str, Number>,
+    phases: BTreeMap<&'a str, f64>,
+    probes: Vec<ProbeObject>,
+    /// Rigid tools; no procedure drives any yet.
+    tools: [(); 0],
+    plan: &'a [Stage],
+}
+
+#[derive(Serialize)]
+struct Number {
+    value: f64,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct ProbeObject {
+    x: [f64; 3],
+    u: [f64; 3],
+    /// xx, yy, zz, xy, yz, zx.
+    stress: [f64; 6],
+}
+
+impl<'a> RunObject<'a> {
+    /// A finished run; times are medians over its repeats.
+    pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
+        let mut metrics: BTreeMap<&str, Number> = outcome
+            .metrics
+            .iter()
+            .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
+            .collect();
+        metrics.insert("memory", Number { value: outcome.memory as f64, unit: "B" });
+        RunObject {
+            scene: &outcome.identity.case,
+            method: &outcome.identity.method,
+            status: "ok",
+            reason: None,
+            nodes: outcome.size.nodes,
+            elements: outcome.size.elements,
+            dofs: outcome.size.dofs,
+            metrics,
+            phases: outcome.phases.iter().map(|(name, s)| (*name, s.median)).collect(),
+            probes: outcome
+                .probes
+                .iter()
+                .map(|p| ProbeObject {
+                    x: p.x.coords.into(),
+                    u: p.u.into(),
+                    stress: [
+                        p.stress[(0, 0)],
+                        p.stress[(1, 1)],
+                        p.stress[(2, 2)],
+                        p.stress[(0, 1)],
+                        p.stress[(1, 2)],
+                        p.stress[(2, 0)],
+                    ],
+                })
+                .collect(),
+            tools: [],
+            plan: &outcome.plan,
+        }
+    }
+
+    /// A run that gave no numbers.
+    pub fn failed(scene: &'a str, method: &'a str, reason: String, plan: &'a [Stage]) -> RunObject<'a> {
+        RunObject {
+            scene,
+            method,
+            status: "failed",
+            reason: Some(reason),
+            nodes: 0,
+            elements: 0,
+            dofs: 0,
+            metrics: BTreeMap::new(),
+            phases: BTreeMap::new(),
+            probes: Vec::new(),
+            tools: [],
+            plan,
+        }
+    }
+}

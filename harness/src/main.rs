@@ -1,0 +1,9 @@
+//! The `tissuebench` command.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    ExitCode::from(harness::command::main(harness::cli::Cli::parse()))
+}

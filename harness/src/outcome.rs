@@ -1,0 +1,200 @@
+//! What one run leaves: who it was, its numbers, its times, its fields.
+
+use geometry::{Matrix3, Point3, Vector3};
+use reports::{PlanEntry, Record, SurfaceField};
+use serde::Serialize;
+
+use crate::timing::Summary;
+
+/// The identity of a run: what distinguishes it from every other one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identity {
+    /// Scene name: the file's stem.
+    pub case: String,
+    /// Method id.
+    pub method: String,
+    /// `fem` or `efg`.
+    pub family: &'static str,
+    /// Element or kernel.
+    pub variant: String,
+    /// Further settings, `key=value` joined by `;`, sorted by key.
+    pub parameters: String,
+    /// Poisson's ratio of the first material.
+    pub poisson: f64,
+    /// Refinement level; 0 where the size was given otherwise.
+    pub level: u32,
+    /// Seed of jitter and cloud.
+    pub seed: u64,
+}
+
+/// Sizes of a discretisation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Size {
+    /// Nodes.
+    pub nodes: u64,
+    /// Elements or background cells.
+    pub elements: u64,
+    /// Integration points.
+    pub points: u64,
+    /// Unknowns, supports eliminated.
+    pub dofs: u64,
+    /// Mean node spacing, m.
+    pub spacing: f64,
+}
+
+/// One number with its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Metric {
+    /// Name as in records and checks.
+    pub name: String,
+    /// SI value.
+    pub value: f64,
+    /// SI unit; `1` for a pure number.
+    pub unit: &'static str,
+}
+
+/// Displacement and stress at a probe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Position, m.
+    pub x: Point3,
+    /// Displacement, m.
+    pub u: Vector3,
+    /// Stress, Pa.
+    pub stress: Matrix3,
+}
+
+/// One stage of a plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Stage {
+    /// Name.
+    pub stage: &'static str,
+    /// Whether it runs.
+    pub ran: bool,
+    /// Why, or why not.
+    pub why: String,
+}
+
+/// A scheme's transfer of this run's displacement to the reference nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transfer {
+    /// Scheme name; `own-rows` for the method's own shape functions.
+    pub scheme: String,
+    /// Settings, as in [`Identity::parameters`].
+    pub parameters: String,
+    /// Errors and counts.
+    pub metrics: Vec<Metric>,
+    /// Seconds to build the table and to apply it.
+    pub build: Summary,
+    /// Seconds to apply it to one field.
+    pub apply: Summary,
+    /// Number of targets.
+    pub targets: usize,
+}
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Who.
+    pub identity: Identity,
+    /// How large.
+    pub size: Size,
+    /// Numbers that two runs of one input share to the bit.
+    pub metrics: Vec<Metric>,
+    /// Seconds per phase; the last entry is the total.
+    pub phases: Vec<(&'static str, Summary)>,
+    /// Peak of allocated memory over the run, bytes.
+    pub memory: u64,
+    /// Probes, in the scene's order.
+    pub probes: Vec<Probe>,
+    /// Stages run and skipped.
+    pub plan: Vec<Stage>,
+    /// Transfers of the result by every scheme asked for.
+    pub transfers: Vec<Transfer>,
+    /// Surface displacement, where the scene asks for it.
+    pub field: Option<SurfaceField>,
+}
+
+impl Outcome {
+    /// One metric's value.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        self.metrics.iter().find(|m| m.name == name).map(|m| m.value)
+    }
+
+    /// The run as rows of the long table.
+    pub fn records(&self) -> Vec<Record> {
+        let mut records: Vec<Record> =
+            self.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
+        for (phase, summary) in &self.phases {
+            records.extend(self.times(phase, summary));
+        }
+        records.push(self.record("memory", "B", "", "value", self.memory as f64));
+        for transfer in &self.transfers {
+            records.extend(self.transfer_records(transfer));
+        }
+        records
+    }
+
+    /// The plan as rows for the report.
+    pub fn plan_entries(&self) -> Vec<PlanEntry> {
+        self.plan
+            .iter()
+            .map(|stage| PlanEntry {
+                case: self.identity.case.clone(),
+                method: self.identity.method.clone(),
+                stage: stage.stage.into(),
+                ran: stage.ran,
+                why: stage.why.clone(),
+            })
+            .collect()
+    }
+
+    fn record(&self, quantity: &str, unit: &str, phase: &str, statistic: &str, value: f64) -> Record {
+        let (identity, size) = (&self.identity, &self.size);
+        Record {
+            case: identity.case.clone(),
+            method: identity.method.clone(),
+            family: identity.family.into(),
+            variant: identity.variant.clone(),
+            parameters: identity.parameters.clone(),
+            poisson: identity.poisson,
+            level: identity.level,
+            nodes: size.nodes,
+            elements: size.elements,
+            points: size.points,
+            dofs: size.dofs,
+            spacing: size.spacing,
+            seed: identity.seed,
+            quantity: quantity.into(),
+            unit: unit.into(),
+            phase: phase.into(),
+            statistic: statistic.into(),
+            value,
+        }
+    }
+
+    fn times(&self, phase: &str, summary: &Summary) -> Vec<Record> {
+        [("median", summary.median), ("spread", summary.spread), ("min", summary.min)]
+            .into_iter()
+            .map(|(statistic, value)| self.record("time", "s", phase, statistic, value))
+            .collect()
+    }
+
+    fn transfer_records(&self, transfer: &Transfer) -> Vec<Record> {
+        let mut rows: Vec<Record> =
+            transfer.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
+        rows.extend(self.times("prepare", &transfer.build));
+        rows.extend(self.times("transfer", &transfer.apply));
+        let from = format!("from={}", self.identity.method);
+        let parameters =
+            if transfer.parameters.is_empty() { from } else { format!("{from};{}", transfer.parameters) };
+        for row in &mut rows {
+            row.family = "interp".into();
+            row.variant = transfer.scheme.clone();
+            row.method = transfer.scheme.clone();
+            row.parameters = parameters.clone();
+            row.points = transfer.targets as u64;
+        }
+        rows
+    }
+}

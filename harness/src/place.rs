@@ -1,0 +1,190 @@
+//! Where a support or a load acts, on one mesh: nodes, whole facets, or facets cut by the region's planes.
+
+use cases::scene::{Region, Relation};
+use geometry::{Facet, Mesh, Point3, Vector3};
+
+pub use cases::scene::Place;
+
+/// The part of a boundary where something acts.
+pub struct Patch {
+    /// Facets that lie in the region as a whole: the discretisation integrates over them with its own rule.
+    pub whole: Vec<Facet>,
+    /// Centroid-ruled triangles of the facets that the region cuts.
+    pub cut: Vec<CutTriangle>,
+}
+
+/// One flat triangle left of a facet after clipping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutTriangle {
+    /// Corners, m, counter-clockwise from outside.
+    pub corners: [Point3; 3],
+}
+
+impl CutTriangle {
+    /// Area (m^2) times outward unit normal.
+    pub fn area_vector(&self) -> Vector3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(&(c - a)) / 2.0
+    }
+}
+
+/// Diagonal of the mesh's bounding box times the relative tolerance of regions, m.
+pub fn tolerance(mesh: &Mesh) -> f64 {
+    let mut low = mesh.points()[0];
+    let mut high = low;
+    for p in mesh.points() {
+        low = low.inf(p);
+        high = high.sup(p);
+    }
+    Region::TOLERANCE * (high - low).norm()
+}
+
+/// Whether `x` lies in the place's region; true for a place that is given by name.
+pub fn holds(place: &Place, x: &Point3, tolerance: f64) -> bool {
+    match place {
+        Place::Where(region) => region.contains([x.x, x.y, x.z], tolerance),
+        Place::On(_) | Place::Everywhere => true,
+    }
+}
+
+/// How the place reads in the scene file.
+pub fn text(place: &Place) -> String {
+    match place {
+        Place::On(names) => format!("on = \"{}\"", names.join("\", \"")),
+        Place::Where(region) => format!("where = \"{}\"", region.text),
+        Place::Everywhere => "no place given".into(),
+    }
+}
+
+/// The facets that a place names (`surface` is the whole boundary of any mesh), or an error that lists the names
+/// there are; the whole boundary for a place given by comparisons.
+pub fn facets(place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, String> {
+    let Place::On(names) = place else { return Ok(mesh.boundary()) };
+    let mut all = Vec::new();
+    for name in names {
+        match mesh.group(name) {
+            Some(group) => all.extend_from_slice(group),
+            None if name == "surface" => all.extend(mesh.boundary()),
+            None => {
+                let known: Vec<&str> = std::iter::once("surface").chain(mesh.group_names()).collect();
+                return Err(format!("the mesh has no surface named '{name}'; it has {}", known.join(", ")));
+            }
+        }
+    }
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
+}
+
+/// Sorted indices of the nodes in the place: those of its named facets, or any node of the mesh where its
+/// comparisons hold.
+pub fn nodes(place: &Place, mesh: &Mesh) -> Result<Vec<u32>, String> {
+    if let Place::On(_) = place {
+        return Ok(mesh.facet_group_nodes(&facets(place, mesh)?));
+    }
+    let tolerance = tolerance(mesh);
+    Ok((0..mesh.points().len() as u32)
+        .filter(|&n| holds(place, &mesh.points()[n as usize], tolerance))
+        .collect())
+}
+
+/// The part of the boundary in the place. A facet counts as whole when all its corners and its centroid are in the
+/// region; a facet that the region cuts is clipped by the region's planes, so that the loaded area is the region's
+/// own and not that of the facets near it (on a 1331-node kidney, facets are half as wide as the jaw).
+pub fn patch(place: &Place, mesh: &Mesh) -> Result<Patch, String> {
+    let tolerance = tolerance(mesh);
+    let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
+    for facet in facets(place, mesh)? {
+        let corners = corners(mesh, facet);
+        let sum = corners.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords);
+        let centre = Point3::from(sum / corners.len() as f64);
+        if holds(place, &centre, tolerance) && corners.iter().all(|p| holds(place, p, tolerance)) {
+            patch.whole.push(facet);
+        } else if let Place::Where(region) = place {
+            for k in 1..corners.len() - 1 {
+                clip(&[corners[0], corners[k], corners[k + 1]], region, tolerance, &mut patch.cut);
+            }
+        }
+    }
+    Ok(patch)
+}
+
+fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
+    let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
+    mesh.facet_nodes(facet).take(count).map(|n| mesh.points()[n as usize]).collect()
+}
+
+/// Clips a triangle by each plane of the region in turn (Sutherland and Hodgman 1974) and fans what is left.
+/// An equality keeps nothing of a facet that is not in its plane.
+fn clip(triangle: &[Point3; 3], region: &Region, tolerance: f64, out: &mut Vec<CutTriangle>) {
+    let mut polygon = triangle.to_vec();
+    for comparison in &region.comparisons {
+        let sign = match comparison.relation {
+            Relation::Greater | Relation::GreaterEqual => 1.0,
+            Relation::Less | Relation::LessEqual => -1.0,
+            Relation::Equal => {
+                if polygon.iter().any(|p| (p[comparison.axis] - comparison.value).abs() > tolerance) {
+                    return;
+                }
+                continue;
+            }
+        };
+        let ahead = |p: &Point3| sign * (p[comparison.axis] - comparison.value);
+        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        for (k, p) in polygon.iter().enumerate() {
+            let next = &polygon[(k + 1) % polygon.len()];
+            let (a, b) = (ahead(p), ahead(next));
+            if a >= 0.0 {
+                kept.push(*p);
+            }
+            if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+                kept.push(p + (next - p) * (a / (a - b)));
+            }
+        }
+        polygon = kept;
+        if polygon.len() < 3 {
+            return;
+        }
+    }
+    for k in 1..polygon.len() - 1 {
+        let triangle = CutTriangle { corners: [polygon[0], polygon[k], polygon[k + 1]] };
+        if triangle.area_vector().norm() > tolerance * tolerance {
+            out.push(triangle);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cases::scene::Comparison;
+
+    fn region(comparisons: &[(usize, Relation, f64)]) -> Region {
+        Region {
+            text: String::new(),
+            comparisons: comparisons
+                .iter()
+                .map(|&(axis, relation, value)| Comparison { axis, relation, value })
+                .collect(),
+        }
+    }
+
+    #[test]
+    fn a_clipped_triangle_keeps_exactly_the_area_inside() {
+        let triangle = [Point3::origin(), Point3::new(2.0, 0.0, 0.0), Point3::new(0.0, 2.0, 0.0)];
+        let window = region(&[(0, Relation::GreaterEqual, 0.5), (1, Relation::LessEqual, 1.0)]);
+        let mut out = Vec::new();
+        clip(&triangle, &window, 1e-12, &mut out);
+        // x >= 1/2, y <= 1 under x + y <= 2: the trapezoid 1/2..1 x 0..1 and the triangle beyond, 1/2 + 1/2.
+        let area: f64 = out.iter().map(|t| t.area_vector().z).sum();
+        assert!((area - 1.0).abs() < 1e-14, "{area}");
+    }
+
+    #[test]
+    fn a_triangle_across_a_plane_equality_keeps_nothing() {
+        let triangle = [Point3::origin(), Point3::new(2.0, 0.0, 0.0), Point3::new(0.0, 2.0, 1.0)];
+        let mut out = Vec::new();
+        clip(&triangle, &region(&[(2, Relation::Equal, 0.0)]), 1e-12, &mut out);
+        assert!(out.is_empty());
+    }
+}

@@ -1,0 +1,111 @@
+//! The plan of a run: the stages it needs, the stages it does not, and why.
+
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Integration};
+use crate::outcome::Stage;
+use crate::setup::Setup;
+
+/// Whether the method's displacement is wanted elsewhere than at its own nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wants {
+    /// Displacements at target points.
+    pub targets: bool,
+    /// Transfer schemes to compare.
+    pub schemes: bool,
+}
+
+/// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
+const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+
+/// Stages of a linear static run, in order.
+pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> {
+    let mut stages = Vec::new();
+    let mut add = |stage, ran, why: String| stages.push(Stage { stage, ran, why });
+    let (dilation, cloud) = match method {
+        Discretisation::Fem(fem) => (fem.dilation, None),
+        Discretisation::Efg(efg) => (efg.dilation, Some(efg)),
+    };
+    match cloud {
+        Some(efg) => {
+            add("supports", true, format!("radius and neighbours of {} nodes", efg.cloud.points.len()));
+            add("shape functions", true, integration(efg));
+        }
+        None => {
+            add("supports", false, "the elements' nodes are the neighbours".into());
+            add("shape functions", true, "one row per Gauss point of each element".into());
+        }
+    }
+    let poisson = setup.materials.iter().map(|m| m.poisson()).fold(f64::MIN, f64::max);
+    match dilation {
+        Dilation::Standard if poisson < NEARLY_INCOMPRESSIBLE => {
+            add(
+                "volumetric projection",
+                false,
+                format!("nu = {poisson} < {NEARLY_INCOMPRESSIBLE} does not lock"),
+            );
+        }
+        Dilation::Standard => {
+            add("volumetric projection", false, "the method asks for none (dilation = \"standard\")".into());
+        }
+        Dilation::Element => add("volumetric projection", true, "one dilation per cell".into()),
+        Dilation::Nodal => add("volumetric projection", true, "one dilation per node".into()),
+    }
+    let one = setup.materials.len() == 1;
+    add(
+        "elasticity tensor per region",
+        !one,
+        if one {
+            "homogeneous material: one tensor".into()
+        } else {
+            format!("{} regions", setup.materials.len())
+        },
+    );
+    add("mass", false, "static".into());
+    add("stiffness", true, "linear static".into());
+    add(
+        "supports by elimination",
+        cloud.is_none() && !setup.held.is_empty(),
+        match cloud {
+            None => "the basis is Kronecker: nodal parameters are displacements".into(),
+            Some(_) => "nodal parameters are not displacements".into(),
+        },
+    );
+    let weak = match cloud.map(|efg| efg.essential) {
+        None => (false, "supports are eliminated".into()),
+        Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
+        Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
+        Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),
+    };
+    add("weak supports", weak.0, weak.1);
+    add("factorisation", true, "one, for all load levels".into());
+    add("Newton iterations", false, "linear".into());
+    add("contact search", false, "no tool in the scene".into());
+    match (cloud.is_some(), wants.targets) {
+        (false, _) => add("transfer", false, "a Kronecker basis: nodal values are displacements".into()),
+        (true, true) => add("transfer", true, "evaluated with the method's own shape functions".into()),
+        (true, false) => add("transfer", true, "to the nodes, with the method's own shape functions".into()),
+    }
+    add(
+        "transfer schemes",
+        wants.schemes && cloud.is_some(),
+        match (wants.schemes, cloud.is_some()) {
+            (true, true) => "asked for, to compare them".into(),
+            (true, false) => "the reference nodes are the elements' own".into(),
+            (false, _) => "none asked for".into(),
+        },
+    );
+    stages
+}
+
+fn integration(efg: &Efg) -> String {
+    match efg.integration {
+        Integration::Gauss { points } => {
+            format!("moving least squares at {points} points per background cell")
+        }
+        Integration::Grid { points, .. } => {
+            format!("moving least squares at {points}^3 points per grid cell")
+        }
+        Integration::CellSmoothed { face_points } => {
+            format!("moving least squares at {face_points} points per face, smoothed over each cell")
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! The prepare phase: every table that assembly reads, for one method on one body under one setup.
+
+use geometry::quadrature;
+use geometry::{Mesh, Point3, Vector3};
+use mechanics::{Body, ConstraintRow, FixedDof, LinearProblem, Load, Weak, WeakSupport, multiplier_rows};
+use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, Unity};
+
+use crate::Failure;
+use crate::discretise::{Discretisation, Efg, Essential, Volume};
+use crate::place::{self, CutTriangle, Place, tolerance};
+use crate::setup::{Acting, Applied, Held, Setup};
+
+/// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
+const CUT_POINTS: usize = 6;
+
+/// Values of one load at its points.
+enum Values {
+    Traction(Vec<Vector3>),
+    Pressure(Vec<f64>),
+}
+
+/// A surface held weakly, with its tables owned.
+struct OwnedWeak {
+    flux: FluxRows,
+    axes: [bool; 3],
+    values: Vec<Vector3>,
+    region: Vec<u16>,
+    method: Weak,
+}
+
+/// All tables of one run.
+pub struct Prepared {
+    /// The volume tables.
+    pub volume: Volume,
+    /// Mean node spacing, m.
+    pub spacing: f64,
+    surfaces: Vec<(SurfaceRows, Values)>,
+    body_force: Vec<Vec<Vector3>>,
+    fixed: Vec<FixedDof>,
+    constraints: Vec<ConstraintRow>,
+    weak: Vec<OwnedWeak>,
+}
+
+/// Fills every table.
+pub fn prepare(method: &Discretisation, setup: &Setup) -> Result<Prepared, Failure> {
+    let volume = method.volume()?;
+    let spacing = method.spacing(&volume.rows);
+    let mut prepared = Prepared {
+        volume,
+        spacing,
+        surfaces: Vec::new(),
+        body_force: Vec::new(),
+        fixed: Vec::new(),
+        constraints: Vec::new(),
+        weak: Vec::new(),
+    };
+    for load in &setup.loads {
+        prepared.load(method, load)?;
+    }
+    for held in &setup.held {
+        match method {
+            Discretisation::Fem(fem) => prepared.hold_nodes(&fem.mesh, held)?,
+            Discretisation::Efg(efg) => prepared.hold_weakly(method, efg, held)?,
+        }
+    }
+    Ok(prepared)
+}
+
+impl Prepared {
+    /// The loads, borrowed as the solver takes them.
+    pub fn loads(&self) -> Vec<Load<'_>> {
+        let surfaces = self.surfaces.iter().map(|(surface, values)| match values {
+            Values::Traction(values) => Load::Traction { surface, values: values.clone() },
+            Values::Pressure(values) => Load::Pressure { surface, values: values.clone() },
+        });
+        surfaces.chain(self.body_force.iter().map(|values| Load::Body { values: values.clone() })).collect()
+    }
+
+    /// The weak supports, borrowed as the solver takes them.
+    pub fn weak(&self) -> Vec<WeakSupport<'_>> {
+        self.weak
+            .iter()
+            .map(|w| WeakSupport {
+                flux: &w.flux,
+                axes: w.axes,
+                values: w.values.clone(),
+                region: &w.region,
+                method: w.method,
+                h: self.spacing,
+            })
+            .collect()
+    }
+
+    /// The whole problem over borrowed parts.
+    pub fn problem<'a>(
+        &'a self,
+        nodes: &'a [Point3],
+        setup: &'a Setup,
+        loads: &'a [Load<'a>],
+        weak: &'a [WeakSupport<'a>],
+    ) -> LinearProblem<'a> {
+        let body = Body {
+            nodes,
+            volume: &self.volume.rows,
+            materials: &setup.materials,
+            region: &self.volume.region,
+            dilation: self.volume.groups.as_ref(),
+        };
+        LinearProblem { body, loads, fixed: &self.fixed, constraints: &self.constraints, weak }
+    }
+
+    /// Resultant of all surface loads and body forces, N.
+    pub fn resultant(&self) -> Vector3 {
+        let mut sum = Vector3::zeros();
+        for (surface, values) in &self.surfaces {
+            for (q, w) in surface.weights().iter().enumerate() {
+                sum += *w
+                    * match values {
+                        Values::Traction(t) => t[q],
+                        Values::Pressure(p) => surface.normals()[q] * -p[q],
+                    };
+            }
+        }
+        for values in &self.body_force {
+            for (b, w) in values.iter().zip(self.volume.rows.weights()) {
+                sum += b * *w;
+            }
+        }
+        sum
+    }
+
+    fn load(&mut self, method: &Discretisation, load: &Acting) -> Result<(), Failure> {
+        if let Applied::Body(field) = &load.applied {
+            let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
+            self.body_force.push(values.map_err(Failure::Input)?);
+            return Ok(());
+        }
+        let patch = place::patch(&load.place, method.mesh()).map_err(Failure::Input)?;
+        let before = self.surfaces.len();
+        let mut surfaces = Vec::new();
+        if !patch.whole.is_empty() {
+            surfaces.push(method.surface(&self.volume, &patch.whole)?);
+        }
+        if !patch.cut.is_empty() {
+            surfaces.push(cut_surface(method, &self.volume, &patch.cut)?);
+        }
+        for surface in surfaces {
+            let at = surface.points().iter().zip(surface.normals());
+            let values = match &load.applied {
+                Applied::Traction(field) => Values::Traction(
+                    at.map(|(x, n)| field(x, n)).collect::<Result<_, _>>().map_err(Failure::Input)?,
+                ),
+                Applied::Pressure(field) => Values::Pressure(
+                    at.map(|(x, _)| field(x)).collect::<Result<_, _>>().map_err(Failure::Input)?,
+                ),
+                Applied::Body(_) => unreachable!("returned above"),
+            };
+            self.surfaces.push((surface, values));
+        }
+        if self.surfaces.len() == before {
+            return Err(empty("load", &load.place));
+        }
+        Ok(())
+    }
+
+    fn hold_nodes(&mut self, mesh: &Mesh, held: &Held) -> Result<(), Failure> {
+        let nodes = place::nodes(&held.place, mesh).map_err(Failure::Input)?;
+        if nodes.is_empty() {
+            return Err(empty("support", &held.place));
+        }
+        for node in nodes {
+            let value = (held.value)(&mesh.points()[node as usize]).map_err(Failure::Input)?;
+            for axis in (0..3).filter(|&a| held.axes[a]) {
+                self.fixed.push(FixedDof { node, axis: axis as u8, value: value[axis] });
+            }
+        }
+        Ok(())
+    }
+
+    /// A support on a basis whose parameters are not displacements: on the facets of the place, and, where the place
+    /// has a volume (a clamped end, not a clamped face), on that too.
+    fn hold_weakly(&mut self, method: &Discretisation, efg: &Efg, held: &Held) -> Result<(), Failure> {
+        let patch = place::patch(&held.place, &efg.background).map_err(Failure::Input)?;
+        let (rows, constraints) = (self.weak.len(), self.constraints.len());
+        match efg.essential {
+            Essential::Multipliers => {
+                if !patch.whole.is_empty() {
+                    let surface = method.surface(&self.volume, &patch.whole)?;
+                    let basis = efg.multiplier_basis(&patch.whole)?;
+                    let values = at(held, surface.points())?;
+                    self.constraints.extend(multiplier_rows(&surface, basis.rows(), held.axes, &values)?);
+                }
+            }
+            Essential::Nitsche(gamma) => {
+                if !patch.whole.is_empty() {
+                    let flux = method.flux(&self.volume, &patch.whole)?;
+                    self.hold_flux(efg, held, flux, Weak::Nitsche { gamma })?;
+                }
+            }
+            Essential::Penalty(factor) => {
+                if !patch.whole.is_empty() {
+                    let flux = method.flux(&self.volume, &patch.whole)?;
+                    self.hold_flux(efg, held, flux, Weak::Penalty { factor })?;
+                }
+            }
+        }
+        match efg.essential {
+            // Volume points outnumber what a cloud can follow; its own nodes do not.
+            Essential::Multipliers if matches!(held.place, Place::Where(_)) => {
+                let tolerance = tolerance(&efg.background);
+                let inside = efg.cloud.points.iter().filter(|x| place::holds(&held.place, x, tolerance));
+                let nodes: Vec<Point3> = inside.copied().collect();
+                let (rows, _) = method.at_points(&self.volume, &nodes)?;
+                let values = at(held, &nodes)?;
+                self.constraints.extend(collocated(&rows, held.axes, &values));
+            }
+            Essential::Multipliers => {}
+            Essential::Nitsche(factor) | Essential::Penalty(factor) => {
+                if let Some(flux) = self.clamped_volume(efg, held)? {
+                    self.hold_flux(efg, held, flux, Weak::Penalty { factor })?;
+                }
+            }
+        }
+        if self.weak.len() == rows && self.constraints.len() == constraints {
+            return Err(empty("support", &held.place));
+        }
+        Ok(())
+    }
+
+    fn hold_flux(&mut self, efg: &Efg, held: &Held, flux: FluxRows, method: Weak) -> Result<(), Failure> {
+        let values = at(held, flux.points())?;
+        let region = if efg.background.region_names().len() > 1 {
+            return Err(Failure::Unsupported(
+                "weak supports on a body of several regions are not available for clouds; use one region"
+                    .into(),
+            ));
+        } else {
+            Vec::new()
+        };
+        self.weak.push(OwnedWeak { flux, axes: held.axes, values, region, method });
+        Ok(())
+    }
+
+    /// Volume points inside the place, as a table of penalty points: weight per spacing, so that one penalty factor
+    /// means the same stiffness per depth of one node spacing as it does on a surface.
+    fn clamped_volume(&self, efg: &Efg, held: &Held) -> Result<Option<FluxRows>, Failure> {
+        if !matches!(held.place, Place::Where(_)) {
+            return Ok(None);
+        }
+        let tolerance = tolerance(&efg.background);
+        let rows = &self.volume.rows;
+        let inside: Vec<usize> = (0..rows.points().len())
+            .filter(|&q| place::holds(&held.place, &rows.points()[q], tolerance))
+            .collect();
+        if inside.is_empty() {
+            return Ok(None);
+        }
+        let (mut offsets, mut nodes, mut values, mut grads) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+        for &q in &inside {
+            let (row_nodes, row_values) = rows.rows().row(q);
+            nodes.extend_from_slice(row_nodes);
+            values.extend_from_slice(row_values);
+            grads.extend_from_slice(rows.row(q).1);
+            offsets.push(nodes.len());
+        }
+        let points = inside.iter().map(|&q| rows.points()[q]).collect();
+        let table = Rows::new(rows.rows().node_count(), offsets, nodes, values, Unity::NotPromised)?;
+        let at = GradRows::new(points, table, grads)?;
+        let weights = inside.iter().map(|&q| rows.weights()[q] / self.spacing).collect();
+        Ok(Some(FluxRows::new(at, weights, vec![Vector3::z(); inside.len()])?))
+    }
+}
+
+fn at(held: &Held, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
+    points.iter().map(&held.value).collect::<Result<_, _>>().map_err(Failure::Input)
+}
+
+fn empty(what: &str, place: &Place) -> Failure {
+    Failure::Input(format!(
+        "the {what} with {} touches nothing of the body; check the signs and the unit of the region",
+        place::text(place)
+    ))
+}
+
+/// `u(x_c) = g(x_c)` at points, by one constraint row per point and held axis.
+fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<ConstraintRow> {
+    let mut out = Vec::new();
+    for (c, value) in values.iter().enumerate() {
+        let (nodes, phi) = rows.rows().row(c);
+        for axis in (0..3).filter(|&a| axes[a]) {
+            let terms = nodes.iter().zip(phi).map(|(&n, &v)| (n, axis as u8, v)).collect();
+            out.push(ConstraintRow { terms, value: value[axis] });
+        }
+    }
+    out
+}
+
+/// Surface rows over clipped triangles.
+fn cut_surface(
+    method: &Discretisation,
+    volume: &Volume,
+    cut: &[CutTriangle],
+) -> Result<SurfaceRows, Failure> {
+    let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
+    let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+    for triangle in cut {
+        let area = triangle.area_vector();
+        let [a, b, c] = triangle.corners;
+        for (xi, w) in rule.points.iter().zip(&rule.weights) {
+            points.push(a + (b - a) * xi[0] + (c - a) * xi[1]);
+            weights.push(2.0 * w * area.norm());
+            normals.push(area.normalize());
+        }
+    }
+    let (rows, _) = method.at_points(volume, &points)?;
+    Ok(SurfaceRows::new(rows, weights, normals)?)
+}

@@ -1,0 +1,360 @@
+//! From a checked scene and one of its methods to what the solvers take.
+
+use cases::exact::{Exact, Params, exact_by_name};
+use cases::scene::{self, Family, LoadKind, Material, Parameter, Prescribed, Reference, Scene, VectorField};
+use geometry::{CellKind, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
+use mechanics::LinearElastic;
+
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
+use crate::outcome::Identity;
+use crate::place::{self, tolerance};
+use crate::setup::{Acting, Applied, Held, Setup};
+use crate::{Failure, body};
+
+/// Stabilisation of Nitsche's method where the scene gives none: times (lambda + 2 mu) / h. 10 is too little at
+/// dilatation 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
+const NITSCHE: f64 = 100.0;
+/// Penalty where the scene gives none: times E / h.
+const PENALTY: f64 = 1e4;
+
+/// A scene's method with what a study changes of it.
+#[derive(Clone, Debug)]
+pub struct Scenario<'a> {
+    /// Case name: the stem of the scene's file.
+    pub case: String,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The method, sizes and kernel already overridden.
+    pub method: scene::Method,
+    /// Level of the size, 0 if it is given otherwise.
+    pub level: u32,
+    /// Poisson's ratio in place of the scene's.
+    pub poisson: Option<f64>,
+}
+
+impl Scenario<'_> {
+    /// Which run this is.
+    pub fn identity(&self) -> Identity {
+        let mut pairs: Vec<(&str, String)> = Vec::new();
+        let (family, variant, seed) = match &self.method.family {
+            Family::Fem(fem) => {
+                pairs.push(("dilation", fem.dilation.name().into()));
+                ("fem", fem.element.name().to_string(), fem.jitter.map_or(0, |j| j.seed))
+            }
+            Family::Efg(efg) => {
+                pairs.push(("dilation", efg.dilation.name().into()));
+                pairs.push(("basis", efg.basis.name().into()));
+                match efg.support {
+                    scene::SupportRule::Dilatation(factor) => pairs.push(("dilatation", factor.to_string())),
+                    scene::SupportRule::Neighbours { k, factor } => {
+                        pairs.push(("neighbours", k.to_string()));
+                        pairs.push(("factor", factor.to_string()));
+                    }
+                }
+                pairs.push((
+                    "integration",
+                    match efg.integration {
+                        scene::Integration::Gauss { points } => format!("gauss-{points}"),
+                        scene::Integration::Grid { points, .. } => format!("grid-{points}"),
+                        scene::Integration::CellSmoothed { face_points } => {
+                            format!("cell-smoothed-{face_points}")
+                        }
+                    },
+                ));
+                pairs.push((
+                    "essential",
+                    match efg.essential {
+                        scene::Essential::Nitsche { .. } => "nitsche".into(),
+                        scene::Essential::Penalty { .. } => "penalty".into(),
+                        scene::Essential::Multipliers => "multipliers".into(),
+                    },
+                ));
+                let seed = match &efg.cloud {
+                    scene::Cloud::Mesh { jitter, .. } => jitter.map_or(0, |j| j.seed),
+                    scene::Cloud::Uniform { seed, .. } | scene::Cloud::Graded { seed, .. } => *seed,
+                };
+                ("efg", efg.kernel.name.name().to_string(), seed)
+            }
+        };
+        pairs.sort();
+        Identity {
+            case: self.case.clone(),
+            method: self.method.id.clone(),
+            family,
+            variant,
+            parameters: pairs.iter().map(|(k, v)| format!("{k}={v}")).collect::<Vec<_>>().join(";"),
+            poisson: self.elastic().map_or(0.0, |e| e.poisson),
+            level: self.level,
+            seed,
+        }
+    }
+
+    fn elastic(&self) -> Result<scene::Elastic, Failure> {
+        elastic(&self.scene.material, self.poisson)
+    }
+
+    /// Nodes, cells and rules.
+    pub fn discretise(&self) -> Result<Discretisation, Failure> {
+        match &self.method.family {
+            Family::Fem(fem) => {
+                let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
+                Ok(Discretisation::Fem(Fem {
+                    mesh: self.with_regions(mesh)?,
+                    dilation: dilation(fem.dilation)?,
+                }))
+            }
+            Family::Efg(efg) => self.cloud(efg).map(Discretisation::Efg),
+        }
+    }
+
+    fn cloud(&self, efg: &scene::Efg) -> Result<Efg, Failure> {
+        let shape = body::shape(&self.scene.body);
+        let bad = |e: geometry::CloudError| Failure::Run(e.to_string());
+        let need_shape = || {
+            shape.as_deref().ok_or_else(|| {
+                Failure::Unsupported(
+                    "a cloud of an exact count needs a body in closed form (box, cylinder, ball, whole sphere-shell, \
+                     kidney); take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }"
+                        .into(),
+                )
+            })
+        };
+        let (cloud, default) = match &efg.cloud {
+            scene::Cloud::Mesh { size, jitter } => {
+                let mesh = body::mesh(&self.scene.body, CellKind::Tet4, size, *jitter)?;
+                (cloud_from_mesh(&mesh), mesh)
+            }
+            scene::Cloud::Uniform { nodes, seed } => {
+                let cloud = cloud(need_shape()?, *nodes, *seed, &[]).map_err(bad)?;
+                let size = scene::Size::Nodes(*nodes);
+                (cloud, body::mesh(&self.scene.body, CellKind::Tet4, &size, None)?)
+            }
+            scene::Cloud::Graded { nodes, seed, towards } => {
+                let shape = need_shape()?;
+                let refinement = crate::grading::refinement(shape, towards)?;
+                let cloud = cloud(shape, *nodes, *seed, &[refinement]).map_err(bad)?;
+                let size = scene::Size::Nodes(*nodes);
+                (cloud, body::mesh(&self.scene.body, CellKind::Tet4, &size, None)?)
+            }
+        };
+        let background = match &efg.background {
+            Some(size) => body::mesh(&self.scene.body, CellKind::Tet4, size, None)?,
+            None => default,
+        };
+        let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let integration = match efg.integration {
+            scene::Integration::Gauss { points } => Integration::Gauss { points },
+            scene::Integration::Grid { points, spacing: given } => Integration::Grid {
+                spacing: given.unwrap_or(spacing),
+                points: (points as f64).cbrt().round() as usize,
+            },
+            scene::Integration::CellSmoothed { face_points } => Integration::CellSmoothed { face_points },
+        };
+        let essential = match efg.essential {
+            scene::Essential::Nitsche { factor } => Essential::Nitsche(factor.unwrap_or(NITSCHE)),
+            scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
+            scene::Essential::Multipliers => Essential::Multipliers,
+        };
+        Ok(Efg {
+            background: self.with_regions(background)?,
+            cloud,
+            shape,
+            kernel: kernel(efg.kernel)?,
+            basis: match efg.basis {
+                scene::Basis::Linear => efg::Basis::Linear,
+                scene::Basis::Quadratic => efg::Basis::Quadratic,
+            },
+            support: match efg.support {
+                scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
+                scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
+            },
+            integration,
+            essential,
+            dilation: dilation(efg.dilation)?,
+        })
+    }
+
+    /// Numbers the cells by the scene's material regions: 0 the scene's material, k + 1 its k-th region.
+    fn with_regions(&self, mesh: Mesh) -> Result<Mesh, Failure> {
+        if self.scene.regions.is_empty() {
+            let cells = mesh.cell_count();
+            return Ok(mesh.with_regions(vec![0; cells], vec!["body".into()]));
+        }
+        let tolerance = tolerance(&mesh);
+        let mut regions = vec![0u16; mesh.cell_count()];
+        for (index, region) in self.scene.regions.iter().enumerate() {
+            let mut hit = false;
+            for (cell, slot) in regions.iter_mut().enumerate() {
+                let inside = match &region.place {
+                    scene::Place::On(names) => {
+                        names.contains(&mesh.region_names()[mesh.region(cell) as usize])
+                    }
+                    at => {
+                        let n = mesh.cell(cell).len() as f64;
+                        let sum = mesh.cell_points(cell).fold(Vector3::zeros(), |s, p| s + p.coords);
+                        place::holds(at, &Point3::from(sum / n), tolerance)
+                    }
+                };
+                if inside {
+                    *slot = index as u16 + 1;
+                    hit = true;
+                }
+            }
+            if !hit {
+                let key = format!("region[{index}]");
+                let error =
+                    self.scene.error(&key, "holds no cell of the mesh", Some("check its place and its unit"));
+                return Err(Failure::Input(error.to_string()));
+            }
+        }
+        let names = std::iter::once("body".into()).chain(self.scene.regions.iter().map(|r| r.name.clone()));
+        Ok(mesh.with_regions(regions, names.collect()))
+    }
+
+    /// Materials, supports, loads and the exact solution.
+    pub fn setup(&self) -> Result<Setup, Failure> {
+        let e = self.elastic()?;
+        let mut materials = vec![law(e)?];
+        for region in &self.scene.regions {
+            materials.push(law(elastic(&region.material, None)?)?);
+        }
+        let exact = self.exact(e)?;
+        let held = self
+            .scene
+            .supports
+            .iter()
+            .map(|support| {
+                let motion = support.motion.clone();
+                let exact = motion.iter().flatten().any(|p| matches!(p, Prescribed::Exact));
+                let exact = if exact { Some(self.exact(e)?.ok_or_else(no_exact)?) } else { None };
+                Ok(Held {
+                    place: support.place.clone(),
+                    axes: std::array::from_fn(|a| support.motion[a].is_some()),
+                    value: Box::new(move |x| {
+                        let known = exact.as_ref().map(|e| e.displacement(x));
+                        let mut u = Vector3::zeros();
+                        for axis in 0..3 {
+                            u[axis] = match &motion[axis] {
+                                Some(Prescribed::Field(field)) => value(field, x)?,
+                                Some(Prescribed::Exact) => known.map_or(0.0, |u| u[axis]),
+                                None => 0.0,
+                            };
+                        }
+                        Ok(u)
+                    }),
+                })
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let loads = self
+            .scene
+            .loads
+            .iter()
+            .map(|load| {
+                let applied = match load.kind.clone() {
+                    LoadKind::Traction(VectorField::Exact) => {
+                        let exact = self.exact(e)?.ok_or_else(no_exact)?;
+                        Applied::Traction(Box::new(move |x, n| Ok(exact.traction(x, n))))
+                    }
+                    LoadKind::Traction(VectorField::Components(c)) => {
+                        Applied::Traction(Box::new(move |x, _| components(&c, x)))
+                    }
+                    LoadKind::Pressure(field) => Applied::Pressure(Box::new(move |x| value(&field, x))),
+                    LoadKind::Body(VectorField::Exact) => {
+                        let exact = self.exact(e)?.ok_or_else(no_exact)?;
+                        Applied::Body(Box::new(move |x| Ok(exact.body_force(x))))
+                    }
+                    LoadKind::Body(VectorField::Components(c)) => {
+                        Applied::Body(Box::new(move |x| components(&c, x)))
+                    }
+                };
+                Ok(Acting { place: load.place.clone(), applied })
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Setup { materials, held, loads, exact })
+    }
+
+    /// The scene's exact solution for this run's material; `None` where the scene names none.
+    fn exact(&self, e: scene::Elastic) -> Result<Option<Box<dyn Exact>>, Failure> {
+        let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
+        let mut values = std::collections::BTreeMap::new();
+        for (key, parameter) in parameters {
+            let number = match parameter {
+                Parameter::Number(value) => *value,
+                Parameter::Quantity(quantity) => quantity.value,
+                Parameter::Truth(_) | Parameter::Text(_) | Parameter::List(_) => {
+                    let key = format!("reference.{key}");
+                    let error = self.scene.error(&key, "is not a number or a quantity", None);
+                    return Err(Failure::Input(error.to_string()));
+                }
+            };
+            values.insert(key.clone(), number);
+        }
+        let params = Params { young: e.young, poisson: e.poisson, values };
+        exact_by_name(name, &params)
+            .map(Some)
+            .map_err(|bad| Failure::Input(self.scene.error("reference", &bad.to_string(), None).to_string()))
+    }
+}
+
+fn no_exact() -> Failure {
+    Failure::Input("\"exact\" needs [reference] exact = \"...\"".into())
+}
+
+fn value(field: &scene::ScalarField, x: &Point3) -> Result<f64, String> {
+    field.value([x.x, x.y, x.z]).map_err(|bad| bad.to_string())
+}
+
+fn components(fields: &[scene::ScalarField; 3], x: &Point3) -> Result<Vector3, String> {
+    Ok(Vector3::new(value(&fields[0], x)?, value(&fields[1], x)?, value(&fields[2], x)?))
+}
+
+fn elastic(material: &Material, poisson: Option<f64>) -> Result<scene::Elastic, Failure> {
+    match material {
+        Material::Linear(e) => Ok(scene::Elastic { poisson: poisson.unwrap_or(e.poisson), ..*e }),
+        other => Err(Failure::Unsupported(format!(
+            "law = \"{}\" is not available yet; \"linear\" is",
+            other.name()
+        ))),
+    }
+}
+
+fn law(e: scene::Elastic) -> Result<LinearElastic, Failure> {
+    LinearElastic::new(e.young, e.poisson).map_err(|bad| Failure::Input(bad.to_string()))
+}
+
+fn kind(element: scene::Element) -> CellKind {
+    match element {
+        scene::Element::Tet4 => CellKind::Tet4,
+        scene::Element::Tet10 => CellKind::Tet10,
+        scene::Element::Hex8 => CellKind::Hex8,
+        scene::Element::Hex20 => CellKind::Hex20,
+    }
+}
+
+fn dilation(dilation: scene::Dilation) -> Result<Dilation, Failure> {
+    match dilation {
+        scene::Dilation::Standard => Ok(Dilation::Standard),
+        scene::Dilation::ElementMean => Ok(Dilation::Element),
+        scene::Dilation::NodalMean => Ok(Dilation::Nodal),
+        scene::Dilation::Mixed => Err(Failure::Unsupported(
+            "dilation = \"mixed\" is not available yet; element-mean and nodal-mean are".into(),
+        )),
+    }
+}
+
+fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {
+    use efg::Kernel;
+    let default = Kernel::from_name(kernel.name.name())
+        .ok_or_else(|| Failure::Unsupported(format!("kernel \"{}\" is not available", kernel.name.name())))?;
+    Ok(match default {
+        Kernel::Gaussian { alpha } => Kernel::Gaussian { alpha: kernel.alpha.unwrap_or(alpha) },
+        Kernel::Exponential { alpha, power } => Kernel::Exponential {
+            alpha: kernel.alpha.unwrap_or(alpha),
+            power: kernel.power.unwrap_or(power as u32) as _,
+        },
+        Kernel::RegularisedInterpolating { eps } => {
+            Kernel::RegularisedInterpolating { eps: kernel.eps.unwrap_or(eps) }
+        }
+        other => other,
+    })
+}

@@ -1,0 +1,54 @@
+//! What acts on a body: materials, supports and loads, with their fields as functions of position. Method-free.
+
+use cases::exact::Exact;
+use geometry::{Point3, Vector3};
+use mechanics::LinearElastic;
+
+use crate::place::Place;
+
+/// A vector field of position (m); an error says where it was not finite.
+pub type VectorField = Box<dyn Fn(&Point3) -> Result<Vector3, String> + Send + Sync>;
+/// A scalar field of position (m).
+pub type ScalarField = Box<dyn Fn(&Point3) -> Result<f64, String> + Send + Sync>;
+/// A traction as a function of position (m) and outward unit normal.
+pub type TractionField = Box<dyn Fn(&Point3, &Vector3) -> Result<Vector3, String> + Send + Sync>;
+
+/// A prescribed displacement.
+pub struct Held {
+    /// Where.
+    pub place: Place,
+    /// Which of x, y, z.
+    pub axes: [bool; 3],
+    /// The displacement, m.
+    pub value: VectorField,
+}
+
+/// What a load applies.
+pub enum Applied {
+    /// Force per reference area, Pa.
+    Traction(TractionField),
+    /// Pressure against the outward normal, Pa.
+    Pressure(ScalarField),
+    /// Force per reference volume, N/m^3, everywhere.
+    Body(VectorField),
+}
+
+/// A load and where it acts.
+pub struct Acting {
+    /// Where; ignored by a body force.
+    pub place: Place,
+    /// What.
+    pub applied: Applied,
+}
+
+/// Everything that does not depend on the method.
+pub struct Setup {
+    /// One law per region of the mesh.
+    pub materials: Vec<LinearElastic>,
+    /// Supports.
+    pub held: Vec<Held>,
+    /// Loads.
+    pub loads: Vec<Acting>,
+    /// The exact solution, if the scene names one.
+    pub exact: Option<Box<dyn Exact>>,
+}

@@ -1,0 +1,78 @@
+//! One run of a study as a unit of work: what it is, what it leaves, and how it is stored.
+
+use std::path::{Path, PathBuf};
+
+use reports::{Failure as FailedRun, PlanEntry, Record, SurfaceField};
+use serde::{Deserialize, Serialize};
+
+use crate::outcome::Outcome;
+
+/// What one run leaves.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct TaskResult {
+    /// Numbers; empty if it failed.
+    pub records: Vec<Record>,
+    /// Stages run and skipped.
+    pub plans: Vec<PlanEntry>,
+    /// Surface displacement, where asked for.
+    pub fields: Vec<SurfaceField>,
+    /// Why it failed, with its exit code.
+    pub failure: Option<(FailedRun, u8)>,
+}
+
+impl TaskResult {
+    /// Of a finished run.
+    pub fn finished(outcome: &Outcome) -> TaskResult {
+        TaskResult {
+            records: outcome.records(),
+            plans: outcome.plan_entries(),
+            fields: outcome.field.iter().cloned().collect(),
+            failure: None,
+        }
+    }
+
+    /// Of a run that gave no numbers.
+    pub fn failed(case: &str, method: &str, failure: &crate::Failure) -> TaskResult {
+        let run = FailedRun { case: case.into(), method: method.into(), reason: failure.to_string() };
+        TaskResult { failure: Some((run, failure.exit_code())), ..TaskResult::default() }
+    }
+
+    /// Stored result under a key, if there is a readable one of a run that finished.
+    pub fn load(folder: &Path, key: &str) -> Option<TaskResult> {
+        let text = std::fs::read_to_string(file(folder, key)).ok()?;
+        serde_json::from_str::<TaskResult>(&text).ok().filter(|r| r.failure.is_none())
+    }
+
+    /// Stores the result under a key; written beside and renamed, so that a stop leaves no half file.
+    pub fn store(&self, folder: &Path, key: &str) -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        let partial = folder.join(format!("{key}.partial"));
+        std::fs::write(&partial, serde_json::to_string(self)?)?;
+        std::fs::rename(partial, file(folder, key))
+    }
+}
+
+fn file(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("{key}.json"))
+}
+
+/// Hash of everything a run depends on: the program itself, the scene's text, the files it names, and what the study
+/// changes of it.
+pub fn key(program: &str, scene_text: &str, files: &[PathBuf], what: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in [program, scene_text, what] {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    for path in files {
+        hasher.update(path.to_string_lossy().as_bytes());
+        hasher.update(&std::fs::read(path).unwrap_or_default());
+    }
+    hasher.finalize().to_hex()[..32].to_string()
+}
+
+/// Hash of the running program: results of another build are not taken for this one's.
+pub fn program() -> String {
+    let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+    blake3::hash(&bytes).to_hex().to_string()
+}

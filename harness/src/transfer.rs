@@ -1,0 +1,111 @@
+//! Carrying a cloud's displacement to other points: the schemes in use, beside the method's own shape functions.
+
+use std::time::Instant;
+
+use geometry::{Point3, Vector3};
+
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::norms::difference;
+use crate::outcome::{Metric, Transfer};
+use crate::prepare::Prepared;
+use crate::run::{Asks, push, push_difference};
+use crate::timing::Timings;
+
+/// Name of the method's own shape functions among the schemes: no transfer at all.
+pub const OWN_ROWS: &str = "own-rows";
+
+/// Applies of one table that are timed together: one alone (10 us) is at the clock's resolution.
+const APPLIES: usize = 20;
+
+/// Every scheme the scene asks for, from the cloud's nodes to the targets. What is carried is the displacement at the
+/// nodes, not the nodal parameters, which are no displacements.
+pub fn transfers(
+    method: &Discretisation,
+    prepared: &Prepared,
+    u: &[Vector3],
+    asks: &Asks,
+) -> Result<Vec<Transfer>, Failure> {
+    if asks.schemes.is_empty() || asks.targets.is_empty() {
+        return Ok(Vec::new());
+    }
+    let nodes = method.nodes();
+    let at_nodes = method.at_points(&prepared.volume, nodes)?.0.rows().apply(u);
+    let own = method.at_points(&prepared.volume, asks.targets)?.0.rows().apply(u);
+    let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
+    asks.schemes
+        .iter()
+        .map(|(parameters, scheme)| {
+            let name = scheme.name();
+            // A mesh serves barycentric interpolation only if its nodes are the cloud's.
+            let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
+            let build = || scheme.rows(nodes, mesh, asks.targets);
+            let (rows, info) = build()?;
+            let timing = timed(asks, build, rows.rows(), &at_nodes)?;
+            let field = rows.rows().apply(&at_nodes);
+            let mut metrics = Vec::new();
+            if let Some(reference) = asks.reference {
+                push_difference(&mut metrics, &field, &reference.targets);
+                let restricted = (reference.at)(nodes)?;
+                let carried = rows.rows().apply(&restricted);
+                let only = difference(&carried, &reference.targets);
+                push(&mut metrics, "transfer-only-rms", only.rms_magnitude, "m");
+            }
+            let change = difference(&field, &own);
+            push(&mut metrics, "transfer-rms", change.rms_magnitude, "m");
+            let error = difference(&rows.rows().apply(&linear(nodes)), &linear(asks.targets));
+            push(&mut metrics, "linear-rms", error.rms_magnitude, "m");
+            push(&mut metrics, "outside", info.outside as f64, "1");
+            push(&mut metrics, "fallbacks", info.fallbacks as f64, "1");
+            Ok(transfer(name, parameters, metrics, timing, asks))
+        })
+        .chain(std::iter::once_with(|| {
+            let (rows, _) = method.at_points(&prepared.volume, asks.targets)?;
+            let build = || method.at_points(&prepared.volume, asks.targets).map(|_| ());
+            let timing = timed(asks, build, rows.rows(), u)?;
+            let mut metrics = Vec::new();
+            if let Some(reference) = asks.reference {
+                push_difference(&mut metrics, &own, &reference.targets);
+            }
+            Ok(transfer(OWN_ROWS, "", metrics, timing, asks))
+        }))
+        .collect()
+}
+
+fn transfer(scheme: &str, parameters: &str, metrics: Vec<Metric>, timings: Timings, asks: &Asks) -> Transfer {
+    let summaries = timings.summaries();
+    Transfer {
+        scheme: scheme.into(),
+        parameters: parameters.into(),
+        metrics,
+        build: summaries[0].1,
+        apply: summaries[1].1,
+        targets: asks.targets.len(),
+    }
+}
+
+/// Build and apply, repeated.
+fn timed<T, E: Into<Failure>>(
+    asks: &Asks,
+    mut build: impl FnMut() -> Result<T, E>,
+    rows: &shape::Rows,
+    field: &[Vector3],
+) -> Result<Timings, Failure> {
+    let mut timings = Timings::default();
+    let mut out = vec![Vector3::zeros(); rows.len()];
+    for _ in 0..asks.repeats.most.max(1) {
+        timings.time("build", &mut build).map_err(Into::into)?;
+        let start = Instant::now();
+        for _ in 0..APPLIES {
+            rows.apply_into(std::hint::black_box(field), &mut out);
+        }
+        timings.book("apply", start.elapsed().as_secs_f64() / APPLIES as f64);
+        std::hint::black_box(&out);
+    }
+    Ok(timings)
+}
+
+/// A linear field of 10 % strain and rotation: what the better schemes carry without error.
+fn linear_field(x: &Point3) -> Vector3 {
+    Vector3::new(0.1 * x.x + 0.05 * x.y, -0.05 * x.x - 0.04 * x.y + 0.02 * x.z, 0.03 * x.x - 0.04 * x.z)
+}
