@@ -74,21 +74,22 @@ impl SaintVenantFlexure {
         Ok(SaintVenantFlexure { elastic, length, half, scale: load / (elastic.young() * inertia), images })
     }
 
-    /// `sum_m (-1)^m (L(s_m-) + parity L(s_m+))` with `s_m-+ = pi (a (2m + 1) -+ y) / b`, `t = pi z / b`.
-    fn sum(&self, y: f64, z: f64, parity: f64, term: impl Fn(f64, f64) -> Complex) -> Complex {
+    /// `sum_m (-1)^m L(s_m, t)` over the images above (`s_m = pi (a (2m + 1) - y) / b`) and below (`+ y`) the section,
+    /// with `t = pi z / b`: their difference is the series of `sinh / cosh`, their sum that of `cosh / cosh`.
+    fn images(&self, y: f64, z: f64, term: impl Fn(f64, f64) -> Complex) -> (Complex, Complex) {
         let [a, b] = self.half;
-        (0..=self.images).rev().fold(Complex::ZERO, |sum, m| {
+        (0..=self.images).rev().fold((Complex::ZERO, Complex::ZERO), |(above, below), m| {
             let centre = a * f64::from(2 * m + 1);
-            let below = term(PI * (centre - y) / b, PI * z / b);
-            let above = term(PI * (centre + y) / b, PI * z / b);
-            below + parity * above - sum
+            let image = |distance: f64| term(PI * distance / b, PI * z / b);
+            (image(centre - y) - above, image(centre + y) - below)
         })
     }
 
     /// Warping `chi`, m^3.
     fn warping(&self, y: f64, z: f64) -> f64 {
         let ([a, b], nu) = (self.half, self.elastic.poisson());
-        let series = self.sum(y, z, -1.0, alternating_3).re;
+        let (above, below) = self.images(y, z, alternating_3);
+        let series = (above - below).re;
         y * ((1.0 + nu) * a * a - nu * b * b / 3.0 - (2.0 + nu) * y * y / 6.0 + 0.5 * nu * z * z)
             - 4.0 * nu * (b / PI).powi(3) * series
     }
@@ -97,8 +98,8 @@ impl SaintVenantFlexure {
     fn warping_slope(&self, y: f64, z: f64) -> (f64, f64) {
         let ([a, b], nu) = (self.half, self.elastic.poisson());
         let factor = 4.0 * nu * (b / PI).powi(2);
-        let even = self.sum(y, z, 1.0, alternating_2).re;
-        let odd = self.sum(y, z, -1.0, alternating_2).im;
+        let (above, below) = self.images(y, z, alternating_2);
+        let (even, odd) = ((above + below).re, (above - below).im);
         let along_y = (1.0 + nu) * a * a - nu * b * b / 3.0 - 0.5 * (2.0 + nu) * y * y + 0.5 * nu * z * z;
         (along_y - factor * even, nu * y * z + factor * odd)
     }
