@@ -4,7 +4,7 @@
 use efg::{Approximation, Basis, Kernel, MlsInfo, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
-use geometry::{CellKind, Cloud, FaceKind, Facet, Mesh, Point3};
+use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
 use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
 
 use crate::Failure;
@@ -194,8 +194,8 @@ impl Discretisation {
                 Ok((rows, efg::gauss_regions(&efg.background, ERROR_POINTS)))
             }
             _ => {
-                let rule = VolumeRule::FINE.with(CellKind::Hex20, 5)?;
-                Ok((fem::volume_rows(self.mesh(), &rule)?, fem::regions(self.mesh(), &rule)))
+                let rule = &VolumeRule::FINE;
+                Ok((fem::volume_rows(self.mesh(), rule)?, fem::regions(self.mesh(), rule)))
             }
         }
     }
