@@ -16,6 +16,7 @@ mod metric;
 mod model;
 mod output;
 mod region;
+mod report;
 mod resolve;
 mod study;
 mod tool;
@@ -48,7 +49,7 @@ pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
 /// Reads a scene from text. `file` names it in messages; paths in the scene are relative to the folder of `file`.
 pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
     let (keys, origin) = document::read::<keys::SceneKeys>(text, file)?;
-    let mut report = resolve::Report::new(&origin);
+    let mut report = report::Report::new(&origin);
     let scene = resolve::scene(keys, &mut report);
     if let Some(scene) = &scene {
         validate::scene(scene, &mut report);

@@ -9,7 +9,8 @@ use super::error::{Problem, SceneError};
 use super::keys::CheckKeys;
 use super::method::KernelName;
 use super::output::Check;
-use super::resolve::{Report, checks};
+use super::report::Report;
+use super::resolve::checks;
 use super::{document, text_of};
 
 /// A study.

@@ -5,7 +5,7 @@ use super::field::{Prescribed, VectorField};
 use super::metric::Needs;
 use super::model::{LoadKind, Place, Scene};
 use super::output::{Reference, Target};
-use super::resolve::{Report, which};
+use super::report::{Report, which};
 
 /// Notes every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {

@@ -1,0 +1,131 @@
+//! Keys of supports, loads and tools.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::Names;
+use crate::scene::expression::Expression;
+use crate::scene::region::Region;
+use crate::scene::tool::ToolShapeName;
+use crate::scene::units::{BodyForce, Dim, Force, Length, Pressure, Q, Time, Unit};
+
+/// The word "exact": values from the solution that `[reference]` names
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ExactWord {
+    Exact,
+}
+
+/// A quantity, or an expression in x, y and z (metres) with the unit of its value
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(bound = "")]
+pub(crate) enum FieldKeys<D: Dim> {
+    Constant(Q<D>),
+    Expression(FieldOf<D>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound = "")]
+pub(crate) struct FieldOf<D: Dim> {
+    pub unit: Unit<D>,
+    pub of: Expression,
+}
+
+/// Three components, "exact", or three expressions with one unit
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(bound = "")]
+pub(crate) enum VectorKeys<D: Dim> {
+    Exact(ExactWord),
+    Components([FieldKeys<D>; 3]),
+    Expressions(VectorOf<D>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound = "")]
+pub(crate) struct VectorOf<D: Dim> {
+    pub unit: Unit<D>,
+    pub of: [Expression; 3],
+}
+
+/// What a support prescribes along one axis
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum AxisKeys {
+    Exact(ExactWord),
+    Field(FieldKeys<Length>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AxesKeys {
+    pub x: Option<AxisKeys>,
+    pub y: Option<AxisKeys>,
+    pub z: Option<AxisKeys>,
+}
+
+/// Prescribed displacement
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum MoveKeys {
+    Exact(ExactWord),
+    Axes(AxesKeys),
+}
+
+/// Prescribed displacement of a region
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SupportKeys {
+    /// Names that the shape or the mesh file gives
+    pub on: Option<Names>,
+    /// Comparisons joined by 'and'
+    #[serde(rename = "where")]
+    pub place: Option<Region>,
+    /// Axes held at zero, such as "xyz"
+    pub fix: Option<String>,
+    #[serde(rename = "move")]
+    pub motion: Option<MoveKeys>,
+}
+
+/// A given load: one of traction, pressure (along the inner normal) and body force
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LoadKeys {
+    pub on: Option<Names>,
+    #[serde(rename = "where")]
+    pub place: Option<Region>,
+    pub traction: Option<VectorKeys<Pressure>>,
+    pub pressure: Option<FieldKeys<Pressure>>,
+    pub body: Option<VectorKeys<BodyForce>>,
+}
+
+/// A rigid tool
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ToolKeys {
+    pub name: String,
+    pub shape: ToolShapeName,
+    /// Half extents
+    pub half: Option<[Q<Length>; 3]>,
+    pub radius: Option<Q<Length>>,
+    pub length: Option<Q<Length>>,
+    pub path: Option<String>,
+    pub unit: Option<Unit<Length>>,
+    pub at: [Q<Length>; 3],
+    /// Direction of motion
+    pub along: [f64; 3],
+    pub drive: DriveKeys,
+    pub friction: Option<f64>,
+}
+
+/// How a tool is driven
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DriveKeys {
+    pub closure: Option<Q<Length>>,
+    pub force: Option<Q<Force>>,
+    pub pressure: Option<Q<Pressure>>,
+    /// Time of the ramp
+    pub over: Option<Q<Time>>,
+}

@@ -1,0 +1,144 @@
+//! Keys of methods and their sizes.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::scene::method::{Basis, Dilation, Element, KernelName};
+use crate::scene::region::Region;
+use crate::scene::units::{Length, Q, Unit};
+
+/// How fine: one of nodes, spacing, level, cells and file
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SizeKeys {
+    pub nodes: Option<u32>,
+    pub spacing: Option<Q<Length>>,
+    pub level: Option<u32>,
+    pub cells: Option<[u32; 3]>,
+    /// Ratio of the last to the first cell along each axis, with cells
+    pub grading: Option<[f64; 3]>,
+    /// A Gmsh file
+    pub file: Option<String>,
+    /// Unit of the numbers in the file; mm unless given
+    pub unit: Option<Unit<Length>>,
+}
+
+/// Random displacement of the inner nodes
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct JitterKeys {
+    /// Of the cell size, below 0.5
+    pub fraction: f64,
+    pub seed: u64,
+}
+
+/// A way to solve the scene
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "family", rename_all = "kebab-case")]
+pub(crate) enum MethodKeys {
+    /// Finite elements
+    Fem(FemKeys),
+    /// Element-free Galerkin
+    Efg(EfgKeys),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FemKeys {
+    pub id: String,
+    pub element: Element,
+    pub dilation: Option<Dilation>,
+    pub size: SizeKeys,
+    pub jitter: Option<JitterKeys>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EfgKeys {
+    pub id: String,
+    /// Exact number of nodes; or size
+    pub nodes: Option<u32>,
+    /// Size of the mesh whose nodes form the cloud; or nodes
+    pub size: Option<SizeKeys>,
+    pub cloud: Option<CloudName>,
+    /// Regions that a graded cloud is denser in
+    pub graded_towards: Option<Region>,
+    /// Of a uniform or graded cloud
+    pub seed: Option<u64>,
+    pub jitter: Option<JitterKeys>,
+    pub kernel: KernelKeys,
+    /// Support radius over the local spacing; or neighbours and factor
+    pub dilatation: Option<f64>,
+    /// Support radius over the distance to this neighbour
+    pub neighbours: Option<u32>,
+    pub factor: Option<f64>,
+    pub basis: Basis,
+    pub integration: IntegrationKeys,
+    pub essential: EssentialKeys,
+    pub dilation: Option<Dilation>,
+    /// Size of the mesh to integrate over
+    pub background: Option<SizeKeys>,
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum CloudName {
+    Mesh,
+    Uniform,
+    Graded,
+}
+
+/// A kernel by name, or a table with its parameters
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum KernelKeys {
+    Name(KernelName),
+    Table(KernelTable),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct KernelTable {
+    pub name: KernelName,
+    /// Width of a gaussian or exponential kernel relative to the support radius
+    pub alpha: Option<f64>,
+    /// Exponent of an exponential kernel
+    pub power: Option<u32>,
+    /// Regularisation of the regularised-interpolating kernel
+    pub eps: Option<f64>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum IntegrationKeys {
+    /// Gauss points in the tetrahedra or hexahedra of the background mesh
+    Gauss { points: u32 },
+    /// Gauss points in the cells of a grid, those outside the body left out
+    Grid { points: u32, spacing: Option<Q<Length>> },
+    /// Conforming smoothing over tetrahedra, with points per face
+    CellSmoothed { points: Option<u32> },
+}
+
+/// How prescribed displacements are imposed
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum EssentialKeys {
+    Name(EssentialName),
+    Table(EssentialTable),
+}
+
+#[derive(Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum EssentialName {
+    Nitsche,
+    Penalty,
+    Multipliers,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EssentialTable {
+    pub method: EssentialName,
+    /// Stabilisation or penalty factor
+    pub factor: Option<f64>,
+}

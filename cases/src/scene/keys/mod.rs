@@ -1,0 +1,136 @@
+//! The keys of a scene file, one type per table. The schema is generated from these types, and a file is checked against
+//! it; `resolve` turns them into the types the program works with.
+
+mod condition;
+mod method;
+mod output;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+pub(crate) use condition::*;
+pub(crate) use method::*;
+pub(crate) use output::*;
+
+use super::region::Region;
+use super::tool::ProcedureKind;
+use super::units::{Density, Length, Pressure, Q, Time, Unit};
+
+/// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SceneKeys {
+    /// One line that says what the scene is
+    pub title: String,
+    /// Where the case and its reference come from
+    pub source: Option<String>,
+    pub body: BodyKeys,
+    pub material: MaterialKeys,
+    /// Parts of the body with a material of their own
+    #[serde(default)]
+    pub region: Vec<RegionKeys>,
+    #[serde(default)]
+    pub support: Vec<SupportKeys>,
+    #[serde(default)]
+    pub load: Vec<LoadKeys>,
+    #[serde(default)]
+    pub tool: Vec<ToolKeys>,
+    pub procedure: Option<ProcedureKeys>,
+    #[serde(default)]
+    pub method: Vec<MethodKeys>,
+    pub output: Option<OutputKeys>,
+    pub reference: Option<ReferenceKeys>,
+    #[serde(default)]
+    pub check: Vec<CheckKeys>,
+}
+
+/// The body in its undeformed state
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum BodyKeys {
+    /// From corner to corner, or of a size with one corner at the origin
+    Box { min: Option<[Q<Length>; 3]>, max: Option<[Q<Length>; 3]>, size: Option<[Q<Length>; 3]> },
+    /// About the z axis, the base at z = 0
+    Cylinder { radius: Q<Length>, height: Q<Length> },
+    /// About the origin
+    Ball { radius: Q<Length> },
+    /// About the origin; the octant x, y, z >= 0 alone if wanted
+    SphereShell {
+        inner: Q<Length>,
+        outer: Q<Length>,
+        #[serde(default)]
+        octant: bool,
+    },
+    /// The bean of 40 x 75 x 30 mm, by its map from the ball
+    Kidney {},
+    /// The mesh in a Gmsh file whose numbers are in `unit`
+    File { path: String, unit: Unit<Length> },
+}
+
+/// A material law and its constants
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "law", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum MaterialKeys {
+    /// Isotropic linear elasticity at small strain
+    Linear {
+        young: Q<Pressure>,
+        poisson: f64,
+        density: Option<Q<Density>>,
+    },
+    SaintVenantKirchhoff {
+        young: Q<Pressure>,
+        poisson: f64,
+        density: Option<Q<Density>>,
+    },
+    NeoHookean {
+        young: Q<Pressure>,
+        poisson: f64,
+        density: Option<Q<Density>>,
+    },
+    Hencky {
+        young: Q<Pressure>,
+        poisson: f64,
+        density: Option<Q<Density>>,
+    },
+    MooneyRivlin {
+        c10: Q<Pressure>,
+        c01: Q<Pressure>,
+        bulk: Q<Pressure>,
+        density: Option<Q<Density>>,
+    },
+    Ogden {
+        mu: Vec<Q<Pressure>>,
+        alpha: Vec<f64>,
+        bulk: Q<Pressure>,
+        density: Option<Q<Density>>,
+    },
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RegionKeys {
+    pub name: String,
+    /// A volume that the mesh file names
+    pub on: Option<Names>,
+    #[serde(rename = "where")]
+    pub place: Option<Region>,
+    pub material: MaterialKeys,
+}
+
+/// A name or a list of names
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum Names {
+    One(String),
+    Several(Vec<String>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ProcedureKeys {
+    pub kind: ProcedureKind,
+    /// Load steps
+    pub steps: Option<u32>,
+    /// End of the time axis
+    pub duration: Option<Q<Time>>,
+}

@@ -1,0 +1,115 @@
+//! Keys of output, reference and checks.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{Names, SizeKeys};
+use crate::scene::output::SchemeName;
+use crate::scene::units::{Length, Q, Unit};
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OutputKeys {
+    /// Points to report
+    pub probes: Option<Vec<[Q<Length>; 3]>>,
+    pub transfer: Option<TransfersKeys>,
+}
+
+/// One transfer or several
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum TransfersKeys {
+    One(TransferKeys),
+    Several(Vec<TransferKeys>),
+}
+
+/// A transfer of nodal displacements to other points
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TransferKeys {
+    pub to: TargetKeys,
+    pub scheme: SchemeName,
+    pub neighbours: Option<u32>,
+    pub power: Option<f64>,
+    pub dilatation: Option<f64>,
+}
+
+/// "reference-nodes", "probes", or the nodes of a mesh file
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum TargetKeys {
+    Name(TargetName),
+    File(MeshFileKeys),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TargetName {
+    ReferenceNodes,
+    Probes,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MeshFileKeys {
+    pub file: String,
+    pub unit: Option<Unit<Length>>,
+}
+
+/// What results are compared with; further keys are parameters of the exact solution
+#[derive(Deserialize, JsonSchema)]
+pub(crate) struct ReferenceKeys {
+    /// An exact solution by name
+    pub exact: Option<String>,
+    /// A stored record
+    pub record: Option<String>,
+    /// A method of this scene, run at another size if one is given
+    pub method: Option<String>,
+    pub size: Option<SizeKeys>,
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, ParameterKeys>,
+}
+
+/// A parameter: a number, a quantity or name in quotes, or lists of them
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum ParameterKeys {
+    Truth(bool),
+    Number(f64),
+    Text(String),
+    List(Vec<ParameterItem>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum ParameterItem {
+    Number(f64),
+    Text(String),
+    List(Vec<ParameterLeaf>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum ParameterLeaf {
+    Number(f64),
+    Text(String),
+}
+
+/// A bound: a number, or a quantity in quotes
+pub(crate) type BoundKeys = ParameterLeaf;
+
+/// What must hold
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CheckKeys {
+    pub metric: String,
+    /// The methods it holds for; all unless given
+    pub method: Option<Names>,
+    pub at_most: Option<BoundKeys>,
+    pub at_least: Option<BoundKeys>,
+    /// Low and high end of a known defect, reported as not passing
+    pub known_band: Option<[BoundKeys; 2]>,
+    pub reason: Option<String>,
+}

@@ -1,0 +1,206 @@
+//! Supports, loads and tools.
+
+use crate::scene::error::Problem;
+use crate::scene::field::{Prescribed, ScalarField, VectorField};
+use crate::scene::keys::*;
+use crate::scene::model::{Load, LoadKind, Place, Support};
+use crate::scene::region::Region;
+use crate::scene::report::Report;
+use crate::scene::tool::{Drive, Tool, ToolShape, ToolShapeName};
+use crate::scene::units::Dim;
+
+use super::{mesh_file, names, raw};
+
+pub(super) fn place(
+    on: Option<Names>,
+    region: Option<Region>,
+    key: &str,
+    report: &mut Report,
+    needed: bool,
+) -> Place {
+    match (on, region) {
+        (Some(on), None) => {
+            let on = names(on);
+            report.require(
+                !on.is_empty(),
+                &format!("{key}.on"),
+                "names nothing",
+                "name a part of the surface",
+            );
+            Place::On(on)
+        }
+        (None, Some(region)) => Place::Where(region),
+        (Some(_), Some(region)) => {
+            let help = "say where with 'on' or with 'where', not both";
+            report.add(&format!("{key}.where"), Problem::new("stands beside 'on'").help(help));
+            Place::Where(region)
+        }
+        (None, None) => {
+            if needed {
+                report
+                    .missing(&format!("{key}.where"), "say where: on = \"z-min\", or where = \"z == 0 mm\"");
+            }
+            Place::Everywhere
+        }
+    }
+}
+
+pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> Support {
+    let key = format!("support[{index}]");
+    let place = place(keys.on, keys.place, &key, report, true);
+    let zero = || Some(Prescribed::Field(ScalarField::Constant(0.0)));
+    let mut motion: [Option<Prescribed>; 3] = [None, None, None];
+    if let Some(fix) = &keys.fix {
+        let sound = !fix.is_empty() && fix.chars().all(|c| "xyz".contains(c));
+        let help = "write the axes held at zero, such as \"xyz\" or \"z\"";
+        report.require(sound, &format!("{key}.fix"), "is not a list of axes", help);
+        for axis in 0..3 {
+            if fix.contains(['x', 'y', 'z'][axis]) {
+                motion[axis] = zero();
+            }
+        }
+    }
+    match keys.motion {
+        Some(MoveKeys::Exact(_)) => motion = std::array::from_fn(|_| Some(Prescribed::Exact)),
+        Some(MoveKeys::Axes(axes)) => {
+            for (axis, given) in [axes.x, axes.y, axes.z].into_iter().enumerate() {
+                let Some(given) = given else { continue };
+                if motion[axis].is_some() {
+                    let name = ["x", "y", "z"][axis];
+                    let problem = Problem::new("moves an axis that 'fix' holds").help("name each axis once");
+                    report.add(&format!("{key}.move.{name}"), problem);
+                }
+                motion[axis] = Some(match given {
+                    AxisKeys::Exact(_) => Prescribed::Exact,
+                    AxisKeys::Field(field) => Prescribed::Field(scalar(field)),
+                });
+            }
+        }
+        None => {}
+    }
+    if motion.iter().all(Option::is_none) && keys.fix.is_none() {
+        report.missing(&format!("{key}.fix"), "write fix = \"xyz\", or move = { z = \"-1 mm\" }");
+    }
+    Support { place, motion }
+}
+
+fn scalar<D: Dim>(keys: FieldKeys<D>) -> ScalarField {
+    match keys {
+        FieldKeys::Constant(q) => ScalarField::Constant(q.0),
+        FieldKeys::Expression(f) => ScalarField::Expression { of: f.of, factor: f.unit.0 },
+    }
+}
+
+fn vector<D: Dim>(keys: VectorKeys<D>) -> VectorField {
+    match keys {
+        VectorKeys::Exact(_) => VectorField::Exact,
+        VectorKeys::Components(c) => VectorField::Components(c.map(scalar)),
+        VectorKeys::Expressions(v) => {
+            let factor = v.unit.0;
+            VectorField::Components(v.of.map(|of| ScalarField::Expression { of, factor }))
+        }
+    }
+}
+
+pub(super) fn load(keys: LoadKeys, index: usize, report: &mut Report) -> Option<Load> {
+    let key = format!("load[{index}]");
+    let kind = match (keys.traction, keys.pressure, keys.body) {
+        (Some(t), None, None) => LoadKind::Traction(vector(t)),
+        (None, Some(p), None) => LoadKind::Pressure(scalar(p)),
+        (None, None, Some(b)) => LoadKind::Body(vector(b)),
+        (None, None, None) => {
+            report.missing(&key, "give one of traction, pressure and body");
+            return None;
+        }
+        _ => {
+            report.add(
+                &key,
+                Problem::new("has several kinds of load").help("give one of traction, pressure and body"),
+            );
+            return None;
+        }
+    };
+    let body = matches!(kind, LoadKind::Body(_));
+    let place = place(keys.on, keys.place, &key, report, !body);
+    let everywhere = place == Place::Everywhere;
+    report.require(
+        !body || everywhere,
+        &key,
+        "limits a body force to a place",
+        "a body force acts everywhere",
+    );
+    Some(Load { place, kind })
+}
+
+pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<Tool> {
+    let key = format!("tool[{index}]");
+    let need = |value: Option<f64>, name: &str, report: &mut Report| {
+        if value.is_none() {
+            report.missing(&format!("{key}.{name}"), "this shape needs it");
+        }
+        value
+    };
+    let (radius, length) = (keys.radius.map(|q| q.0), keys.length.map(|q| q.0));
+    let shape = match keys.shape {
+        ToolShapeName::Plate => ToolShape::Plate,
+        ToolShapeName::RoundedBox => match keys.half {
+            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: radius.unwrap_or(0.0) },
+            None => {
+                report.missing(&format!("{key}.half"), "a rounded-box needs its half extents");
+                return None;
+            }
+        },
+        ToolShapeName::Sphere => ToolShape::Sphere { radius: need(radius, "radius", report)? },
+        ToolShapeName::Cylinder => ToolShape::Cylinder {
+            radius: need(radius, "radius", report)?,
+            length: need(length, "length", report)?,
+        },
+        ToolShapeName::Capsule => ToolShape::Capsule {
+            radius: need(radius, "radius", report)?,
+            length: need(length, "length", report)?,
+        },
+        ToolShapeName::File => match keys.path {
+            Some(path) => {
+                let unit = keys.unit.map_or(1e-3, |u| u.0);
+                ToolShape::File(mesh_file(&path, unit, &format!("{key}.path"), report))
+            }
+            None => {
+                report.missing(&format!("{key}.path"), "name the mesh file");
+                return None;
+            }
+        },
+    };
+    let drive = match (keys.drive.closure, keys.drive.force, keys.drive.pressure) {
+        (Some(q), None, None) => Drive::Closure(q.0),
+        (None, Some(q), None) => Drive::Force(q.0),
+        (None, None, Some(q)) => Drive::Pressure(q.0),
+        _ => {
+            let help = "give one of closure, force and pressure";
+            report.add(&format!("{key}.drive"), Problem::new("is not one drive").help(help));
+            return None;
+        }
+    };
+    let norm = keys.along.iter().map(|a| a * a).sum::<f64>().sqrt();
+    report.require(
+        norm > 0.0,
+        &format!("{key}.along"),
+        "has no direction",
+        "give a direction such as [0, 0, -1]",
+    );
+    let friction = keys.friction.unwrap_or(0.0);
+    report.require(
+        friction >= 0.0,
+        &format!("{key}.friction"),
+        "is negative",
+        "give a coefficient of 0 or more",
+    );
+    Some(Tool {
+        name: keys.name,
+        shape,
+        at: raw(keys.at),
+        along: keys.along.map(|a| a / norm),
+        drive,
+        over: keys.drive.over.map(|q| q.0),
+        friction,
+    })
+}
