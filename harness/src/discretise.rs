@@ -124,9 +124,21 @@ impl Discretisation {
         }
     }
 
-    /// Mean node spacing `h = (V / N)^(1/3)`, m: one definition for meshes and clouds.
+    /// Size h of the discretisation, m, such that halving every cell halves it: for elements the edge of a cube of the
+    /// mean cell's volume (six tetrahedra to a cube), for a cloud its mean spacing. A size from the number of nodes would
+    /// not do: on coarse meshes it falls more slowly than the cells and flatters the observed order by up to 15 %.
     pub fn spacing(&self, volume: &VolumeRows) -> f64 {
-        (volume.weights().iter().sum::<f64>() / self.nodes().len() as f64).cbrt()
+        match self {
+            Discretisation::Fem(fem) => {
+                let cubes: f64 = (0..fem.mesh.cell_count())
+                    .map(|c| if fem.mesh.kind(c).is_tet() { 1.0 / 6.0 } else { 1.0 })
+                    .sum();
+                (volume.weights().iter().sum::<f64>() / cubes).cbrt()
+            }
+            Discretisation::Efg(efg) => {
+                efg.cloud.spacing.iter().sum::<f64>() / efg.cloud.spacing.len() as f64
+            }
+        }
     }
 
     /// Fills the volume tables (and, for a cloud, builds the supports first).

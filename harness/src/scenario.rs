@@ -1,7 +1,7 @@
 //! From a checked scene and one of its methods to what the solvers take.
 
 use cases::exact::{Exact, Params, exact_by_name};
-use cases::scene::{self, Family, LoadKind, Material, Parameter, Prescribed, Reference, Scene, VectorField};
+use cases::scene::{self, Family, LoadKind, Material, Prescribed, Reference, Scene, VectorField};
 use geometry::{CellKind, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::LinearElastic;
 
@@ -276,19 +276,7 @@ impl Scenario<'_> {
     /// The scene's exact solution for this run's material; `None` where the scene names none.
     fn exact(&self, e: scene::Elastic) -> Result<Option<Box<dyn Exact>>, Failure> {
         let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
-        let mut values = std::collections::BTreeMap::new();
-        for (key, parameter) in parameters {
-            let number = match parameter {
-                Parameter::Number(value) => *value,
-                Parameter::Quantity(quantity) => quantity.value,
-                Parameter::Truth(_) | Parameter::Text(_) | Parameter::List(_) => {
-                    let key = format!("reference.{key}");
-                    let error = self.scene.error(&key, "is not a number or a quantity", None);
-                    return Err(Failure::Input(error.to_string()));
-                }
-            };
-            values.insert(key.clone(), number);
-        }
+        let values = parameters.clone();
         let params = Params { young: e.young, poisson: e.poisson, values };
         exact_by_name(name, &params)
             .map(Some)

@@ -42,11 +42,9 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
         (_, []) if forms.is_empty() => {}
         (_, []) => add(wrong_type(value, &forms)),
         (_, [form]) => one(value, span, path, form, findings),
-        (DeValue::Table(table), several) => match tagged(table, several) {
+        (DeValue::Table(table), several) => match tagged(table, span.clone(), path, several) {
             Ok(form) => one(value, span, path, form, findings),
-            Err((at, key, problem)) => {
-                findings.push(Finding { key: join(path, &key), span: at.unwrap_or(span), problem });
-            }
+            Err(finding) => findings.push(finding),
         },
         (_, several) => {
             let words: Vec<&str> = several.iter().flat_map(|form| words(form)).collect();
@@ -174,8 +172,10 @@ fn not_one_of(value: &DeValue<'_>, words: &[&str]) -> Problem {
 /// Of several tables told apart by the word under one key (`shape = "box"`), the one meant.
 fn tagged<'s>(
     table: &DeTable<'_>,
+    span: Range<usize>,
+    path: &str,
     forms: &[&'s Map<String, Value>],
-) -> Result<&'s Map<String, Value>, (Option<Range<usize>>, String, Problem)> {
+) -> Result<&'s Map<String, Value>, Finding> {
     let variants: Vec<(&str, &str, &'s Map<String, Value>)> = forms
         .iter()
         .filter_map(|form| {
@@ -189,12 +189,15 @@ fn tagged<'s>(
     let words: Vec<&str> = variants.iter().map(|variant| variant.1).collect();
     let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref().as_ref() == tag) else {
         let help = format!("add {tag} = \"...\", one of: {}", words.join(", "));
-        return Err((None, tag.to_string(), Problem::new("is missing").help(help)));
+        return Err(Finding { key: join(path, tag), span, problem: Problem::new("is missing").help(help) });
     };
     let word = written(value.get_ref()).unwrap_or_default();
     match variants.iter().find(|variant| variant.1 == word) {
         Some(variant) => Ok(variant.2),
-        None => Err((Some(value.span()), tag.to_string(), not_one_of(value.get_ref(), &words))),
+        None => {
+            let problem = not_one_of(value.get_ref(), &words);
+            Err(Finding { key: join(path, tag), span: value.span(), problem })
+        }
     }
 }
 

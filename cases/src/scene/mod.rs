@@ -15,6 +15,7 @@ mod method;
 mod metric;
 mod model;
 mod output;
+mod quantity;
 mod region;
 mod report;
 mod resolve;
@@ -35,11 +36,12 @@ pub use method::{
 };
 pub use metric::{Metric, Needs};
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Scene, Support};
-pub use output::{Bound, Check, Output, Parameter, Reference, SchemeName, Target, Transfer};
+pub use output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};
+pub use quantity::{Exponents, Quantity};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};
 pub use tool::{Drive, Procedure, ProcedureKind, Tool, ToolShape};
-pub use units::{Dimension, Exponents, Quantity};
+pub use units::Dimension;
 
 /// Reads the scene in a file. The name in messages is `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -51,7 +53,8 @@ pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
     let (keys, origin) = document::read::<keys::SceneKeys>(text, file)?;
     let mut report = report::Report::new(&origin);
     let scene = resolve::scene(keys, &mut report);
-    if let Some(scene) = &scene {
+    // Parts that could not be resolved are left out of the scene: what the rest demands of them can't be judged.
+    if let (Some(scene), true) = (&scene, report.is_clean()) {
         validate::scene(scene, &mut report);
     }
     let errors = report.finish();

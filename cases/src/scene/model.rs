@@ -180,6 +180,17 @@ impl Material {
             Material::Ogden { .. } => "ogden",
         }
     }
+
+    /// Young's modulus, Poisson's ratio and density, for the laws that have them.
+    pub fn elastic(&self) -> Option<&Elastic> {
+        match self {
+            Material::Linear(e)
+            | Material::SaintVenantKirchhoff(e)
+            | Material::NeoHookean(e)
+            | Material::Hencky(e) => Some(e),
+            Material::MooneyRivlin { .. } | Material::Ogden { .. } => None,
+        }
+    }
 }
 
 /// A part of the body with a material of its own.

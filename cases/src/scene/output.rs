@@ -8,7 +8,6 @@ use serde::Deserialize;
 
 use super::method::{MeshFile, Size};
 use super::metric::Metric;
-use super::units::Quantity;
 
 /// What a scene reports.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,8 +98,8 @@ pub enum Reference {
     Exact {
         /// Its name.
         name: String,
-        /// Its parameters.
-        parameters: BTreeMap<String, Parameter>,
+        /// Its parameters in SI, their names and dimensions those that the solution takes.
+        parameters: BTreeMap<String, f64>,
     },
     /// A method of this scene.
     Method {
@@ -111,21 +110,6 @@ pub enum Reference {
     },
     /// A stored record.
     Record(PathBuf),
-}
-
-/// A parameter of an exact solution.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Parameter {
-    /// A bare number.
-    Number(f64),
-    /// A quantity with its dimension.
-    Quantity(Quantity),
-    /// A truth value.
-    Truth(bool),
-    /// A name.
-    Text(String),
-    /// A list.
-    List(Vec<Parameter>),
 }
 
 /// What must hold of the results.

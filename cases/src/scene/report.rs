@@ -20,6 +20,16 @@ impl<'o> Report<'o> {
         self.errors.push(self.origin.error(ErrorKind::Invalid, key, problem));
     }
 
+    /// Whether something is noted at `key`.
+    pub fn has(&self, key: &str) -> bool {
+        self.errors.iter().any(|error| error.key == key)
+    }
+
+    /// Whether nothing is noted.
+    pub fn is_clean(&self) -> bool {
+        self.errors.is_empty()
+    }
+
     pub fn finish(self) -> Vec<SceneError> {
         sorted(self.errors)
     }

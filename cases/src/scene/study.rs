@@ -7,11 +7,14 @@ use serde::Deserialize;
 
 use super::error::{Problem, SceneError};
 use super::keys::CheckKeys;
-use super::method::KernelName;
+use super::method::{Family, KernelName, Method};
+use super::metric::Needs;
+use super::model::Scene;
 use super::output::Check;
 use super::report::Report;
 use super::resolve::checks;
-use super::{document, text_of};
+use super::validate::{self, known_methods};
+use super::{document, load, text_of};
 
 /// A study.
 #[derive(Clone, Debug)]
@@ -92,7 +95,13 @@ pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
     if keys.run.is_empty() {
         report.add("run", Problem::new("is missing").help("add a [[run]] with scene = \"...\""));
     }
-    let runs = keys.run.into_iter().enumerate().map(|(i, run)| self::run(run, i, &mut report)).collect();
+    let runs: Vec<Run> = keys.run.into_iter().enumerate().map(|(i, r)| run(r, i, &mut report)).collect();
+    for (i, run) in runs.iter().enumerate() {
+        // A scene that can't be read is the business of whoever runs it: its own findings say more.
+        if let Ok(scene) = load(&run.scene) {
+            fit(run, &scene, &format!("run[{i}]"), &mut report);
+        }
+    }
     let errors = report.finish();
     if errors.is_empty() { Ok(Study { title: keys.title, runs }) } else { Err(errors) }
 }
@@ -104,17 +113,16 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         let help = format!("no file at {}; scenes are relative to the study's folder", scene.display());
         report.add(&format!("{key}.scene"), Problem::new("can't be found").help(help));
     }
-    if keys.levels.iter().any(|l| !(1..=8).contains(l)) {
-        report.add(&format!("{key}.levels"), Problem::new("holds no level").help("levels are 1 to 8"));
-    }
-    if keys.poisson.iter().any(|nu| !(*nu > -1.0 && *nu < 0.5)) {
-        let help = "give ratios above -1 and below 0.5, such as 0.4999";
-        report.add(&format!("{key}.poisson"), Problem::new("holds no Poisson's ratio").help(help));
-    }
-    if !keys.levels.is_empty() && !keys.nodes.is_empty() {
-        let help = "vary levels or node counts, not both";
-        report.add(&format!("{key}.nodes"), Problem::new("stands beside levels").help(help));
-    }
+    let at = |name: &str| format!("{key}.{name}");
+    let sound = keys.levels.iter().all(|l| (1..=8).contains(l));
+    report.require(sound, &at("levels"), "holds a number that is no level", "levels are 1 to 8");
+    let sound = keys.poisson.iter().all(|nu| *nu > -1.0 && *nu < 0.5);
+    let help = "give ratios above -1 and below 0.5, such as 0.4999";
+    report.require(sound, &at("poisson"), "holds a number that is no Poisson's ratio", help);
+    let sound = keys.nodes.iter().all(|n| *n >= 4);
+    report.require(sound, &at("nodes"), "holds a number that is no cloud", "give 4 nodes or more");
+    let alone = keys.levels.is_empty() || keys.nodes.is_empty();
+    report.require(alone, &at("nodes"), "stands beside levels", "vary levels or node counts, not both");
     Run {
         scene,
         methods: keys.methods,
@@ -123,6 +131,40 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
         kernels: keys.kernels,
         quick: keys.quick,
-        checks: checks(keys.check, &format!("{key}.check"), report),
+        checks: checks(keys.check, &at("check"), report),
     }
+}
+
+/// What a run demands of its scene.
+fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
+    known_methods(&run.methods, scene, &format!("{key}.methods"), report);
+    for (i, check) in run.checks.iter().enumerate() {
+        let key = format!("{key}.check[{i}]");
+        validate::check(check, scene, &key, report);
+        if check.metric.needs == Needs::Levels && run.levels.len() < 2 {
+            let problem = Problem::new("needs several levels").help("give the run levels = [1, 2, 3]");
+            report.add(&format!("{key}.metric"), problem);
+        }
+        if !run.methods.is_empty() {
+            for id in check.methods.iter().filter(|id| !run.methods.contains(id)) {
+                let problem =
+                    Problem::new("is not run here").found(id).help("name it in methods, or leave it out");
+                report.add(&format!("{key}.method"), problem);
+            }
+        }
+    }
+    let chosen = |m: &&Method| run.methods.is_empty() || run.methods.contains(&m.id);
+    let clouds = scene.methods.iter().filter(chosen).any(|m| matches!(m.family, Family::Efg(_)));
+    for (name, given) in [("nodes", !run.nodes.is_empty()), ("kernels", !run.kernels.is_empty())] {
+        let help = "element-free Galerkin methods have them";
+        report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
+    }
+    let elastic = scene.material.elastic().is_some();
+    let help = format!("the {} law has none", scene.material.name());
+    report.require(
+        run.poisson.is_empty() || elastic,
+        &format!("{key}.poisson"),
+        "has nothing to vary",
+        &help,
+    );
 }

@@ -1,10 +1,12 @@
 //! What a scene's parts demand of each other.
 
+use crate::exact::{Params, exact_by_name};
+
 use super::error::{Problem, suggest};
 use super::field::{Prescribed, VectorField};
 use super::metric::Needs;
 use super::model::{LoadKind, Place, Scene};
-use super::output::{Reference, Target};
+use super::output::{Check, Reference, Target};
 use super::report::{Report, which};
 
 /// Notes every contradiction.
@@ -12,43 +14,41 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     if scene.methods.is_empty() {
         report.add("method", Problem::new("is missing").help("add a [[method]] with id, family and size"));
     }
-    let ids = || scene.methods.iter().map(|m| m.id.as_str());
     for (i, method) in scene.methods.iter().enumerate() {
         if scene.methods[..i].iter().any(|other| other.id == method.id) {
             let problem = Problem::new("is the id of another method").found(&method.id);
             report.add(&format!("method[{i}].id"), problem.help("ids are unique"));
         }
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if method.id.is_empty() || !method.id.chars().all(plain) {
+            let problem = Problem::new("is no id").help("use letters, digits, '-', '_' and '.'");
+            report.add(&format!("method[{i}].id"), problem);
+        }
+    }
+    for (i, region) in scene.regions.iter().enumerate() {
+        if scene.regions[..i].iter().any(|other| other.name == region.name) {
+            let problem = Problem::new("is the name of another region").help("names are unique");
+            report.add(&format!("region[{i}].name"), problem);
+        }
     }
     for (i, check) in scene.checks.iter().enumerate() {
-        for id in check.methods.iter().filter(|id| scene.method(id).is_none()) {
-            let problem = Problem::new("is not a method of this scene").found(id).help(which(id, ids()));
-            report.add(&format!("check[{i}].method"), problem);
-        }
-        let lacks = match check.metric.needs {
-            Needs::Run => None,
-            Needs::Reference if scene.reference.is_none() => Some("needs a [reference]"),
-            Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
-                Some("needs a [reference] and output.probes")
-            }
-            Needs::Transfer if scene.output.transfers.is_empty() => Some("needs output.transfer"),
-            Needs::Levels => Some("needs several levels: it belongs into a study"),
-            _ => None,
-        };
-        if let Some(lack) = lacks {
-            report.add(&format!("check[{i}].metric"), Problem::new(lack).found(check.metric.name));
+        let key = format!("check[{i}]");
+        self::check(check, scene, &key, report);
+        if check.metric.needs == Needs::Levels {
+            let problem = Problem::new("needs several levels").help("checks of orders belong into a study");
+            report.add(&format!("{key}.metric"), problem);
         }
     }
     match &scene.reference {
-        Some(Reference::Method { id, .. }) if scene.method(id).is_none() => {
-            let problem = Problem::new("is not a method of this scene").found(id).help(which(id, ids()));
-            report.add("reference.method", problem);
+        Some(Reference::Method { id, .. }) => {
+            known_methods(std::slice::from_ref(id), scene, "reference.method", report);
         }
-        Some(Reference::Exact { name, .. }) => {
-            let known: Vec<&str> = crate::exact::exact_names().collect();
-            if !known.contains(&name.as_str()) {
-                let problem =
-                    Problem::new("is not an exact solution").found(name).help(suggest(name, &known));
-                report.add("reference.exact", problem);
+        Some(Reference::Exact { name, parameters }) => {
+            if let Some(e) = scene.material.elastic() {
+                let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
+                if let Err(bad) = exact_by_name(name, &params) {
+                    report.add("reference", Problem::new(format!("can't be built: {bad}")));
+                }
             }
         }
         _ => {}
@@ -68,6 +68,28 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             "output.transfer",
             Problem::new("goes to probes, and there are none").help("add output.probes"),
         );
+    }
+}
+
+/// What a check, in the scene or in a study of it, demands of the scene; `key` is the path of the check.
+pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report) {
+    known_methods(&check.methods, scene, &format!("{key}.method"), report);
+    let lacks = match check.metric.needs {
+        Needs::Reference | Needs::Levels if scene.reference.is_none() => "needs a [reference] in the scene",
+        Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
+            "needs a [reference] and output.probes in the scene"
+        }
+        Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",
+        _ => return,
+    };
+    report.add(&format!("{key}.metric"), Problem::new(lacks).found(check.metric.name));
+}
+
+/// Every id is that of a method of the scene.
+pub(crate) fn known_methods(ids: &[String], scene: &Scene, key: &str, report: &mut Report) {
+    for id in ids.iter().filter(|id| scene.method(id).is_none()) {
+        let help = which(id, scene.methods.iter().map(|m| m.id.as_str()));
+        report.add(key, Problem::new("is not a method of this scene").found(id).help(help));
     }
 }
 

@@ -39,7 +39,7 @@ pub(crate) enum MethodKeys {
     /// Finite elements
     Fem(FemKeys),
     /// Element-free Galerkin
-    Efg(EfgKeys),
+    Efg(Box<EfgKeys>),
 }
 
 #[derive(Deserialize, JsonSchema)]

@@ -69,36 +69,16 @@ pub(crate) struct ReferenceKeys {
     pub method: Option<String>,
     pub size: Option<SizeKeys>,
     #[serde(flatten)]
-    pub parameters: BTreeMap<String, ParameterKeys>,
+    pub parameters: BTreeMap<String, NumberKeys>,
 }
 
-/// A parameter: a number, a quantity or name in quotes, or lists of them
+/// A bare number, or a quantity in quotes
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub(crate) enum ParameterKeys {
-    Truth(bool),
+pub(crate) enum NumberKeys {
     Number(f64),
-    Text(String),
-    List(Vec<ParameterItem>),
+    Quantity(String),
 }
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(crate) enum ParameterItem {
-    Number(f64),
-    Text(String),
-    List(Vec<ParameterLeaf>),
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(crate) enum ParameterLeaf {
-    Number(f64),
-    Text(String),
-}
-
-/// A bound: a number, or a quantity in quotes
-pub(crate) type BoundKeys = ParameterLeaf;
 
 /// What must hold
 #[derive(Deserialize, JsonSchema)]
@@ -107,9 +87,9 @@ pub(crate) struct CheckKeys {
     pub metric: String,
     /// The methods it holds for; all unless given
     pub method: Option<Names>,
-    pub at_most: Option<BoundKeys>,
-    pub at_least: Option<BoundKeys>,
+    pub at_most: Option<NumberKeys>,
+    pub at_least: Option<NumberKeys>,
     /// Low and high end of a known defect, reported as not passing
-    pub known_band: Option<[BoundKeys; 2]>,
+    pub known_band: Option<[NumberKeys; 2]>,
     pub reason: Option<String>,
 }

@@ -9,7 +9,7 @@ use crate::scene::report::Report;
 use crate::scene::tool::{Drive, Tool, ToolShape, ToolShapeName};
 use crate::scene::units::Dim;
 
-use super::{mesh_file, names, raw};
+use super::{MILLIMETRE, mesh_file, names, positive, raw};
 
 pub(super) fn place(
     on: Option<Names>,
@@ -51,8 +51,8 @@ pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> S
     let zero = || Some(Prescribed::Field(ScalarField::Constant(0.0)));
     let mut motion: [Option<Prescribed>; 3] = [None, None, None];
     if let Some(fix) = &keys.fix {
-        let sound = !fix.is_empty() && fix.chars().all(|c| "xyz".contains(c));
-        let help = "write the axes held at zero, such as \"xyz\" or \"z\"";
+        let sound = ["x", "y", "z", "xy", "xz", "yz", "xyz"].contains(&fix.as_str());
+        let help = "write the axes held at zero in order: x, y, z, xy, xz, yz or xyz";
         report.require(sound, &format!("{key}.fix"), "is not a list of axes", help);
         for axis in 0..3 {
             if fix.contains(['x', 'y', 'z'][axis]) {
@@ -61,7 +61,12 @@ pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> S
         }
     }
     match keys.motion {
-        Some(MoveKeys::Exact(_)) => motion = std::array::from_fn(|_| Some(Prescribed::Exact)),
+        Some(MoveKeys::Exact(_)) => {
+            let help = "write move = { x = \"exact\" } for some axes, and fix for others";
+            let alone = keys.fix.is_none();
+            report.require(alone, &format!("{key}.move"), "moves axes that 'fix' holds", help);
+            motion = std::array::from_fn(|_| Some(Prescribed::Exact));
+        }
         Some(MoveKeys::Axes(axes)) => {
             for (axis, given) in [axes.x, axes.y, axes.z].into_iter().enumerate() {
                 let Some(given) = given else { continue };
@@ -140,11 +145,14 @@ pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<
         }
         value
     };
-    let (radius, length) = (keys.radius.map(|q| q.0), keys.length.map(|q| q.0));
+    let positive =
+        |value: f64, name: &str, report: &mut Report| positive(value, &format!("{key}.{name}"), report);
+    let radius = keys.radius.map(|q| positive(q.0, "radius", report));
+    let length = keys.length.map(|q| positive(q.0, "length", report));
     let shape = match keys.shape {
         ToolShapeName::Plate => ToolShape::Plate,
         ToolShapeName::RoundedBox => match keys.half {
-            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: radius.unwrap_or(0.0) },
+            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: need(radius, "radius", report)? },
             None => {
                 report.missing(&format!("{key}.half"), "a rounded-box needs its half extents");
                 return None;
@@ -161,7 +169,7 @@ pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<
         },
         ToolShapeName::File => match keys.path {
             Some(path) => {
-                let unit = keys.unit.map_or(1e-3, |u| u.0);
+                let unit = keys.unit.map_or(MILLIMETRE, |u| u.0);
                 ToolShape::File(mesh_file(&path, unit, &format!("{key}.path"), report))
             }
             None => {

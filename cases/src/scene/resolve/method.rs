@@ -3,9 +3,10 @@
 use crate::scene::error::Problem;
 use crate::scene::keys::*;
 use crate::scene::method::*;
+use crate::scene::region::Region;
 use crate::scene::report::Report;
 
-use super::{mesh_file, positive};
+use super::{MILLIMETRE, mesh_file, positive};
 
 pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Option<Method> {
     let key = format!("method[{index}]");
@@ -19,29 +20,70 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
                 family: Family::Fem(Fem { element: fem.element, dilation, size: size?, jitter }),
             })
         }
-        MethodKeys::Efg(efg) => efg_method(efg, &key, report),
+        MethodKeys::Efg(efg) => efg_method(*efg, &key, report),
     }
 }
 
 fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let at = |name: &str| format!("{key}.{name}");
+    let background = keys.background.map(|b| size(b, &at("background"), report));
     let jitter = jitter(keys.jitter, key, report);
-    let seed = keys.seed.unwrap_or(1);
-    let cloud = match (keys.nodes, keys.size, keys.cloud, keys.graded_towards) {
-        (None, Some(s), None | Some(CloudName::Mesh), None) => {
-            size(s, &at("size"), report).map(|size| Cloud::Mesh { size, jitter })
+    let layout = Layout {
+        nodes: keys.nodes.map(|n| count(n, &at("nodes"), report)),
+        size: keys.size.map(|s| size(s, &at("size"), report)),
+        name: keys.cloud,
+        towards: keys.graded_towards,
+        seed: keys.seed,
+        jitter,
+    };
+    let cloud = cloud(layout, key, report);
+    let support = support(keys.dilatation, keys.neighbours, keys.factor, keys.basis, key, report);
+    let kernel = kernel(keys.kernel, &at("kernel"), report);
+    let integration = integration(keys.integration, key, report);
+    let essential = essential(keys.essential, &at("essential.factor"), report);
+    let (cloud, support, background) = (cloud?, support?, background.map_or(Some(None), |b| b.map(Some))?);
+    let dilation = keys.dilation.unwrap_or(Dilation::Standard);
+    let efg = Efg { cloud, kernel, support, basis: keys.basis, integration, essential, dilation, background };
+    Some(Method { id: keys.id, family: Family::Efg(efg) })
+}
+
+/// What a file says of a cloud; `size` is `Some(None)` where it could not be read.
+struct Layout {
+    nodes: Option<usize>,
+    size: Option<Option<Size>>,
+    name: Option<CloudName>,
+    towards: Option<Region>,
+    seed: Option<u64>,
+    jitter: Option<Jitter>,
+}
+
+fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
+    let at = |name: &str| format!("{key}.{name}");
+    let of_mesh = layout.size.is_some();
+    let problem = "does not belong to this cloud";
+    report.require(
+        of_mesh || layout.jitter.is_none(),
+        &at("jitter"),
+        problem,
+        "it moves the nodes of a mesh: give size",
+    );
+    report.require(!of_mesh || layout.seed.is_none(), &at("seed"), problem, "the nodes of a mesh need none");
+    let seed = layout.seed.unwrap_or(1);
+    match (layout.nodes, layout.size, layout.name, layout.towards) {
+        (None, Some(size), None | Some(CloudName::Mesh), None) => {
+            Some(Cloud::Mesh { size: size?, jitter: layout.jitter })
         }
-        (Some(n), None, None | Some(CloudName::Uniform), None) => {
-            Some(Cloud::Uniform { nodes: n as usize, seed })
+        (Some(nodes), None, None | Some(CloudName::Uniform), None) => Some(Cloud::Uniform { nodes, seed }),
+        (Some(nodes), None, Some(CloudName::Graded), Some(towards)) => {
+            Some(Cloud::Graded { nodes, seed, towards })
         }
-        (Some(n), None, None | Some(CloudName::Graded), Some(towards)) => {
-            Some(Cloud::Graded { nodes: n as usize, seed, towards })
+        (Some(_), None, Some(CloudName::Graded), None) => {
+            report.missing(&at("graded_towards"), "say where it is denser: graded_towards = \"z >= 10 mm\"");
+            None
         }
         (None, None, ..) => {
-            report.missing(
-                &at("nodes"),
-                "give nodes = 83 for a cloud of that count, or size for the nodes of a mesh",
-            );
+            let help = "give nodes = 83 for a cloud of that count, or size for the nodes of a mesh";
+            report.missing(&at("nodes"), help);
             None
         }
         _ => {
@@ -49,21 +91,45 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
             report.add(&at("cloud"), Problem::new("does not go with the keys beside it").help(help));
             None
         }
-    };
-    let support = match (keys.dilatation, keys.neighbours) {
+    }
+}
+
+fn support(
+    dilatation: Option<f64>,
+    neighbours: Option<u32>,
+    factor: Option<f64>,
+    basis: Basis,
+    key: &str,
+    report: &mut Report,
+) -> Option<SupportRule> {
+    let at = |name: &str| format!("{key}.{name}");
+    let stray = factor.is_some() && neighbours.is_none();
+    report.require(!stray, &at("factor"), "goes with neighbours only", "leave it out");
+    match (dilatation, neighbours) {
         (Some(d), None) => {
-            report.require(d > 0.0 && d < 10.0, &at("dilatation"), "is no dilatation", "1.2 to 3 is usual");
+            report.require(
+                (1.0..=10.0).contains(&d),
+                &at("dilatation"),
+                "is no dilatation",
+                "1.2 to 3 is usual",
+            );
             Some(SupportRule::Dilatation(d))
         }
         (None, Some(k)) => {
-            let factor = keys.factor.unwrap_or(1.2);
-            report.require(factor > 0.0, &at("factor"), "is not positive", "1.2 to 1.6 is usual");
+            let factor = factor.unwrap_or(1.2);
             report.require(
-                k >= 4,
-                &at("neighbours"),
-                "are too few for a linear basis",
-                "give at least 4, better 12",
+                (1.0..=10.0).contains(&factor),
+                &at("factor"),
+                "is no factor",
+                "1.1 to 1.6 is usual",
             );
+            let least = match basis {
+                Basis::Linear => 4,
+                Basis::Quadratic => 10,
+            };
+            let help =
+                format!("a {} basis needs {least} at the least, better three times that", basis.name());
+            report.require(k >= least, &at("neighbours"), "are too few", &help);
             Some(SupportRule::Neighbours { k: k as usize, factor })
         }
         (Some(_), Some(_)) => {
@@ -75,106 +141,127 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
             report.missing(&at("dilatation"), "give dilatation = 1.6, or neighbours = 15 and factor = 1.2");
             None
         }
+    }
+}
+
+fn kernel(keys: KernelKeys, key: &str, report: &mut Report) -> Kernel {
+    let keys = match keys {
+        KernelKeys::Name(name) => return Kernel { name, alpha: None, power: None, eps: None },
+        KernelKeys::Table(keys) => keys,
     };
-    let kernel = match keys.kernel {
-        KernelKeys::Name(name) => Kernel { name, alpha: None, power: None, eps: None },
-        KernelKeys::Table(t) => Kernel { name: t.name, alpha: t.alpha, power: t.power, eps: t.eps },
-    };
-    let integration = match keys.integration {
-        IntegrationKeys::Gauss { points } => Integration::Gauss { points: points as usize },
+    let name = keys.name;
+    let wide = matches!(name, KernelName::Gaussian | KernelName::Exponential);
+    let given = [
+        ("alpha", keys.alpha, wide),
+        ("power", keys.power.map(f64::from), name == KernelName::Exponential),
+        ("eps", keys.eps, name == KernelName::RegularisedInterpolating),
+    ];
+    for (parameter, value, taken) in given {
+        let at = format!("{key}.{parameter}");
+        if let Some(value) = value {
+            let help = format!("{} takes no {parameter}: leave it out", name.name());
+            report.require(taken, &at, "does not belong to this kernel", &help);
+            positive(value, &at, report);
+        }
+    }
+    Kernel { name, alpha: keys.alpha, power: keys.power, eps: keys.eps }
+}
+
+fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integration {
+    let at = format!("{key}.integration.points");
+    match keys {
+        IntegrationKeys::Gauss { points } => {
+            report.require(points > 0, &at, "is zero", "in a tetrahedron 1, 4, 11 and more are known");
+            Integration::Gauss { points: points as usize }
+        }
         IntegrationKeys::Grid { points, spacing } => {
-            let root = (points as f64).cbrt().round() as u32;
-            let help = "points per grid cell are 1, 8, 27, 64, ...";
-            report.require(root.pow(3) == points, &at("integration.points"), "is not a cube number", help);
-            Integration::Grid { points: points as usize, spacing: spacing.map(|q| q.0) }
+            let sound = (1u32..=10).any(|n| n.pow(3) == points);
+            report.require(
+                sound,
+                &at,
+                "is no cube number",
+                "points per grid cell are 1, 8, 27, 64, ... 1000",
+            );
+            let spacing = spacing.map(|q| positive(q.0, &format!("{key}.integration.spacing"), report));
+            Integration::Grid { points: points as usize, spacing }
         }
         IntegrationKeys::CellSmoothed { points } => {
             let points = points.unwrap_or(1);
-            let sound = [1, 3, 6].contains(&points);
             report.require(
-                sound,
-                &at("integration.points"),
+                [1, 3, 6].contains(&points),
+                &at,
                 "is no face rule",
                 "points per face are 1, 3 or 6",
             );
             Integration::CellSmoothed { face_points: points as usize }
         }
-    };
-    let (name, factor) = match keys.essential {
+    }
+}
+
+fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {
+    let (name, factor) = match keys {
         EssentialKeys::Name(name) => (name, None),
         EssentialKeys::Table(table) => (table.method, table.factor),
     };
     if let Some(factor) = factor {
-        positive(factor, &at("essential.factor"), report);
+        positive(factor, key, report);
     }
-    let essential = match name {
+    match name {
         EssentialName::Nitsche => Essential::Nitsche { factor },
         EssentialName::Penalty => Essential::Penalty { factor },
-        EssentialName::Multipliers => Essential::Multipliers,
-    };
-    let background = keys.background.map(|b| size(b, &at("background"), report));
-    let background = match background {
-        Some(None) => return None,
-        Some(Some(size)) => Some(size),
-        None => None,
-    };
-    Some(Method {
-        id: keys.id,
-        family: Family::Efg(Efg {
-            cloud: cloud?,
-            kernel,
-            support: support?,
-            basis: keys.basis,
-            integration,
-            essential,
-            dilation: keys.dilation.unwrap_or(Dilation::Standard),
-            background,
-        }),
-    })
+        EssentialName::Multipliers => {
+            report.require(factor.is_none(), key, "goes with nitsche and penalty only", "leave it out");
+            Essential::Multipliers
+        }
+    }
 }
 
 pub(super) fn size(keys: SizeKeys, key: &str, report: &mut Report) -> Option<Size> {
-    let given = [
-        keys.nodes.is_some(),
-        keys.spacing.is_some(),
-        keys.level.is_some(),
-        keys.cells.is_some(),
-        keys.file.is_some(),
-    ];
-    if given.iter().filter(|g| **g).count() != 1 {
-        let help = "give one of nodes, spacing, level, cells and file, such as { level = 2 }";
-        report.add(key, Problem::new("is not one size").help(help));
-        return None;
+    let at = |name: &str| format!("{key}.{name}");
+    let (grading, unit, file) = (keys.grading, keys.unit, keys.file.is_some());
+    report.require(
+        grading.is_none() || keys.cells.is_some(),
+        &at("grading"),
+        "goes with cells only",
+        "leave it out",
+    );
+    report.require(unit.is_none() || file, &at("unit"), "goes with file only", "leave it out");
+    match (keys.nodes, keys.spacing, keys.level, keys.cells, keys.file) {
+        (Some(n), None, None, None, None) => Some(Size::Nodes(count(n, &at("nodes"), report))),
+        (None, Some(q), None, None, None) => Some(Size::Spacing(positive(q.0, &at("spacing"), report))),
+        (None, None, Some(level), None, None) => {
+            report.require((1..=8).contains(&level), &at("level"), "is no level", "levels are 1 to 8");
+            Some(Size::Level(level))
+        }
+        (None, None, None, Some(cells), None) => {
+            let cells = cells.map(|n| n as usize);
+            let all = cells.iter().fold(1usize, |all, n| all.saturating_mul(*n));
+            let help = format!("give 1 or more along each axis, {MOST} in all at most");
+            report.require((1..=MOST).contains(&all), &at("cells"), "is no number of cells", &help);
+            let grading = grading.unwrap_or([1.0; 3]);
+            let sound = grading.iter().all(|g| *g > 0.0);
+            report.require(sound, &at("grading"), "is not positive", "1 is uniform");
+            Some(Size::Cells { cells, grading })
+        }
+        (None, None, None, None, Some(file)) => {
+            Some(Size::File(mesh_file(&file, unit.map_or(MILLIMETRE, |u| u.0), &at("file"), report)))
+        }
+        _ => {
+            let help = "give one of nodes, spacing, level, cells and file, such as { level = 2 }";
+            report.add(key, Problem::new("is not one size").help(help));
+            None
+        }
     }
-    let one = |n: u32, name: &str, report: &mut Report| {
-        report.require(n > 0, &format!("{key}.{name}"), "is zero", "give 1 or more");
-        n
-    };
-    if let Some(n) = keys.nodes {
-        return Some(Size::Nodes(one(n, "nodes", report) as usize));
-    }
-    if let Some(q) = keys.spacing {
-        return Some(Size::Spacing(positive(q.0, &format!("{key}.spacing"), report)));
-    }
-    if let Some(level) = keys.level {
-        report.require((1..=8).contains(&level), &format!("{key}.level"), "is no level", "levels are 1 to 8");
-        return Some(Size::Level(level.clamp(1, 8)));
-    }
-    if let Some(cells) = keys.cells {
-        let sound = cells.iter().all(|&n| (1..=1000).contains(&n));
-        report.require(
-            sound,
-            &format!("{key}.cells"),
-            "is no number of cells",
-            "give 1 to 1000 along each axis",
-        );
-        let grading = keys.grading.unwrap_or([1.0; 3]);
-        let sound = grading.iter().all(|g| *g > 0.0 && g.is_finite());
-        report.require(sound, &format!("{key}.grading"), "is not positive", "1 is uniform");
-        return Some(Size::Cells { cells: cells.map(|n| n as usize), grading });
-    }
-    let unit = keys.unit.map_or(1e-3, |u| u.0);
-    keys.file.map(|file| Size::File(mesh_file(&file, unit, &format!("{key}.file"), report)))
+}
+
+/// More nodes or cells than this are a slip of the pen: the memory of a large machine would not hold the matrix.
+const MOST: usize = 20_000_000;
+
+/// A number of nodes.
+fn count(n: u32, key: &str, report: &mut Report) -> usize {
+    let help = format!("give 4 to {MOST}");
+    report.require((4..=MOST).contains(&(n as usize)), key, "is no number of nodes", &help);
+    n as usize
 }
 
 fn jitter(keys: Option<JitterKeys>, key: &str, report: &mut Report) -> Option<Jitter> {

@@ -16,6 +16,9 @@ use method::method;
 pub(crate) use output::checks;
 use output::{output, reference};
 
+/// Unit of a mesh file's numbers unless the scene gives another: what CAD programs and Gmsh models of organs are in.
+const MILLIMETRE: f64 = 1e-3;
+
 /// `None` only together with findings.
 pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let body = body(keys.body, report);
@@ -35,7 +38,8 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let output = output(keys.output, report);
     let reference = keys.reference.and_then(|r| reference(r, report));
     let checks = checks(keys.check, "check", report);
-    let procedure = procedure(keys.procedure);
+    let procedure = procedure(keys.procedure, report);
+    report.require(!keys.title.trim().is_empty(), "title", "is empty", "say in one line what the scene is");
     Some(Scene {
         title: keys.title,
         source: keys.source,
@@ -156,7 +160,7 @@ fn material(keys: MaterialKeys, key: &str, report: &mut Report) -> Material {
             c10: c10.0,
             c01: c01.0,
             bulk: positive(bulk.0, &format!("{key}.bulk"), report),
-            density: density.map(|d| d.0),
+            density: density.map(|d| positive(d.0, &format!("{key}.density"), report)),
         },
         E::Ogden { mu, alpha, bulk, density } => {
             let holds = mu.len() == alpha.len() && !mu.is_empty();
@@ -164,19 +168,16 @@ fn material(keys: MaterialKeys, key: &str, report: &mut Report) -> Material {
             Material::Ogden {
                 terms: mu.iter().map(|m| m.0).zip(alpha).collect(),
                 bulk: positive(bulk.0, &format!("{key}.bulk"), report),
-                density: density.map(|d| d.0),
+                density: density.map(|d| positive(d.0, &format!("{key}.density"), report)),
             }
         }
     }
 }
 
-fn procedure(keys: Option<ProcedureKeys>) -> Procedure {
-    match keys {
-        Some(p) => Procedure {
-            kind: p.kind,
-            steps: p.steps.unwrap_or(1) as usize,
-            duration: p.duration.map(|q| q.0),
-        },
-        None => Procedure { kind: ProcedureKind::Linear, steps: 1, duration: None },
-    }
+fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
+    let Some(keys) = keys else { return Procedure { kind: ProcedureKind::Linear, steps: 1, duration: None } };
+    let steps = keys.steps.unwrap_or(1);
+    report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
+    let duration = keys.duration.map(|q| positive(q.0, "procedure.duration", report));
+    Procedure { kind: keys.kind, steps: steps as usize, duration }
 }

@@ -1,14 +1,17 @@
 //! What a scene reports, compares with and checks.
 
+use std::collections::BTreeMap;
+
+use crate::exact::{exact_names, exact_parameters};
 use crate::scene::error::{Problem, suggest};
 use crate::scene::keys::*;
 use crate::scene::metric::Metric;
-use crate::scene::output::{Bound, Check, Output, Parameter, Reference, Target, Transfer};
+use crate::scene::output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};
 use crate::scene::report::Report;
-use crate::scene::units::{Dimension, Quantity};
+use crate::scene::units::Dimension;
 
 use super::method::size;
-use super::{mesh_file, names, raw};
+use super::{MILLIMETRE, mesh_file, names, positive, raw};
 
 pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     let Some(keys) = keys else { return Output { probes: Vec::new(), transfers: Vec::new() } };
@@ -16,97 +19,110 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
         let help = "name a point, or leave the key out";
         report.require(!probes.is_empty(), "output.probes", "is empty", help);
     }
-    let list = match keys.transfer {
+    let transfers = match keys.transfer {
         None => Vec::new(),
-        Some(TransfersKeys::One(one)) => vec![one],
-        Some(TransfersKeys::Several(several)) => several,
+        Some(TransfersKeys::One(one)) => vec![transfer(one, "output.transfer", report)],
+        Some(TransfersKeys::Several(several)) => {
+            let each = several.into_iter().enumerate();
+            each.map(|(i, t)| transfer(t, &format!("output.transfer[{i}]"), report)).collect()
+        }
     };
-    let transfers = list.into_iter().map(|t| Transfer {
-        to: match t.to {
-            TargetKeys::Name(TargetName::ReferenceNodes) => Target::ReferenceNodes,
-            TargetKeys::Name(TargetName::Probes) => Target::Probes,
-            TargetKeys::File(f) => {
-                Target::File(mesh_file(&f.file, f.unit.map_or(1e-3, |u| u.0), "output.transfer", report))
-            }
-        },
-        scheme: t.scheme,
-        neighbours: t.neighbours.map(|n| n as usize),
-        power: t.power,
-        dilatation: t.dilatation,
-    });
-    Output {
-        transfers: transfers.collect(),
-        probes: keys.probes.unwrap_or_default().into_iter().map(raw).collect(),
+    Output { transfers, probes: keys.probes.unwrap_or_default().into_iter().map(raw).collect() }
+}
+
+fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
+    let at = |name: &str| format!("{key}.{name}");
+    let to = match keys.to {
+        TargetKeys::Name(TargetName::ReferenceNodes) => Target::ReferenceNodes,
+        TargetKeys::Name(TargetName::Probes) => Target::Probes,
+        TargetKeys::File(f) => {
+            Target::File(mesh_file(&f.file, f.unit.map_or(MILLIMETRE, |u| u.0), &at("to.file"), report))
+        }
+    };
+    let takes = |schemes: &[SchemeName]| schemes.contains(&keys.scheme);
+    let given = [
+        ("neighbours", keys.neighbours.is_some(), takes(&[SchemeName::InverseDistance])),
+        ("power", keys.power.is_some(), takes(&[SchemeName::InverseDistance])),
+        (
+            "dilatation",
+            keys.dilatation.is_some(),
+            takes(&[SchemeName::Shepard, SchemeName::MlsLinear, SchemeName::MlsQuadratic]),
+        ),
+    ];
+    for (name, given, taken) in given {
+        let help = format!("{} takes no {name}: leave it out", keys.scheme.name());
+        report.require(!given || taken, &at(name), "does not belong to this scheme", &help);
+    }
+    if let Some(n) = keys.neighbours {
+        report.require(n > 0, &at("neighbours"), "is zero", "give 1 or more");
+    }
+    for (name, value) in [("power", keys.power), ("dilatation", keys.dilatation)] {
+        if let Some(value) = value {
+            positive(value, &at(name), report);
+        }
+    }
+    Transfer {
+        to,
+        scheme: keys.scheme,
+        neighbours: keys.neighbours.map(|n| n as usize),
+        power: keys.power,
+        dilatation: keys.dilatation,
     }
 }
 
 pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Reference> {
-    let stray = |report: &mut Report| {
+    let given = keys.size.is_some();
+    let size = keys.size.and_then(|s| size(s, "reference.size", report));
+    if keys.method.is_none() {
+        report.require(!given, "reference.size", "goes with method only", "leave it out");
+    }
+    if keys.exact.is_none() {
         for name in keys.parameters.keys() {
             let help = suggest(name, &["exact", "method", "record", "size"]);
-            report.add(&format!("reference.{name}"), Problem::new("is not known").help(help));
+            report.add(&format!("reference.{name}"), Problem::new("is not a known key").help(help));
         }
-    };
-    match (&keys.exact, &keys.method, &keys.record) {
-        (Some(_), None, None) => {}
-        (None, Some(id), None) => {
-            stray(report);
-            let (id, given) = (id.clone(), keys.size.is_some());
-            let size = keys.size.and_then(|s| size(s, "reference.size", report));
-            return (size.is_some() || !given).then_some(Reference::Method { id, size });
-        }
-        (None, None, Some(record)) => {
-            stray(report);
-            return Some(Reference::Record(report.path(record)));
-        }
+    }
+    match (keys.exact, keys.method, keys.record) {
+        (Some(name), None, None) => exact(name, keys.parameters, report),
+        (None, Some(id), None) => (size.is_some() || !given).then_some(Reference::Method { id, size }),
+        (None, None, Some(record)) => Some(Reference::Record(report.path(&record))),
         _ => {
             let help = "give one of exact = \"...\", method = \"...\" and record = \"...\"";
             report.add("reference", Problem::new("is not one reference").help(help));
-            return None;
+            None
         }
     }
-    let mut parameters = std::collections::BTreeMap::new();
-    for (name, value) in keys.parameters {
-        match parameter(value) {
-            Ok(value) => {
-                parameters.insert(name, value);
-            }
-            Err(bad) => report.add(&format!("reference.{name}"), bad),
-        }
-    }
-    keys.exact.map(|name| Reference::Exact { name, parameters })
 }
 
-fn parameter(keys: ParameterKeys) -> Result<Parameter, Problem> {
-    let text = |text: String| -> Result<Parameter, Problem> {
-        if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
-            Quantity::read(&text).map(Parameter::Quantity)
-        } else {
-            Ok(Parameter::Text(text))
-        }
+/// An exact solution with its parameters in SI, each of the dimension that the solution says.
+fn exact(name: String, given: BTreeMap<String, NumberKeys>, report: &mut Report) -> Option<Reference> {
+    let Ok(taken) = exact_parameters(&name) else {
+        let known: Vec<&str> = exact_names().collect();
+        let problem = Problem::new("is not an exact solution").found(&name).help(suggest(&name, &known));
+        report.add("reference.exact", problem);
+        return None;
     };
-    Ok(match keys {
-        ParameterKeys::Truth(value) => Parameter::Truth(value),
-        ParameterKeys::Number(value) => Parameter::Number(value),
-        ParameterKeys::Text(value) => text(value)?,
-        ParameterKeys::List(items) => Parameter::List(
-            items
-                .into_iter()
-                .map(|item| match item {
-                    ParameterItem::Number(value) => Ok(Parameter::Number(value)),
-                    ParameterItem::Text(value) => text(value),
-                    ParameterItem::List(leaves) => leaves
-                        .into_iter()
-                        .map(|leaf| match leaf {
-                            ParameterLeaf::Number(value) => Ok(Parameter::Number(value)),
-                            ParameterLeaf::Text(value) => text(value),
-                        })
-                        .collect::<Result<_, _>>()
-                        .map(Parameter::List),
-                })
-                .collect::<Result<_, _>>()?,
-        ),
-    })
+    let names: Vec<&str> = taken.iter().map(|p| p.name).collect();
+    let mut parameters = BTreeMap::new();
+    for (key, value) in given {
+        let Some(parameter) = taken.iter().find(|p| p.name == key) else {
+            let problem = Problem::new(format!("is not a parameter of {name}")).help(suggest(&key, &names));
+            report.add(&format!("reference.{key}"), problem);
+            continue;
+        };
+        let dimension = Dimension::of_unit(parameter.unit).unwrap_or(Dimension::None);
+        match limit(value, dimension) {
+            Ok(value) => drop(parameters.insert(key, value)),
+            Err(bad) => report.add(&format!("reference.{key}"), bad),
+        }
+    }
+    for p in taken.iter().filter(|p| p.default.is_none() && !parameters.contains_key(p.name)) {
+        let key = format!("reference.{}", p.name);
+        if !report.has(&key) {
+            report.missing(&key, &format!("{name} needs it: {} [{}]", p.meaning, p.unit));
+        }
+    }
+    Some(Reference::Exact { name, parameters })
 }
 
 /// Checks of a scene or of a run of a study; `key` is the path of their list.
@@ -122,7 +138,7 @@ fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
             return None;
         }
     };
-    let bound = |value: BoundKeys, name: &str, report: &mut Report| match limit(value, metric.dimension) {
+    let bound = |value: NumberKeys, name: &str, report: &mut Report| match limit(value, metric.dimension) {
         Ok(value) => Some(value),
         Err(bad) => {
             report.add(&format!("{key}.{name}"), bad);
@@ -150,26 +166,30 @@ fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
             report.add(&format!("{key}.known_band"), Problem::new("stands beside a bound").help(help));
             return None;
         }
-        (low, high, None) => Bound::Within {
-            at_least: match low {
-                Some(low) => Some(bound(low, "at_least", report)?),
-                None => None,
-            },
-            at_most: match high {
-                Some(high) => Some(bound(high, "at_most", report)?),
-                None => None,
-            },
-        },
+        (low, high, None) => {
+            let at_least = low.map(|low| bound(low, "at_least", report));
+            let at_most = high.map(|high| bound(high, "at_most", report));
+            let stray = keys.reason.is_some();
+            report.require(!stray, &format!("{key}.reason"), "goes with known_band only", "leave it out");
+            // A bound that could not be read is noted already; the check is dropped with it.
+            let (at_least, at_most) =
+                (at_least.map_or(Some(None), |b| b.map(Some))?, at_most.map_or(Some(None), |b| b.map(Some))?);
+            if let (Some(low), Some(high)) = (at_least, at_most) {
+                let help = "at_least must not be above at_most";
+                report.require(low <= high, &format!("{key}.at_most"), "leaves no value to pass", help);
+            }
+            Bound::Within { at_least, at_most }
+        }
     };
     Some(Check { metric, methods: keys.method.map(names).unwrap_or_default(), bound })
 }
 
-fn limit(keys: BoundKeys, dimension: Dimension) -> Result<f64, Problem> {
+fn limit(keys: NumberKeys, dimension: Dimension) -> Result<f64, Problem> {
     match (keys, dimension) {
-        (BoundKeys::Number(value), Dimension::None) => Ok(value),
-        (BoundKeys::Number(value), _) => {
+        (NumberKeys::Number(value), Dimension::None) => Ok(value),
+        (NumberKeys::Number(value), _) => {
             Err(Problem::new("has no unit").help(dimension.fix(&value.to_string())))
         }
-        (BoundKeys::Text(text), _) => dimension.read(&text),
+        (NumberKeys::Quantity(text), _) => dimension.read(&text),
     }
 }
