@@ -1,0 +1,70 @@
+//! Runs the built program and keeps what it left.
+
+#![allow(dead_code)] // each test file uses its share
+
+use std::path::Path;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// A block on its base under pressure; the smallest scene that runs.
+pub const BLOCK: &str = r#"title = "A block"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ where = "z == 0 mm", fix = "xyz" }]
+load = [{ on = "z-max", pressure = "1 kPa" }]
+method = [{ id = "tet4", family = "fem", element = "tet4", size = { cells = [2, 2, 1] } }]
+"#;
+
+/// What a finished process left.
+pub struct Done {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// Runs the program to its end.
+pub fn tissuebench(args: &[&str]) -> Done {
+    let output = Command::new(env!("CARGO_BIN_EXE_tissuebench")).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let done = Done {
+        code: output.status.code().expect("ended by itself"),
+        stdout: text(output.stdout),
+        stderr: text(output.stderr),
+    };
+    assert!(!done.stderr.contains("panicked"), "{args:?}: {}", done.stderr);
+    done
+}
+
+/// The process ended with this code and said this on stderr.
+#[track_caller]
+pub fn assert_fails(done: &Done, code: i32, says: &str) {
+    assert_eq!(done.code, code, "{says}: {}", done.stderr);
+    assert!(done.stderr.contains(says), "no '{says}' in: {}", done.stderr);
+}
+
+/// A file of the project's cases.
+pub fn cases(name: &str) -> String {
+    format!("{}/../cases/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Writes a file and returns its path.
+pub fn write(dir: &TempDir, name: &str, text: &str) -> String {
+    let path = dir.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    utf8(&path)
+}
+
+/// A path inside a folder of a test.
+pub fn inside(dir: &TempDir, name: &str) -> String {
+    utf8(&dir.path().join(name))
+}
+
+fn utf8(path: &Path) -> String {
+    path.to_str().unwrap().to_string()
+}
+
+/// A scene without one of its keys.
+pub fn without(scene: &str, key: &str) -> String {
+    scene.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect()
+}

@@ -1,0 +1,161 @@
+//! Studies through the built program: exit codes, the same bits again, stored runs kept.
+
+mod common;
+
+use std::path::Path;
+
+use common::{BLOCK, assert_fails, cases, inside, tissuebench, without, write};
+use reports::{Record, RunSet, Status, read_run};
+use tempfile::TempDir;
+
+fn results(folder: &str) -> RunSet {
+    read_run(Path::new(folder)).unwrap()
+}
+
+/// Rows that two runs of one input share to the bit; the value as bits, for -0 is not 0 and no NaN equals another.
+fn exact(set: &RunSet) -> Vec<(Record, u64)> {
+    let rows = set.records.iter().filter(|r| !r.is_measured());
+    rows.map(|r| (r.clone(), r.value.to_bits())).collect()
+}
+
+fn both_families(dir: &TempDir) -> String {
+    let (patch, bending) = (cases("patch-displacement.toml"), cases("pure-bending.toml"));
+    let text = format!(
+        r#"title = "Both families"
+
+[[run]]
+scene = '{patch}'
+methods = ["tet4", "hex20", "efg-smoothed-1.6", "efg-gauss-2.0"]
+
+[[run]]
+scene = '{bending}'
+methods = ["tet10", "hex8-mean", "efg-gauss", "efg-projected"]
+levels = [1, 2]
+poisson = [0.495]
+"#
+    );
+    write(dir, "study.toml", &text)
+}
+
+#[test]
+fn the_same_bits_again_and_at_any_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = both_families(&dir);
+    let run = |out: &str, options: &[&str]| {
+        let out = inside(&dir, out);
+        let done = tissuebench(&[&["verify", &study, "--out", &out], options].concat());
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        results(&out)
+    };
+    let first = run("one", &["--threads", "1"]);
+    assert!(first.failures.is_empty());
+    let rows = exact(&first);
+    let runs = ["tet4", "hex20", "efg-smoothed-1.6", "efg-gauss-2.0", "tet10", "hex8-mean", "efg-gauss"];
+    for method in runs {
+        assert!(rows.iter().any(|(r, _)| r.method == method && r.quantity == "l2"), "{method}");
+    }
+    for (out, options) in [
+        ("again", ["--threads", "1"].as_slice()),
+        ("two", &["--threads", "2"]),
+        ("jobs", &["--threads", "2", "--jobs", "2"]),
+    ] {
+        let again = run(out, options);
+        assert!(rows == exact(&again), "{out}: {:?}", first_difference(&rows, &exact(&again)));
+        assert_eq!(first.checks, again.checks, "{out}");
+        assert_eq!(first.plans, again.plans, "{out}");
+        assert_eq!(first.provenance.scenes, again.provenance.scenes, "{out}");
+    }
+}
+
+fn first_difference<'a, T: PartialEq>(a: &'a [T], b: &'a [T]) -> Option<(&'a T, &'a T)> {
+    a.iter().zip(b).find(|(a, b)| a != b)
+}
+
+/// A study of the block with one more bound on it.
+fn bounded(dir: &TempDir, check: &str) -> String {
+    let scene = write(dir, "block.toml", BLOCK);
+    let text = format!("title = \"Bounds\"\n[[run]]\nscene = '{scene}'\n[[run.check]]\n{check}\n");
+    write(dir, "study.toml", &text)
+}
+
+#[test]
+fn a_check_that_does_not_hold_is_1() {
+    // Of 1 kPa on 20 mm at 20 kPa: about 1 mm.
+    for (check, code, status) in [
+        ("metric = \"max-z\"\nat_most = \"2 mm\"", 0, Status::Pass),
+        ("metric = \"max-z\"\nat_most = \"1e-6 mm\"", 1, Status::Fail),
+        ("metric = \"max-z\"\nat_least = \"1 m\"", 1, Status::Fail),
+        (
+            "metric = \"max-z\"\nknown_band = [\"0.5 mm\", \"2 mm\"]\nreason = \"soft\"",
+            0,
+            Status::KnownFailure,
+        ),
+        // Better than known is a change too.
+        ("metric = \"max-z\"\nknown_band = [\"2 mm\", \"3 mm\"]\nreason = \"soft\"", 1, Status::Fail),
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        let (study, out) = (bounded(&dir, check), inside(&dir, "out"));
+        let done = tissuebench(&["verify", &study, "--out", &out]);
+        assert_eq!(done.code, code, "{check}: {}", done.stderr);
+        let checks = results(&out).checks;
+        assert_eq!(checks.iter().map(|c| c.status).collect::<Vec<_>>(), [status], "{check}");
+        assert_eq!(done.stderr.contains("max-z"), code == 1, "{}", done.stderr);
+    }
+}
+
+#[test]
+fn the_checks_of_a_scene_gate_a_single_run_too() {
+    let dir = tempfile::tempdir().unwrap();
+    let check = |bound: &str| format!("{BLOCK}\n[[check]]\nmetric = \"max-z\"\nat_most = \"{bound}\"\n");
+    assert_eq!(tissuebench(&["run", &write(&dir, "loose.toml", &check("2 mm"))]).code, 0);
+    assert_fails(&tissuebench(&["run", &write(&dir, "tight.toml", &check("1e-6 mm"))]), 1, "max-z");
+}
+
+#[test]
+fn a_filter_that_fits_nothing_is_4_and_leaves_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (bounded(&dir, "metric = \"max-z\"\nat_most = \"2 mm\""), inside(&dir, "out"));
+    let done = tissuebench(&["verify", &study, "--filter", "no-such-thing", "--out", &out]);
+    assert_fails(&done, 4, "nothing ran");
+    assert!(!Path::new(&out).exists());
+    // Not one run of this study is of the quick tier, and the second share of one run is empty.
+    assert_fails(&tissuebench(&["verify", &study, "--quick", "--out", &out]), 4, "nothing ran");
+    assert_fails(&tissuebench(&["verify", &study, "--shard", "2/2", "--out", &out]), 4, "nothing ran");
+    assert_eq!(tissuebench(&["verify", &study, "--filter", "tet", "--out", &out]).code, 0);
+}
+
+#[test]
+fn a_run_that_fails_is_3_and_the_others_go_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let free = write(&dir, "free.toml", &without(BLOCK, "support"));
+    let block = write(&dir, "block.toml", BLOCK);
+    let text = format!("title = \"One fails\"\n[[run]]\nscene = '{free}'\n[[run]]\nscene = '{block}'\n");
+    let (study, out) = (write(&dir, "study.toml", &text), inside(&dir, "out"));
+    assert_fails(&tissuebench(&["verify", &study, "--out", &out]), 3, "rigid motion");
+    let set = results(&out);
+    assert_eq!(set.failures.iter().map(|f| f.case.as_str()).collect::<Vec<_>>(), ["free"]);
+    assert!(!set.records.is_empty() && set.records.iter().all(|r| r.case == "block"));
+}
+
+#[test]
+fn stored_runs_are_kept_until_their_scene_changes() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (bounded(&dir, "metric = \"max-z\"\nat_most = \"1 m\""), inside(&dir, "out"));
+    let run = |options: &[&str]| {
+        let done = tissuebench(&[&["verify", &study, "--out", &out], options].concat());
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        results(&out)
+    };
+    let first = run(&[]);
+    // Times of a second run are never the same to the last digit: these are the stored ones.
+    assert!(first.records.iter().any(Record::is_measured));
+    assert_eq!(run(&["--resume"]), first);
+    let anew = run(&[]);
+    assert!(anew.records != first.records, "without --resume all runs are done again");
+    assert_eq!(exact(&anew), exact(&first));
+    // Twice as soft: solved again, and twice the displacement.
+    write(&dir, "block.toml", &BLOCK.replace("20 kPa", "10 kPa"));
+    let softer = run(&["--resume"]);
+    let largest = |set: &RunSet| set.records.iter().find(|r| r.quantity == "max-z").unwrap().value;
+    assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
+}
