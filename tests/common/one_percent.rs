@@ -1,4 +1,5 @@
-//! Tables against their stored form: words equal, numbers within one percent, never a NaN.
+//! Tables against their stored form: words equal, numbers within one percent, never a NaN. That it can fail is shown in
+//! `reports/tests/snapshots.rs`, which shares it.
 
 use insta::comparator::Comparator;
 use insta::internals::SnapshotContents;
