@@ -101,8 +101,7 @@ fn wrong_type(value: &DeValue<'_>, forms: &[&Map<String, Value>]) -> Problem {
     {
         return Problem::new("has no unit").found(text).help(dimension.fix(text));
     }
-    let mut wanted: Vec<String> = forms.iter().map(|form| describe(form)).collect();
-    wanted.dedup();
+    let wanted = describe_all(forms);
     let found = match value {
         DeValue::Table(_) => "a table",
         DeValue::Array(_) => "a list",
@@ -111,11 +110,24 @@ fn wrong_type(value: &DeValue<'_>, forms: &[&Map<String, Value>]) -> Problem {
         DeValue::Boolean(_) => "a truth value",
         DeValue::Datetime(_) => "a date",
     };
-    let problem = Problem::new(format!("is {found}, where {} belongs", wanted.join(" or ")));
+    let problem = Problem::new(format!("is {found}, where {wanted} belongs"));
     match text {
         Some(text) => problem.found(text),
         None => problem,
     }
+}
+
+/// What may stand in a place: forms that are single words as one list of words.
+fn describe_all(forms: &[&Map<String, Value>]) -> String {
+    let listed: Vec<&str> = forms.iter().flat_map(words).collect();
+    let mut wanted: Vec<String> = Vec::new();
+    match listed.as_slice() {
+        [] => {}
+        [word] => wanted.push(format!("\"{word}\"")),
+        several => wanted.push(format!("one of \"{}\"", several.join("\", \""))),
+    }
+    wanted.extend(forms.iter().filter(|form| words_of(form).is_none()).map(|form| describe(form)));
+    wanted.join(" or ")
 }
 
 fn describe(form: &Map<String, Value>) -> String {
@@ -131,9 +143,6 @@ fn describe(form: &Map<String, Value>) -> String {
     }
     if form.contains_key("x-expression") {
         return "an expression in quotes such as \"z^2\"".into();
-    }
-    if let Some(words) = words_of(form) {
-        return format!("one of \"{}\"", words.join("\", \""));
     }
     match types(form).first() {
         Some(&"string") => "text in quotes".into(),
@@ -316,8 +325,7 @@ fn keys(
         if !table.keys().any(|key| key.get_ref().as_ref() == name) {
             let mut forms = Vec::new();
             known.get(name).into_iter().for_each(|schema| flatten(schema, &mut forms));
-            let wanted: Vec<String> = forms.iter().map(|form| describe(form)).collect();
-            let problem = Problem::new("is missing").help(format!("add {}", wanted.join(" or ")));
+            let problem = Problem::new("is missing").help(format!("add {}", describe_all(&forms)));
             findings.push(Finding { key: join(path, name), span: span.clone(), problem });
         }
     }

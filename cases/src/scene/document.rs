@@ -27,6 +27,11 @@ impl Origin {
         &self.file
     }
 
+    /// Whether the file has `key`.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.places.contains_key(key)
+    }
+
     /// An error at `key`, such as `method[1].size.nodes`, with the value the file has there; at the nearest key above it
     /// if the file doesn't have it.
     pub(crate) fn error(&self, kind: ErrorKind, key: &str, problem: Problem) -> SceneError {
@@ -74,14 +79,15 @@ pub(crate) fn read<T: JsonSchema + DeserializeOwned>(
             help: problem.help,
         }
     };
-    let (root, syntax) = DeTable::parse_recoverable(text);
-    if !syntax.is_empty() {
-        let errors = syntax.iter().map(|bad| {
-            let help = "see https://toml.io for the format; text values stand in quotes";
-            here(bad.span(), "", Problem::new(format!("not valid TOML: {}", clip(bad.message()))).help(help))
-        });
-        return Err(sorted(errors.collect()));
-    }
+    // The first error of syntax alone: what a parser says after it is mostly its own confusion.
+    let root = DeTable::parse(text).map_err(|bad| {
+        let help = "see https://toml.io for the format; text values stand in quotes";
+        vec![here(
+            bad.span(),
+            "",
+            Problem::new(format!("not valid TOML: {}", clip(bad.message()))).help(help),
+        )]
+    })?;
     let root_value = DeValue::Table(root.get_ref().clone());
     let findings = conform::check(&root_value, root.span(), &schema::<T>());
     if !findings.is_empty() {

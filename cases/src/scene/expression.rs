@@ -1,26 +1,23 @@
-//! Expressions in x, y and z (metres).
+//! Expressions in x, y and z (metres), such as `20 * (1 - z^2 / 0.01)`.
 //!
-//! The text is checked token by token first, for two reasons: messages that point at the place, and three readings of the
-//! evaluator (exmex) that would be silently wrong here: `1e-3` is not a number to it, `-x^2` is `(-x)^2`, and `x^y^z` is
-//! `(x^y)^z`. The first two are rewritten, the third is refused.
+//! The usual rules: `^` before a sign before `*` and `/` before `+` and `-`, a power of a power from the right, all others
+//! from the left. Our own reader in 200 lines, because the crate tried first (exmex 0.21) takes `sqrt(x^2 + y^2 + 3)` for
+//! `x^2 + sqrt(y^2 + 3)`, `-x^2` for `(-x)^2` and doesn't know `1e-3`, and because a message must point at the place.
 
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::iter::Peekable;
+use std::str::CharIndices;
 
-use exmex::{Express, FlatEx};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 
 use super::error::{Problem, suggest};
 
-/// An expression in the coordinates, compiled.
+/// An expression in the coordinates, compiled to postfix order.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
-    /// Shared: a compiled expression takes 20 kB.
-    compiled: Arc<FlatEx<f64>>,
-    /// Which of x, y, z it uses, in this order.
-    uses: Vec<usize>,
+    program: Vec<Op>,
 }
 
 /// An expression that has no finite value somewhere.
@@ -35,24 +32,66 @@ pub struct NotFinite {
     pub at: [f64; 3],
 }
 
-const FUNCTIONS: [&str; 25] = [
-    "abs", "signum", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "floor", "round", "ceil", "exp", "sqrt", "cbrt", "ln", "log2", "log10", "min", "max",
-];
-const CONSTANTS: [(&str, &str); 3] = [("pi", "PI"), ("PI", "PI"), ("e", "E")];
+#[derive(Clone, Copy, Debug)]
+enum Op {
+    Number(f64),
+    Coordinate(usize),
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
+}
+
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
-/// Deeper or longer expressions are no fields; the limit keeps recursion in the evaluator shallow.
-const MAX_CHARS: usize = 2000;
+const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+const ONE: [(&str, fn(f64) -> f64); 19] = [
+    ("abs", f64::abs),
+    ("sign", f64::signum),
+    ("sqrt", f64::sqrt),
+    ("cbrt", f64::cbrt),
+    ("exp", f64::exp),
+    ("ln", f64::ln),
+    ("log10", f64::log10),
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("asin", f64::asin),
+    ("acos", f64::acos),
+    ("atan", f64::atan),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
+    ("floor", f64::floor),
+    ("ceil", f64::ceil),
+    ("round", f64::round),
+];
+const TWO: [(&str, fn(f64, f64) -> f64); 4] =
+    [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
+
+/// Nesting allowed: it bounds the recursion of the reader and, at four values a level (those that wait
+/// for the rest of a sum, a product, a power and the second argument), the stack of the evaluation.
 const MAX_DEPTH: usize = 40;
+const STACK: usize = 4 * (MAX_DEPTH + 1);
 
 impl Expression {
     /// Value at `x` (metres), in the unit that stands beside the expression.
     pub fn value(&self, x: [f64; 3]) -> Result<f64, NotFinite> {
-        let mut used = [0.0; 3];
-        for (slot, axis) in used.iter_mut().zip(&self.uses) {
-            *slot = x[*axis];
+        let mut stack = [0.0; STACK];
+        let mut top = 0;
+        for op in &self.program {
+            match op {
+                Op::Number(value) => stack[top] = *value,
+                Op::Coordinate(axis) => stack[top] = x[*axis],
+                Op::One(f) => {
+                    top -= 1;
+                    stack[top] = f(stack[top]);
+                }
+                Op::Two(f) => {
+                    top -= 2;
+                    stack[top] = f(stack[top], stack[top + 1]);
+                }
+            }
+            top += 1;
         }
-        let value = self.compiled.eval(&used[..self.uses.len()]).unwrap_or(f64::NAN);
+        let value = stack[0];
         if value.is_finite() {
             return Ok(value);
         }
@@ -65,185 +104,207 @@ impl Expression {
     }
 
     pub(crate) fn read(text: &str) -> Result<Expression, Problem> {
-        let rewritten = rewrite(text)?;
-        let compiled = FlatEx::<f64>::parse(&rewritten)
-            .map_err(|bad| Problem::new(format!("can't be read as an expression: {bad}")).found(text))?;
-        let uses = compiled.var_names().iter();
-        let uses = uses.filter_map(|name| COORDINATES.iter().position(|c| c == name)).collect();
-        let expression = Expression { text: text.to_string(), compiled: Arc::new(compiled), uses };
-        if expression.uses.is_empty() && expression.value([0.0; 3]).is_err() {
+        if text.trim().is_empty() {
+            let help = "write one in x, y and z, such as \"z^2\"";
+            return Err(Problem::new("is an empty expression").found(text).help(help));
+        }
+        let mut reader =
+            Reader { text, chars: text.char_indices().peekable(), program: Vec::new(), depth: 0 };
+        reader.sum()?;
+        match reader.next() {
+            None => {}
+            Some((at, ')')) => return Err(reader.bad(at, "a ')' closes nothing")),
+            Some((at, ',')) => return Err(reader.bad(at, "a ',' is out of place")),
+            Some((at, c)) if c.is_ascii_alphanumeric() || "._(".contains(c) => {
+                let problem = reader.bad(at, &format!("an operator is missing before '{c}'"));
+                return Err(problem.help("write a product as '2*x'"));
+            }
+            Some((at, c)) => return Err(reader.bad(at, &format!("'{c}' has no meaning"))),
+        }
+        let expression = Expression { text: text.to_string(), program: reader.program };
+        let constant = !expression.program.iter().any(|op| matches!(op, Op::Coordinate(_)));
+        if constant && expression.value([0.0; 3]).is_err() {
             return Err(Problem::new("is not finite").found(text));
         }
         Ok(expression)
     }
 }
 
-/// What must come next.
-#[derive(Clone, Copy, PartialEq)]
-enum Next {
-    /// A number, name, `(` or sign.
-    Operand,
-    /// An operator, `,` or `)`.
-    Operator,
-    /// The `(` of a function.
-    Open,
+/// Reads an expression from left to right and writes its program.
+struct Reader<'t> {
+    text: &'t str,
+    chars: Peekable<CharIndices<'t>>,
+    program: Vec<Op>,
+    depth: usize,
 }
 
-/// An open parenthesis: arguments still expected (commas), and whether the last operand in it is an exponent.
-struct Level {
-    commas: usize,
-    after_power: bool,
-}
+impl<'t> Reader<'t> {
+    fn bad(&self, at: usize, problem: &str) -> Problem {
+        let column = self.text[..at].chars().count() + 1;
+        Problem::new(format!("can't be read: {problem} at character {column}")).found(self.text)
+    }
 
-/// Checks `text` token by token and writes it as the evaluator reads it.
-fn rewrite(text: &str) -> Result<String, Problem> {
-    let at = |i: usize, problem: String| {
-        let column = text[..i].chars().count() + 1;
-        Problem::new(format!("{problem} at character {column} of the expression")).found(text)
-    };
-    let names = || COORDINATES.iter().chain(&FUNCTIONS).copied().chain(["pi", "e"]).collect::<Vec<_>>();
-    if text.trim().is_empty() {
-        return Err(Problem::new("is an empty expression")
-            .found(text)
-            .help("write one in x, y and z, such as \"z^2\""));
+    /// The next character that is no space, left in place.
+    fn next(&mut self) -> Option<(usize, char)> {
+        while self.chars.next_if(|(_, c)| c.is_whitespace()).is_some() {}
+        self.chars.peek().copied()
     }
-    if text.chars().count() > MAX_CHARS {
-        return Err(Problem::new(format!("is longer than {MAX_CHARS} characters")).found(text));
+
+    /// Takes the next character if it is one of `wanted`.
+    fn take(&mut self, wanted: &str) -> Option<char> {
+        let (_, c) = self.next()?;
+        wanted.contains(c).then(|| {
+            self.chars.next();
+            c
+        })
     }
-    let mut out = String::new();
-    let mut levels = vec![Level { commas: 0, after_power: false }];
-    let mut next = Next::Operand;
-    let mut commas = 0; // of the function whose parenthesis comes next
-    let mut fresh = true; // at the start of a term list: after nothing, '(' or ','
-    let mut power = false; // the operand to come is an exponent
-    let mut i = 0;
-    while let Some(c) = text[i..].chars().next() {
-        let start = i;
-        i += c.len_utf8();
-        if c.is_whitespace() {
-            continue;
+
+    fn place(&mut self) -> usize {
+        self.next().map_or(self.text.len(), |(at, _)| at)
+    }
+
+    fn sum(&mut self) -> Result<(), Problem> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            let at = self.place();
+            return Err(self.bad(at, &format!("it is nested deeper than {MAX_DEPTH}")));
         }
-        if next == Next::Open && c != '(' {
-            return Err(at(start, format!("a function needs its argument in parentheses, found '{c}'")));
+        self.product()?;
+        while let Some(sign) = self.take("+-") {
+            self.product()?;
+            self.program.push(Op::Two(if sign == '+' { |a, b| a + b } else { |a, b| a - b }));
         }
-        let operand = c.is_ascii_alphanumeric() || c == '.' || c == '(' || c == '_';
-        if next == Next::Operator && operand {
-            return Err(
-                at(start, format!("an operator is missing before '{c}'")).help("write a product as '2*x'")
-            );
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn product(&mut self) -> Result<(), Problem> {
+        self.signed()?;
+        while let Some(sign) = self.take("*/") {
+            self.signed()?;
+            self.program.push(Op::Two(if sign == '*' { |a, b| a * b } else { |a, b| a / b }));
         }
-        let mut done = false; // an operand is complete
+        Ok(())
+    }
+
+    fn signed(&mut self) -> Result<(), Problem> {
+        let mut negative = false;
+        while let Some(sign) = self.take("+-") {
+            negative ^= sign == '-';
+        }
+        self.power()?;
+        if negative {
+            self.program.push(Op::One(|a| -a));
+        }
+        Ok(())
+    }
+
+    /// A power of a power counts as nesting: `x^y^z` is read as `x^(y^z)`.
+    fn power(&mut self) -> Result<(), Problem> {
+        self.atom()?;
+        if self.take("^").is_some() {
+            self.depth += 1;
+            if self.depth > MAX_DEPTH {
+                let at = self.place();
+                return Err(self.bad(at, &format!("it is nested deeper than {MAX_DEPTH}")));
+            }
+            self.signed()?;
+            self.depth -= 1;
+            self.program.push(Op::Two(f64::powf));
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self) -> Result<(), Problem> {
+        let Some((at, c)) = self.next() else {
+            return Err(self.bad(self.text.len(), "an operand is missing"));
+        };
         match c {
             '(' => {
-                if levels.len() > MAX_DEPTH {
-                    return Err(at(start, format!("parentheses are nested deeper than {MAX_DEPTH}")));
-                }
-                if let Some(outer) = levels.last_mut() {
-                    outer.after_power = std::mem::take(&mut power);
-                }
-                levels.push(Level { commas, after_power: false });
-                (next, fresh, commas) = (Next::Operand, true, 0);
-                out.push('(');
+                self.chars.next();
+                self.sum()?;
+                self.close()
             }
-            '0'..='9' | '.' => {
-                let number = number_at(&text[start..]);
-                i = start + number.len();
-                let value = number.parse::<f64>().ok().filter(|v| v.is_finite());
-                let value = value.ok_or_else(|| at(start, format!("'{number}' is not a number")))?;
-                out.push_str(&format!("{value}"));
-                done = true;
+            '0'..='9' | '.' => self.number(at),
+            c if c.is_ascii_alphabetic() => self.name(at),
+            '*' | '/' | '^' | ',' | ')' => {
+                Err(self.bad(at, &format!("a number, a coordinate or '(' is missing before '{c}'")))
             }
-            c if c.is_ascii_alphabetic() || c == '_' => {
-                let word = &text[start..];
-                let word = &word
-                    [..word.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(word.len())];
-                i = start + word.len();
-                if FUNCTIONS.contains(&word) {
-                    commas = usize::from(word == "min" || word == "max");
-                    next = Next::Open;
-                    out.push_str(word);
-                } else if COORDINATES.contains(&word) {
-                    out.push_str(word);
-                    done = true;
-                } else if let Some(constant) = CONSTANTS.iter().find(|constant| constant.0 == word) {
-                    out.push_str(constant.1);
-                    done = true;
-                } else {
-                    return Err(at(start, format!("'{word}' is not known")).help(suggest(word, &names())));
-                }
-            }
-            '+' | '-' if next == Next::Operand => {
-                if !fresh {
-                    return Err(at(start, format!("a sign '{c}' follows an operator"))
-                        .help(format!("write ({c}...)")));
-                }
-                out.push_str(if c == '-' { "0-" } else { "0+" });
-                fresh = false;
-            }
-            '+' | '-' | '*' | '/' | '^' if next == Next::Operator => {
-                let level = levels.last_mut().ok_or_else(|| at(start, "a ')' too many".into()))?;
-                if c == '^' && level.after_power {
-                    return Err(
-                        at(start, "a power of a power is ambiguous".into()).help("write (a^b)^c or a^(b^c)")
-                    );
-                }
-                level.after_power = false;
-                power = c == '^';
-                (next, fresh) = (Next::Operand, false);
-                out.push(c);
-            }
-            ',' if next == Next::Operator => {
-                let level = levels.last_mut().filter(|level| level.commas > 0);
-                let level = level.ok_or_else(|| at(start, "a ',' is out of place".into()))?;
-                (level.commas, level.after_power) = (level.commas - 1, false);
-                (next, fresh) = (Next::Operand, true);
-                out.push(',');
-            }
-            ')' if next == Next::Operator => {
-                if levels.len() == 1 {
-                    return Err(at(start, "a ')' closes nothing".into()));
-                }
-                if levels.pop().is_some_and(|level| level.commas > 0) {
-                    return Err(
-                        at(start, "an argument is missing".into()).help("min and max take two arguments")
-                    );
-                }
-                out.push(')');
-            }
-            '+' | '-' | '*' | '/' | '^' | ',' | ')' => {
-                return Err(at(start, format!("a number, a coordinate or '(' is missing before '{c}'")));
-            }
-            _ => return Err(at(start, format!("'{c}' has no meaning"))),
-        }
-        if done {
-            (next, fresh) = (Next::Operator, false);
-            if let Some(level) = levels.last_mut() {
-                level.after_power = std::mem::take(&mut power);
-            }
+            _ => Err(self.bad(at, &format!("'{c}' has no meaning"))),
         }
     }
-    if next != Next::Operator {
-        return Err(at(text.len(), "an operand is missing".into()));
-    }
-    if levels.len() > 1 {
-        return Err(at(text.len(), "a ')' is missing".into()));
-    }
-    Ok(out)
-}
 
-/// The longest number at the start of `text`: digits, a point, an exponent.
-fn number_at(text: &str) -> &str {
-    let bytes = text.as_bytes();
-    let digits = |i: usize| i + bytes[i..].iter().take_while(|b| b.is_ascii_digit() || **b == b'.').count();
-    let mut end = digits(0);
-    if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(bytes.get(end + 1).is_some_and(|b| b"+-".contains(b)));
-        let exponent = digits((end + 1 + sign).min(bytes.len()));
-        if exponent > end + 1 + sign {
-            end = exponent;
+    fn close(&mut self) -> Result<(), Problem> {
+        let at = self.place();
+        match self.next() {
+            Some((_, ')')) => {
+                self.chars.next();
+                Ok(())
+            }
+            Some((_, ',')) => Err(self.bad(at, "a ',' is out of place")),
+            Some((_, c)) => Err(self.bad(at, &format!("an operator or ')' is missing before '{c}'"))),
+            None => Err(self.bad(at, "a ')' is missing")),
         }
     }
-    &text[..end]
+
+    fn number(&mut self, at: usize) -> Result<(), Problem> {
+        let digits = |c: char| c.is_ascii_digit() || c == '.';
+        let mut end = at + self.text[at..].find(|c| !digits(c)).unwrap_or(self.text.len() - at);
+        if let Some(exponent) = self.text[end..].strip_prefix(['e', 'E']) {
+            let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
+            let count = unsigned.find(|c: char| !c.is_ascii_digit()).unwrap_or(unsigned.len());
+            if count > 0 {
+                end += 1 + (exponent.len() - unsigned.len()) + count;
+            }
+        }
+        let number = &self.text[at..end];
+        while self.chars.next_if(|(i, _)| *i < end).is_some() {}
+        let value = number.parse::<f64>().ok().filter(|v| v.is_finite());
+        let value = value.ok_or_else(|| self.bad(at, &format!("'{number}' is not a number")))?;
+        self.program.push(Op::Number(value));
+        Ok(())
+    }
+
+    fn name(&mut self, at: usize) -> Result<(), Problem> {
+        let rest = &self.text[at..];
+        let word = &rest[..rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len())];
+        while self.chars.next_if(|(i, _)| *i < at + word.len()).is_some() {}
+        if let Some(axis) = COORDINATES.iter().position(|c| *c == word) {
+            self.program.push(Op::Coordinate(axis));
+        } else if let Some((_, value)) = CONSTANTS.iter().find(|c| c.0 == word) {
+            self.program.push(Op::Number(*value));
+        } else if let Some((_, f)) = ONE.iter().find(|f| f.0 == word) {
+            self.open(word)?;
+            self.sum()?;
+            self.close()?;
+            self.program.push(Op::One(*f));
+        } else if let Some((_, f)) = TWO.iter().find(|f| f.0 == word) {
+            self.open(word)?;
+            self.sum()?;
+            if self.take(",").is_none() {
+                let at = self.place();
+                let problem = self.bad(at, "an argument is missing");
+                return Err(problem.help(format!("{word} takes two: {word}(x, y)")));
+            }
+            self.sum()?;
+            self.close()?;
+            self.program.push(Op::Two(*f));
+        } else {
+            let names = COORDINATES.iter().copied().chain(CONSTANTS.iter().map(|c| c.0));
+            let names: Vec<&str> =
+                names.chain(ONE.iter().map(|f| f.0)).chain(TWO.iter().map(|f| f.0)).collect();
+            return Err(self.bad(at, &format!("'{word}' is not known")).help(suggest(word, &names)));
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, word: &str) -> Result<(), Problem> {
+        if self.take("(").is_some() {
+            return Ok(());
+        }
+        let at = self.place();
+        Err(self.bad(at, &format!("{word} needs its argument in parentheses")))
+    }
 }
 
 impl<'de> Deserialize<'de> for Expression {

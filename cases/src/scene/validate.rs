@@ -55,19 +55,25 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     }
     exact_words(scene, report);
     surfaces(scene, report);
-    let to_nodes = scene.output.transfers.iter().any(|t| t.to == Target::ReferenceNodes);
-    if to_nodes && !matches!(scene.reference, Some(Reference::Method { .. })) {
-        let help = "add [reference] method = \"...\", or transfer to { file = \"...\" }";
-        report.add(
-            "output.transfer",
-            Problem::new("goes to the reference's nodes, and there are none").help(help),
-        );
-    }
-    if scene.output.transfers.iter().any(|t| t.to == Target::Probes) && scene.output.probes.is_empty() {
-        report.add(
-            "output.transfer",
-            Problem::new("goes to probes, and there are none").help("add output.probes"),
-        );
+    targets(scene, report);
+}
+
+/// Transfers go to points that there are.
+fn targets(scene: &Scene, report: &mut Report) {
+    for (i, transfer) in scene.output.transfers.iter().enumerate() {
+        let (problem, help) = match transfer.to {
+            Target::ReferenceNodes if !matches!(scene.reference, Some(Reference::Method { .. })) => (
+                "has no nodes to go to",
+                "add [reference] method = \"...\", or transfer to { file = \"...\" }",
+            ),
+            Target::Probes if scene.output.probes.is_empty() => {
+                ("has no probes to go to", "add output.probes")
+            }
+            _ => continue,
+        };
+        let listed = format!("output.transfer[{i}]");
+        let key = if report.origin().has(&listed) { listed } else { "output.transfer".into() };
+        report.add(&format!("{key}.to"), Problem::new(problem).help(help));
     }
 }
 

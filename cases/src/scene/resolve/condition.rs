@@ -127,13 +127,15 @@ pub(super) fn load(keys: LoadKeys, index: usize, report: &mut Report) -> Option<
     };
     let body = matches!(kind, LoadKind::Body(_));
     let place = place(keys.on, keys.place, &key, report, !body);
-    let everywhere = place == Place::Everywhere;
-    report.require(
-        !body || everywhere,
-        &key,
-        "limits a body force to a place",
-        "a body force acts everywhere",
-    );
+    let stray = match place {
+        Place::On(_) if body => Some("on"),
+        Place::Where(_) if body => Some("where"),
+        _ => None,
+    };
+    if let Some(stray) = stray {
+        let problem = Problem::new("limits a body force to a place").help("a body force acts everywhere");
+        report.add(&format!("{key}.{stray}"), problem);
+    }
     Some(Load { place, kind })
 }
 

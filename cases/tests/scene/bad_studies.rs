@@ -1,0 +1,67 @@
+use cases::scene::parse_study;
+
+use crate::marked_line;
+
+const CASES: &[(&str, &str, &[&str])] = &[
+    ("title = \"t\" #<", "run", &["is missing", "[[run]]"]),
+    ("title = \"t\"\n[[run]]\nscene = \"no.toml\" #<", "run[0].scene", &["'no.toml' can't be found"]),
+    ("title = \"t\"\n[[runs]] #<\nscene = \"first.toml\"", "runs", &["did you mean 'run'?"]),
+    ("title = \"t\"\n[[run]] #<\nlevels = [1]", "run[0].scene", &["is missing"]),
+    ("title = \"t\"\n[[run]]\nscene = \"first.toml\"\nlevels = [0] #<", "run[0].levels", &["no level"]),
+    ("title = \"t\"\n[[run]]\nscene = \"first.toml\"\npoisson = [0.5] #<", "run[0].poisson", &["0.4999"]),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\npoisson = [\"0.3\"] #<",
+        "run[0].poisson[0]",
+        &["without quotes"],
+    ),
+    ("title = \"t\"\n[[run]]\nscene = \"first.toml\"\nnodes = [3] #<", "run[0].nodes", &["4 nodes or more"]),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nlevels = [1]\nnodes = [83] #<",
+        "run[0].nodes",
+        &["stands beside levels"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nkernels = [\"cubic\"] #<",
+        "run[0].kernels[0]",
+        &["'cubic' is not known"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet11\"] #<",
+        "run[0].methods",
+        &["'tet11' is not a method", "did you mean 'tet10'?"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet10\"]\nnodes = [83] #<",
+        "run[0].nodes",
+        &["has no method to vary"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\n[[run.check]]\nmetric = \"order-l2\" #<\nat_least = 1.85",
+        "run[0].check[0].metric",
+        &["needs a [reference]"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"compression.toml\"\n[[run.check]]\nmetric = \"order-l2\" #<\nat_least = 1.85",
+        "run[0].check[0].metric",
+        &["needs several levels", "levels = [1, 2, 3]"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\n[[run.check]]\nmetric = \"max\"\nmethod = \"hex\" #<\nat_most = \"1 m\"",
+        "run[0].check[0].method",
+        &["'hex' is not a method"],
+    ),
+];
+
+#[test]
+fn every_mistake_of_a_study_is_named() {
+    let file = format!("{}/study.toml", env!("CARGO_MANIFEST_DIR"));
+    for (text, key, fragments) in CASES {
+        let line = marked_line(text);
+        let errors = parse_study(text, &file).expect_err(text);
+        let fits = errors.iter().any(|error| {
+            let said = error.to_string();
+            error.key == *key && error.line == line && fragments.iter().all(|f| said.contains(f))
+        });
+        assert!(fits, "{text}\nwants line {line}, key {key}, {fragments:?}, got {errors:#?}");
+    }
+}

@@ -1,0 +1,284 @@
+use std::path::Path;
+
+use cases::scene::*;
+
+use crate::{SCENE, edited};
+
+fn scene() -> Scene {
+    parse(SCENE, "cases/block.toml").unwrap_or_else(|errors| panic!("{}", errors[0]))
+}
+
+#[test]
+fn a_scene_arrives_in_si() {
+    let scene = scene();
+    assert_eq!(scene.body, Body::Box { min: [-0.02, -0.02, 0.0], max: [0.02, 0.02, 0.02] });
+    assert_eq!(
+        scene.material,
+        Material::Linear(Elastic { young: 2e4, poisson: 0.45, density: Some(1000.0) })
+    );
+    let Material::Linear(core) = &scene.regions[0].material else { panic!("linear") };
+    assert_eq!(core.young, 4e4);
+    assert_eq!(scene.output.probes, [[0.0, 0.0, 0.005]]);
+    assert_eq!(scene.procedure, Procedure { kind: ProcedureKind::Static, steps: 10, duration: None });
+    assert_eq!(scene.checks[0].bound, Bound::Within { at_least: None, at_most: Some(1e-4) });
+    assert_eq!(scene.checks[0].methods, ["tet4", "efg-83"]);
+    let Bound::KnownBand { low, high, reason } = &scene.checks[1].bound else { panic!("a band") };
+    assert_eq!((*low, *high, reason.as_str()), (1e-4, 1e-2, "inconsistent integration"));
+    let Some(Reference::Exact { name, parameters }) = &scene.reference else { panic!("exact") };
+    assert_eq!((name.as_str(), parameters["curvature"]), ("pure-bending", 0.5));
+    assert!(scene.unavailable().is_empty());
+}
+
+#[test]
+fn methods_keep_every_setting() {
+    let scene = scene();
+    let Family::Fem(fem) = &scene.methods[0].family else { panic!("fem") };
+    assert_eq!(fem.size, Size::Cells { cells: [4, 4, 2], grading: [1.0, 1.0, 2.0] });
+    assert_eq!((fem.element, fem.dilation), (Element::Tet4, Dilation::NodalMean));
+    assert_eq!(fem.jitter, Some(Jitter { fraction: 0.2, seed: 7 }));
+    let Family::Efg(efg) = &scene.methods[1].family else { panic!("efg") };
+    assert_eq!(efg.cloud, Cloud::Uniform { nodes: 83, seed: 1 });
+    assert_eq!(efg.kernel, Kernel { name: KernelName::Gaussian, alpha: Some(0.4), power: None, eps: None });
+    assert_eq!(efg.support, SupportRule::Dilatation(1.6));
+    assert_eq!(efg.essential, Essential::Nitsche { factor: Some(10.0) });
+    assert_eq!(efg.background, Some(Size::Spacing(0.005)));
+    let Family::Efg(efg) = &scene.methods[2].family else { panic!("efg") };
+    assert_eq!(efg.cloud, Cloud::Mesh { size: Size::Level(2), jitter: None });
+    assert_eq!(efg.support, SupportRule::Neighbours { k: 15, factor: 1.2 });
+    assert_eq!(efg.integration, Integration::CellSmoothed { face_points: 1 });
+}
+
+#[test]
+fn conditions_are_fields_over_space() {
+    let scene = scene();
+    let x = [0.01, 0.0, 0.02];
+    let LoadKind::Pressure(pressure) = &scene.loads[0].kind else { panic!("pressure") };
+    assert!((pressure.value(x).expect("finite") - 4e-4).abs() < 1e-18);
+    let LoadKind::Traction(VectorField::Components(traction)) = &scene.loads[1].kind else {
+        panic!("traction")
+    };
+    assert_eq!(traction[1].value(x), Ok(1000.0));
+    assert_eq!(traction[2].value(x), Ok(10.0));
+    let LoadKind::Body(VectorField::Components(body)) = &scene.loads[2].kind else { panic!("body") };
+    assert_eq!(body[2].value(x), Ok(-9810.0));
+    let [Some(Prescribed::Exact), None, Some(Prescribed::Field(z))] = &scene.supports[1].motion else {
+        panic!("x exact, y free, z given")
+    };
+    assert!((z.value(x).expect("finite") + 1e-7).abs() < 1e-20, "-x^2 mm at x = 0.01 m");
+}
+
+#[test]
+fn a_region_takes_its_tolerance_from_the_caller() {
+    let scene = scene();
+    let Place::Where(floor) = &scene.supports[0].place else { panic!("a region") };
+    assert!(floor.contains([0.0, 0.0, 1e-12], 1e-10) && !floor.contains([0.0, 0.0, 1e-9], 1e-10));
+    let Place::Where(core) = &scene.regions[0].place else { panic!("a region") };
+    assert!(core.contains([0.005, 1.0, 1.0], 1e-10) && !core.contains([0.0051, 0.0, 0.0], 1e-10));
+    let open = edited("z == 0 mm", "z > 0 mm and z < 1 mm");
+    let scene = parse(&open, "s.toml").expect("sound");
+    let Place::Where(slab) = &scene.supports[0].place else { panic!("a region") };
+    assert!(slab.contains([0.0, 0.0, 5e-4], 1e-10));
+    assert!(!slab.contains([0.0; 3], 1e-10) && !slab.contains([0.0, 0.0, 1e-3], 1e-10));
+}
+
+#[test]
+fn expressions_follow_the_rules_of_algebra() {
+    let x = [2.0_f64, 3.0, 5.0];
+    for (text, value) in [
+        ("-x^2", -4.0),
+        ("(-x)^2", 4.0),
+        ("1 - x^2 + y", 0.0),
+        ("z - y - x", 0.0),
+        ("z / x / x", 1.25),
+        ("z / x * x", 5.0),
+        ("z - y + x", 4.0),
+        ("2*x^(-1)", 1.0),
+        ("(x^y)^x", 64.0),
+        ("x^(y^x)", 512.0),
+        ("x^y^x", 512.0),
+        ("2*-x^2", -8.0),
+        ("x^-1", 0.5),
+        ("x - -y", 5.0),
+        ("hypot(y, x*2)", 5.0),
+        ("cosh(ln(x))", 1.25),
+        ("atan2(0, -x) / pi", 1.0),
+        ("1.5e-3 * 2E3", 3.0),
+        ("max(x, y) + min(x + 1, y * 2)", 6.0),
+        ("2 * max(x, y)^2", 18.0),
+        ("max(-x, -y)", -2.0),
+        ("sin(pi / 6) * 2", 1.0),
+        ("-sin(-pi / 2)^3", 1.0),
+        ("ln(e^2)", 2.0),
+        ("sqrt(x^2 + y^2 + 3)", 4.0),
+        ("- 3 + x", -1.0),
+        ("abs(x - z) * 1e0", 3.0),
+        ("x*y + y*z - x/4", 20.5),
+    ] {
+        let scene = parse(&edited("z^2", text), "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        let LoadKind::Pressure(field) = &scene.loads[0].kind else { panic!("pressure") };
+        let found = field.value(x).expect("finite");
+        assert!((found - value).abs() < 1e-13 * (1.0 + value.abs()), "{text} = {found}, not {value}");
+    }
+}
+
+#[test]
+fn a_field_that_is_not_finite_somewhere_says_where() {
+    let scene = parse(&edited("z^2", "1 / (x - 2)"), "s.toml").expect("sound");
+    let LoadKind::Pressure(field) = &scene.loads[0].kind else { panic!("pressure") };
+    let said = field.value([2.0, 0.0, 1.0]).expect_err("a pole").to_string();
+    assert_eq!(said, "expression '1 / (x - 2)' is inf at (2, 0, 1) m");
+}
+
+#[test]
+fn units_of_the_field_are_known() {
+    for (text, si) in [
+        ("20 kPa", 2e4),
+        ("20kPa", 2e4),
+        ("0.02 MPa", 2e4),
+        ("0.02 N/mm^2", 2e4),
+        ("0.02 N/mm\u{b2}", 2e4),
+        ("2e4 Pa", 2e4),
+        ("2e1 N / mm / m", 2e4),
+        ("20 mN/mm^2", 2e4),
+        ("0.2 bar", 2e4),
+        ("20000 kg/m/s^2", 2e4),
+        ("20 kJ/m^3", 2e4),
+        ("10 mmHg", 1333.22387415),
+        ("35 \u{b5}Pa", 35e-6),
+    ] {
+        let scene = parse(&edited("20 kPa", text), "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        let young = scene.material.elastic().expect("linear").young;
+        assert!((young / si - 1.0).abs() < 1e-15, "{text}: {young} Pa");
+    }
+}
+
+#[test]
+fn decimal_units_lose_no_bit() {
+    for n in 1..1000 {
+        let scene = parse(&edited("\"5 mm\"]]", &format!("\"{n} mm\"]]")), "s.toml").expect("sound");
+        let nearest: f64 = format!("{n}e-3").parse().expect("a number");
+        assert_eq!(scene.output.probes[0][2].to_bits(), nearest.to_bits(), "{n} mm");
+    }
+}
+
+#[test]
+fn what_waits_for_later_is_read_and_then_named() {
+    let tool = "[[tool]]\nname = \"upper jaw\"\nshape = \"rounded-box\"\nhalf = [\"5 mm\", \"10 mm\", \"4 mm\"]\n\
+        radius = \"1.5 mm\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
+        drive = { closure = \"7 mm\" }\nfriction = 0.15\n[procedure]\n";
+    let changes = [
+        ("[procedure]\n", tool, "tool[0]", "contact with 'upper jaw' is not available yet"),
+        (
+            "law = \"linear\"\nyoung",
+            "law = \"neo-hookean\"\nyoung",
+            "material.law",
+            "the neo-hookean law is not available yet",
+        ),
+        (
+            "law = \"linear\", ",
+            "law = \"hencky\", ",
+            "region[0].material.law",
+            "the hencky law is not available yet",
+        ),
+        ("\"static\"", "\"explicit\"", "procedure.kind", "the explicit procedure is not available yet"),
+        ("\"nodal-mean\"", "\"mixed\"", "method[0].dilation", "dilation = \"mixed\" is not available yet"),
+    ];
+    for (from, to, key, said) in changes {
+        let text = edited(from, to);
+        let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        let ahead = scene.unavailable();
+        assert_eq!(ahead.len(), 1, "{ahead:?}");
+        assert_eq!((ahead[0].kind, ahead[0].key.as_str()), (ErrorKind::NotAvailable, key));
+        assert!(ahead[0].to_string().contains(said), "{}", ahead[0]);
+        let at = text.find(to).expect("replaced");
+        assert!(ahead[0].line > text[..at].matches('\n').count(), "{}", ahead[0]);
+    }
+    let scene = parse(&edited("[procedure]\n", tool), "s.toml").expect("sound");
+    assert_eq!(scene.tools[0].along, [0.0, 0.0, -1.0]);
+    assert_eq!(scene.tools[0].drive, Drive::Closure(0.007));
+}
+
+#[test]
+fn an_error_found_while_running_names_its_line() {
+    let error = scene().error("support[0].where", "holds no node", Some("check the unit"));
+    let line = 1 + SCENE[..SCENE.find("where = \"z").expect("there")].matches('\n').count();
+    let said =
+        format!("cases/block.toml:{line}: key 'support[0].where': 'z == 0 mm' holds no node; check the unit");
+    assert_eq!(error.to_string(), said);
+}
+
+#[test]
+fn all_shapes_and_laws_are_read() {
+    let body = &SCENE[SCENE.find("[body]").expect("body")..SCENE.find("[material]").expect("material")];
+    for shape in [
+        "shape = \"cylinder\"\nradius = \"10 mm\"\nheight = \"10 mm\"",
+        "shape = \"ball\"\nradius = \"10 mm\"",
+        "shape = \"sphere-shell\"\ninner = \"1 cm\"\nouter = \"2 cm\"\noctant = true",
+        "shape = \"kidney\"",
+        "shape = \"box\"\nsize = [\"1 mm\", \"1 mm\", \"1 mm\"]",
+    ] {
+        // Surfaces of a box are none of these shapes'.
+        let text =
+            edited(body, &format!("[body]\n{shape}\n")).replace("[\"x-min\", \"x-max\"]", "\"surface\"");
+        let text = text.replace("\"z-max\"", "\"surface\"").replace("\"y-max\"", "\"surface\"");
+        let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        assert!(shape.contains(&format!("\"{}\"", scene.body.name())));
+    }
+    for law in [
+        "law = \"saint-venant-kirchhoff\"\nyoung = \"1 kPa\"\npoisson = 0.3",
+        "law = \"mooney-rivlin\"\nc10 = \"1 kPa\"\nc01 = \"1 kPa\"\nbulk = \"1 MPa\"",
+        "law = \"ogden\"\nmu = [\"1 kPa\", \"2 kPa\"]\nalpha = [2, -2]\nbulk = \"1 MPa\"",
+    ] {
+        let text = edited("law = \"linear\"\nyoung = \"20 kPa\"\npoisson = 0.45", law);
+        let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        assert!(law.contains(&format!("\"{}\"", scene.material.name())));
+    }
+}
+
+/// The scenes and studies that come with the project.
+#[test]
+fn every_file_of_the_project_is_sound() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder of cases") {
+        let path = entry.expect("an entry").path();
+        let text = match path.extension().is_some_and(|e| e == "toml") && !path.ends_with("Cargo.toml") {
+            true => std::fs::read_to_string(&path).expect("a file"),
+            false => continue,
+        };
+        let errors = if text.contains("[[run]]") {
+            load_study(&path).err()
+        } else {
+            load(&path).map(|scene| assert!(scene.unavailable().is_empty(), "{}", path.display())).err()
+        };
+        let said: Vec<String> = errors.into_iter().flatten().map(|e| e.to_string()).collect();
+        assert!(said.is_empty(), "{}", said.join("\n"));
+        count += 1;
+    }
+    assert!(count > 5);
+}
+
+#[test]
+fn the_schema_knows_every_key_of_the_outline() {
+    let schema = schema();
+    let keys = schema["properties"].as_object().expect("an object");
+    for key in [
+        "title",
+        "source",
+        "body",
+        "material",
+        "region",
+        "support",
+        "load",
+        "tool",
+        "procedure",
+        "method",
+        "output",
+        "reference",
+        "check",
+    ] {
+        assert!(keys.contains_key(key), "{key}");
+    }
+    assert_eq!(schema["additionalProperties"], false);
+    assert!(study_schema()["properties"]["run"].is_object());
+}
