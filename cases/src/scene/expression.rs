@@ -36,13 +36,16 @@ pub struct NotFinite {
 enum Op {
     Number(f64),
     Coordinate(usize),
-    One(fn(f64) -> f64),
-    Two(fn(f64, f64) -> f64),
+    One(OfOne),
+    Two(OfTwo),
 }
 
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
-const ONE: [(&str, fn(f64) -> f64); 19] = [
+type OfOne = fn(f64) -> f64;
+type OfTwo = fn(f64, f64) -> f64;
+
+const ONE: [(&str, OfOne); 19] = [
     ("abs", f64::abs),
     ("sign", f64::signum),
     ("sqrt", f64::sqrt),
@@ -63,7 +66,7 @@ const ONE: [(&str, fn(f64) -> f64); 19] = [
     ("ceil", f64::ceil),
     ("round", f64::round),
 ];
-const TWO: [(&str, fn(f64, f64) -> f64); 4] =
+const TWO: [(&str, OfTwo); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
 
 /// Nesting allowed: it bounds the recursion of the reader and, at four values a level (those that wait
