@@ -93,7 +93,15 @@ fn run(args: &RunArgs) -> u8 {
     let case = case_name(&scene);
     let group = match Group::new(&scene, None, REPEATS) {
         Ok(group) => group,
-        Err(failure) => return fail(&failure),
+        Err(failure) => {
+            if args.format == Format::Json {
+                for &index in &chosen {
+                    let reason = format!("its reference could not run: {failure}");
+                    print_json(&RunObject::failed(&case, &scene.methods[index].id, reason, &[]));
+                }
+            }
+            return fail(&failure);
+        }
     };
     let mut code = 0;
     let mut outcomes: Vec<Outcome> = Vec::new();

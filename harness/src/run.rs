@@ -25,6 +25,9 @@ pub struct Repeats {
     pub seconds: f64,
 }
 
+/// Displacement (m) of a finished run at any points (m).
+pub type Evaluate = Box<dyn Fn(&[Point3]) -> Result<Vec<Vector3>, Failure> + Send + Sync>;
+
 /// The displacement that errors are measured against where no exact solution is known.
 pub struct Reference {
     /// Which method made it.
@@ -32,7 +35,7 @@ pub struct Reference {
     /// Displacement at the scene's target points, m.
     pub targets: Vec<Vector3>,
     /// Evaluates the reference at any point, m.
-    pub at: Box<dyn Fn(&[Point3]) -> Result<Vec<Vector3>, Failure> + Send + Sync>,
+    pub at: Evaluate,
 }
 
 /// What a scene wants of every run.

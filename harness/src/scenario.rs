@@ -336,10 +336,9 @@ fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {
         .ok_or_else(|| Failure::Unsupported(format!("kernel \"{}\" is not available", kernel.name.name())))?;
     Ok(match default {
         Kernel::Gaussian { alpha } => Kernel::Gaussian { alpha: kernel.alpha.unwrap_or(alpha) },
-        Kernel::Exponential { alpha, power } => Kernel::Exponential {
-            alpha: kernel.alpha.unwrap_or(alpha),
-            power: kernel.power.unwrap_or(power as u32) as _,
-        },
+        Kernel::Exponential { alpha, power } => {
+            Kernel::Exponential { alpha: kernel.alpha.unwrap_or(alpha), power: kernel.power.unwrap_or(power) }
+        }
         Kernel::RegularisedInterpolating { eps } => {
             Kernel::RegularisedInterpolating { eps: kernel.eps.unwrap_or(eps) }
         }

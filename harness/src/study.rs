@@ -57,6 +57,10 @@ impl Plan {
             let at = match known {
                 Some(at) => at,
                 None => match scene::load(&run.scene) {
+                    Ok(scene) if !scene.unavailable().is_empty() => {
+                        errors.extend(scene.unavailable());
+                        continue;
+                    }
                     Ok(scene) => {
                         let text = std::fs::read_to_string(&run.scene).unwrap_or_default();
                         scenes.push((run.scene.clone(), text, scene));
@@ -75,16 +79,14 @@ impl Plan {
 
     /// Keeps the runs that the arguments select.
     pub fn select(&mut self, args: &VerifyArgs) {
-        let mut index = 0;
         let (runs, scenes) = (&self.study.runs, &self.scenes);
         self.tasks.retain(|task| {
             let wanted = (!args.quick || runs[task.run].quick)
                 && args.filter.as_deref().is_none_or(|text| {
                     case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text)
                 });
-            // Shares deal out whole groups, so that a reference is run once and orders see all their levels.
+            // Shares deal out whole run tables, so that orders see all their levels.
             let mine = args.shard.is_none_or(|(k, n)| task.run % n == k - 1);
-            index += usize::from(wanted);
             wanted && mine
         });
     }
@@ -143,7 +145,7 @@ impl Plan {
         done: &Mutex<BTreeMap<usize, TaskResult>>,
     ) {
         let first = &self.tasks[members[0]];
-        let (path, text, scene) = &self.scenes[first.scene];
+        let (_, text, scene) = &self.scenes[first.scene];
         let case = case_name(scene);
         // Made when first needed: with all members stored, not even the reference is run.
         let mut group: Option<Result<Group, Failure>> = None;
@@ -151,8 +153,9 @@ impl Plan {
             let task = &self.tasks[index];
             bar.set_message(format!("{case} {}", task.method.id));
             let what = format!("{:?} {} {:?} {}", task.method, task.level, task.poisson, task.picture);
-            let key = task::key(program, text, &files(path), &what);
+            let key = task::key(program, text, &files(scene), &what);
             let stored = if args.resume { TaskResult::load(store, &key) } else { None };
+            let known = stored.is_some();
             let result = stored.unwrap_or_else(|| {
                 let group = group.get_or_insert_with(|| Group::new(scene, task.poisson, REPEATS));
                 let outcome = match group {
@@ -164,7 +167,7 @@ impl Plan {
                     Err(failure) => TaskResult::failed(&case, &task.method.id, &failure),
                 }
             });
-            if let Err(bad) = result.store(store, &key) {
+            if !known && let Err(bad) = result.store(store, &key) {
                 bar.println(format!("warning: {} could not be stored: {bad}", store.display()));
             }
             done.lock().expect("no worker panicked").insert(index, result);
@@ -327,17 +330,37 @@ fn label(task: &Task, records: &[Record]) -> String {
     text
 }
 
-/// Files beside the scene that it may name: a changed mesh is a changed run.
-fn files(scene: &Path) -> Vec<PathBuf> {
-    let Some(folder) = scene.parent() else { return Vec::new() };
-    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|e| e == "msh"))
-        .collect();
+/// Mesh files that a scene names: a changed mesh is a changed run.
+fn files(scene: &Scene) -> Vec<PathBuf> {
+    let of_size = |size: &Size| match size {
+        Size::File(file) => Some(file.path.clone()),
+        _ => None,
+    };
+    let mut found = Vec::new();
+    if let scene::Body::File(file) = &scene.body {
+        found.push(file.path.clone());
+    }
+    for method in &scene.methods {
+        match &method.family {
+            scene::Family::Fem(fem) => found.extend(of_size(&fem.size)),
+            scene::Family::Efg(efg) => {
+                found.extend(efg.background.as_ref().and_then(of_size));
+                if let scene::Cloud::Mesh { size, .. } = &efg.cloud {
+                    found.extend(of_size(size));
+                }
+            }
+        }
+    }
+    for transfer in &scene.output.transfers {
+        if let scene::Target::File(file) = &transfer.to {
+            found.push(file.path.clone());
+        }
+    }
+    if let Some(scene::Reference::Method { size: Some(size), .. }) = &scene.reference {
+        found.extend(of_size(size));
+    }
     found.sort();
+    found.dedup();
     found
 }
 

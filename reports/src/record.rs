@@ -41,7 +41,7 @@ pub struct Record {
     pub elements: u64,
     /// Integration points.
     pub points: u64,
-    /// Unknowns before supports are eliminated.
+    /// Unknowns solved for: supports eliminated, multipliers included.
     pub dofs: u64,
     /// Mean node spacing h, in metres.
     pub spacing: f64,
