@@ -17,6 +17,8 @@ use crate::{Failure, check};
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
+/// Repeats in the quick tier, whose purpose is the checks: medians of three for runs below 20 ms.
+const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 
 /// One run of a study.
 struct Task {
@@ -157,7 +159,9 @@ impl Plan {
             let stored = if args.resume { TaskResult::load(store, &key) } else { None };
             let known = stored.is_some();
             let result = stored.unwrap_or_else(|| {
-                let group = group.get_or_insert_with(|| Group::new(scene, task.poisson, REPEATS));
+                let group = group.get_or_insert_with(|| {
+                    Group::new(scene, task.poisson, if args.quick { QUICK } else { REPEATS })
+                });
                 let outcome = match group {
                     Ok(group) => group.run(&group.scenario(task.method.clone(), task.level), task.picture),
                     Err(failure) => Err(failure.clone()),
@@ -256,8 +260,9 @@ impl Plan {
 fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
-    // A picture of an organ says something; one of a box does not.
-    let picture = matches!(scene.body, scene::Body::Kidney | scene::Body::File(_));
+    // A picture of an organ says something; one of a box does not, nor does one for each kernel.
+    let organ = matches!(scene.body, scene::Body::Kidney | scene::Body::File(_));
+    let picture = organ && run.kernels.is_empty() && run.nodes.is_empty();
     for &poisson in &ratios {
         for method in &scene.methods {
             if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
