@@ -34,7 +34,10 @@ pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
 pub use linear_solver::SolverPath;
 pub use load::Load;
-pub use material::{LinearElastic, MaterialError};
+pub use material::{
+    Law, LinearElastic, Material, MaterialError, NeoHookean, NeoHookeanIsochoric, SaintVenantKirchhoff,
+    Tangent, volume_change,
+};
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

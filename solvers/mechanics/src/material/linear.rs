@@ -1,23 +1,8 @@
 //! Small-strain isotropic linear elasticity (Hooke).
 
+use super::kinematics::tangent_of;
+use super::{Material, MaterialError, Tangent};
 use crate::Matrix3;
-
-/// What makes a pair of moduli unusable.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum MaterialError {
-    /// Young's modulus must be positive and finite.
-    #[error("Young's modulus is {young} Pa; it must be positive and finite")]
-    Young {
-        /// The modulus given, Pa.
-        young: f64,
-    },
-    /// Poisson's ratio must lie between -1 and 0.5, both excluded.
-    #[error("Poisson's ratio is {poisson}; it must lie between -1 and 0.5, both excluded")]
-    Poisson {
-        /// The ratio given.
-        poisson: f64,
-    },
-}
 
 /// Hooke's law `sigma = lambda tr(eps) I + 2 mu eps`, `eps = sym grad u`; moduli in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,16 +50,42 @@ impl LinearElastic {
     }
 
     /// Stress (3, 3), Pa, at the displacement gradient `H` (3, 3).
-    #[allow(non_snake_case)]
     pub fn stress(&self, H: &Matrix3) -> Matrix3 {
         (H + H.transpose()) * self.mu() + Matrix3::identity() * (self.lambda() * H.trace())
     }
 
     /// Strain energy per volume `(lambda tr(eps)^2 + 2 mu eps : eps) / 2`, J/m^3, at the displacement gradient `H`.
-    #[allow(non_snake_case)]
     pub fn energy_density(&self, H: &Matrix3) -> f64 {
         let eps = (H + H.transpose()) * 0.5;
         0.5 * self.lambda() * H.trace().powi(2) + self.mu() * eps.norm_squared()
+    }
+}
+
+/// The energy is quadratic and the tangent constant; a rotation is taken for a strain (see `Law::is_small_strain`).
+impl Material for LinearElastic {
+    fn energy(&self, H: &Matrix3) -> f64 {
+        self.energy_density(H)
+    }
+
+    fn stress(&self, H: &Matrix3) -> Matrix3 {
+        LinearElastic::stress(self, H)
+    }
+
+    fn tangent(&self, _: &Matrix3) -> Tangent {
+        let (mu, lambda) = (LinearElastic::mu(self), LinearElastic::lambda(self));
+        let delta = Matrix3::identity();
+        tangent_of(|i, j, k, l| {
+            lambda * delta[(i, j)] * delta[(k, l)]
+                + mu * (delta[(i, k)] * delta[(j, l)] + delta[(i, l)] * delta[(j, k)])
+        })
+    }
+
+    fn mu(&self) -> f64 {
+        LinearElastic::mu(self)
+    }
+
+    fn lambda(&self) -> f64 {
+        LinearElastic::lambda(self)
     }
 }
 

@@ -1,6 +1,60 @@
-//! Pointwise constitutive laws. A law sees a displacement gradient `H = grad u` and knows no mesh. It offers
-//! `energy_density(H)` and `stress(H)`.
+//! Pointwise constitutive laws. A law sees a displacement gradient `H = grad u` and knows no mesh.
+//!
+//! Every law takes `H` and not `F = I + H`: with `F`, a strain of 1e-10 keeps 6 digits, with `H` it keeps all of them
+//! (here `E = (H + H^T + H^T H) / 2`, `J - 1 = tr H + II(H) + det H`, `ln J = log1p(J - 1)`).
 
+#![allow(non_snake_case)]
+
+mod error;
+mod kinematics;
+mod law;
 mod linear;
+mod neo_hookean;
+mod neo_hookean_isochoric;
+mod saint_venant_kirchhoff;
+#[cfg(test)]
+mod tests;
 
-pub use linear::{LinearElastic, MaterialError};
+pub use error::MaterialError;
+pub use kinematics::volume_change;
+pub use law::Law;
+pub use linear::LinearElastic;
+pub use neo_hookean::NeoHookean;
+pub use neo_hookean_isochoric::NeoHookeanIsochoric;
+pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+
+use crate::Matrix3;
+
+/// `A = dP/dF`, (9, 9), Pa: entry `(i + 3 j, k + 3 l)` is `dP_ij / dF_kl`, the column-major index of a `Matrix3`.
+pub type Tangent = nalgebra::SMatrix<f64, 9, 9>;
+
+/// An isotropic elastic law, given by its energy per undeformed volume.
+///
+/// Where `det F <= 0` the laws with a logarithm or a power of `J` (all but the linear and the
+/// St. Venant-Kirchhoff one) return values that are not finite: callers look at `J` first.
+pub trait Material {
+    /// Energy per undeformed volume `W(H)`, J/m^3.
+    fn energy(&self, H: &Matrix3) -> f64;
+
+    /// First Piola-Kirchhoff stress `P = dW/dF`, (3, 3), Pa.
+    fn stress(&self, H: &Matrix3) -> Matrix3;
+
+    /// Tangent `dP/dF`, (9, 9), Pa; symmetric.
+    fn tangent(&self, H: &Matrix3) -> Tangent;
+
+    /// Both at once: what they share is computed once.
+    fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
+        (self.stress(H), self.tangent(H))
+    }
+
+    /// Shear modulus in the limit of small strain, Pa.
+    fn mu(&self) -> f64;
+
+    /// First Lame modulus in the limit of small strain, Pa.
+    fn lambda(&self) -> f64;
+
+    /// Bulk modulus in the limit of small strain, `lambda + 2 mu / 3`, Pa.
+    fn bulk(&self) -> f64 {
+        self.lambda() + 2.0 / 3.0 * self.mu()
+    }
+}

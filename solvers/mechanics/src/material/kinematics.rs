@@ -1,0 +1,151 @@
+//! What the laws share of a displacement gradient, free of cancellation at small strain.
+
+use super::Tangent;
+use crate::Matrix3;
+
+/// Cofactor matrix `cof A = d(det A)/dA`, so that `A^-T = cof A / det A`.
+pub(super) fn cofactor(A: &Matrix3) -> Matrix3 {
+    let (a, b, c) = (A.column(0), A.column(1), A.column(2));
+    Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
+}
+
+/// Green-Lagrange strain `E = (H + H^T + H^T H) / 2`.
+pub(super) fn green_lagrange(H: &Matrix3) -> Matrix3 {
+    (H + H.transpose() + H.transpose() * H) * 0.5
+}
+
+/// `J - 1 = tr H + II(H) + det H`: at small strain to as many digits as `H` has.
+pub fn volume_change(H: &Matrix3) -> f64 {
+    let cof = cofactor(H);
+    H.trace() + cof.trace() + H.column(0).dot(&cof.column(0))
+}
+
+/// `F`, `F^-T` and `J`, with the differences that vanish at `H = 0` kept apart.
+pub(super) struct Kinematics {
+    /// `F = I + H`.
+    pub F: Matrix3,
+    /// `G = F^-T`.
+    pub G: Matrix3,
+    /// `F - F^-T`.
+    pub F_less_G: Matrix3,
+    /// `J - 1`.
+    pub j: f64,
+    /// `I1 - 3 = tr(F^T F) - 3 = 2 tr H + H : H`.
+    pub i1: f64,
+    /// `H : H`.
+    pub square: f64,
+    /// Second invariant of `H`.
+    pub second: f64,
+    /// `det H`.
+    pub third: f64,
+}
+
+impl Kinematics {
+    pub(super) fn new(H: &Matrix3) -> Kinematics {
+        let cof = cofactor(H);
+        let trace = H.trace();
+        let square = H.norm_squared();
+        let second = cof.trace();
+        let third = H.column(0).dot(&cof.column(0));
+        let j = trace + second + third;
+        let per_j = 1.0 / (1.0 + j);
+        let cof_less_I = Matrix3::identity() * trace - H.transpose() + cof;
+        let G = (Matrix3::identity() + cof_less_I) * per_j;
+        // I - F^-T = (J I - cof F) / J; in the numerator tr H drops out.
+        let F_less_G = H + (H.transpose() + Matrix3::identity() * (second + third) - cof) * per_j;
+        Kinematics {
+            F: Matrix3::identity() + H,
+            G,
+            F_less_G,
+            j,
+            i1: 2.0 * trace + square,
+            square,
+            second,
+            third,
+        }
+    }
+
+    /// `ln J`; NaN where `J < 0`.
+    pub(super) fn ln_j(&self) -> f64 {
+        self.j.ln_1p()
+    }
+
+    /// `ln(I1 J^(-2/3) / 3)`, the terms of first order taken out of the difference by hand.
+    pub(super) fn ln_i1_bar(&self) -> f64 {
+        // (I1 - 3) - 2 (J - 1) = H : H - 2 II - 2 III.
+        (self.square - 2.0 * (self.second + self.third)) / 3.0 - less_ln_1p(self.i1 / 3.0)
+            + 2.0 / 3.0 * less_ln_1p(self.j)
+    }
+}
+
+/// `x - ln(1 + x)`, without the cancellation near 0.
+///
+/// With `s = x / (2 + x)`: `ln(1 + x) = 2 atanh s = 2 (s + s^3/3 + ...)` and `x - 2 s = x s`.
+pub(super) fn less_ln_1p(x: f64) -> f64 {
+    if x.abs() > 0.25 {
+        return x - x.ln_1p();
+    }
+    let s = x / (2.0 + x);
+    let q = s * s;
+    // |s| <= 1/7: the first term left out is q^9/21 < 1e-16 of the sum.
+    let mut sum = 0.0;
+    for n in (1..10).rev() {
+        sum = sum * q + 1.0 / f64::from(2 * n + 1);
+    }
+    x * s - 2.0 * s * q * sum
+}
+
+/// The tangent with the entry `dP_ij/dF_kl = entry(i, j, k, l)`.
+#[inline(always)]
+pub(super) fn tangent_of(entry: impl Fn(usize, usize, usize, usize) -> f64) -> Tangent {
+    let mut tangent = Tangent::zeros();
+    for l in 0..3 {
+        for k in 0..3 {
+            let mut column = tangent.column_mut(k + 3 * l);
+            for j in 0..3 {
+                for i in 0..3 {
+                    column[i + 3 * j] = entry(i, j, k, l);
+                }
+            }
+        }
+    }
+    tangent
+}
+
+/// Adds `scale delta_ik S_jl`, the part of `d(F S)/dF` in which `S` stands still.
+pub(super) fn add_initial_stress(tangent: &mut Tangent, S: &Matrix3, scale: f64) {
+    for l in 0..3 {
+        for j in 0..3 {
+            let s = scale * S[(j, l)];
+            for i in 0..3 {
+                tangent[(i + 3 * j, i + 3 * l)] += s;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_from_the_logarithm_keep_their_digits() {
+        // Leading terms x^2/2 - x^3/3 + x^4/4 at small x; the direct difference where it is exact enough.
+        for x in [1e-12, -1e-9, 3e-6, -2e-5] {
+            let series = x * x * (0.5 - x / 3.0 + x * x / 4.0);
+            assert!((less_ln_1p(x) - series).abs() < 4e-15 * series, "{x}");
+        }
+        for x in [0.2499_f64, -0.2499, 0.1, -0.1] {
+            let direct = x - x.ln_1p();
+            assert!((less_ln_1p(x) - direct).abs() < 1e-13 * direct, "{x}");
+        }
+    }
+
+    #[test]
+    fn volume_change_of_a_tiny_gradient_is_its_trace() {
+        let H = Matrix3::new(1e-13, 2e-13, 0.0, -3e-13, 2e-13, 1e-13, 0.0, 0.0, 4e-13);
+        assert!((volume_change(&H) - 7e-13).abs() < 1e-24);
+        let H = Matrix3::new(0.1, 0.2, -0.3, 0.0, -0.4, 0.1, 0.2, 0.3, 0.5);
+        assert!((volume_change(&H) + 1.0 - (Matrix3::identity() + H).determinant()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,69 @@
+//! The laws that a scene can name.
+
+use super::{LinearElastic, Material, NeoHookean, NeoHookeanIsochoric, SaintVenantKirchhoff, Tangent};
+use crate::Matrix3;
+
+/// A law chosen at run time.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Law {
+    Linear(LinearElastic),
+    SaintVenantKirchhoff(SaintVenantKirchhoff),
+    NeoHookean(NeoHookean),
+    NeoHookeanIsochoric(NeoHookeanIsochoric),
+}
+
+impl Law {
+    /// Its name in scene files and tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Law::Linear(_) => "linear",
+            Law::SaintVenantKirchhoff(_) => "saint-venant-kirchhoff",
+            Law::NeoHookean(_) => "neo-hookean",
+            Law::NeoHookeanIsochoric(_) => "neo-hookean-isochoric",
+        }
+    }
+
+    /// Whether the law holds for small displacement gradients only, rotations included.
+    pub fn is_small_strain(&self) -> bool {
+        matches!(self, Law::Linear(_))
+    }
+}
+
+/// `$value` of the law inside.
+macro_rules! of_each {
+    ($law:expr, $m:ident => $value:expr) => {
+        match $law {
+            Law::Linear($m) => $value,
+            Law::SaintVenantKirchhoff($m) => $value,
+            Law::NeoHookean($m) => $value,
+            Law::NeoHookeanIsochoric($m) => $value,
+        }
+    };
+}
+
+impl Material for Law {
+    fn energy(&self, H: &Matrix3) -> f64 {
+        of_each!(self, m => Material::energy(m, H))
+    }
+
+    fn stress(&self, H: &Matrix3) -> Matrix3 {
+        of_each!(self, m => Material::stress(m, H))
+    }
+
+    fn tangent(&self, H: &Matrix3) -> Tangent {
+        of_each!(self, m => Material::tangent(m, H))
+    }
+
+    fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
+        of_each!(self, m => Material::stress_and_tangent(m, H))
+    }
+
+    fn mu(&self) -> f64 {
+        of_each!(self, m => Material::mu(m))
+    }
+
+    fn lambda(&self) -> f64 {
+        of_each!(self, m => Material::lambda(m))
+    }
+}
