@@ -16,6 +16,7 @@
 
 mod body;
 mod constraint;
+mod contact;
 mod error;
 mod linear_solver;
 mod load;
@@ -31,6 +32,10 @@ mod weak;
 
 pub use body::Body;
 pub use constraint::{ConstraintRow, multiplier_rows};
+pub use contact::{
+    ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Contacts, Distance,
+    PointContact, Slip, Tool, ToolShape,
+};
 pub use error::SolveError;
 pub use linear_solver::SolverPath;
 pub use load::Load;

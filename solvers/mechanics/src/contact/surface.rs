@@ -1,0 +1,165 @@
+//! A surface quadrature in clusters of neighbouring points, each with a box: the broad phase of contact.
+
+use std::ops::Range;
+
+use shape::SurfaceRows;
+
+use super::{ContactError, Tool};
+use crate::{Point3, Vector3};
+
+/// Points per cluster, at most.
+const CLUSTER: usize = 32;
+
+/// A surface made ready for contact. Made once per surface, for any number of tools and states.
+#[derive(Clone, Debug)]
+pub struct ContactSurface<'a> {
+    rows: &'a SurfaceRows,
+    /// Points, neighbours together.
+    order: Vec<u32>,
+    clusters: Vec<Cluster>,
+    /// Nodes that the clusters see, one cluster after another.
+    nodes: Vec<u32>,
+}
+
+/// The current position of a point is `x = X + sum_I N_I u_I`. With `m` the middle and `h` the half range of `u` over
+/// the cluster's nodes, `|x - X - m| <= max(sum |N_I|) h + max|sum N_I - 1| |m|` per axis: a box for all its points
+/// from the nodes alone, for any basis.
+#[derive(Clone, Debug)]
+struct Cluster {
+    points: Range<usize>,
+    nodes: Range<usize>,
+    /// Middle and half extents of the box of reference positions, m.
+    middle: Point3,
+    half: Vector3,
+    /// Largest `sum |N_I|`.
+    lebesgue: f64,
+    /// Largest `|sum N_I - 1|`.
+    excess: f64,
+}
+
+impl<'a> ContactSurface<'a> {
+    /// Sorts the points into clusters.
+    pub fn new(rows: &'a SurfaceRows) -> ContactSurface<'a> {
+        let mut order: Vec<u32> = (0..rows.points().len() as u32).collect();
+        let mut ranges = Vec::new();
+        if !order.is_empty() {
+            split(&mut order, 0, rows.points(), &mut ranges);
+        }
+        let mut nodes = Vec::new();
+        let clusters =
+            ranges.into_iter().map(|points| Cluster::new(rows, &order, points, &mut nodes)).collect();
+        ContactSurface { rows, order, clusters, nodes }
+    }
+
+    /// The surface quadrature.
+    pub fn rows(&self) -> &'a SurfaceRows {
+        self.rows
+    }
+
+    /// Number of clusters.
+    pub fn clusters(&self) -> usize {
+        self.clusters.len()
+    }
+
+    /// Points of each cluster that may come within `reach` (m) of the tool; all others cannot.
+    pub(super) fn near(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        reach: f64,
+        u: &[Vector3],
+    ) -> Result<Vec<&[u32]>, ContactError> {
+        let (low, high) = tool.bounds(closure);
+        let (low, high) = (low.map(|c| c - reach), high.map(|c| c + reach));
+        let mut near = Vec::new();
+        for cluster in &self.clusters {
+            let (middle, half) = cluster.current_box(&self.nodes, u)?;
+            let apart = (0..3).any(|a| middle[a] + half[a] < low[a] || middle[a] - half[a] > high[a]);
+            // The distance changes by no more than the way gone.
+            if apart || tool.shape().foot(&tool.local(closure, &middle)).0 > half.norm() + reach {
+                continue;
+            }
+            near.push(&self.order[cluster.points.clone()]);
+        }
+        Ok(near)
+    }
+
+    /// Current position `X + sum_I N_I u_I` of a point.
+    #[inline]
+    pub(super) fn position(&self, point: usize, u: &[Vector3]) -> Point3 {
+        let (nodes, values) = self.rows.rows().row(point);
+        let mut x = self.rows.points()[point];
+        for (&node, value) in nodes.iter().zip(values) {
+            x += u[node as usize] * *value;
+        }
+        x
+    }
+}
+
+impl Cluster {
+    fn new(rows: &SurfaceRows, order: &[u32], points: Range<usize>, nodes: &mut Vec<u32>) -> Cluster {
+        let first = nodes.len();
+        let (mut lebesgue, mut excess) = (0.0f64, 0.0f64);
+        for &q in &order[points.clone()] {
+            let (of_row, values) = rows.rows().row(q as usize);
+            nodes.extend_from_slice(of_row);
+            lebesgue = lebesgue.max(values.iter().map(|v| v.abs()).sum());
+            excess = excess.max((values.iter().sum::<f64>() - 1.0).abs());
+        }
+        nodes[first..].sort_unstable();
+        let mut kept = first;
+        for k in first..nodes.len() {
+            if kept == first || nodes[kept - 1] != nodes[k] {
+                nodes[kept] = nodes[k];
+                kept += 1;
+            }
+        }
+        nodes.truncate(kept);
+        let (low, high) = range(order[points.clone()].iter().map(|&q| rows.points()[q as usize].coords));
+        let (middle, half) = (Point3::from((low + high) * 0.5), (high - low) * 0.5);
+        Cluster { points, nodes: first..kept, middle, half, lebesgue, excess }
+    }
+
+    /// Middle and half extents of a box that holds the cluster's points in the state `u`.
+    fn current_box(&self, nodes: &[u32], u: &[Vector3]) -> Result<(Point3, Vector3), ContactError> {
+        let nodes = &nodes[self.nodes.clone()];
+        let mut finite = true;
+        let (low, high) = range(nodes.iter().map(|&node| {
+            let u = u[node as usize];
+            finite &= (u.x + u.y + u.z).is_finite();
+            u
+        }));
+        if !finite {
+            let bad = nodes.iter().find(|&&node| !u[node as usize].iter().all(|c| c.is_finite()));
+            return Err(ContactError::NotFinite { node: *bad.unwrap_or(&nodes[0]) as usize });
+        }
+        let middle = (low + high) * 0.5;
+        Ok((
+            self.middle + middle,
+            self.half + (high - low) * (0.5 * self.lebesgue) + middle.abs() * self.excess,
+        ))
+    }
+}
+
+fn range(vectors: impl Iterator<Item = Vector3>) -> (Vector3, Vector3) {
+    vectors.fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), v| {
+        (low.inf(&v), high.sup(&v))
+    })
+}
+
+/// Halves the points at the median of their longest extent until at most [`CLUSTER`] are left; ties go by index.
+fn split(order: &mut [u32], start: usize, points: &[Point3], ranges: &mut Vec<Range<usize>>) {
+    if order.len() <= CLUSTER {
+        ranges.push(start..start + order.len());
+        return;
+    }
+    let (low, high) = range(order.iter().map(|&q| points[q as usize].coords));
+    let axis = (high - low).imax();
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&a, &b| {
+        points[a as usize][axis].total_cmp(&points[b as usize][axis]).then(a.cmp(&b))
+    });
+    let (lower, upper) = order.split_at_mut(half);
+    split(lower, start, points, ranges);
+    split(upper, start + half, points, ranges);
+}
