@@ -6,21 +6,29 @@
 #![allow(non_snake_case)]
 
 mod error;
+mod hencky;
 mod kinematics;
 mod law;
 mod linear;
+mod mooney_rivlin;
 mod neo_hookean;
 mod neo_hookean_isochoric;
+mod ogden;
+mod principal;
 mod saint_venant_kirchhoff;
+mod spectral;
 #[cfg(test)]
 mod tests;
 
 pub use error::MaterialError;
+pub use hencky::Hencky;
 pub use kinematics::volume_change;
 pub use law::Law;
 pub use linear::LinearElastic;
+pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_isochoric::NeoHookeanIsochoric;
+pub use ogden::Ogden;
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 
 use crate::Matrix3;

@@ -180,3 +180,79 @@ fn beyond_inversion_the_laws_with_a_logarithm_are_not_finite() {
         assert_eq!(finite, law.name() == "saint-venant-kirchhoff", "{}", law.name());
     }
 }
+
+/// Two laws written in other invariants must be the same function.
+fn same(a: &dyn Material, b: &dyn Material, H: &Matrix3) -> Result<(), TestCaseError> {
+    let scale = a.lambda().abs() + 2.0 * a.mu();
+    prop_assert!((a.energy(H) - b.energy(H)).abs() < 1e-13 * scale);
+    prop_assert!((a.stress(H) - b.stress(H)).norm() < 1e-12 * scale);
+    prop_assert!((a.tangent(H) - b.tangent(H)).norm() < 1e-11 * scale);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn ogden_holds_the_laws_of_exponent_two(H in finite(), poisson in POISSON) {
+        let hooke = LinearElastic::new(20e3, poisson).unwrap();
+        let (mu, bulk) = (hooke.mu(), hooke.bulk());
+        let neo = NeoHookeanIsochoric::new(20e3, poisson).unwrap();
+        same(&neo, &Ogden::new(&[(mu, 2.0)], bulk).unwrap(), &H)?;
+        same(&neo, &MooneyRivlin::from_young(20e3, poisson, 0.0).unwrap(), &H)?;
+        let mooney = MooneyRivlin::from_young(20e3, poisson, 0.4).unwrap();
+        same(&mooney, &Ogden::new(&[(0.6 * mu, 2.0), (-0.4 * mu, -2.0)], bulk).unwrap(), &H)?;
+    }
+
+    // The tangent at stretches that differ by d is the tangent at equal ones but for O(d); a division by the
+    // difference would leave 1e-16 / d.
+    #[test]
+    fn equal_stretches_are_no_special_case(
+        (stretch, other) in (0.6..1.7f64, 0.6..1.7f64),
+        turn in prop::array::uniform3(-2.0..2.0f64),
+        poisson in POISSON,
+        all in prop::bool::ANY,
+    ) {
+        let Q = rotation(turn);
+        let at = |d: f64| {
+            let third = if all { stretch * (1.0 - 0.6 * d) } else { other };
+            let stretches = Vector3::new(stretch, stretch * (1.0 + d), third);
+            gradient(Q * Matrix3::from_diagonal(&stretches) * Q.transpose())
+        };
+        for law in nonlinear(poisson) {
+            let (P, tangent) = law.stress_and_tangent(&at(0.0));
+            for d in [1e-4, 1e-8, 1e-12, 1e-15] {
+                let (near_P, near_tangent) = law.stress_and_tangent(&at(d));
+                let error = (near_tangent - tangent).norm() / stiffness(&law);
+                prop_assert!(error < 200.0 * d + 1e-12, "{}, {d:e}: tangent {error:.2e}", law.name());
+                let error = (near_P - P).norm() / stiffness(&law);
+                prop_assert!(error < 20.0 * d + 1e-13, "{}, {d:e}: stress {error:.2e}", law.name());
+            }
+            // Exactly equal: the tangent is still the gradient of the stress.
+            let H = at(0.0);
+            for n in 0..9 {
+                let mut d = Matrix3::zeros();
+                d[n] = 1e-5;
+                let slope = (law.stress(&(H + d)) - law.stress(&(H - d))) / 2e-5;
+                let error = (slope - Matrix3::from_column_slice(tangent.column(n).as_slice())).norm();
+                prop_assert!(error < 1e-7 * stiffness(&law), "{}: {n}: {error:.2e}", law.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn names_are_those_of_scene_files() {
+    let names: Vec<_> = laws(0.3).iter().map(Law::name).collect();
+    assert_eq!(
+        names,
+        [
+            "linear",
+            "saint-venant-kirchhoff",
+            "neo-hookean",
+            "neo-hookean-isochoric",
+            "hencky",
+            "mooney-rivlin",
+            "ogden"
+        ]
+    );
+}
