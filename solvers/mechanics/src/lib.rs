@@ -36,7 +36,8 @@ pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{
     Hencky, Law, LinearElastic, Material, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
-    Ogden, SaintVenantKirchhoff, Tangent, volume_change,
+    Ogden, Prony, PronyStep, SaintVenantKirchhoff, Tangent, deviator, relaxed_stress_and_tangent,
+    volume_change,
 };
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};

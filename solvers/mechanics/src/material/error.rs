@@ -43,4 +43,26 @@ pub enum MaterialError {
         /// Its exponent.
         alpha: f64,
     },
+    /// A Prony term must be positive and finite.
+    #[error("Prony term {} is g = {g}, tau = {tau} s; both must be positive and finite", term + 1)]
+    PronyTerm {
+        /// Index of the term, from 0.
+        term: usize,
+        /// Its share.
+        g: f64,
+        /// Its time, s.
+        tau: f64,
+    },
+    /// The shares of a Prony series must leave something that does not relax.
+    #[error("the shares of the Prony series sum to {sum}; the sum must be below 1")]
+    PronySum {
+        /// `sum g_i`.
+        sum: f64,
+    },
+    /// A time step must not be negative.
+    #[error("the time step is {dt} s; it must not be negative")]
+    TimeStep {
+        /// The step given, s.
+        dt: f64,
+    },
 }

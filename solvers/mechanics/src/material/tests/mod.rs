@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod properties;
+mod viscoelastic;
 
 use super::*;
 

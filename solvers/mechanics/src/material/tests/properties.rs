@@ -7,23 +7,23 @@ fn matrix(h: [f64; 9]) -> Matrix3 {
     Matrix3::from_row_slice(&h)
 }
 
-fn rotation(r: [f64; 3]) -> Matrix3 {
+pub(super) fn rotation(r: [f64; 3]) -> Matrix3 {
     Rotation3::new(Vector3::from(r)).into_inner()
 }
 
 /// Displacement gradient of `F`.
 #[allow(non_snake_case)]
-fn gradient(F: Matrix3) -> Matrix3 {
+pub(super) fn gradient(F: Matrix3) -> Matrix3 {
     F - Matrix3::identity()
 }
 
-fn nonlinear(poisson: f64) -> impl Iterator<Item = Law> {
+pub(super) fn nonlinear(poisson: f64) -> impl Iterator<Item = Law> {
     laws(poisson).into_iter().filter(|law| !law.is_small_strain())
 }
 
 /// Gradients with singular values of `F` between 0.55 and 1.6 or so: away from `J = 0`, far from small.
 #[allow(non_snake_case)]
-fn finite() -> impl Strategy<Value = Matrix3> {
+pub(super) fn finite() -> impl Strategy<Value = Matrix3> {
     (
         prop::array::uniform3(-0.6..0.5f64),
         prop::array::uniform3(-2.0..2.0f64),
@@ -36,7 +36,7 @@ fn finite() -> impl Strategy<Value = Matrix3> {
         })
 }
 
-const POISSON: std::ops::Range<f64> = -0.4..0.49;
+pub(super) const POISSON: std::ops::Range<f64> = -0.4..0.49;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
