@@ -6,8 +6,8 @@ use crate::Matrix3;
 
 /// `W = mu e : e + lambda/2 (tr e)^2`, `e = ln V` (`V^2 = F F^T`); `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
 ///
-/// What a linear elastic material amounts to in codes that integrate the rate of deformation, as Abaqus does under NLGEOM.
-/// In a bar under uniaxial stress `tau = E ln l` and the sides shrink by `l^(-nu)`, exactly. The energy loses
+/// What a linear elastic material amounts to in codes that integrate the rate of deformation, as Abaqus does under
+/// NLGEOM. In a bar under uniaxial stress `tau = E ln l` and the sides shrink by `l^(-nu)`, exactly. The energy loses
 /// ellipticity at large stretch (the Kirchhoff stress has `dtau/de` constant, so the nominal stress of a bar falls
 /// beyond `ln l = 1`).
 /// Source: Hencky (1928); Xiao and Chen, Acta Mechanica 157 (2002).

@@ -67,7 +67,8 @@ impl MooneyRivlin {
         S + H * S
     }
 
-    /// With `G = F^-T`, `B = F F^T`, `C = F^T F`, `Q = 2 (I1 F - B F) = dI2/dF`, `a = 2 C10 J^(-2/3)`, `h = 2 C01 J^(-4/3)`:
+    /// With `G = F^-T`, `B = F F^T`, `C = F^T F`, `Q = 2 (I1 F - B F) = dI2/dF`, `a = 2 C10 J^(-2/3)`,
+    /// `h = 2 C01 J^(-4/3)`:
     ///
     /// ```text
     /// a (delta_ik delta_jl - 2/3 (F_ij G_kl + G_ij F_kl) + 2/9 I1 G_ij G_kl + I1/3 G_il G_kj)

@@ -20,8 +20,8 @@ pub struct Ogden {
 }
 
 impl Ogden {
-    /// From the terms `(mu_p, alpha_p)` (Pa, no unit; `alpha_p` not 0, `sum mu_p alpha_p` positive) and the bulk modulus (Pa,
-    /// positive). Single terms with a negative `mu_p alpha_p` occur in fits and are taken.
+    /// From the terms `(mu_p, alpha_p)` (Pa, no unit; `alpha_p` not 0, `sum mu_p alpha_p` positive) and the bulk
+    /// modulus (Pa, positive). Single terms with a negative `mu_p alpha_p` occur in fits and are taken.
     pub fn new(terms: &[(f64, f64)], bulk: f64) -> Result<Ogden, MaterialError> {
         for (term, &(mu, alpha)) in terms.iter().enumerate() {
             if !(mu.is_finite() && alpha.is_finite() && alpha != 0.0) {

@@ -8,7 +8,7 @@ use crate::Matrix3;
 pub(super) struct Principal {
     /// Axes `N_a`, columns.
     axes: Matrix3,
-    /// Principal Green-Lagrange strains, ascending or not.
+    /// Principal Green-Lagrange strains, in no order.
     strain: [f64; 3],
     /// Squared stretches `c_a = 1 + 2 strain_a`.
     square: [f64; 3],
@@ -22,7 +22,7 @@ pub(super) struct Principal {
 pub(super) struct Slopes {
     /// `d tau_a / d e_b`, symmetric.
     pub slope: [[f64; 3]; 3],
-    /// `(tau_b - tau_c) / (e_b - e_c)` for the pairs `(b, c)` = (1, 2), (2, 0), (0, 1); its limit where they are equal.
+    /// `(tau_b - tau_c) / (e_b - e_c)` for the pairs (1, 2), (2, 0), (0, 1); its limit where they are equal.
     pub quotient: [f64; 3],
 }
 
@@ -49,9 +49,9 @@ impl Principal {
         S + H * S
     }
 
-    /// `dP/dF = delta_ik S_jl + sum_ab D_ab M_aa M_bb + sum_(a<b) theta_ab / 2 (M_ab + M_ba)(M_ab + M_ba)` with
-    /// `M_ab = (F N_a) N_b^T`, `D_ab = ds_a / dE_b` and `theta_ab = (s_a - s_b) / (E_a - E_b)` of the principal stresses
-    /// `s_a = tau_a / c_a` and strains `E_a`. `theta` is formed without dividing by `E_a - E_b`, so that equal
+    /// `dP/dF = delta_ik S_jl + sum_ab D_ab M_aa M_bb + sum_(a<b) theta_ab/2 (M_ab + M_ba)(M_ab + M_ba)` with
+    /// `M_ab = (F N_a) N_b^T`, `D_ab = ds_a / dE_b` and `theta_ab = (s_a - s_b) / (E_a - E_b)` of the principal
+    /// stresses `s_a = tau_a / c_a` and strains `E_a`. `theta` is formed without dividing by `E_a - E_b`, so that equal
     /// stretches are no special case: with `m = (tau_a - tau_b) / (e_a - e_b)`,
     ///
     /// ```text

@@ -3,8 +3,8 @@
 use super::MaterialError;
 use crate::Matrix3;
 
-/// `g(t) = g_inf + sum_i g_i exp(-t / tau_i)`, `g_inf = 1 - sum_i g_i`: the share of a stress put on at once that is left after
-/// the time `t`. `g_i` without unit, `tau_i` in seconds.
+/// `g(t) = g_inf + sum_i g_i exp(-t / tau_i)`, `g_inf = 1 - sum_i g_i`: the share of a stress put on at once that is
+/// left after the time `t`. `g_i` without unit, `tau_i` in seconds.
 ///
 /// It acts on a material stress, the deviatoric part of the instantaneous second Piola-Kirchhoff stress `S0` (see
 /// [`deviator`](super::deviator)):
@@ -14,8 +14,9 @@ use crate::Matrix3;
 /// h_i(t + dt) = exp(-dt / tau_i) h_i(t) + g_i (1 - exp(-dt / tau_i)) / (dt / tau_i) (S0(t + dt) - S0(t))
 /// ```
 ///
-/// The recursion is exact if `S0` is linear in time over the step, and stable for any step. Sources: Taylor, Pister and Goudreau, Int.
-/// J. Numer. Methods Eng. 2 (1970) 45-59; Simo and Hughes, Computational Inelasticity, section 10.3.
+/// The recursion is exact if `S0` is linear in time over the step, and stable for any step.
+/// Sources: Taylor, Pister and Goudreau, Int. J. Numer. Methods Eng. 2 (1970) 45-59; Simo and Hughes, Computational
+/// Inelasticity, section 10.3.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prony {
     terms: Vec<(f64, f64)>,

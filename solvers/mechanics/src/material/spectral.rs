@@ -4,8 +4,8 @@ use crate::Matrix3;
 
 /// Eigenvalues and orthonormal eigenvectors (columns) of a symmetric `A`, in no order, by cyclic Jacobi rotations.
 ///
-/// Errors are of the order of the rounding of `|A|`, equal eigenvalues or not: a tensor of 1e-10 is resolved to 1e-26. Three or
-/// four sweeps suffice; NaN in gives NaN out. Source: Golub and Van Loan, Matrix Computations, 4th ed., section 8.5.
+/// Errors are of the order of the rounding of `|A|`, equal eigenvalues or not: a tensor of 1e-10 is resolved to 1e-26.
+/// NaN in gives NaN out. Source: Golub and Van Loan, Matrix Computations, 4th ed., section 8.5.
 pub(super) fn eigen(A: &Matrix3) -> ([f64; 3], Matrix3) {
     let mut a = *A;
     let mut axes = Matrix3::identity();

@@ -4,8 +4,8 @@ use super::kinematics::{Kinematics, add_right, tangent_of};
 use super::{Material, PronyStep, Tangent};
 use crate::Matrix3;
 
-/// Deviatoric part of the second Piola-Kirchhoff stress, `S_dev = S - (S : C)/3 C^-1`, (3, 3), Pa, from `P = F S`: the pull-back
-/// of the deviator of the Kirchhoff stress. It is what [`PronyStep`] relaxes.
+/// Deviatoric part of the second Piola-Kirchhoff stress, `S_dev = S - (S : C)/3 C^-1`, (3, 3), Pa, from `P = F S`: the
+/// pull-back of the deviator of the Kirchhoff stress. It is what [`PronyStep`] relaxes.
 pub fn deviator(P: &Matrix3, H: &Matrix3) -> Matrix3 {
     let k = Kinematics::new(H);
     let pressure = P.dot(&k.F) / 3.0;
