@@ -40,8 +40,9 @@ pub use error::SolveError;
 pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{
-    Law, LinearElastic, Material, MaterialError, NeoHookean, NeoHookeanIsochoric, SaintVenantKirchhoff,
-    Tangent, volume_change,
+    Hencky, Law, LinearElastic, Material, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
+    Ogden, Prony, PronyStep, SaintVenantKirchhoff, Tangent, deviator, relaxed_stress_and_tangent,
+    volume_change,
 };
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};

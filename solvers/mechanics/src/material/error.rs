@@ -15,4 +15,54 @@ pub enum MaterialError {
         /// The ratio given.
         poisson: f64,
     },
+    /// The shear modulus that the constants amount to must be positive and finite.
+    #[error("the constants amount to a shear modulus of {mu} Pa; it must be positive and finite")]
+    Shear {
+        /// `2 (C10 + C01)` or `sum mu_p alpha_p / 2`, Pa.
+        mu: f64,
+    },
+    /// The bulk modulus must be positive and finite.
+    #[error("the bulk modulus is {bulk} Pa; it must be positive and finite")]
+    Bulk {
+        /// The modulus given, Pa.
+        bulk: f64,
+    },
+    /// The share of the second Mooney-Rivlin term must lie between 0 and 1.
+    #[error("C01 / (C10 + C01) is {share}; it must lie between 0 and 1")]
+    Share {
+        /// The share given.
+        share: f64,
+    },
+    /// An Ogden term must be finite and its exponent not zero.
+    #[error("Ogden term {} is mu = {mu} Pa, alpha = {alpha}; both must be finite and alpha not zero", term + 1)]
+    OgdenTerm {
+        /// Index of the term, from 0.
+        term: usize,
+        /// Its constant, Pa.
+        mu: f64,
+        /// Its exponent.
+        alpha: f64,
+    },
+    /// A Prony term must be positive and finite.
+    #[error("Prony term {} is g = {g}, tau = {tau} s; both must be positive and finite", term + 1)]
+    PronyTerm {
+        /// Index of the term, from 0.
+        term: usize,
+        /// Its share.
+        g: f64,
+        /// Its time, s.
+        tau: f64,
+    },
+    /// The shares of a Prony series must leave something that does not relax.
+    #[error("the shares of the Prony series sum to {sum}; the sum must be below 1")]
+    PronySum {
+        /// `sum g_i`.
+        sum: f64,
+    },
+    /// A time step must not be negative.
+    #[error("the time step is {dt} s; it must not be negative")]
+    TimeStep {
+        /// The step given, s.
+        dt: f64,
+    },
 }

@@ -28,6 +28,8 @@ pub(super) struct Kinematics {
     pub G: Matrix3,
     /// `F - F^-T`.
     pub F_less_G: Matrix3,
+    /// `cof F - I = tr(H) I - H^T + cof H`.
+    cof_less_I: Matrix3,
     /// `J - 1`.
     pub j: f64,
     /// `I1 - 3 = tr(F^T F) - 3 = 2 tr H + H : H`.
@@ -57,6 +59,7 @@ impl Kinematics {
             F: Matrix3::identity() + H,
             G,
             F_less_G,
+            cof_less_I,
             j,
             i1: 2.0 * trace + square,
             square,
@@ -68,6 +71,19 @@ impl Kinematics {
     /// `ln J`; NaN where `J < 0`.
     pub(super) fn ln_j(&self) -> f64 {
         self.j.ln_1p()
+    }
+
+    /// `I2 - 3`, `I2 = ((tr C)^2 - tr C^2) / 2 = |cof F|^2`.
+    pub(super) fn i2(&self) -> f64 {
+        2.0 * self.cof_less_I.trace() + self.cof_less_I.norm_squared()
+    }
+
+    /// `ln(I2 J^(-4/3) / 3)`, the terms of first order taken out of the difference by hand.
+    pub(super) fn ln_i2_bar(&self) -> f64 {
+        // With K = cof F - I: (I2 - 3) - 4 (J - 1) = K : K - 2 II - 4 III.
+        let square = self.cof_less_I.norm_squared();
+        (square - 2.0 * self.second - 4.0 * self.third) / 3.0 - less_ln_1p(self.i2() / 3.0)
+            + 4.0 / 3.0 * less_ln_1p(self.j)
     }
 
     /// `ln(I1 J^(-2/3) / 3)`, the terms of first order taken out of the difference by hand.
@@ -95,6 +111,19 @@ pub(super) fn less_ln_1p(x: f64) -> f64 {
     x * s - 2.0 * s * q * sum
 }
 
+/// `exp(x) - 1 - x`, without the cancellation near 0.
+pub(super) fn exp_m1_less(x: f64) -> f64 {
+    if x.abs() > 0.5 {
+        return x.exp_m1() - x;
+    }
+    // x^2/2 (1 + x/3 (1 + x/4 (...))): the first term left out is 2 x^14/16! < 1e-17 of the sum.
+    let mut sum = 1.0;
+    for n in (3..16).rev() {
+        sum = 1.0 + x / f64::from(n) * sum;
+    }
+    0.5 * x * x * sum
+}
+
 /// The tangent with the entry `dP_ij/dF_kl = entry(i, j, k, l)`.
 #[inline(always)]
 pub(super) fn tangent_of(entry: impl Fn(usize, usize, usize, usize) -> f64) -> Tangent {
@@ -112,13 +141,23 @@ pub(super) fn tangent_of(entry: impl Fn(usize, usize, usize, usize) -> f64) -> T
     tangent
 }
 
-/// Adds `scale delta_ik S_jl`, the part of `d(F S)/dF` in which `S` stands still.
-pub(super) fn add_initial_stress(tangent: &mut Tangent, S: &Matrix3, scale: f64) {
+/// Adds `delta_ik M_jl`, the derivative of `F M` at constant `M`, `M` symmetric.
+pub(super) fn add_right(tangent: &mut Tangent, M: &Matrix3) {
     for l in 0..3 {
         for j in 0..3 {
-            let s = scale * S[(j, l)];
             for i in 0..3 {
-                tangent[(i + 3 * j, i + 3 * l)] += s;
+                tangent[(i + 3 * j, i + 3 * l)] += M[(j, l)];
+            }
+        }
+    }
+}
+
+/// Adds `M_ik delta_jl`, the derivative of `M F` at constant `M`.
+pub(super) fn add_left(tangent: &mut Tangent, M: &Matrix3) {
+    for j in 0..3 {
+        for k in 0..3 {
+            for i in 0..3 {
+                tangent[(i + 3 * j, k + 3 * j)] += M[(i, k)];
             }
         }
     }
@@ -138,6 +177,18 @@ mod tests {
         for x in [0.2499_f64, -0.2499, 0.1, -0.1] {
             let direct = x - x.ln_1p();
             assert!((less_ln_1p(x) - direct).abs() < 1e-13 * direct, "{x}");
+        }
+    }
+
+    #[test]
+    fn differences_from_the_exponential_keep_their_digits() {
+        for x in [1e-12, -1e-9, 3e-6, -2e-5] {
+            let series = x * x * (0.5 + x / 6.0 + x * x / 24.0);
+            assert!((exp_m1_less(x) - series).abs() < 4e-15 * series, "{x}");
+        }
+        for x in [0.4999_f64, -0.4999, 0.1, -0.1] {
+            let direct = x.exp_m1() - x;
+            assert!((exp_m1_less(x) - direct).abs() < 1e-13 * direct, "{x}");
         }
     }
 

@@ -1,6 +1,9 @@
 //! The laws that a scene can name.
 
-use super::{LinearElastic, Material, NeoHookean, NeoHookeanIsochoric, SaintVenantKirchhoff, Tangent};
+use super::{
+    Hencky, LinearElastic, Material, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden,
+    SaintVenantKirchhoff, Tangent,
+};
 use crate::Matrix3;
 
 /// A law chosen at run time.
@@ -11,6 +14,9 @@ pub enum Law {
     SaintVenantKirchhoff(SaintVenantKirchhoff),
     NeoHookean(NeoHookean),
     NeoHookeanIsochoric(NeoHookeanIsochoric),
+    Hencky(Hencky),
+    MooneyRivlin(MooneyRivlin),
+    Ogden(Ogden),
 }
 
 impl Law {
@@ -21,6 +27,9 @@ impl Law {
             Law::SaintVenantKirchhoff(_) => "saint-venant-kirchhoff",
             Law::NeoHookean(_) => "neo-hookean",
             Law::NeoHookeanIsochoric(_) => "neo-hookean-isochoric",
+            Law::Hencky(_) => "hencky",
+            Law::MooneyRivlin(_) => "mooney-rivlin",
+            Law::Ogden(_) => "ogden",
         }
     }
 
@@ -38,6 +47,9 @@ macro_rules! of_each {
             Law::SaintVenantKirchhoff($m) => $value,
             Law::NeoHookean($m) => $value,
             Law::NeoHookeanIsochoric($m) => $value,
+            Law::Hencky($m) => $value,
+            Law::MooneyRivlin($m) => $value,
+            Law::Ogden($m) => $value,
         }
     };
 }

@@ -6,22 +6,34 @@
 #![allow(non_snake_case)]
 
 mod error;
+mod hencky;
 mod kinematics;
 mod law;
 mod linear;
+mod mooney_rivlin;
 mod neo_hookean;
 mod neo_hookean_isochoric;
+mod ogden;
+mod principal;
+mod prony;
 mod saint_venant_kirchhoff;
+mod spectral;
 #[cfg(test)]
 mod tests;
+mod viscoelastic;
 
 pub use error::MaterialError;
+pub use hencky::Hencky;
 pub use kinematics::volume_change;
 pub use law::Law;
 pub use linear::LinearElastic;
+pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_isochoric::NeoHookeanIsochoric;
+pub use ogden::Ogden;
+pub use prony::{Prony, PronyStep};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use viscoelastic::{deviator, relaxed_stress_and_tangent};
 
 use crate::Matrix3;
 

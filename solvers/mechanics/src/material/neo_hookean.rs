@@ -6,8 +6,8 @@ use crate::Matrix3;
 
 /// `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2`, `I1 = tr(F^T F)`; moduli in Pa.
 ///
-/// `P = mu (F - F^-T) + lambda ln(J) F^-T`. Shape and volume are not split: `mu` acts on `I1` itself, and the volumetric
-/// part `(ln J)^2` flattens beyond `J = e`. The split form, which Abaqus and CalculiX mean by neo-Hookean, is
+/// `P = mu (F - F^-T) + lambda ln(J) F^-T`. Shape and volume are not split: `mu` acts on `I1` itself, and the
+/// volumetric part `(ln J)^2` flattens beyond `J = e`. The split form, which Abaqus and CalculiX mean by neo-Hookean, is
 /// [`NeoHookeanIsochoric`](super::NeoHookeanIsochoric); the two agree to first order in the strain only.
 /// Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., section 6.4.3.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! St. Venant-Kirchhoff: Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
-use super::kinematics::{add_initial_stress, green_lagrange, tangent_of};
+use super::kinematics::{add_left, add_right, green_lagrange, tangent_of};
 use super::{LinearElastic, Material, MaterialError, Tangent};
 use crate::Matrix3;
 
@@ -34,14 +34,8 @@ impl SaintVenantKirchhoff {
         let B = F * F.transpose() * self.mu;
         let mut tangent =
             tangent_of(|i, j, k, l| self.lambda * F[(i, j)] * F[(k, l)] + self.mu * F[(i, l)] * F[(k, j)]);
-        add_initial_stress(&mut tangent, S, 1.0);
-        for j in 0..3 {
-            for k in 0..3 {
-                for i in 0..3 {
-                    tangent[(i + 3 * j, k + 3 * j)] += B[(i, k)];
-                }
-            }
-        }
+        add_right(&mut tangent, S);
+        add_left(&mut tangent, &B);
         tangent
     }
 }

@@ -29,7 +29,10 @@ fn equal_stretch_in_all_directions() {
                     Law::Linear(_) => 3.0 * bulk * (s - 1.0),
                     Law::SaintVenantKirchhoff(_) => 1.5 * bulk * s * (s * s - 1.0),
                     Law::NeoHookean(_) => mu * (s - 1.0 / s) + 3.0 * lambda * s.ln() / s,
-                    Law::NeoHookeanIsochoric(_) => bulk * (s.powi(3) - 1.0) * s * s,
+                    Law::Hencky(_) => 3.0 * bulk * s.ln() / s,
+                    Law::NeoHookeanIsochoric(_) | Law::MooneyRivlin(_) | Law::Ogden(_) => {
+                        bulk * (s.powi(3) - 1.0) * s * s
+                    }
                 };
                 let P = stretched(&law, s, s, s);
                 for i in 0..3 {
@@ -51,6 +54,20 @@ fn uniaxial_strain() {
                     Law::Linear(_) => (lambda + 2.0 * mu) * (l - 1.0),
                     Law::SaintVenantKirchhoff(_) => (lambda + 2.0 * mu) * l * (l * l - 1.0) / 2.0,
                     Law::NeoHookean(_) => mu * (l - 1.0 / l) + lambda * l.ln() / l,
+                    Law::Hencky(_) => (lambda + 2.0 * mu) * l.ln() / l,
+                    Law::MooneyRivlin(_) => {
+                        // Slopes of l^(-2/3) (l^2 + 2) and l^(-4/3) (2 l^2 + 1).
+                        let first = 4.0 / 3.0 * (l.cbrt() - l.powf(-5.0 / 3.0));
+                        let second = 4.0 / 3.0 * (l.powf(-1.0 / 3.0) - l.powf(-7.0 / 3.0));
+                        0.5 * mu * ((1.0 - SECOND) * first + SECOND * second) + volume
+                    }
+                    Law::Ogden(_) => {
+                        let term = |(share, alpha): (f64, f64)| {
+                            let power = l.powf(2.0 / 3.0 * alpha) - l.powf(-alpha / 3.0);
+                            2.0 * share * mu / alpha * 2.0 / 3.0 * power / l
+                        };
+                        OGDEN.map(term).iter().sum::<f64>() + volume
+                    }
                     Law::NeoHookeanIsochoric(_) => {
                         mu * l.powf(-2.0 / 3.0) * (l - (l * l + 2.0) / (3.0 * l)) + volume
                     }
@@ -89,7 +106,25 @@ fn simple_shear() {
                         let normal = 0.5 * lambda * square + 2.0 * mu * square + square * s22 - s22;
                         (shear, normal)
                     }
-                    Law::NeoHookean(_) | Law::NeoHookeanIsochoric(_) => (mu * gamma, mu * square),
+                    Law::NeoHookean(_) | Law::NeoHookeanIsochoric(_) | Law::MooneyRivlin(_) => {
+                        // sigma_22 - sigma_33 tells the terms apart: 2 C01 (1 - (1 + gamma^2)).
+                        let second = if matches!(law, Law::MooneyRivlin(_)) { SECOND } else { 0.0 };
+                        near(cauchy[(1, 1)] - cauchy[(2, 2)], -second * mu * square, &law);
+                        (mu * gamma, mu * square)
+                    }
+                    // Principal stretches l and 1/l, ln l = asinh(gamma / 2); the axis of l at half the angle
+                    // with tangent 2 / gamma.
+                    Law::Hencky(_) | Law::Ogden(_) => {
+                        let e = (0.5 * gamma).asinh();
+                        let half = match law {
+                            Law::Hencky(_) => 2.0 * mu * e,
+                            _ => {
+                                OGDEN.map(|(s, alpha)| 2.0 * s * mu / alpha * (alpha * e).sinh()).iter().sum()
+                            }
+                        };
+                        let length = (4.0 + square).sqrt();
+                        (half * 2.0 / length, 2.0 * half * gamma / length)
+                    }
                 };
                 near(cauchy[(0, 1)], shear, &law);
                 near(cauchy[(0, 0)] - cauchy[(1, 1)], normal, &law);
@@ -117,4 +152,18 @@ fn constants_of_abaqus_are_those_of_the_moduli() {
     // mu = 12 kPa, kappa = 20 kPa.
     assert!((law.c10() - 6e3).abs() < 1e-9);
     assert!((law.d1() - 1e-4).abs() < 1e-18);
+}
+
+/// A bar free at its sides: `tau = E ln l` along it and none across at side stretches of `l^(-nu)`.
+#[test]
+fn hencky_bar_under_uniaxial_stress() {
+    for poisson in [0.0, 0.3, 0.49] {
+        let law = Law::Hencky(Hencky::new(YOUNG, poisson).unwrap());
+        for l in [0.4_f64, 0.9, 1.8] {
+            let side = l.powf(-poisson);
+            let P = stretched(&law, l, side, side);
+            near(P[(0, 0)], YOUNG * l.ln() / l, &law);
+            near(P[(1, 1)], 0.0, &law);
+        }
+    }
 }
