@@ -279,3 +279,22 @@ fn a_surface_without_points_is_skipped() {
     assert_eq!(surface.evaluate(&tool, 0.0, &[Vector3::zeros()], &history, &mut counts), Ok(None));
     assert_eq!(counts.skipped, 1);
 }
+
+/// Bases that overshoot: a point that goes farther than any of its nodes is still found.
+#[test]
+fn boxes_hold_points_that_outrun_their_nodes() {
+    // Values, displacements of the two nodes along z, and where the point goes: 1.5 * 1 + 0.5 * 1 and 2 * 1 mm.
+    for (values, u) in [([1.5, -0.5], [1e-3, -1e-3]), ([1.0, 1.0], [1e-3, 1e-3])] {
+        let rows = Rows::new(2, vec![0, 2], vec![0, 1], values.to_vec(), shape::Unity::NotPromised).unwrap();
+        let at = PointRows::new(vec![Point3::origin()], rows).unwrap();
+        let rows = SurfaceRows::new(at, vec![1e-6], vec![Vector3::z()]).unwrap();
+        let down = -Vector3::z();
+        let face = Point3::new(0.0, 0.0, 1.99e-3);
+        let plate = Tool::new(ToolShape::Plate, face, Tool::turned_to(&down), down, coulomb()).unwrap();
+        let history = ContactHistory::new(&plate, 1);
+        let u = u.map(|z| Vector3::z() * z);
+        let mut counts = ContactCounts::default();
+        let found = ContactSurface::new(&rows).evaluate(&plate, 0.0, &u, &history, &mut counts).unwrap();
+        assert!((found.expect("near").max_penetration() - 1e-5).abs() < 1e-15, "{values:?}");
+    }
+}
