@@ -20,4 +20,4 @@ pub use error::FemError;
 pub use points::{Outside, grad_rows, nearest_grad_rows, nearest_point_rows, point_rows};
 pub use rule::{SurfaceRule, VolumeRule};
 pub use surface::{flux_rows, surface_rows};
-pub use volume::{cell_of_point, element_dilation, regions, volume_rows};
+pub use volume::{cell_of_point, element_dilation, pressure_rows, regions, volume_rows};

@@ -6,7 +6,7 @@ use geometry::{CellKind, Mesh, Point3, Vector3};
 use rayon::prelude::*;
 use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
 
-use crate::element::{Element, with_element};
+use crate::element::{Element, Hex8, Tet4, with_element};
 use crate::map::{Nodes, inverse, physical};
 use crate::{FemError, VolumeRule};
 
@@ -89,6 +89,38 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
     }
     let count = offsets[mesh.cell_count()];
     Ok(DilationGroups::new(count, offsets, (0..count as u32).collect(), vec![1.0; count])?)
+}
+
+/// Linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`] with the same rule, over
+/// the corner nodes only, numbered in the order of the mesh: the continuous pressure of Taylor-Hood elements
+/// (tet10/P1; Taylor & Hood 1973).
+pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<Rows, FemError> {
+    let mut number = vec![u32::MAX; mesh.points().len()];
+    for cell in 0..mesh.cell_count() {
+        for &node in &mesh.cell(cell)[..mesh.kind(cell).corner_count()] {
+            number[node as usize] = 0;
+        }
+    }
+    let mut count = 0;
+    for n in number.iter_mut().filter(|n| **n == 0) {
+        *n = count;
+        count += 1;
+    }
+    let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
+    for cell in 0..mesh.cell_count() {
+        let kind = mesh.kind(cell);
+        let corners = &mesh.cell(cell)[..kind.corner_count()];
+        for &xi in &rule.rule(kind)?.points {
+            nodes.extend(corners.iter().map(|&n| number[n as usize]));
+            if kind.is_tet() {
+                values.extend(Tet4::shape(xi));
+            } else {
+                values.extend(Hex8::shape(xi));
+            }
+            offsets.push(nodes.len());
+        }
+    }
+    Ok(Rows::new(count as usize, offsets, nodes, values, UNITY)?)
 }
 
 /// Shape values and reference gradients at the points of one kind's rule, one point after another.

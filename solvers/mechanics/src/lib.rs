@@ -21,6 +21,7 @@ mod error;
 mod linear_solver;
 mod load;
 mod material;
+mod nonlinear;
 mod pattern;
 mod problem;
 mod recover;
@@ -43,6 +44,10 @@ pub use material::{
     Hencky, Law, LinearElastic, Material, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
     Ogden, Prony, PronyStep, SaintVenantKirchhoff, Tangent, deviator, relaxed_stress_and_tangent,
     volume_change,
+};
+pub use nonlinear::{
+    Dilation, Drive, DrivenTool, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError, StaticParams,
+    StaticPath, StaticProblem, Step, ToolState, Worst, solve_static,
 };
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};

@@ -75,36 +75,8 @@ impl<'a> Assembled<'a> {
 
     /// The matrix over the free degrees of freedom and the constraint rows with a free term (with their scales).
     fn reduced(&self, place: &[usize], free: usize) -> Result<(Symmetric, Vec<(usize, f64)>), SolveError> {
-        let nodes = self.load.len();
-        let capacity = 9 * self.stiffness.pattern().block_count();
-        let mut m = Symmetric {
-            offsets: vec![0],
-            rows: Vec::with_capacity(capacity),
-            values: Vec::with_capacity(capacity),
-            multipliers: free,
-            vertices: vec![0],
-        };
-        let mut largest = 0.0f64;
-        for i in 0..nodes {
-            let (columns, blocks) = self.stiffness.row(i);
-            for a in (0..3).filter(|a| place[3 * i + a] != HELD) {
-                for (&j, block) in columns.iter().zip(blocks) {
-                    let j = j as usize;
-                    for b in 0..3 {
-                        let at = place[3 * j + b];
-                        if at != HELD && (j < i || b <= a) {
-                            m.rows.push(at);
-                            m.values.push(block[(a, b)]);
-                        }
-                    }
-                }
-                m.offsets.push(m.rows.len());
-                largest = largest.max(m.values[m.values.len() - 1].abs());
-            }
-            if *m.vertices.last().unwrap() < m.offsets.len() - 1 {
-                m.vertices.push(m.offsets.len() - 1);
-            }
-        }
+        let mut m = Symmetric::displacements(&self.stiffness, place, free);
+        let largest = (0..free).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
         let mut active = Vec::new();
         for (index, row) in self.rows.iter().enumerate() {
             let terms = || row.terms.iter().filter(|t| place[t.0] != HELD);

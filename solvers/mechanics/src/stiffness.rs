@@ -126,6 +126,11 @@ impl Stiffness {
         Stiffness { pattern, blocks }
     }
 
+    /// Sets all numbers to zero and keeps the pattern.
+    pub(crate) fn clear(&mut self) {
+        self.blocks.fill(Matrix3::zeros());
+    }
+
     /// The symbolic pattern.
     pub fn pattern(&self) -> &BlockPattern {
         &self.pattern

@@ -61,6 +61,13 @@ impl<'a> ContactSurface<'a> {
         self.clusters.len()
     }
 
+    /// Smallest signed distance (m) of all points to the tool in the state `u`; infinite without points.
+    pub fn gap(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> f64 {
+        (0..self.rows.points().len())
+            .map(|q| tool.shape().foot(&tool.local(closure, &self.position(q, u))).0)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Points of each cluster that may come within `reach` (m) of the tool; all others cannot.
     pub(super) fn near(
         &self,

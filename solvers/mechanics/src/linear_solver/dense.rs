@@ -4,20 +4,20 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt, llt};
 use faer::{Conj, Mat, MatMut, Par};
 
-use super::{FactorError, Symmetric, check_pivots};
+use super::{FactorError, Kind, Symmetric, check_pivots};
 use crate::SolveError;
 
-/// `L L^T`, or `L D L^T` (D on the diagonal of `lower`) of a saddle matrix.
+/// `L L^T`, or `L D L^T` (D on the diagonal of `lower`) of a matrix that is not definite.
 pub(super) struct Dense {
     lower: Mat<f64>,
-    saddle: bool,
+    definite: bool,
 }
 
 impl Dense {
-    pub fn new(matrix: &Symmetric) -> Result<Dense, FactorError> {
+    pub fn new(matrix: &Symmetric, kind: Kind) -> Result<Dense, FactorError> {
         let n = matrix.dim();
-        let saddle = matrix.is_saddle();
-        let regularised = saddle.then(|| matrix.regularised());
+        let definite = kind == Kind::Definite;
+        let regularised = (kind == Kind::Saddle).then(|| matrix.regularised());
         let values = regularised.as_ref().unwrap_or(&matrix.values);
         let mut lower = Mat::zeros(n, n);
         for j in 0..n {
@@ -26,7 +26,7 @@ impl Dense {
             }
         }
         let (par, params) = (Par::Seq, Default::default());
-        if saddle {
+        if !definite {
             let scratch = ldlt::factor::cholesky_in_place_scratch::<f64>(n, par, params);
             let mut memory = MemBuffer::new(scratch);
             let stack = MemStack::new(&mut memory);
@@ -41,7 +41,7 @@ impl Dense {
                 .map_err(|_| FactorError::NotDefinite)?;
             check_pivots((0..n).map(|j| lower[(j, j)].powi(2) / matrix.diagonal(j)))?;
         }
-        Ok(Dense { lower, saddle })
+        Ok(Dense { lower, definite })
     }
 
     pub fn solve(&self, b: &mut [f64]) {
@@ -49,7 +49,7 @@ impl Dense {
         let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
         let stack = MemStack::new(&mut []);
         let lower = self.lower.as_ref();
-        if self.saddle {
+        if !self.definite {
             ldlt::solve::solve_in_place_with_conj(lower, lower.diagonal(), Conj::No, rhs, Par::Seq, stack);
         } else {
             llt::solve::solve_in_place_with_conj(lower, Conj::No, rhs, Par::Seq, stack);

@@ -4,10 +4,16 @@
 //! ends with its residual.
 
 mod dense;
+mod lu;
 mod ordering;
 mod sparse;
 
-use crate::SolveError;
+use std::sync::Arc;
+
+use crate::{SolveError, Stiffness};
+
+pub(crate) use lu::Unsymmetric;
+pub(crate) use sparse::Symbolic;
 
 /// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
 /// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless
@@ -36,6 +42,8 @@ pub enum SolverPath {
     SparseLlt,
     /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
     SparseLdlt,
+    /// `P A Q = L U` with partial pivoting, in faer's column order.
+    SparseLu,
 }
 
 impl SolverPath {
@@ -47,12 +55,25 @@ impl SolverPath {
             SolverPath::DenseLdlt => "dense-ldlt",
             SolverPath::SparseLlt => "sparse-llt",
             SolverPath::SparseLdlt => "sparse-ldlt",
+            SolverPath::SparseLu => "sparse-lu",
         }
     }
 }
 
+/// What is known of a matrix, and so which factorisation serves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Positive definite: `L L^T`.
+    Definite,
+    /// Unknowns beyond [`Symmetric::multipliers`] have a zero or negative block: `L D L^T`, statically regularised.
+    Saddle,
+    /// Symmetric without a promise (a tangent past a limit point): `L D L^T` as it is; the residual check decides.
+    Indefinite,
+}
+
 /// A symmetric matrix: its upper triangle by columns, rows ascending, the diagonal entry always present. Unknowns
-/// from `multipliers` on are Lagrange multipliers (zero diagonal block).
+/// from `multipliers` on are Lagrange multipliers or pressures (zero or negative diagonal block).
+#[derive(Clone)]
 pub(crate) struct Symmetric {
     pub offsets: Vec<usize>,
     pub rows: Vec<usize>,
@@ -67,12 +88,46 @@ impl Symmetric {
         self.offsets.len() - 1
     }
 
-    fn is_saddle(&self) -> bool {
-        self.multipliers < self.dim()
+    /// Definite unless multipliers follow.
+    pub fn kind(&self) -> Kind {
+        if self.multipliers < self.dim() { Kind::Saddle } else { Kind::Definite }
+    }
+
+    /// The free part of a stiffness: `place` gives each degree of freedom its unknown (`usize::MAX` if held), `free`
+    /// their number.
+    pub fn displacements(stiffness: &Stiffness, place: &[usize], free: usize) -> Symmetric {
+        let capacity = 9 * stiffness.pattern().block_count();
+        let mut m = Symmetric {
+            offsets: vec![0],
+            rows: Vec::with_capacity(capacity),
+            values: Vec::with_capacity(capacity),
+            multipliers: free,
+            vertices: vec![0],
+        };
+        for i in 0..place.len() / 3 {
+            let (columns, blocks) = stiffness.row(i);
+            for a in (0..3).filter(|a| place[3 * i + a] != usize::MAX) {
+                for (&j, block) in columns.iter().zip(blocks) {
+                    let j = j as usize;
+                    for b in 0..3 {
+                        let at = place[3 * j + b];
+                        if at != usize::MAX && (j < i || b <= a) {
+                            m.rows.push(at);
+                            m.values.push(block[(a, b)]);
+                        }
+                    }
+                }
+                m.offsets.push(m.rows.len());
+            }
+            if *m.vertices.last().expect("starts with 0") < m.offsets.len() - 1 {
+                m.vertices.push(m.offsets.len() - 1);
+            }
+        }
+        m
     }
 
     /// `y -= A x`.
-    fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+    pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
         for j in 0..self.dim() {
             let mut sum = 0.0;
             for k in self.offsets[j]..self.offsets[j + 1] {
@@ -86,7 +141,7 @@ impl Symmetric {
         }
     }
 
-    fn diagonal(&self, j: usize) -> f64 {
+    pub fn diagonal(&self, j: usize) -> f64 {
         // Rows ascend and the triangle is the upper one: the diagonal entry is the last.
         self.values[self.offsets[j + 1] - 1]
     }
@@ -114,6 +169,7 @@ enum Factor {
 pub(crate) struct Factorization {
     matrix: Symmetric,
     factor: Factor,
+    kind: Kind,
 }
 
 /// What went wrong with a definite factorisation; the caller knows why it should have been definite.
@@ -130,15 +186,28 @@ impl From<SolveError> for FactorError {
 
 /// Dense up to `dense_limit` unknowns, sparse above.
 pub(crate) fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
-    let n = matrix.dim();
-    let factor = if n == 0 {
-        Factor::Empty
-    } else if n <= dense_limit {
-        Factor::Dense(dense::Dense::new(&matrix)?)
-    } else {
-        Factor::Sparse(Box::new(sparse::Sparse::new(&matrix)?))
+    let kind = matrix.kind();
+    let symbolic = analyse(&matrix, dense_limit)?;
+    factor_as(symbolic.as_ref(), matrix, kind)
+}
+
+/// The symbolic analysis that any number of matrices of one pattern share; `None` for a dense factorisation.
+pub(crate) fn analyse(matrix: &Symmetric, dense_limit: usize) -> Result<Option<Arc<Symbolic>>, SolveError> {
+    if matrix.dim() <= dense_limit { Ok(None) } else { Ok(Some(Arc::new(Symbolic::new(matrix)?))) }
+}
+
+/// Numbers of the factor of a matrix with the pattern that was analysed.
+pub(crate) fn factor_as(
+    symbolic: Option<&Arc<Symbolic>>,
+    matrix: Symmetric,
+    kind: Kind,
+) -> Result<Factorization, FactorError> {
+    let factor = match symbolic {
+        _ if matrix.dim() == 0 => Factor::Empty,
+        None => Factor::Dense(dense::Dense::new(&matrix, kind)?),
+        Some(symbolic) => Factor::Sparse(Box::new(sparse::Sparse::new(symbolic.clone(), &matrix, kind)?)),
     };
-    Ok(Factorization { matrix, factor })
+    Ok(Factorization { matrix, factor, kind })
 }
 
 /// Refuses a pivot that is mere rounding beside its diagonal entry.
@@ -154,39 +223,48 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
+/// Solves in place by `once` and returns the relative residual. Refines until the residual is at rounding or no longer
+/// halves; with multipliers that takes about three steps, else none or one.
+fn refined(
+    b: &mut [f64],
+    once: impl Fn(&mut [f64]) -> Result<(), SolveError>,
+    subtract_product: impl Fn(&[f64], &mut [f64]),
+) -> Result<f64, SolveError> {
+    let size = norm(b);
+    if size == 0.0 {
+        return Ok(0.0);
+    }
+    let mut x = vec![0.0; b.len()];
+    let mut rest = b.to_vec();
+    let mut residual = f64::INFINITY;
+    for _ in 0..12 {
+        let mut step = rest.clone();
+        once(&mut step)?;
+        let trial: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
+        let mut left = b.to_vec();
+        subtract_product(&trial, &mut left);
+        let reached = norm(&left) / size;
+        // A NaN fails this comparison and keeps the last good solution, or none.
+        if !(reached < residual) {
+            break;
+        }
+        let stalled = reached > 0.5 * residual;
+        (x, rest, residual) = (trial, left, reached);
+        if residual < RESIDUAL_GOAL || stalled {
+            break;
+        }
+    }
+    if !(residual <= RESIDUAL_LIMIT) {
+        return Err(SolveError::Residual { residual, limit: RESIDUAL_LIMIT });
+    }
+    b.copy_from_slice(&x);
+    Ok(residual)
+}
+
 impl Factorization {
-    /// Solves in place and returns the relative residual. Refines until the residual is at rounding or no longer
-    /// halves; with multipliers that takes about three steps, else none or one.
+    /// Solves in place and returns the relative residual.
     pub fn solve(&self, b: &mut [f64]) -> Result<f64, SolveError> {
-        let size = norm(b);
-        if size == 0.0 {
-            return Ok(0.0);
-        }
-        let mut x = vec![0.0; b.len()];
-        let mut rest = b.to_vec();
-        let mut residual = f64::INFINITY;
-        for _ in 0..12 {
-            let mut step = rest.clone();
-            self.solve_once(&mut step)?;
-            let trial: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
-            let mut left = b.to_vec();
-            self.matrix.subtract_product(&trial, &mut left);
-            let reached = norm(&left) / size;
-            // A NaN fails this comparison and keeps the last good solution, or none.
-            if !(reached < residual) {
-                break;
-            }
-            let stalled = reached > 0.5 * residual;
-            (x, rest, residual) = (trial, left, reached);
-            if residual < RESIDUAL_GOAL || stalled {
-                break;
-            }
-        }
-        if !(residual <= RESIDUAL_LIMIT) {
-            return Err(SolveError::Residual { residual, limit: RESIDUAL_LIMIT });
-        }
-        b.copy_from_slice(&x);
-        Ok(residual)
+        refined(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
     }
 
     fn solve_once(&self, b: &mut [f64]) -> Result<(), SolveError> {
@@ -216,12 +294,12 @@ impl Factorization {
 
     /// Which factorisation it is.
     pub fn path(&self) -> SolverPath {
-        match (&self.factor, self.matrix.is_saddle()) {
+        match (&self.factor, self.kind == Kind::Definite) {
             (Factor::Empty, _) => SolverPath::None,
-            (Factor::Dense(_), false) => SolverPath::DenseLlt,
-            (Factor::Dense(_), true) => SolverPath::DenseLdlt,
-            (Factor::Sparse(_), false) => SolverPath::SparseLlt,
-            (Factor::Sparse(_), true) => SolverPath::SparseLdlt,
+            (Factor::Dense(_), true) => SolverPath::DenseLlt,
+            (Factor::Dense(_), false) => SolverPath::DenseLdlt,
+            (Factor::Sparse(_), true) => SolverPath::SparseLlt,
+            (Factor::Sparse(_), false) => SolverPath::SparseLdlt,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Sparse factorisation: METIS order, then faer's supernodal kernels.
 
+use std::sync::Arc;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
@@ -9,72 +11,94 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{FactorError, Symmetric, check_pivots, ordering};
+use super::{FactorError, Kind, Symmetric, check_pivots, ordering};
 use crate::SolveError;
 
-/// Symbolic structure and numbers of `L L^T`, or of `L D L^T` of a saddle matrix.
+/// Order and symbolic structure of a factor: what matrices of one pattern share.
+pub(crate) struct Symbolic {
+    cholesky: SymbolicCholesky<usize>,
+    forward: Vec<usize>,
+}
+
+impl Symbolic {
+    pub fn new(matrix: &Symmetric) -> Result<Symbolic, SolveError> {
+        let n = matrix.dim();
+        let (forward, inverse) = ordering::nested_dissection(matrix)?;
+        let order = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n));
+        let cholesky = factorize_symbolic_cholesky(pattern(matrix), Side::Upper, order, Default::default())
+            .map_err(|e| too_large(n, &e))?;
+        Ok(Symbolic { cholesky, forward })
+    }
+}
+
+fn pattern(matrix: &Symmetric) -> SymbolicSparseColMatRef<'_, usize> {
+    let n = matrix.dim();
+    SymbolicSparseColMatRef::new_checked(n, n, &matrix.offsets, None, &matrix.rows)
+}
+
+fn too_large(dofs: usize, why: &dyn std::fmt::Display) -> SolveError {
+    SolveError::TooLarge { dofs, why: why.to_string() }
+}
+
+/// Numbers of `L L^T`, or of `L D L^T` of a matrix that is not definite.
 pub(super) struct Sparse {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: Arc<Symbolic>,
     values: Vec<f64>,
-    saddle: bool,
+    definite: bool,
 }
 
 impl Sparse {
-    pub fn new(matrix: &Symmetric) -> Result<Sparse, FactorError> {
+    pub fn new(symbolic: Arc<Symbolic>, matrix: &Symmetric, kind: Kind) -> Result<Sparse, FactorError> {
         let n = matrix.dim();
-        let too_large = |why: &dyn std::fmt::Display| SolveError::TooLarge { dofs: n, why: why.to_string() };
-        let (forward, inverse) = ordering::nested_dissection(matrix)?;
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &matrix.offsets, None, &matrix.rows);
-        let order = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n));
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Upper, order, Default::default())
-            .map_err(|e| too_large(&e))?;
-        let saddle = matrix.is_saddle();
+        let cholesky = &symbolic.cholesky;
+        let definite = kind == Kind::Definite;
         let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|e| too_large(&e))?;
-        values.resize(symbolic.len_val(), 0.0);
+        values.try_reserve_exact(cholesky.len_val()).map_err(|e| too_large(n, &e))?;
+        values.resize(cholesky.len_val(), 0.0);
+        let no_memory = |_| too_large(n, &"no memory for the workspace");
         let par = Par::Seq;
-        if saddle {
-            let regularised = matrix.regularised();
-            let a = SparseColMatRef::new(pattern, &regularised);
+        if definite {
+            let a = SparseColMatRef::new(pattern(matrix), &matrix.values);
             let params = Default::default();
-            let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(par, params);
-            let mut memory =
-                MemBuffer::try_new(scratch).map_err(|_| too_large(&"no memory for the workspace"))?;
+            let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, params);
+            let mut memory = MemBuffer::try_new(scratch).map_err(no_memory)?;
             let stack = MemStack::new(&mut memory);
-            symbolic
-                .factorize_numeric_ldlt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
-                .map_err(|_| SolveError::ZeroPivot)?;
-        } else {
-            let a = SparseColMatRef::new(pattern, &matrix.values);
-            let params = Default::default();
-            let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(par, params);
-            let mut memory =
-                MemBuffer::try_new(scratch).map_err(|_| too_large(&"no memory for the workspace"))?;
-            let stack = MemStack::new(&mut memory);
-            symbolic
+            cholesky
                 .factorize_numeric_llt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
                 .map_err(|_| FactorError::NotDefinite)?;
-            check_pivots(pivots(&symbolic, &values).map(|(k, l)| l * l / matrix.diagonal(forward[k])))?;
+            let forward = &symbolic.forward;
+            check_pivots(pivots(cholesky, &values).map(|(k, l)| l * l / matrix.diagonal(forward[k])))?;
+        } else {
+            let regularised = (kind == Kind::Saddle).then(|| matrix.regularised());
+            let a = SparseColMatRef::new(pattern(matrix), regularised.as_ref().unwrap_or(&matrix.values));
+            let params = Default::default();
+            let scratch = cholesky.factorize_numeric_ldlt_scratch::<f64>(par, params);
+            let mut memory = MemBuffer::try_new(scratch).map_err(no_memory)?;
+            let stack = MemStack::new(&mut memory);
+            cholesky
+                .factorize_numeric_ldlt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
+                .map_err(|_| SolveError::ZeroPivot)?;
         }
-        Ok(Sparse { symbolic, values, saddle })
+        Ok(Sparse { symbolic, values, definite })
     }
 
     pub fn solve(&self, b: &mut [f64]) -> Result<(), SolveError> {
         let n = b.len();
-        let scratch = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let scratch = self.symbolic.cholesky.solve_in_place_scratch::<f64>(1, Par::Seq);
         let mut memory = MemBuffer::try_new(scratch)
-            .map_err(|_| SolveError::TooLarge { dofs: n, why: "no memory for the solve".into() })?;
+            .map_err(|_| too_large(n, &"no memory for the solve"))?;
         let stack = MemStack::new(&mut memory);
         let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
-        if self.saddle {
-            LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+        let cholesky = &self.symbolic.cholesky;
+        if !self.definite {
+            LdltRef::new(cholesky, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 rhs,
                 Par::Seq,
                 stack,
             );
         } else {
-            LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            LltRef::new(cholesky, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 rhs,
                 Par::Seq,
@@ -85,7 +109,7 @@ impl Sparse {
     }
 
     pub fn nonzeros(&self) -> usize {
-        self.symbolic.len_val()
+        self.symbolic.cholesky.len_val()
     }
 }
 

@@ -1,0 +1,18 @@
+//! Bodies under large displacements: internal energy with projected volume change, and statics by Newton's method.
+
+mod error;
+mod newton;
+mod solid;
+mod sorted;
+mod split;
+mod statics;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub use error::{Inverted, StaticError, Worst};
+pub use newton::{Iteration, NewtonParams};
+pub use solid::{Dilation, Solid};
+pub use statics::{
+    DrivenTool, Drive, HeldSurface, StaticParams, StaticPath, StaticProblem, Step, ToolState, solve_static,
+};

@@ -1,0 +1,188 @@
+//! Quasi-static loading: load steps with cut-back and regrowth, each solved by Newton's method.
+
+use shape::SurfaceRows;
+
+use super::error::StaticError;
+use super::newton::{Iteration, Newton, NewtonParams, State};
+use super::solid::Solid;
+use crate::contact::{ContactCounts, ContactSurface, Tool};
+use crate::{FixedDof, Load, Point3, Vector3};
+
+/// A surface held by a penalty: for bases whose parameters are not displacements.
+#[derive(Clone, Debug)]
+pub struct HeldSurface<'a> {
+    /// Values and weights.
+    pub surface: &'a SurfaceRows,
+    /// Which of x, y, z are held.
+    pub axes: [bool; 3],
+    /// Prescribed displacement at each point at the end of the loading, m.
+    pub values: Vec<Vector3>,
+    /// Penalty, Pa/m.
+    pub beta: f64,
+}
+
+/// How a tool is driven: the value at the end of the loading, reached in proportion to time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// Closure, m.
+    Closure(f64),
+    /// Force that the tool exerts along its way, N; its closure is an unknown.
+    Force(f64),
+}
+
+/// A tool and its drive.
+#[derive(Clone, Copy, Debug)]
+pub struct DrivenTool<'a> {
+    /// The tool.
+    pub tool: &'a Tool,
+    /// Its drive.
+    pub drive: Drive,
+}
+
+/// A body with loads, supports and tools. Loads are dead loads (per reference area or volume); loads, prescribed
+/// displacements and drives grow in proportion to the time 0 to 1.
+#[derive(Clone, Debug)]
+pub struct StaticProblem<'a> {
+    /// Reference positions, m.
+    pub nodes: &'a [Point3],
+    /// The body.
+    pub solid: Solid<'a>,
+    /// Loads; they add up.
+    pub loads: &'a [Load<'a>],
+    /// Nodal parameters held at values.
+    pub fixed: &'a [FixedDof],
+    /// Surfaces held by penalty.
+    pub held: &'a [HeldSurface<'a>],
+    /// Where tools may touch.
+    pub contact: Option<&'a ContactSurface<'a>>,
+    /// The tools.
+    pub tools: &'a [DrivenTool<'a>],
+}
+
+/// How a static solution is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticParams {
+    /// Number of equal steps at whose ends results are wanted. Steps are never longer; a step that fails is halved.
+    pub steps: usize,
+    /// Part of a step below which cutting back is given up.
+    pub smallest: f64,
+    /// Newton's method.
+    pub newton: NewtonParams,
+    /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
+    pub augmentations: usize,
+}
+
+/// A tool after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolState {
+    /// Closure, m.
+    pub closure: f64,
+    /// Force on the tool, N.
+    pub force: Vector3,
+    /// Moment on the tool about its own place, N m.
+    pub moment: Vector3,
+    /// Surface points in contact.
+    pub active: usize,
+    /// Deepest penetration, m.
+    pub penetration: f64,
+}
+
+/// A converged step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// Part of the loading, 0 to 1.
+    pub time: f64,
+    /// True where results were asked for (a multiple of `1 / steps`).
+    pub wanted: bool,
+    /// The iterations that led there.
+    pub iterations: Vec<Iteration>,
+    /// One per tool.
+    pub tools: Vec<ToolState>,
+    /// Strain energy, J.
+    pub energy: f64,
+    /// Smallest J of all quadrature points.
+    pub smallest: f64,
+}
+
+/// What a static solution gave: everything up to its end, and why it ended if that was early.
+#[derive(Clone, Debug)]
+pub struct StaticPath {
+    /// Converged steps in order.
+    pub steps: Vec<Step>,
+    /// Nodal parameters after the last converged step, m.
+    pub u: Vec<Vector3>,
+    /// Pressure parameters (mixed method), Pa.
+    pub pressure: Vec<f64>,
+    /// Steps that failed and were cut back.
+    pub cut_back: usize,
+    /// What the contact search did and skipped.
+    pub counts: ContactCounts,
+    /// Why it ended early, if it did.
+    pub failure: Option<StaticError>,
+}
+
+impl StaticPath {
+    /// The part of the load that was carried.
+    pub fn time(&self) -> f64 {
+        self.steps.last().map_or(0.0, |s| s.time)
+    }
+}
+
+/// Solves; `observe` is called after every converged step with the step, the nodal parameters and the pressures.
+/// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
+pub fn solve_static(
+    problem: &StaticProblem,
+    params: &StaticParams,
+    mut observe: impl FnMut(&Step, &[Vector3], &[f64]),
+) -> Result<StaticPath, StaticError> {
+    let count = params.steps.max(1);
+    let longest = 1.0 / count as f64;
+    let mut newton = Newton::new(problem, &params.newton)?;
+    let mut state = State::start(problem);
+    let mut before: Option<State> = None;
+    let mut path = StaticPath {
+        steps: Vec::new(),
+        u: Vec::new(),
+        pressure: Vec::new(),
+        cut_back: 0,
+        counts: ContactCounts::default(),
+        failure: None,
+    };
+    let (mut next, mut step) = (1, longest);
+    while next <= count {
+        let target = next as f64 * longest;
+        let left = target - state.time;
+        // A rest shorter than a tenth of the step would be one for its own sake.
+        let reaches = step > 0.9 * left;
+        let time = if reaches { target } else { state.time + step };
+        // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
+        // a point, the last state is.
+        match newton.step(&state, before.as_ref(), time, params.augmentations) {
+            Ok((reached, mut done)) => {
+                done.wanted = reaches;
+                let quick = done.iterations.len() <= 6;
+                observe(&done, &reached.u, &reached.pressure);
+                path.steps.push(done);
+                before = Some(std::mem::replace(&mut state, reached));
+                if reaches {
+                    next += 1;
+                }
+                step = if quick { (2.0 * step).min(longest) } else { step };
+            }
+            Err(cause) => {
+                path.cut_back += 1;
+                let failed = time - state.time;
+                step = 0.5 * failed;
+                if step < params.smallest * longest {
+                    path.failure =
+                        Some(StaticError::Stalled { time: state.time, step: failed, cause: Box::new(cause) });
+                    break;
+                }
+            }
+        }
+    }
+    path.counts = newton.counts();
+    path.u = state.u;
+    path.pressure = state.pressure;
+    Ok(path)
+}
