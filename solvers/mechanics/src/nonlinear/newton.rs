@@ -251,6 +251,7 @@ impl<'a> Newton<'a> {
             }
             let (next, length) = self.search(state, &step, &closures, held_move.as_deref(), slope, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
+            if std::env::var("DBG").is_ok() { eprintln!("  {residual:.3e} {energy:.2e} {length:.3} slope {slope:.3e} active {:?}", balance.contacts.iter().map(|c| c.as_ref().map_or(0, |c| c.points().len())).collect::<Vec<_>>()); }
             log.push(Iteration { residual, energy, length });
             balance = next;
         }
@@ -540,7 +541,7 @@ impl<'a> Newton<'a> {
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
             let now: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
             // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            if now.abs() <= 0.8 * slope.abs() || held_move.is_some() || saddle || trial >= 6 {
+            if now.abs() <= (1.0 - 0.2 * length) * slope.abs() || held_move.is_some() || saddle || trial >= 6 {
                 return Ok((balance, length));
             }
             // Secant between slope at 0 and now at `length`, kept between a tenth and a half of it.
