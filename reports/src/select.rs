@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
+use crate::history::step;
 use crate::record::Record;
 
 /// All numbers of one discretisation of one case.
@@ -17,24 +18,30 @@ pub(crate) struct Run<'a> {
 impl<'a> Run<'a> {
     /// A plain value, by quantity. Where records of one identity contradict each other, none of them is the value.
     pub(crate) fn value(&self, quantity: &str) -> Option<f64> {
-        let mut values =
-            self.records.iter().filter(|r| r.quantity == quantity && r.statistic == "value").map(|r| r.value);
+        let mut values = self.plain(quantity).map(|r| r.value);
         let first = values.next()?;
         values.all(|v| (v - first).abs() <= 1e-9 * first.abs()).then_some(first)
     }
 
     /// Whether a quantity was recorded more than once with different values: the records don't tell two runs apart.
     pub(crate) fn contradicts(&self, quantity: &str) -> bool {
-        self.value(quantity).is_none()
-            && self.records.iter().any(|r| r.quantity == quantity && r.statistic == "value")
+        self.value(quantity).is_none() && self.plain(quantity).next().is_some()
+    }
+
+    /// Everything recorded.
+    pub(crate) fn records(&self) -> &[&'a Record] {
+        &self.records
+    }
+
+    /// Records of a plain value; what was recorded step by step is a history, not a value.
+    fn plain(&self, quantity: &str) -> impl Iterator<Item = &'a Record> {
+        let fits = move |r: &&Record| r.quantity == quantity && r.statistic == "value" && step(r).is_none();
+        self.records.iter().copied().filter(fits)
     }
 
     /// Unit of a plain value.
     pub(crate) fn unit(&self, quantity: &str) -> Option<&'a str> {
-        self.records
-            .iter()
-            .find(|r| r.quantity == quantity && r.statistic == "value")
-            .map(|r| r.unit.as_str())
+        self.plain(quantity).next().map(|r| r.unit.as_str())
     }
 
     /// A time in seconds by phase and statistic.

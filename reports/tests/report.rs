@@ -99,6 +99,8 @@ fn every_table_and_figure_appears_and_is_linked() {
         "convergence-energy",
         "convergence-pressure",
         "locking",
+        "tool-force",
+        "energy-time",
         "surface-kidney-paper",
         "rms-kidney-paper",
         "transfer-kidney-paper",
@@ -173,6 +175,37 @@ fn what_was_not_recorded_is_not_claimed() {
     let empty = render(dir.path(), &dir.path().join("empty")).unwrap();
     assert_eq!(empty.files.len(), 1);
     assert!(text(&empty.page).contains("0 runs"));
+}
+
+#[test]
+fn histories_become_figures_and_nothing_else() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = common::study();
+    let mut set = RunSet { provenance: study.provenance, records: study.records, ..RunSet::default() };
+    set.records.retain(|r| r.case == "grasp");
+    write_run(dir.path(), &set).unwrap();
+    let rendered = render(dir.path(), dir.path()).unwrap();
+    let names: Vec<String> =
+        rendered.files.iter().map(|f| f.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    assert_eq!(
+        names,
+        ["tool-force.svg", "tool-force.png", "energy-time.svg", "energy-time.png", "report.html"]
+    );
+    let force = text(&dir.path().join("figures/tool-force.svg"));
+    for words in
+        ["closure [mm]", "tool force [N]", "hex8", "efg", "measured", "Grey band: uncertainty", "#D6D6D6"]
+    {
+        assert!(force.contains(words), "{words}");
+    }
+    let energy = text(&dir.path().join("figures/energy-time.svg"));
+    for words in ["time [s]", "energy [mJ]", "grasp, hex8", "grasp, efg", "kinetic", "work of the loads"] {
+        assert!(energy.contains(words), "{words}");
+    }
+    assert!(!energy.contains("measured"), "a reference without energies has no panel");
+    // One step is no history.
+    set.records.retain(|r| r.phase == "step-3");
+    write_run(dir.path(), &set).unwrap();
+    assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 1);
 }
 
 #[test]

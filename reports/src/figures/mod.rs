@@ -8,6 +8,7 @@ mod compact;
 mod convergence;
 mod efficiency;
 mod grid;
+mod history;
 mod locking;
 mod style;
 mod surface;
@@ -42,6 +43,8 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     let mut figures = efficiency::figures(&solved);
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
+    figures.extend(history::forces(&solved));
+    figures.extend(history::energies(&solved));
     figures.extend(surface::figures(&set.fields, &solved));
     figures.extend(bars::rms(&solved));
     figures.extend(transfer::figures(runs));
