@@ -32,10 +32,10 @@ pub(super) fn compact(body: &str) -> String {
 
 fn close(out: &mut String, open: &mut Option<(String, String)>) {
     if let Some((look, path)) = open.take() {
-        // Chromium leaves hairlines between the parts of one path; a line of a fifth of a point closes them.
+        // Chromium leaves hairlines between the parts of one path; a line of half a point closes them.
         let seam = match look.strip_prefix("fill=\"#") {
             Some(colour) if path.matches('z').count() > 1 => {
-                format!(" stroke=\"#{colour} stroke-width=\"2\"")
+                format!(" stroke=\"#{colour} stroke-width=\"5\"")
             }
             _ => String::new(),
         };
@@ -113,7 +113,7 @@ mod tests {
                     <polygon opacity=\"0.5\" fill=\"#440154\" points=\"1,2 3,4 5,0\"/>\n";
         assert_eq!(
             compact(body),
-            "<path fill=\"#440154\" stroke=\"#440154\" stroke-width=\"2\" d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n\
+            "<path fill=\"#440154\" stroke=\"#440154\" stroke-width=\"5\" d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n\
              <text x=\"1\">\nl2\n</text>\n\
              <path fill=\"none\" stroke=\"#000000\" stroke-width=\"13\" d=\"M0 0l10-5\"/>\n\
              <polygon opacity=\"0.5\" fill=\"#440154\" points=\"1,2 3,4 5,0\"/>\n"
