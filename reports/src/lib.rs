@@ -7,6 +7,7 @@ mod error;
 mod figures;
 mod findings;
 mod frame;
+mod history;
 mod order;
 mod paper;
 mod record;

@@ -9,6 +9,10 @@
 //!   `total`) and per `statistic` (`median`, `spread`, `min`);
 //! - a transfer scheme is `family = "interp"`, `variant` its name, `method` the scheme's id and `nodes` the number of source
 //!   nodes; `parameters` names the source with `from=METHOD` or the field with `field=linear`;
+//! - what is told step by step has one row per step and quantity, with `phase = "step-N"` (N counts from 0): `closure` (m) or
+//!   `step-time` (s) says where the step is, `tool-force` (N), `energy-external`, `energy-strain`, `energy-kinetic` and
+//!   `energy-dissipated` (J) what was found there, `statistic = "value"`; a reference (`family = "reference"`, `method` its
+//!   source) adds `low` and `high` rows for its uncertainty;
 //! - the same approach at several sizes is one series: it differs in `level`, `nodes` and `spacing` only (a method id that
 //!   ends in its node count, as in `efg-83`, is read without that ending).
 
@@ -25,7 +29,7 @@ pub struct Record {
     pub case: String,
     /// Method id as the scene gives it, such as `tet4` or `efg-83`.
     pub method: String,
-    /// `fem`, `efg` or `interp`.
+    /// `fem`, `efg`, `interp` or `reference`.
     pub family: String,
     /// Element (`tet10`), kernel (`cubic-spline`) or transfer scheme (`inverse-distance`).
     pub variant: String,
@@ -52,9 +56,9 @@ pub struct Record {
     pub quantity: String,
     /// SI unit as text: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
     pub unit: String,
-    /// `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, or empty where no phase applies.
+    /// `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `step-N`, or empty where no phase applies.
     pub phase: String,
-    /// `value`, `median`, `spread` (interquartile range) or `min`.
+    /// `value`, `median`, `spread` (interquartile range), `min`, or the ends `low` and `high` of an uncertainty.
     pub statistic: String,
     /// The number, in `unit`; always finite.
     pub value: f64,

@@ -15,6 +15,9 @@ use crate::store::{make_dir, read_run, write_text};
 use crate::table::{Column, Table};
 use crate::tables;
 
+/// Tenths of a rem on a screen for a point on paper.
+const SCREEN: f64 = 1.032;
+
 const PAGE: &str = include_str!("../assets/report.html");
 
 /// What rendering wrote.
@@ -52,7 +55,16 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
         let svg = figure.canvas.svg(&figure.name, &figure.title)?;
         write(figure_dir.join(format!("{}.svg", figure.name)), svg.as_bytes())?;
         write(figure_dir.join(format!("{}.png", figure.name)), &figures::png(&figure.name, &svg)?)?;
-        shown.push(FigureView { name: figure.name, title: figure.title, caption: figure.caption, svg });
+        let mm = (figure.canvas.width() * 25.4 / 72.0).round();
+        let rem = (SCREEN * figure.canvas.width()).round() / 10.0;
+        shown.push(FigureView {
+            name: figure.name,
+            title: figure.title,
+            caption: figure.caption,
+            svg,
+            rem,
+            mm,
+        });
     }
     let page = out.join("report.html");
     write(page.clone(), page_text(&set, &runs, &tables, &shown)?.as_bytes())?;
@@ -65,6 +77,10 @@ struct FigureView {
     title: String,
     caption: String,
     svg: String,
+    /// Width on a screen: text is as large in one figure as in another.
+    rem: f64,
+    /// Width on paper, for which its text is meant.
+    mm: f64,
 }
 
 #[derive(Serialize)]

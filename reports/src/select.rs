@@ -1,7 +1,9 @@
 //! Records gathered into runs (one discretisation) and series (one approximation at several sizes).
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
+use crate::history::step;
 use crate::record::Record;
 
 /// All numbers of one discretisation of one case.
@@ -9,21 +11,37 @@ use crate::record::Record;
 pub(crate) struct Run<'a> {
     /// Any of its records: it carries the identity.
     pub(crate) is: &'a Record,
+    name: &'a str,
     records: Vec<&'a Record>,
 }
 
 impl<'a> Run<'a> {
-    /// A plain value, by quantity.
+    /// A plain value, by quantity. Where records of one identity contradict each other, none of them is the value.
     pub(crate) fn value(&self, quantity: &str) -> Option<f64> {
-        self.records.iter().find(|r| r.quantity == quantity && r.statistic == "value").map(|r| r.value)
+        let mut values = self.plain(quantity).map(|r| r.value);
+        let first = values.next()?;
+        values.all(|v| (v - first).abs() <= 1e-9 * first.abs()).then_some(first)
+    }
+
+    /// Whether a quantity was recorded more than once with different values: the records don't tell two runs apart.
+    pub(crate) fn contradicts(&self, quantity: &str) -> bool {
+        self.value(quantity).is_none() && self.plain(quantity).next().is_some()
+    }
+
+    /// Everything recorded.
+    pub(crate) fn records(&self) -> &[&'a Record] {
+        &self.records
+    }
+
+    /// Records of a plain value; what was recorded step by step is a history, not a value.
+    fn plain(&self, quantity: &str) -> impl Iterator<Item = &'a Record> {
+        let fits = move |r: &&Record| r.quantity == quantity && r.statistic == "value" && step(r).is_none();
+        self.records.iter().copied().filter(fits)
     }
 
     /// Unit of a plain value.
     pub(crate) fn unit(&self, quantity: &str) -> Option<&'a str> {
-        self.records
-            .iter()
-            .find(|r| r.quantity == quantity && r.statistic == "value")
-            .map(|r| r.unit.as_str())
+        self.plain(quantity).next().map(|r| r.unit.as_str())
     }
 
     /// A time in seconds by phase and statistic.
@@ -46,18 +64,24 @@ impl<'a> Run<'a> {
         self.records.iter().find(|r| r.quantity == "memory").map(|r| r.value)
     }
 
-    /// The method id without an ending that only repeats the node count.
+    /// The method id without an ending that only gives a node count.
     pub(crate) fn name(&self) -> &'a str {
-        sizeless(self.is)
+        self.name
     }
 }
 
-/// The method id without an ending that only repeats the node count: `efg-83` at 83 nodes is `efg`.
-fn sizeless(record: &Record) -> &str {
-    match record.method.rsplit_once('-') {
-        Some((name, size)) if size.parse() == Ok(record.nodes) => name,
-        _ => &record.method,
+/// Method ids that end in their node count, with what stands before it: `efg-83` where it has 83 nodes is `efg`, and stays so
+/// where a study runs the same method at other sizes.
+fn sized(records: &[Record]) -> BTreeMap<(&str, &str), &str> {
+    let mut names = BTreeMap::new();
+    for r in records {
+        if let Some((name, size)) = r.method.rsplit_once('-')
+            && size.parse() == Ok(r.nodes)
+        {
+            names.insert((r.case.as_str(), r.method.as_str()), name);
+        }
     }
+    names
 }
 
 /// One approximation, coarse to fine.
@@ -121,28 +145,62 @@ fn rank(record: &Record) -> (usize, usize) {
     (place(&["fem", "efg"], &record.family), place(&["tet4", "tet10", "hex8", "hex20"], &record.variant))
 }
 
-fn same_run(a: &Record, b: &Record) -> Ordering {
-    let text = |r: &'_ Record| {
-        let settings = (sizeless(r).to_string(), r.variant.clone(), r.parameters.clone(), r.seed);
-        (settings, r.level, r.nodes, r.method.clone())
-    };
+/// A record with its sizeless name.
+type Named<'a> = (&'a str, &'a Record);
+
+fn same_run(left: &Named, right: &Named) -> Ordering {
+    fn text<'r>((name, r): &Named<'r>) -> ((&'r str, &'r str, &'r str, u64), u32, u64, &'r str) {
+        ((name, &r.variant, &r.parameters, r.seed), r.level, r.nodes, &r.method)
+    }
+    let (a, b) = (left.1, right.1);
     a.case
         .cmp(&b.case)
         .then(a.poisson.total_cmp(&b.poisson))
         .then(rank(a).cmp(&rank(b)))
         .then_with(|| a.family.cmp(&b.family))
-        .then_with(|| text(a).cmp(&text(b)))
+        .then_with(|| text(left).cmp(&text(right)))
         .then(a.spacing.total_cmp(&b.spacing))
+}
+
+fn named<'a>(names: &BTreeMap<(&str, &str), &'a str>, r: &'a Record) -> Named<'a> {
+    (names.get(&(r.case.as_str(), r.method.as_str())).copied().unwrap_or(&r.method), r)
 }
 
 /// Gathers records into runs: by case, Poisson's ratio and family, elements before clouds.
 pub(crate) fn runs(records: &[Record]) -> Vec<Run<'_>> {
-    let mut sorted: Vec<&Record> = records.iter().collect();
-    sorted.sort_by(|a, b| same_run(a, b).then_with(|| a.order(b)));
+    let names = sized(records);
+    let mut sorted: Vec<Named> = records.iter().map(|r| named(&names, r)).collect();
+    sorted.sort_by(|a, b| same_run(a, b).then_with(|| a.1.order(b.1)));
     sorted
         .chunk_by(|a, b| same_run(a, b) == Ordering::Equal)
-        .map(|chunk| Run { is: chunk[0], records: chunk.to_vec() })
+        .map(|chunk| Run { is: chunk[0].1, name: chunk[0].0, records: chunk.iter().map(|n| n.1).collect() })
         .collect()
+}
+
+/// The kernel shown where several are compared: the published one.
+const USUAL_KERNEL: &str = "cubic-spline";
+
+/// Series of a case without the meshfree ones that only try another kernel, and all series of the methods that do.
+///
+/// A method counts as compared where its name comes with three kernels or more, one of them the usual one.
+pub(crate) fn kernels<'a>(all: &[Series<'a>]) -> (Vec<Series<'a>>, Vec<Series<'a>>) {
+    let compared = |s: &Series| {
+        let mut tried: Vec<&str> = all
+            .iter()
+            .filter(|o| o.name == s.name && o.is().family == s.is().family)
+            .map(|o| o.is().variant.as_str())
+            .collect();
+        tried.sort();
+        tried.dedup();
+        s.is().family == "efg" && tried.len() > 2 && tried.contains(&USUAL_KERNEL)
+    };
+    let usual = |s: &&Series| !compared(s) || s.is().variant == USUAL_KERNEL;
+    (all.iter().filter(usual).cloned().collect(), all.iter().filter(|s| compared(s)).cloned().collect())
+}
+
+/// Whether a case checks exactness only: its solution lies in every method's space, so that speed and locking mean nothing there.
+pub(crate) fn is_patch(case: &str) -> bool {
+    case.contains("patch") || case.contains("rigid")
 }
 
 /// Gathers runs into series: everything equal but the size.

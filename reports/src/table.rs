@@ -1,6 +1,6 @@
 //! One table, four ways of writing it: CSV, Markdown, LaTeX and HTML cells.
 
-use crate::text::{scientific, significant};
+use crate::text::{scientific, significant, spread};
 
 /// How a number is shown. CSV always has every digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +60,17 @@ impl Table {
         }
     }
 
+    /// Adds a row unless one that reads the same is there already.
+    pub(crate) fn row_once(&mut self, cells: &[Cell]) {
+        self.row(cells);
+        if let Some((last, before)) = self.rows.split_last() {
+            let same = |row: &Vec<Entry>| row.iter().map(|e| &e.shown).eq(last.iter().map(|e| &e.shown));
+            if before.iter().any(same) {
+                self.rows.pop();
+            }
+        }
+    }
+
     /// Adds a row; a number that isn't finite counts as absent.
     pub(crate) fn row(&mut self, cells: &[Cell]) {
         debug_assert_eq!(cells.len(), self.header.len(), "table {}", self.name);
@@ -72,10 +83,14 @@ impl Table {
                 Cell::Count(count) => (Some(count.to_string()), vec![count.to_string()]),
                 Cell::Scientific(v) => (finite(v).map(scientific), vec![exact(v)]),
                 Cell::Digits(v, digits) => (finite(v).map(|v| significant(v, digits)), vec![exact(v)]),
-                Cell::Spread(v, spread) => {
-                    let around =
-                        finite(spread).map(|s| format!(" ± {}", significant(s, 1))).unwrap_or_default();
-                    (finite(v).map(|v| significant(v, 3) + &around), vec![exact(v), exact(spread)])
+                Cell::Spread(v, around) => {
+                    // A spread of exactly nothing comes from a single repeat: it says nothing.
+                    let around = around.filter(|s| *s > 0.0);
+                    let text = |v| {
+                        let spread = finite(around).map(|s| format!(" ± {}", spread(s, v)));
+                        significant(v, 3) + &spread.unwrap_or_default()
+                    };
+                    (finite(v).map(text), vec![exact(v), exact(around)])
                 }
             };
             self.absent |= shown.is_none();
@@ -278,6 +293,16 @@ mod tests {
     #[test]
     fn csv_quotes_and_keeps_every_digit() {
         assert_eq!(sample().csv(), "method,RMS [mm]\n\"a|b_c, \"\"q\"\" <i>\",1.23456e-3\nnone,\n");
+    }
+
+    #[test]
+    fn a_single_repeat_has_no_spread_and_a_row_comes_once() {
+        let mut table = Table::new("t", "t", "t", &[("time [ms]", Column::Spread)]);
+        for spread in [0.0, 0.004, 0.0041] {
+            table.row_once(&[Cell::Spread(Some(4.46), Some(spread))]);
+        }
+        assert_eq!(table.shown(), [["4.46"], ["4.46 ± 0.004"]]);
+        assert_eq!(table.csv(), "time [ms],spread of time [ms]\n4.46e0,\n4.46e0,4e-3\n");
     }
 
     #[test]

@@ -32,13 +32,27 @@ pub(crate) fn tick(value: f64) -> String {
     if value == 0.0 {
         "0".into()
     } else if (-2.0..=3.0).contains(&exponent) {
-        let decimals = (-exponent).max(0.0) as usize;
+        // 0.015 and 1.5 need one place more than 0.01 and 1.
+        let finer = usize::from((mantissa - mantissa.round()).abs() > 1e-6);
+        let decimals = ((-exponent).max(0.0) as usize + finer).saturating_sub(exponent.max(0.0) as usize);
         format!("{value:.decimals$}")
     } else if (mantissa - 1.0).abs() < 1e-6 {
         format!("10{}", superscript(&exponent.to_string()))
-    } else {
+    } else if (mantissa - mantissa.round()).abs() < 1e-6 {
         format!("{mantissa:.0}×10{}", superscript(&exponent.to_string()))
+    } else {
+        format!("{mantissa:.1}×10{}", superscript(&exponent.to_string()))
     }
+}
+
+/// A spread beside its median: one significant digit, plain wherever the median is plain.
+pub(crate) fn spread(value: f64, median: f64) -> String {
+    let plain = |v: f64| (1e-3..1e5).contains(&v.abs());
+    if value <= 0.0 || plain(value) || !plain(median) {
+        return significant(value, 1);
+    }
+    let decimals = (-value.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$}")
 }
 
 /// A time in the unit that reads best, from nanoseconds to hours.
@@ -97,6 +111,11 @@ mod tests {
         assert_eq!(tick(1e-6), "10⁻⁶");
         assert_eq!(tick(2e-5), "2×10⁻⁵");
         assert_eq!(tick(1000.0), "1000");
+        assert_eq!((tick(1.5), tick(0.015), tick(15.0)), ("1.5".into(), "0.015".into(), "15".into()));
+        assert_eq!(tick(1.5e-4), "1.5×10⁻⁴");
+        assert_eq!(spread(2e-4, 0.0315), "0.0002");
+        assert_eq!(spread(0.05, 1.23), "0.05");
+        assert_eq!(spread(2e-9, 3e-8), "2×10⁻⁹");
         assert_eq!(duration(7200.0), "2.00 h");
         assert_eq!(duration(0.0123), "12.3 ms");
         assert_eq!(percent(0.0123), "1.23 %");

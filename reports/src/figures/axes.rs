@@ -22,23 +22,7 @@ impl Axis {
         let (mut low, mut high) = range(values.filter(|v| *v > 0.0 && v.is_finite())).unwrap_or((0.1, 1.0));
         let margin = (high / low).powf(0.06).max(1.15);
         (low, high) = (low / margin, high * margin);
-        let decades = (high / low).log10();
-        let steps: &[f64] = match decades {
-            d if d < 1.6 => &[1.0, 2.0, 5.0],
-            d if d < 2.2 => &[1.0, 3.0],
-            _ => &[1.0],
-        };
-        let stride = (decades / 6.0).ceil().max(1.0) as i32;
-        let mut ticks = Vec::new();
-        for power in low.log10().floor() as i32..=high.log10().ceil() as i32 {
-            for step in steps {
-                let value = step * 10f64.powi(power);
-                if (low..=high).contains(&value) && (steps.len() > 1 || power.rem_euclid(stride) == 0) {
-                    ticks.push((value, tick(value)));
-                }
-            }
-        }
-        Axis { label: label.into(), log: true, low, high, ticks }
+        Axis { label: label.into(), log: true, low, high, ticks: log_ticks(low, high) }
     }
 
     /// A linear axis around values; `from_zero` starts it at zero.
@@ -99,6 +83,32 @@ impl Axis {
     }
 }
 
+/// The coarsest of decades, 1-3, 1-2-5 and ever finer steps that gives three ticks; at most seven decades are named.
+fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
+    const STEPS: [&[f64]; 5] = [
+        &[1.0],
+        &[1.0, 3.0],
+        &[1.0, 2.0, 5.0],
+        &[1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0],
+        &[1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
+    ];
+    let stride = ((high / low).log10() / 6.0).ceil().max(1.0) as i32;
+    let mut ticks = Vec::new();
+    for steps in STEPS {
+        ticks.clear();
+        for power in low.log10().floor() as i32..=high.log10().ceil() as i32 {
+            if steps.len() > 1 || power.rem_euclid(stride) == 0 {
+                ticks
+                    .extend(steps.iter().map(|s| s * 10f64.powi(power)).filter(|v| (low..=high).contains(v)));
+            }
+        }
+        if ticks.len() > 2 {
+            break;
+        }
+    }
+    ticks.into_iter().map(|v| (v, tick(v))).collect()
+}
+
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |range, v| match range {
         None => Some((v, v)),
@@ -144,5 +154,25 @@ impl Panel {
             canvas.upright((left - 46.0, (top + bottom) / 2.0), &self.y.label, TEXT);
         }
         canvas.bold((left, top - 8.0), title, TEXT, Anchor::Start);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::log_ticks;
+
+    #[test]
+    fn every_logarithmic_axis_has_three_ticks() {
+        let texts = |low, high| log_ticks(low, high).into_iter().map(|t| t.1).collect::<Vec<_>>();
+        assert_eq!(texts(1e-4, 2.0), ["10⁻⁴", "10⁻³", "0.01", "0.1", "1"]);
+        assert_eq!(texts(0.025, 1.4), ["0.03", "0.1", "0.3", "1"]);
+        assert_eq!(texts(2.3, 13.0), ["3", "4", "6", "8", "10"]);
+        assert_eq!(texts(230.0, 650.0), ["300", "400", "600"]);
+        assert_eq!(texts(4.0, 9.0), ["4", "6", "8"]);
+    }
+
+    #[test]
+    fn a_narrow_axis_still_names_its_values() {
+        assert!((1..60).all(|i| log_ticks(i as f64, 1.4 * i as f64).len() > 1));
     }
 }

@@ -7,6 +7,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
 
+use super::compact::compact;
 use crate::error::ReportError;
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
@@ -69,6 +70,11 @@ impl Canvas {
         let mut canvas = Canvas { width, height, shapes: Vec::new() };
         canvas.fill(&[(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)], [255, 255, 255]);
         canvas
+    }
+
+    /// Width on paper, points.
+    pub(crate) fn width(&self) -> f64 {
+        self.width
     }
 
     pub(crate) fn line(&mut self, points: &[(f64, f64)], colour: Colour, width: f64) {
@@ -163,7 +169,7 @@ impl Canvas {
             &format!("font-family=\"{FONT}\""),
             &format!("font-family=\"'{FONT}', Verdana, sans-serif\""),
         );
-        Ok(format!("{physical}>\n<title>{title}</title>{body}"))
+        Ok(format!("{physical}>\n<title>{title}</title>{}", compact(&body)))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::axes::Axis;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, paged};
+use super::{Figure, PAGE, continued, paged};
 use crate::select::{Run, groups};
 
 /// A kernel or case as `(label, (dilatation, value, low, high))`.
@@ -20,14 +20,10 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
         let value = median.or(worst).filter(|v| *v > 0.0)?;
         Some((value, median.unwrap_or(value), worst.unwrap_or(value)))
     };
-    let label = |r: &Run| match r.is.parameter("basis") {
-        Some(basis) => format!("{}, {basis}", r.is.variant),
-        None => r.is.variant.clone(),
-    };
-    let panels = panels(runs, point, label);
+    let panels = panels(runs, point, |r| [vec![r.is.variant.clone()], settings(r)].concat().join(", "));
     let figure = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
         name: paged("conditioning", page),
-        title: "Conditioning of the moment matrix".into(),
+        title: continued("Conditioning of the moment matrix", page),
         caption: "Median condition number over all integration points; the bar reaches up to the worst"
             .into(),
         canvas: canvas(
@@ -47,7 +43,7 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
         Some((mean, r.value("neighbours-min").unwrap_or(mean), r.value("neighbours-max").unwrap_or(mean)))
     };
     let mut lines: Vec<Line> = Vec::new();
-    for (case, of_case) in panels(runs, point, |r| r.is.parameter("basis").unwrap_or("").to_string()) {
+    for (case, of_case) in panels(runs, point, |r| settings(r).join(", ")) {
         for (basis, points) in of_case {
             let label = if basis.is_empty() { case.clone() } else { format!("{case}, {basis}") };
             lines.push((label, points));
@@ -63,6 +59,15 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
         canvas: canvas(&[("Neighbours".into(), lines)], "neighbours [1]", false, "Marker: mean over the points; bar: least to most."),
     }]
 }
+
+/// What must not change along a line besides the dilatation; the linear basis, being the usual one, goes unsaid.
+fn settings(run: &Run) -> Vec<String> {
+    let of = |key| run.is.parameter(key).filter(|v| *v != "linear").map(str::to_string);
+    [of("basis"), of("integration")].into_iter().flatten().collect()
+}
+
+/// Dilatations that make a sweep: a single one, or two that come from different methods, say nothing about it.
+const SWEEP: usize = 3;
 
 /// By case, then by label: at the Poisson's ratio and node count with most dilatations; one run per dilatation.
 fn panels(
@@ -95,7 +100,7 @@ fn panels(
                     best = points;
                 }
             }
-            if !best.is_empty() {
+            if best.len() >= SWEEP {
                 lines.push((name, best));
             }
         }
@@ -108,7 +113,7 @@ fn panels(
 
 fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> super::canvas::Canvas {
     let styles =
-        styles(&panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), false))).collect::<Vec<_>>());
+        styles(&panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), true))).collect::<Vec<_>>());
     let contents = panels
         .iter()
         .map(|(title, lines)| {
@@ -117,12 +122,8 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
             let styles = &styles;
             Content {
                 title: title.clone(),
-                x: Axis::linear(
-                    "dilatation: support radius / node spacing [1]",
-                    points().map(|p| p.0),
-                    false,
-                )
-                .with_ticks(ticks(points().map(|p| p.0).collect())),
+                x: Axis::linear("support radius / node spacing [1]", points().map(|p| p.0), false)
+                    .with_ticks(ticks(points().map(|p| p.0).collect())),
                 y: if log { Axis::log(y, values()) } else { Axis::linear(y, values(), true) },
                 plot: Box::new(move |canvas, panel| {
                     for (i, (label, points)) in lines.iter().enumerate() {

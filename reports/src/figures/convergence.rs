@@ -4,7 +4,7 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, chosen, error_label, paged};
+use super::{Figure, PAGE, chosen, continued, error_label, paged};
 use crate::order::ROUNDING;
 use crate::select::{Run, Series, labels, series};
 
@@ -73,7 +73,10 @@ fn figure(quantity: &str, page: usize, panels: &[(String, Vec<Line>)]) -> Figure
     let note = "Grey: slopes promised by theory. Errors at rounding level are not drawn.";
     Figure {
         name: paged(&format!("convergence-{quantity}"), page),
-        title: format!("Convergence of the {}", error_label(quantity).trim_end_matches(" [1]")),
+        title: continued(
+            &format!("Convergence of the {}", error_label(quantity).trim_end_matches(" [1]")),
+            page,
+        ),
         caption: "Error against node spacing on logarithmic axes; the grey fan has the slopes theory promises for the methods in the panel".into(),
         canvas: multiples(contents, &styles, note),
     }

@@ -1,12 +1,16 @@
 //! Small multiples: panels in rows and columns over one legend.
 
 use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Anchor, Canvas, GREY};
+use super::canvas::{Anchor, Canvas, GREY, text_width};
 use super::style::{Style, legend, legend_height};
 
-/// Full page width of a journal, points.
+/// Full page width of a journal, 178 mm, in points.
 pub(crate) const WIDTH: f64 = 504.0;
+/// One column of a journal, 85 mm: the width of a figure with one panel, so that its text prints at the size it has here.
+pub(crate) const COLUMN: f64 = 241.0;
 const LEFT: f64 = 60.0;
+/// Room for a short label behind the frame.
+const RIGHT: f64 = 24.0;
 const GAP: f64 = 66.0;
 const HEIGHT: f64 = 150.0;
 const STEP: f64 = 206.0;
@@ -27,9 +31,11 @@ pub(crate) struct Content<'a> {
 pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
     let columns = panels.len().clamp(1, 2);
     let rows = panels.len().div_ceil(columns);
-    let width = (WIDTH - LEFT - 14.0 - GAP * (columns as f64 - 1.0)) / columns as f64;
-    let below = legend_height(styles, WIDTH - 20.0) + if note.is_empty() { 0.0 } else { 18.0 };
-    let mut canvas = Canvas::new(WIDTH, 26.0 + STEP * rows as f64 + below);
+    let whole = if columns == 1 { COLUMN } else { WIDTH };
+    let width = (whole - LEFT - RIGHT - GAP * (columns as f64 - 1.0)) / columns as f64;
+    let notes = wrapped(note, whole - 20.0);
+    let below = legend_height(styles, whole - 20.0) + 12.0 * notes.len() as f64 + 6.0;
+    let mut canvas = Canvas::new(whole, 20.0 + STEP * rows as f64 + below);
     for (i, content) in panels.into_iter().enumerate() {
         let left = LEFT + (i % columns) as f64 * (width + GAP);
         let top = 24.0 + (i / columns) as f64 * STEP;
@@ -38,10 +44,25 @@ pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> C
         (content.plot)(&mut canvas, &panel);
     }
     let bottom = 12.0 + STEP * rows as f64;
-    legend(&mut canvas, styles, (12.0, bottom), WIDTH - 20.0);
-    if !note.is_empty() {
-        let at = (12.0, bottom + legend_height(styles, WIDTH - 20.0) + 10.0);
-        canvas.text(at, note, TEXT, GREY, Anchor::Start);
+    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, true);
+    let foot = bottom + legend_height(styles, whole - 20.0) + 10.0;
+    for (i, line) in notes.iter().enumerate() {
+        canvas.text((12.0, foot + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
     }
     canvas
+}
+
+/// A note in lines that fit a width.
+pub(crate) fn wrapped(note: &str, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in note.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), TEXT) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
+    }
+    lines
 }

@@ -2,10 +2,11 @@
 
 use super::axes::Axis;
 use super::canvas::GREY;
+use super::efficiency::FLOOR;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, error_label, paged};
-use crate::select::{Run, groups, labels};
+use super::{Figure, PAGE, continued, error_label, paged};
+use crate::select::{Run, groups, is_patch, labels};
 
 /// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.
 pub(crate) type Sweep<'r> = (String, bool, Vec<Run<'r>>);
@@ -51,7 +52,7 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
         for quantity in ["l2", "pressure", "tip"] {
             let drawn =
                 sweeps.iter().any(|s| s.2.iter().filter(|r| usable(r, quantity).is_some()).count() > 1);
-            if drawn && !case[0].is.case.contains("patch") {
+            if drawn && !is_patch(&case[0].is.case) {
                 panels.push((case[0].is.case.clone(), quantity, sweeps.clone()));
             }
         }
@@ -60,7 +61,10 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
 }
 
 fn usable(run: &Run, quantity: &str) -> Option<f64> {
-    run.value(quantity).filter(|v| quantity == "tip" || *v > crate::order::ROUNDING)
+    match quantity {
+        "tip" => run.value(quantity),
+        _ => run.value(quantity).map(|v| v.max(FLOOR)),
+    }
 }
 
 /// Grows without bound as the material becomes incompressible.
@@ -92,11 +96,8 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
             };
             Content {
                 title: format!("{case}: {what}"),
-                x: Axis::log(
-                    "Poisson's ratio ν [1], spaced as 1/(1 − 2ν)",
-                    ratios.iter().map(|r| stiffness(*r)),
-                )
-                .with_ticks(ticks),
+                x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", ratios.iter().map(|r| stiffness(*r)))
+                    .with_ticks(ticks),
                 y: match tip {
                     true => {
                         Axis::linear("tip deflection / exact [1]", values().map(|p| p.1).chain([1.0]), true)
@@ -121,9 +122,9 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
         .collect();
     Figure {
         name: paged("locking", page),
-        title: "Locking: error against Poisson's ratio".into(),
+        title: continued("Locking: error against Poisson's ratio", page),
         caption: "Each method at one size while the material becomes incompressible; a method that locks climbs to the right, its tip deflection falls".into(),
-        canvas: multiples(contents, &styles, ""),
+        canvas: multiples(contents, &styles, "Errors below 10⁻⁶ are drawn at 10⁻⁶."),
     }
 }
 

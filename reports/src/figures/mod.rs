@@ -4,18 +4,21 @@ mod axes;
 mod bars;
 mod canvas;
 mod cloud;
+mod compact;
 mod convergence;
 mod efficiency;
 mod grid;
+mod history;
 mod locking;
 mod style;
 mod surface;
+mod transfer;
 
 pub(crate) use canvas::{Canvas, png};
 pub(crate) use locking::sweeps;
 
 use crate::record::RunSet;
-use crate::select::{Run, groups};
+use crate::select::{Run, groups, is_patch};
 
 /// Panels on one figure.
 const PAGE: usize = 6;
@@ -40,9 +43,11 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     let mut figures = efficiency::figures(&solved);
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
-    figures.extend(surface::figures(&set.fields));
+    figures.extend(history::forces(&solved));
+    figures.extend(history::energies(&solved));
+    figures.extend(surface::figures(&set.fields, &solved));
     figures.extend(bars::rms(&solved));
-    figures.extend(bars::transfer(runs));
+    figures.extend(transfer::figures(runs));
     figures.extend(cloud::conditioning(runs));
     figures.extend(cloud::neighbours(runs));
     figures
@@ -53,7 +58,7 @@ fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
     for case in groups(runs, |r| r.is.case.clone()) {
         let name = &case[0].is.case;
-        if name.contains("patch") {
+        if is_patch(name) {
             continue;
         }
         let several = case.iter().any(|r| r.is.poisson != case[0].is.poisson);
@@ -87,6 +92,11 @@ fn error_label(quantity: &str) -> &'static str {
         "pressure" => "relative pressure error [1]",
         _ => "RMS error [mm]",
     }
+}
+
+/// Titles of further pages say so.
+fn continued(title: &str, page: usize) -> String {
+    if page == 0 { title.into() } else { format!("{title}, page {}", page + 1) }
 }
 
 /// Further pages of a figure carry a number.

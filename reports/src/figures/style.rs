@@ -23,9 +23,11 @@ pub(crate) struct Style {
     pub(crate) colour: Colour,
     pub(crate) dash: &'static [f64],
     marker: usize,
+    open: bool,
 }
 
-/// Styles for labels in the order given; the plain elements keep theirs in every figure. `meshfree` draws a dashed line.
+/// Styles for labels in the order given; the plain elements keep theirs in every figure. `meshfree` draws a dashed line and open
+/// markers, so that no element and no cloud look alike, in grey either.
 pub(crate) fn styles(labels: &[(String, bool)]) -> Vec<Style> {
     let mut next = 4;
     let mut out: Vec<Style> = Vec::new();
@@ -46,7 +48,9 @@ pub(crate) fn styles(labels: &[(String, bool)]) -> Vec<Style> {
             label: label.clone(),
             colour: COLOURS[index % COLOURS.len()],
             dash,
-            marker: index % 9,
+            // Shifted by the round: where colours repeat, shapes don't.
+            marker: (index + round) % COLOURS.len(),
+            open: *meshfree,
         });
     }
     out
@@ -58,7 +62,7 @@ pub(crate) fn find<'a>(styles: &'a [Style], label: &str) -> Option<&'a Style> {
 }
 
 impl Style {
-    /// The marker, 2.7 points in radius: filled, or open where the shapes repeat.
+    /// The marker, 2.7 points in radius: filled for elements, open for clouds.
     pub(crate) fn mark(&self, canvas: &mut Canvas, at: (f64, f64)) {
         let r = 2.7;
         let ring = |n: usize, turn: f64, r: f64| -> Vec<(f64, f64)> {
@@ -70,15 +74,15 @@ impl Style {
                 .collect()
         };
         let outline = match self.marker {
-            0 | 7 => ring(20, 0.0, r),
-            1 | 8 => ring(4, 0.125, r * 1.25),
+            0 => ring(20, 0.0, r),
+            1 => ring(4, 0.125, r * 1.25),
             2 => ring(3, 0.0, r * 1.35),
             3 => ring(4, 0.0, r * 1.3),
             4 => ring(3, 0.5, r * 1.35),
             5 => ring(5, 0.0, r * 1.15),
             _ => ring(6, 0.0, r * 1.1),
         };
-        let open = self.marker >= 6;
+        let open = self.open;
         canvas.fill(&outline, if open { [255, 255, 255] } else { self.colour });
         canvas.line(&outline, if open { self.colour } else { [255, 255, 255] }, if open { 1.2 } else { 0.4 });
     }
@@ -107,13 +111,15 @@ pub(crate) fn legend_height(styles: &[Style], width: f64) -> f64 {
     styles.len().div_ceil(columns) as f64 * 14.0
 }
 
-/// Draws a legend with its top left corner at a point.
-pub(crate) fn legend(canvas: &mut Canvas, styles: &[Style], at: (f64, f64), width: f64) {
+/// Draws a legend with its top left corner at a point; `lines` where the figure joins its markers.
+pub(crate) fn legend(canvas: &mut Canvas, styles: &[Style], at: (f64, f64), width: f64, lines: bool) {
     let (columns, step) = layout(styles, width);
     let rows = styles.len().div_ceil(columns);
     for (i, style) in styles.iter().enumerate() {
         let (x, y) = (at.0 + (i / rows) as f64 * step, at.1 + (i % rows) as f64 * 14.0 + 7.0);
-        canvas.dashed(&[(x, y), (x + 24.0, y)], style.colour, 1.3, style.dash);
+        if lines {
+            canvas.dashed(&[(x, y), (x + 24.0, y)], style.colour, 1.3, style.dash);
+        }
         style.mark(canvas, (x + 12.0, y));
         canvas.text((x + 29.0, y), &style.label, TEXT, BLACK_INK, Anchor::Start);
     }

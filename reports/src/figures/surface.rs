@@ -5,6 +5,7 @@ use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY};
 use super::grid::WIDTH;
 use super::{Figure, Pictured};
 use crate::record::SurfaceField;
+use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
 
@@ -23,8 +24,11 @@ const VIRIDIS: [Colour; 11] = [
     [253, 231, 37],
 ];
 
-/// One figure per case: its fields side by side under one colour scale, true deformation.
-pub(super) fn figures(fields: &[SurfaceField]) -> Vec<Figure> {
+/// Bodies in one figure.
+const SHOWN: usize = 4;
+
+/// One figure per case: fields side by side under one colour scale, true deformation.
+pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
     let mut cases: Vec<&str> = fields.iter().map(|f| f.case.as_str()).collect();
     cases.sort();
     cases.dedup();
@@ -34,11 +38,37 @@ pub(super) fn figures(fields: &[SurfaceField]) -> Vec<Figure> {
             let mut own: Vec<&SurfaceField> =
                 fields.iter().filter(|f| f.case == case && !f.triangles.is_empty()).collect();
             own.sort_by_key(|f| (f.method.starts_with("efg"), &f.method));
-            (case, own)
+            (case, chosen(own, runs))
         })
         .filter(|(_, own)| !own.is_empty())
         .map(|(case, own)| figure(case, &own))
         .collect()
+}
+
+/// Elements beside clouds, as far from the reference as any, then as near: what is between them can't be told from either by eye.
+fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceField> {
+    if fields.len() <= SHOWN {
+        return fields;
+    }
+    let mut picked: Vec<&SurfaceField> = Vec::new();
+    let of = |family: &str| -> Vec<&'f SurfaceField> {
+        let error = |f: &&SurfaceField| {
+            let run = |r: &&Run| r.is.case == f.case && r.is.method == f.method && r.is.family == family;
+            runs.iter().find(run).and_then(|r| r.value("rms"))
+        };
+        let mut known: Vec<_> = fields.iter().filter_map(|f| Some((error(f)?, *f))).collect();
+        known.sort_by(|a, b| b.0.total_cmp(&a.0));
+        known.into_iter().map(|k| k.1).collect()
+    };
+    let families = [of("fem"), of("efg")];
+    picked.extend(families.iter().filter_map(|f| f.first()));
+    picked.extend(families.iter().filter(|f| f.len() > 1).filter_map(|f| f.last()));
+    for field in fields.iter().take(SHOWN) {
+        if picked.len() < 2 && !picked.iter().any(|p| p.method == field.method) {
+            picked.push(field);
+        }
+    }
+    picked
 }
 
 fn magnitude(u: &[f64; 3]) -> f64 {
@@ -47,9 +77,9 @@ fn magnitude(u: &[f64; 3]) -> f64 {
 
 fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
     let largest = fields.iter().flat_map(|f| f.displacement.iter()).map(magnitude).fold(0.0, f64::max);
-    let columns = fields.len().min(3);
+    let columns = fields.len().min(SHOWN);
     let rows = fields.len().div_ceil(columns);
-    let (bar, gap) = (76.0, 8.0);
+    let (bar, gap) = (54.0, 6.0);
     let width = (WIDTH - bar - gap * (columns as f64 + 1.0)) / columns as f64;
     let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f)).collect();
     let corners = || seen.iter().flatten().flat_map(|t| t.corners.iter());
@@ -62,20 +92,24 @@ fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
     }
     let size = [(high[0] - low[0]).max(1e-12), (high[1] - low[1]).max(1e-12)];
     let scale = ((width - 10.0) / size[0]).min(300.0 / size[1]);
-    let height = size[1] * scale + 44.0;
+    let height = size[1] * scale + 54.0;
     let mut canvas = Canvas::new(WIDTH, height * rows as f64 + 34.0);
     for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
         let left = gap + (i % columns) as f64 * (width + gap);
         let top = (i / columns) as f64 * height;
         let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
-        canvas.bold((left + width / 2.0, top + 12.0), &field.title, TEXT, Anchor::Middle);
+        let (name, rest) = field.title.split_once(" (").unwrap_or((&field.title, ""));
         let text = format!("max |u| {} mm", significant(own * 1e3, 3));
-        canvas.text((left + width / 2.0, top + 25.0), &text, TEXT, GREY, Anchor::Middle);
-        let origin = (left + (width - size[0] * scale) / 2.0, top + 36.0 + size[1] * scale);
+        let middle = left + width / 2.0;
+        canvas.bold((middle, top + 12.0), name, TEXT, Anchor::Middle);
+        canvas.text((middle, top + 24.0), rest.trim_end_matches(')'), TEXT, GREY, Anchor::Middle);
+        canvas.text((middle, top + 36.0), &text, TEXT, GREY, Anchor::Middle);
+        let origin = (middle - size[0] * scale / 2.0, top + 46.0 + size[1] * scale);
         let place = |c: &[f64; 2]| (origin.0 + (c[0] - low[0]) * scale, origin.1 - (c[1] - low[1]) * scale);
         for t in triangles {
             let at = t.corners.map(|c| place(&c));
-            canvas.fill(&grown(at), viridis(if largest > 0.0 { t.value / largest } else { 0.0 }));
+            let fraction = if largest > 0.0 { t.value / largest } else { 0.0 };
+            canvas.fill(&grown(at), viridis((fraction * SHADES).round() / SHADES));
         }
     }
     let bottom = height * rows as f64;
@@ -87,11 +121,12 @@ fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
         GREY,
         Anchor::Start,
     );
-    colour_bar(&mut canvas, (WIDTH - bar + 6.0, 40.0), (height - 60.0).clamp(80.0, 300.0), largest);
+    colour_bar(&mut canvas, (WIDTH - bar + 8.0, 46.0), (height - 66.0).clamp(80.0, 300.0), largest);
     Figure {
         name: format!("surface-{}", slug(case)),
         title: format!("Surface displacement, {case}"),
-        caption: "Surface coloured by the magnitude of its displacement, shown at true deformation under one colour scale".into(),
+        caption: "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale: of either family the run \
+                  farthest from the reference, then the nearest".into(),
         canvas,
     }
 }
@@ -130,8 +165,14 @@ fn grown(at: [(f64, f64); 3]) -> [(f64, f64); 3] {
     })
 }
 
+/// Shades told apart on a body: more than an eye can, few enough for neighbours to share one.
+const SHADES: f64 = 48.0;
+
+/// Slabs of depth that are drawn one after the other, the farthest first.
+const SLABS: f64 = 16.0;
+
 /// How many triangles a picture may be cut into for the sake of smooth colours.
-const FINEST: usize = 6000;
+const FINEST: usize = 4000;
 
 /// Cuts every triangle into four, its values linear between the corners, as often as the count stays moderate.
 fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
@@ -171,7 +212,10 @@ fn project(field: &SurfaceField) -> Vec<Pictured> {
         (depth, Pictured { corners: flat(&c), value: c.iter().map(|x| x[3]).sum::<f64>() / 3.0 })
     };
     let mut seen: Vec<(f64, Pictured)> = refined(visible).into_iter().map(picture).collect();
-    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (near, far) = seen.iter().fold((f64::MIN, f64::MAX), |(n, f), s| (n.max(s.0), f.min(s.0)));
+    // Inside a slab faces to the front don't hide each other, and sorted by value neighbours on paper share a colour in the file.
+    let slab = |depth: f64| ((depth - far) / (near - far).max(1e-12) * SLABS).floor();
+    seen.sort_by(|a, b| slab(a.0).total_cmp(&slab(b.0)).then(a.1.value.total_cmp(&b.1.value)));
     seen.into_iter().map(|(_, t)| t).collect()
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::cases;
 use crate::figures::sweeps;
 use crate::order;
-use crate::select::{Run, groups, labels, series};
+use crate::select::{Run, groups, is_patch, labels, series};
 use crate::text::{list, percent, plural, significant};
 
 /// An error that grows more than this from the most compressible to the least compressible material counts as locking.
@@ -14,7 +14,7 @@ const LOCKS: f64 = 2.0;
 /// Who locks, with numbers, and who does not.
 pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !c[0].is.case.contains("patch")) {
+    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !is_patch(&c[0].is.case)) {
         let (mut locked, mut free) = (Vec::new(), Vec::new());
         let mut span = None;
         for (label, _, sweep) in sweeps(case) {
@@ -42,7 +42,7 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
         let name = &case[0].is.case;
         if !locked.is_empty() {
             out.push(format!(
-                "{name}: from ν = {from} to {to} the relative L2 error more than doubles for {}.",
+                "{name}: from ν = {from} to {to} the relative L2 error at the middle size more than doubles for {}.",
                 list(&locked)
             ));
         }
@@ -75,7 +75,7 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
         }
         let missed: Vec<_> = worst.iter().filter(|(_, e)| **e > EXACT).collect();
         let mut text = format!(
-            "{}: {} of {} methods within 10⁻¹²",
+            "{}: {} of {} methods have the displacement right within 10⁻¹²",
             case[0].is.case,
             worst.len() - missed.len(),
             worst.len()
@@ -88,7 +88,7 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
                 if missed.len() > 6 { format!(" and {} more", missed.len() - 6) } else { String::new() };
             let who = if more.is_empty() { list(&names) } else { names.join(", ") + &more };
             text += &format!(
-                "; not passing: {who}, relative error {}",
+                "; not {who}, relative error {}",
                 if low < high {
                     format!("{} to {}", significant(low, 2), significant(high, 2))
                 } else {

@@ -15,7 +15,7 @@ pub(super) fn kidney(runs: &[Run]) -> Vec<String> {
         for pair in pairs.iter().filter(|p| p.paper.family == family) {
             if let (Some(speed), Some(ours)) = (pair.speed_up(), pair.ours) {
                 by_method.entry(&pair.run.is.method).or_default().push(format!(
-                    "{}: {} here, {} published, {} times faster",
+                    "{} takes {} here, {} in the publication, {} times as long",
                     pair.paper.what,
                     duration(ours),
                     duration(pair.paper.value),
@@ -41,12 +41,15 @@ pub(super) fn kidney(runs: &[Run]) -> Vec<String> {
         let mm = |v: f64| significant(v * 1e3, 2);
         let published: Vec<&_> = pairs
             .iter()
-            .filter(|p| p.run.is.method == method && p.paper.quantity.starts_with("rms"))
+            .filter(|p| {
+                let direction = ["rms-x", "rms-y", "rms-z"].contains(&p.paper.quantity);
+                p.run.is.method == method && direction
+            })
             .collect();
         let theirs = match published.as_slice() {
             [a, b, c] => {
                 format!(
-                    "; published {} / {} / {} mm",
+                    "; the publication gives {}, {} and {} mm between its EFG and its FE",
                     mm(a.paper.value),
                     mm(b.paper.value),
                     mm(c.paper.value)
@@ -55,7 +58,7 @@ pub(super) fn kidney(runs: &[Run]) -> Vec<String> {
             _ => String::new(),
         };
         out.push(format!(
-            "{method}, {} nodes: RMS difference from the reference {} / {} / {} mm in x / y / z{theirs}.",
+            "{method}, {} nodes: RMS difference from the reference {}, {} and {} mm in x, y and z{theirs}.",
             run.is.nodes,
             mm(x),
             mm(y),
@@ -96,18 +99,19 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
                 }
             };
             let mut text = format!(
-                "{}, {from}: best {} ({}), worst {} ({})",
+                "{}, {from}: least error after {} ({}), most after {} ({})",
                 best.0.is.case,
                 best.0.is.variant,
                 mm(best.1),
                 worst.0.is.variant,
                 mm(worst.1)
             );
-            let distance = own.iter().find(|(r, _)| r.is.variant == "inverse-distance");
-            if let Some((_, v)) = distance.filter(|(r, _)| r.is.variant != worst.0.is.variant) {
-                text += &format!("; inverse distance, the published scheme, adds {}", mm(*v));
-            } else if distance.is_some() {
-                text += ", the published scheme";
+            let of = |variant: &str| own.iter().find(|(r, _)| r.is.variant == variant).map(|o| o.1);
+            if let Some(v) = of("inverse-distance") {
+                text += &format!("; after inverse distance, the published scheme, {}", mm(v));
+            }
+            if let Some(v) = of("own-rows") {
+                text += &format!("; with the method's own shape functions {}", mm(v));
             }
             out.push(text + ".");
         }

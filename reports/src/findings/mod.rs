@@ -6,7 +6,7 @@ mod kidney;
 mod outcome;
 
 use crate::record::RunSet;
-use crate::select::{Run, groups};
+use crate::select::{Run, groups, is_patch};
 
 /// Findings under one heading.
 pub(crate) struct Topic {
@@ -32,7 +32,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Topic> {
 /// `case` or `case at ν = 0.3`, with its runs; patch tests left out.
 fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !c[0].is.case.contains("patch")) {
+    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !is_patch(&c[0].is.case)) {
         let by_ratio = groups(case, |r| r.is.poisson.to_bits());
         for group in &by_ratio {
             let is = group[0].is;

@@ -19,7 +19,11 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
         let value = c.value.map(|v| format!(" is {}", significant(v, 3))).unwrap_or_default();
         out.push(format!(
             "Failed: {}, {}: {}{value}, bound {}. {}",
-            c.case, c.method, c.metric, c.bound, c.reason
+            c.case,
+            c.method,
+            c.metric,
+            c.bound,
+            sentence(&c.reason)
         ));
     }
     for (status, word) in [(Status::KnownFailure, "Known failure"), (Status::NotRun, "Not run")] {
@@ -31,11 +35,20 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
             let more = which.len().saturating_sub(4);
             which.truncate(4);
             let tail = if more > 0 { format!("; and {more} more") } else { String::new() };
-            out.push(format!("{word}: {}{tail}. {reason}", which.join("; ")));
+            out.push(format!("{word}: {}{tail}. {}", which.join("; "), sentence(reason)));
         }
     }
     for f in &set.failures {
-        out.push(format!("No result: {}, {}. {}", f.case, f.method, f.reason));
+        out.push(format!("No result: {}, {}. {}", f.case, f.method, sentence(&f.reason)));
     }
     out
+}
+
+/// Begins with a capital and ends with a stop.
+fn sentence(reason: &str) -> String {
+    let mut letters = reason.trim_end_matches('.').chars();
+    match letters.next() {
+        Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
+        None => String::new(),
+    }
 }

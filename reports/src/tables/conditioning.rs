@@ -1,6 +1,5 @@
 //! Neighbours, conditioning and fallbacks of the meshfree methods.
 
-use super::labelled;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -16,19 +15,21 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
             ("case", Words),
             ("method", Words),
             ("kernel", Words),
-            ("settings", Words),
+            ("basis", Words),
+            ("dilatation [1]", Words),
+            ("integration", Words),
             ("nodes", Number),
             ("neighbours min", Number),
-            ("mean", Number),
-            ("max", Number),
+            ("neighbours mean", Number),
+            ("neighbours max", Number),
             ("condition median [1]", Number),
             ("condition max [1]", Number),
-            ("enlarged", Number),
-            ("regularised", Number),
-            ("reduced", Number),
+            ("points enlarged", Number),
+            ("points regularised", Number),
+            ("points reduced", Number),
         ],
     );
-    for (run, _) in labelled(runs) {
+    for run in runs {
         if run
             .value("neighbours-mean")
             .or(run.value("condition-max"))
@@ -37,19 +38,22 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
         {
             continue;
         }
-        let settings = run.is.parameters.replace(';', ", ").replace('=', " ");
+        let setting = |key| Cell::Text(run.is.parameter(key).unwrap_or("—"));
         let count = |quantity| Cell::Digits(run.value(quantity), 4);
-        table.row(&[
+        // Poisson's ratio plays no part here: one row for all of them.
+        table.row_once(&[
             Cell::Text(&run.is.case),
-            Cell::Text(&run.is.method),
+            Cell::Text(run.name()),
             Cell::Text(&run.is.variant),
-            Cell::Text(&settings),
+            setting("basis"),
+            setting("dilatation"),
+            setting("integration"),
             Cell::Count(run.is.nodes),
             whole(run.value("neighbours-min")),
             count("neighbours-mean"),
             whole(run.value("neighbours-max")),
-            Cell::Scientific(run.value("condition-median")),
-            Cell::Scientific(run.value("condition-max")),
+            Cell::Digits(run.value("condition-median"), 3),
+            Cell::Digits(run.value("condition-max"), 3),
             whole(run.value("fallbacks-enlarged")),
             whole(run.value("fallbacks-regularised")),
             whole(run.value("fallbacks-reduced")),

@@ -19,6 +19,7 @@ pub(super) fn relative(runs: &[Run]) -> Table {
             ("tip / exact [1]", "tip"),
         ],
         1.0,
+        Cell::Scientific,
     )
 }
 
@@ -31,6 +32,7 @@ pub(super) fn rms(runs: &[Run]) -> Table {
         "Root mean square of the displacement difference from the reference, by direction and of the magnitude",
         &[("RMS x [mm]", "rms-x"), ("RMS y [mm]", "rms-y"), ("RMS z [mm]", "rms-z"), ("RMS |u| [mm]", "rms")],
         1e3,
+        Cell::Scientific,
     )
 }
 
@@ -49,6 +51,7 @@ pub(super) fn maxima(runs: &[Run]) -> Table {
             ("max error [mm]", "max-error"),
         ],
         1e3,
+        |v| Cell::Digits(v, 4),
     )
 }
 
@@ -60,12 +63,13 @@ fn rows(
     caption: &str,
     columns: &[(&str, &str)],
     scale: f64,
+    cell: impl Fn(Option<f64>) -> Cell<'static>,
 ) -> Table {
     let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
     let filled: Vec<&(&str, &str)> =
         columns.iter().filter(|(_, q)| solved.iter().any(|r| r.value(q).is_some())).collect();
     let mut header =
-        vec![("case", Words), ("ν [1]", Words), ("method", Words), ("nodes", Number), ("h [mm]", Number)];
+        vec![("case", Words), ("ν [1]", Number), ("method", Words), ("nodes", Number), ("h [mm]", Number)];
     header.extend(filled.iter().map(|(head, _)| (*head, Number)));
     let mut table = Table::new(name, title, caption, &header);
     for (run, label) in labelled(&solved) {
@@ -81,7 +85,11 @@ fn rows(
             Cell::Count(run.is.nodes),
             Cell::Digits(millimetres(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
         ];
-        cells.extend(values.iter().map(|v| Cell::Scientific(v.map(|v| v * scale))));
+        cells.extend(filled.iter().zip(&values).map(|((_, quantity), v)| match *quantity {
+            // A ratio near one reads best plain.
+            "tip" => Cell::Digits(*v, 4),
+            _ => cell(v.map(|v| v * scale)),
+        }));
         table.row(&cells);
     }
     table

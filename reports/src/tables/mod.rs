@@ -37,7 +37,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
 fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
     let mut out = Vec::new();
     for group in groups(runs, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
-        let named: Vec<_> = group.iter().map(|r| (r.is.method.as_str(), r.is)).collect();
+        let named: Vec<_> = group.iter().map(|r| (r.name(), r.is)).collect();
         out.extend(group.iter().zip(labels(&named)));
     }
     out

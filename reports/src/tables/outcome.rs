@@ -1,6 +1,6 @@
 //! Checks, failed runs, and what the plans skipped.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::record::RunSet;
 use crate::table::Column::{Number, Words};
@@ -29,14 +29,30 @@ pub(super) fn checks(set: &RunSet) -> Table {
         table.row(&[
             Cell::Text(c.status.name()),
             Cell::Text(&c.case),
-            Cell::Text(&c.method),
+            Cell::Text(&once(&c.method)),
             Cell::Text(&c.metric),
-            Cell::Scientific(c.value),
+            Cell::Digits(c.value, digits(&c.bound)),
             Cell::Text(&c.bound),
             Cell::Text(&c.reason),
         ]);
     }
     table
+}
+
+/// As many digits as the bound has, four at least: or a value would seem to lie beyond a bound it keeps.
+fn digits(bound: &str) -> usize {
+    let mantissa = |word: &str| {
+        let number = word.split(['e', 'E']).next().unwrap_or_default();
+        number.parse::<f64>().ok().map(|_| number.chars().filter(char::is_ascii_digit).count())
+    };
+    bound.split_whitespace().filter_map(mantissa).max().unwrap_or(0).max(4)
+}
+
+/// A method's words without one that repeats the one before: an element's method often bears its name.
+fn once(method: &str) -> String {
+    let mut words: Vec<&str> = method.split_whitespace().collect();
+    words.dedup();
+    words.join(" ")
 }
 
 /// Runs that gave no numbers.
@@ -61,13 +77,69 @@ pub(super) fn plan(set: &RunSet) -> Table {
         "Over all runs: each stage with the reason it ran or was skipped",
         &[("stage", Words), ("outcome", Words), ("because", Words), ("runs", Number)],
     );
-    let mut counts: BTreeMap<(&str, bool, &str), u64> = BTreeMap::new();
+    let mut counts: BTreeMap<(&str, bool, String), (u64, BTreeSet<u64>)> = BTreeMap::new();
     for p in &set.plans {
-        *counts.entry((&p.stage, !p.ran, &p.why)).or_default() += 1;
+        let (pattern, number) = pattern(&p.why);
+        let (count, numbers) = counts.entry((&p.stage, !p.ran, pattern)).or_default();
+        *count += 1;
+        numbers.extend(number);
     }
-    for ((stage, skipped, why), count) in counts {
+    for ((stage, skipped, why), (count, numbers)) in counts {
         let outcome = if skipped { "skipped" } else { "run" };
-        table.row(&[Cell::Text(stage), Cell::Text(outcome), Cell::Text(why), Cell::Count(count)]);
+        let span = match (numbers.first(), numbers.last()) {
+            (Some(low), Some(high)) if low < high => format!("{low} to {high}"),
+            (Some(only), _) => only.to_string(),
+            _ => String::new(),
+        };
+        let why = why.replacen(GAP, &span, 1);
+        table.row(&[Cell::Text(stage), Cell::Text(outcome), Cell::Text(&why), Cell::Count(count)]);
     }
     table
+}
+
+/// Stands where a reason had its only whole number.
+const GAP: char = '\u{fffc}';
+
+/// A reason without its only whole number, and the number: reasons that differ in a count alone become one row.
+fn pattern(why: &str) -> (String, Option<u64>) {
+    let words: Vec<&str> = why.split(' ').collect();
+    let numbers: Vec<(usize, u64)> =
+        words.iter().enumerate().filter_map(|(i, w)| Some((i, w.parse().ok()?))).collect();
+    match numbers[..] {
+        [(at, number)] => {
+            let gap = GAP.to_string();
+            let words = words.iter().enumerate().map(|(i, w)| if i == at { gap.as_str() } else { w });
+            (words.collect::<Vec<_>>().join(" "), Some(number))
+        }
+        _ => (why.to_string(), None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_shows_the_digits_of_its_bound() {
+        assert_eq!(digits("from 1.743135e-2 to 1.743145e-2"), 7);
+        assert_eq!(digits("at most 1e-12"), 4);
+    }
+
+    #[test]
+    fn reasons_that_differ_in_a_count_are_one() {
+        let entry = |why: &str| crate::record::PlanEntry {
+            case: "a".into(),
+            method: "b".into(),
+            stage: "supports".into(),
+            ran: true,
+            why: why.into(),
+        };
+        let plans = ["of 83 nodes", "of 1331 nodes", "of 166 nodes", "nu = 0.3 < 0.45"].map(entry).to_vec();
+        let table = plan(&RunSet { plans, ..RunSet::default() });
+        assert_eq!(
+            table.shown(),
+            [["supports", "run", "nu = 0.3 < 0.45", "1"], ["supports", "run", "of 83 to 1331 nodes", "3"]]
+        );
+        assert_eq!(once("tet4 tet4 216 nodes"), "tet4 216 nodes");
+    }
 }

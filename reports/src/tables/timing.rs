@@ -12,10 +12,10 @@ pub(super) fn phases(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "timing",
         "Run time by phase",
-        "Median and interquartile range over repeats; peak memory of the process",
+        "Median ± interquartile range over repeats, no range where there was one repeat only; peak memory of the process. Transfer schemes have a table of their own",
         &[
             ("case", Words),
-            ("ν [1]", Words),
+            ("ν [1]", Number),
             ("method", Words),
             ("nodes", Number),
             ("points", Number),
@@ -29,7 +29,8 @@ pub(super) fn phases(runs: &[Run]) -> Table {
             ("memory [MB]", Number),
         ],
     );
-    for (run, label) in labelled(runs) {
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    for (run, label) in labelled(&solved) {
         let times: Vec<_> = PHASES.map(|p| (run.time(p, "median"), run.time(p, "spread"))).into();
         if times.iter().all(|(median, _)| median.is_none()) {
             continue;

@@ -7,10 +7,21 @@ use crate::table::{Cell, Table};
 
 /// Error and cost of every scheme, by what it carried over.
 pub(super) fn schemes(runs: &[Run]) -> Table {
+    let all = || runs.iter().filter(|r| r.is.family == "interp");
+    let mut caption = String::from(
+        "Error at the target points after the transfer, and its cost: building the weights (prepare) and applying them (transfer). Of a prescribed field \
+         the error is the transfer's own; of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone",
+    );
+    let lost = all().filter(|r| r.contradicts("rms")).count();
+    if lost > 0 {
+        caption += &format!(
+            ". Left out: {lost} rows whose records contradict each other, as they don't name the kernel of the method carried over"
+        );
+    }
     let mut table = Table::new(
         "transfer",
         "Transfer schemes",
-        "Error the transfer alone adds, and its cost: building the weights (prepare) and applying them (transfer)",
+        &caption,
         &[
             ("case", Words),
             ("of", Words),
@@ -27,7 +38,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             ("apply [ms]", Number),
         ],
     );
-    for run in runs.iter().filter(|r| r.is.family == "interp") {
+    for run in all().filter(|r| !r.contradicts("rms")) {
         let (from, settings) = carried(run);
         table.row(&[
             Cell::Text(&run.is.case),
@@ -37,10 +48,10 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             Cell::Count(run.is.nodes),
             Cell::Count(run.is.points),
             Cell::Scientific(run.value("l2")),
-            Cell::Scientific(millimetres(run.value("rms-x"))),
-            Cell::Scientific(millimetres(run.value("rms-y"))),
-            Cell::Scientific(millimetres(run.value("rms-z"))),
-            Cell::Scientific(millimetres(run.value("rms"))),
+            Cell::Digits(millimetres(run.value("rms-x")), 3),
+            Cell::Digits(millimetres(run.value("rms-y")), 3),
+            Cell::Digits(millimetres(run.value("rms-z")), 3),
+            Cell::Digits(millimetres(run.value("rms")), 3),
             Cell::Digits(millimetres(run.time("prepare", "median")), 3),
             Cell::Digits(millimetres(run.time("transfer", "median")), 3),
         ]);

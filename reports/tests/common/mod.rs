@@ -240,6 +240,45 @@ fn kidney(set: &mut RunSet) {
     }
 }
 
+/// A tool closing on a block: two methods step by step, a finer level of one, and a reference with its uncertainty.
+fn grasp(set: &mut RunSet) {
+    for (method, family, nodes, stiffness) in [
+        ("hex8", "fem", 225, 1.08),
+        ("hex8", "fem", 1377, 1.03),
+        ("efg", "efg", 225, 0.97),
+        ("measured", "reference", 0, 1.0),
+    ] {
+        for step in 0..=40u32 {
+            let at = |statistic: &str, quantity: &str, unit: &str, value: f64| Record {
+                nodes,
+                spacing: if nodes == 0 { 0.0 } else { 0.1 / (nodes as f64).cbrt() },
+                quantity: quantity.into(),
+                unit: unit.into(),
+                phase: format!("step-{step}"),
+                statistic: statistic.into(),
+                value,
+                ..base("grasp", method, family, method, "")
+            };
+            let closure = 0.25e-3 * f64::from(step);
+            let force = stiffness * (120.0 * closure + 9e3 * closure * closure);
+            set.records.push(at("value", "closure", "m", closure));
+            set.records.push(at("value", "tool-force", "N", force));
+            if family == "reference" {
+                set.records.push(at("low", "tool-force", "N", 0.92 * force));
+                set.records.push(at("high", "tool-force", "N", 1.08 * force));
+                continue;
+            }
+            let strain = stiffness * (60.0 * closure.powi(2) + 3e3 * closure.powi(3));
+            set.records.push(at("value", "step-time", "s", 0.05 * f64::from(step)));
+            for (quantity, share) in
+                [("strain", 1.0), ("kinetic", 0.02), ("dissipated", 0.1), ("external", 1.12)]
+            {
+                set.records.push(at("value", &format!("energy-{quantity}"), "J", share * strain));
+            }
+        }
+    }
+}
+
 /// A ball mapped to a bean, pressed flat in the middle of its length.
 fn bean(method: &str, title: &str, n: u32, amplitude: f64) -> SurfaceField {
     let (mut points, mut displacement, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
@@ -316,6 +355,7 @@ pub fn study() -> RunSet {
     patch(&mut set);
     clouds(&mut set);
     kidney(&mut set);
+    grasp(&mut set);
     set.checks = vec![
         check("patch-displacement", "tet4", "l2", Some(2e-15), "at most 1e-12", Status::Pass, ""),
         check(

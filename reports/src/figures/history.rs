@@ -1,0 +1,134 @@
+//! What happens while a tool closes: its force over the closure, and where the energy is over time.
+
+use super::axes::Axis;
+use super::canvas::{Canvas, Colour};
+use super::grid::{Content, multiples};
+use super::style::{Style, find, styles};
+use super::{Figure, PAGE, continued, paged};
+use crate::history::{band, curve};
+use crate::select::{Run, groups, labels, series};
+
+/// Grey of an uncertainty, light enough for every line over it.
+const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
+/// Markers on one line: more would hide it.
+const MARKS: usize = 12;
+const ENERGIES: [(&str, &str); 4] = [
+    ("energy-external", "work of the loads"),
+    ("energy-strain", "strain"),
+    ("energy-kinetic", "kinetic"),
+    ("energy-dissipated", "dissipated"),
+];
+
+/// A line as `(label, dashed, points, band)`.
+type Line = (String, bool, Vec<(f64, f64)>, Vec<(f64, f64, f64)>);
+
+/// Names and units of both axes.
+type Axes = (&'static str, &'static str);
+
+/// Tool force over closure: one panel per case, the finest run of every method, the reference with its uncertainty.
+pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
+    let mut panels = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let mut all = series(case);
+        // The reference lies below what is compared with it.
+        all.sort_by_key(|s| s.is().family != "reference");
+        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        let lines = all.iter().zip(names).map(|(s, name)| {
+            let run = s.finest();
+            let points = curve(run, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
+            let around = band(run, "closure", "tool-force").into_iter().map(|b| (b.0 * 1e3, b.1, b.2));
+            (name, run.is.family == "efg", points.collect(), around.collect())
+        });
+        panels.push((case[0].is.case.clone(), lines.filter(drawn).collect::<Vec<Line>>()));
+    }
+    figures(
+        "tool-force",
+        "Tool force against closure",
+        "Force on the tool while it closes, the finest run of each method",
+        ("closure [mm]", "tool force [N]"),
+        panels,
+    )
+}
+
+/// Energies over time: one panel for the finest run of every method that recorded them.
+pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
+    let mut panels = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let all = series(case);
+        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        for (s, name) in all.iter().zip(names) {
+            let lines = ENERGIES.iter().map(|(quantity, label)| {
+                let points = curve(s.finest(), "step-time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
+                (label.to_string(), false, points.collect(), Vec::new())
+            });
+            panels.push((format!("{}, {name}", s.is().case), lines.filter(drawn).collect::<Vec<Line>>()));
+        }
+    }
+    figures(
+        "energy-time",
+        "Energy over time",
+        "Where the energy is at every step, the finest run of each method; the work of the loads is the sum of the others where none is lost",
+        ("time [s]", "energy [mJ]"),
+        panels,
+    )
+}
+
+/// A single step is no history.
+fn drawn(line: &Line) -> bool {
+    line.2.len() > 1
+}
+
+fn figures(
+    name: &str,
+    title: &str,
+    caption: &str,
+    axes: Axes,
+    mut panels: Vec<(String, Vec<Line>)>,
+) -> Vec<Figure> {
+    panels.retain(|p| !p.1.is_empty());
+    let all: Vec<(String, bool)> =
+        panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), l.1))).collect();
+    let styles = styles(&all);
+    let page = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
+        name: paged(name, page),
+        title: continued(title, page),
+        caption: caption.into(),
+        canvas: canvas(panels, &styles, axes),
+    };
+    panels.chunks(PAGE).enumerate().map(page).collect()
+}
+
+fn canvas(panels: &[(String, Vec<Line>)], styles: &[Style], axes: Axes) -> Canvas {
+    let own = |s: &&Style| panels.iter().any(|p| p.1.iter().any(|l| l.0 == s.label));
+    let styles: Vec<Style> = styles.iter().filter(own).cloned().collect();
+    let uncertain = panels.iter().any(|p| p.1.iter().any(|l| l.3.len() > 1));
+    let contents = panels
+        .iter()
+        .map(|(title, lines)| {
+            let points = || lines.iter().flat_map(|l| l.2.iter());
+            let ends = || lines.iter().flat_map(|l| l.3.iter().flat_map(|b| [b.1, b.2]));
+            let styles = &styles;
+            Content {
+                title: title.clone(),
+                x: Axis::linear(axes.0, points().map(|p| p.0), true),
+                y: Axis::linear(axes.1, points().map(|p| p.1).chain(ends()), true),
+                plot: Box::new(move |canvas, panel| {
+                    for (_, _, _, around) in lines.iter().filter(|l| l.3.len() > 1) {
+                        let low = around.iter().map(|b| panel.at(b.0, b.1));
+                        let high = around.iter().rev().map(|b| panel.at(b.0, b.2));
+                        canvas.fill(&low.chain(high).collect::<Vec<_>>(), UNCERTAIN);
+                    }
+                    for (label, _, points, _) in lines {
+                        let Some(style) = find(styles, label) else { continue };
+                        let at: Vec<_> = points.iter().map(|p| panel.at(p.0, p.1)).collect();
+                        canvas.dashed(&at, style.colour, 1.3, style.dash);
+                        for at in at.iter().step_by(at.len().div_ceil(MARKS)) {
+                            style.mark(canvas, *at);
+                        }
+                    }
+                }),
+            }
+        })
+        .collect();
+    multiples(contents, &styles, if uncertain { "Grey band: uncertainty of the reference." } else { "" })
+}

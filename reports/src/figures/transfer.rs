@@ -1,0 +1,95 @@
+//! Transfer schemes: a row for each, a marker for every field or source.
+
+use std::collections::BTreeSet;
+
+use super::Figure;
+use super::axes::{Axis, Panel, TEXT};
+use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
+use super::grid::WIDTH;
+use super::style::{legend, legend_height, styles};
+use crate::select::{Run, groups};
+use crate::store::slug;
+use crate::text::tick;
+
+/// Height of a row with several markers.
+const LINE: f64 = 20.0;
+
+/// One panel per case, one marker per field or source. Runs whose records contradict each other are left out.
+pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
+    let schemes: Vec<Run> =
+        runs.iter().filter(|r| r.is.family == "interp" && !r.contradicts("rms")).cloned().collect();
+    groups(&schemes, |r| r.is.case.clone()).into_iter().filter_map(transfer_figure).collect()
+}
+
+fn source(run: &Run) -> String {
+    let field = run.is.parameter("field").map(|f| format!("{f} field"));
+    field.or(run.is.parameter("from").map(|f| format!("from {f}"))).unwrap_or_else(|| "transfer".into())
+}
+
+fn transfer_figure(runs: &[Run]) -> Option<Figure> {
+    let (quantity, label, scale) = [
+        ("rms", "RMS error after the transfer [mm]", 1e3),
+        ("l2", "relative L2 error after the transfer [1]", 1.0),
+    ]
+    .into_iter()
+    .find(|(q, _, _)| runs.iter().any(|r| r.value(q).is_some()))?;
+    let scheme = |r: &Run| {
+        let own = |p: &&str| !p.is_empty() && !p.starts_with("from=") && !p.starts_with("field=");
+        let settings: Vec<String> =
+            r.is.parameters.split(';').filter(own).map(|p| p.replace('=', " ")).collect();
+        if settings.is_empty() {
+            r.is.variant.clone()
+        } else {
+            format!("{} ({})", r.is.variant, settings.join(", "))
+        }
+    };
+    let names: Vec<String> = runs.iter().map(scheme).collect::<BTreeSet<_>>().into_iter().collect();
+    let styles = styles(&runs.iter().map(|r| (source(r), true)).collect::<Vec<_>>());
+    let raw: Vec<f64> = runs.iter().filter_map(|r| r.value(quantity)).map(|v| v * scale).collect();
+    // Schemes that are exact to rounding would squeeze all others into a corner.
+    let largest = raw.iter().copied().fold(0.0, f64::max).max(1e-9);
+    let floor = 10f64.powf((largest * 1e-3).log10().floor());
+    let values: Vec<f64> = raw.iter().map(|v| v.max(floor)).collect();
+    let left = 14.0 + names.iter().map(|n| text_width(n, TEXT)).fold(40.0, f64::max).min(250.0);
+    let bottom = 26.0 + LINE * names.len() as f64;
+    let below = 34.0 + legend_height(&styles, WIDTH - 20.0);
+    let floored = raw.iter().any(|v| *v < floor);
+    let mut canvas = Canvas::new(WIDTH, bottom + below + if floored { 18.0 } else { 6.0 });
+    let rows = Axis::linear("", [0.0, 1.0].into_iter(), true).with_ticks(Vec::new());
+    let panel =
+        Panel { frame: (left, 22.0, WIDTH - 16.0, bottom), x: Axis::log(label, values.into_iter()), y: rows };
+    panel.draw(&mut canvas, &runs[0].is.case);
+    for (row, name) in names.iter().enumerate() {
+        let y = 24.0 + LINE * (row as f64 + 0.5);
+        canvas.text((left - 8.0, y), name, TEXT, BLACK_INK, Anchor::End);
+        canvas.line(&[(left, y), (WIDTH - 16.0, y)], PALE, 0.5);
+    }
+    for run in runs {
+        let (Some(v), Some(row)) = (run.value(quantity), names.iter().position(|n| *n == scheme(run))) else {
+            continue;
+        };
+        let x = panel.at((v * scale).max(floor), 0.0).0;
+        if let Some(which) = styles.iter().position(|s| s.label == source(run)) {
+            let aside = 4.5 * (which as f64 - 0.5 * (styles.len() as f64 - 1.0))
+                / (styles.len() as f64 / 2.0).max(1.0);
+            styles[which].mark(&mut canvas, (x, 24.0 + LINE * (row as f64 + 0.5) + aside));
+        }
+    }
+    legend(&mut canvas, &styles, (12.0, bottom + 34.0), WIDTH - 20.0, false);
+    if floored {
+        let unit = if scale > 1.0 { " mm" } else { "" };
+        let note =
+            format!("Errors below {}{unit} are drawn at that value; the table has them all.", tick(floor));
+        canvas.text((12.0, bottom + below + 8.0), &note, TEXT, GREY, Anchor::Start);
+    }
+    let case = &runs[0].is.case;
+    Some(Figure {
+        name: format!("transfer-{}", slug(case)),
+        title: format!("Transfer schemes compared, {case}"),
+        caption: "Error of the displacement at the target points after each scheme carried it there: of a prescribed field it is the transfer's own, \
+                  of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone. Sources \
+                  whose records contradict each other are left out"
+            .into(),
+        canvas,
+    })
+}

@@ -1,0 +1,84 @@
+//! Numbers told step by step: which steps a run recorded, and one quantity over another.
+//!
+//! A step is a record whose phase is `step-N`; everything a run recorded at the same step belongs together.
+
+use std::collections::BTreeMap;
+
+use crate::record::Record;
+use crate::select::Run;
+
+/// The number of the step a record belongs to, where it belongs to one.
+pub(crate) fn step(record: &Record) -> Option<u64> {
+    record.phase.strip_prefix("step-")?.parse().ok()
+}
+
+/// One quantity by step, for one statistic.
+fn by_step(run: &Run, quantity: &str, statistic: &str) -> BTreeMap<u64, f64> {
+    let fits = |r: &&&Record| r.quantity == quantity && r.statistic == statistic;
+    run.records().iter().filter(fits).filter_map(|r| Some((step(r)?, r.value))).collect()
+}
+
+/// `(x, y)` at every step that recorded both, in the order of the steps.
+pub(crate) fn curve(run: &Run, x: &str, y: &str) -> Vec<(f64, f64)> {
+    let along = by_step(run, x, "value");
+    by_step(run, y, "value").into_iter().filter_map(|(step, y)| Some((*along.get(&step)?, y))).collect()
+}
+
+/// `(x, low, high)` at every step that recorded both ends of an uncertainty.
+pub(crate) fn band(run: &Run, x: &str, y: &str) -> Vec<(f64, f64, f64)> {
+    let (along, high) = (by_step(run, x, "value"), by_step(run, y, "high"));
+    let low = by_step(run, y, "low").into_iter();
+    low.filter_map(|(step, low)| Some((*along.get(&step)?, low, *high.get(&step)?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::select::runs;
+
+    fn at(step: &str, quantity: &str, statistic: &str, value: f64) -> Record {
+        Record {
+            case: "grasp".into(),
+            method: "measured".into(),
+            family: "reference".into(),
+            variant: String::new(),
+            parameters: String::new(),
+            poisson: 0.495,
+            level: 0,
+            nodes: 0,
+            elements: 0,
+            points: 0,
+            dofs: 0,
+            spacing: 0.0,
+            seed: 0,
+            quantity: quantity.into(),
+            unit: "1".into(),
+            phase: step.into(),
+            statistic: statistic.into(),
+            value,
+        }
+    }
+
+    #[test]
+    fn steps_join_by_number_and_leave_plain_values_alone() {
+        let records = [
+            at("step-10", "closure", "value", 3.0),
+            at("step-10", "tool-force", "value", 30.0),
+            at("step-9", "tool-force", "value", 20.0),
+            at("step-9", "closure", "value", 2.0),
+            at("step-9", "tool-force", "low", 19.0),
+            at("step-9", "tool-force", "high", 22.0),
+            // No force at this step, and a bound without its other end.
+            at("step-11", "closure", "value", 4.0),
+            at("step-10", "tool-force", "low", 28.0),
+            at("", "strain-energy", "value", 7.0),
+            at("step-9", "strain-energy", "value", 5.0),
+        ];
+        let runs = runs(&records);
+        assert_eq!(runs.len(), 1);
+        assert_eq!(curve(&runs[0], "closure", "tool-force"), [(2.0, 20.0), (3.0, 30.0)]);
+        assert_eq!(band(&runs[0], "closure", "tool-force"), [(2.0, 19.0, 22.0)]);
+        assert_eq!((runs[0].value("strain-energy"), runs[0].value("closure")), (Some(7.0), None));
+        assert!(!runs[0].contradicts("strain-energy"));
+    }
+}
