@@ -249,7 +249,7 @@ impl<'a> Newton<'a> {
             if first_energy == 0.0 {
                 first_energy = slope.abs();
             }
-            let (next, length) = self.search(state, &step, &closures, held_move.as_deref(), slope, time)?;
+            let (next, length) = self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
             if std::env::var("DBG").is_ok() { eprintln!("  {residual:.3e} {energy:.2e} {length:.3} slope {slope:.3e} active {:?}", balance.contacts.iter().map(|c| c.as_ref().map_or(0, |c| c.points().len())).collect::<Vec<_>>()); }
             log.push(Iteration { residual, energy, length });
@@ -396,9 +396,18 @@ impl<'a> Newton<'a> {
         }
         let mut step = self.system.gather(&right, &right_pressure);
         let factored = self.factor(matrix, &skew)?;
-        factored.solve(&mut step)?;
+        self.solve(&factored, &mut step)?;
         let closures = self.drive(&factored, state, balance, time, &mut step)?;
         Ok((step, closures))
+    }
+
+    /// Solves with the matrix as it was assembled, pressures scaled.
+    fn solve(&self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
+        let scale = self.system.pressure_scale;
+        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        factored.solve(b)?;
+        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        Ok(())
     }
 
     /// Cholesky while the tangent is definite; `L D L^T` with a pressure field or past a limit point; LU with sliding
@@ -477,7 +486,7 @@ impl<'a> Newton<'a> {
                 continue;
             }
             let mut x = self.system.gather(&columns[0], &none);
-            factored.solve(&mut x)?;
+            self.solve(factored, &mut x)?;
             driven.push((k, x, self.system.gather(&columns[1], &none), own, full * time - pushed));
         }
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -517,9 +526,12 @@ impl<'a> Newton<'a> {
         closures: &[f64],
         held_move: Option<&[Vector3]>,
         slope: f64,
+        out: &[Vector3],
         time: f64,
     ) -> Result<(Balance, f64), StaticError> {
         let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
+        let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let before = norm(&self.system.gather(out, &state.pressure.iter().map(|_| 0.0).collect::<Vec<_>>()));
         let mut length = 1.0;
         for trial in 0.. {
             state.u.clone_from(&start.0);
@@ -541,7 +553,8 @@ impl<'a> Newton<'a> {
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
             let now: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
             // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            if now.abs() <= (1.0 - 0.2 * length) * slope.abs() || held_move.is_some() || saddle || trial >= 6 {
+            let smaller = norm(&unknowns) <= (1.0 - 0.1 * length) * before;
+            if now.abs() <= (1.0 - 0.2 * length) * slope.abs() || smaller || held_move.is_some() || saddle || trial >= 6 {
                 return Ok((balance, length));
             }
             // Secant between slope at 0 and now at `length`, kept between a tenth and a half of it.

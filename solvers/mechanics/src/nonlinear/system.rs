@@ -70,6 +70,9 @@ pub(crate) struct System<'a> {
     pub place: Vec<usize>,
     /// Number of free displacement degrees of freedom.
     pub free: usize,
+    /// The matrix is that of pressures over this scale (Pa per unknown): a pressure's own entries are 1e-15 of a
+    /// stiffness, and the static regularisation would drown them.
+    pub pressure_scale: f64,
 }
 
 impl<'a> System<'a> {
@@ -132,7 +135,19 @@ impl<'a> System<'a> {
             })
             .collect();
         let pairs = solid.pairs();
-        System { solid, pairs, points, points_of, groups, pressure_of, surfaces, stiffness, place, free }
+        System {
+            solid,
+            pairs,
+            points,
+            points_of,
+            groups,
+            pressure_of,
+            surfaces,
+            stiffness,
+            place,
+            free,
+            pressure_scale: 1.0,
+        }
     }
 
     /// Number of unknowns: free displacements and pressures.
@@ -211,7 +226,7 @@ impl<'a> System<'a> {
     }
 
     /// Upper triangle over the free degrees of freedom, then the pressures.
-    fn reduced(&self, hessian: &Hessian) -> Symmetric {
+    fn reduced(&mut self, hessian: &Hessian) -> Symmetric {
         let mut matrix = Symmetric::displacements(&self.stiffness, &self.place, self.free);
         let nodes = self.solid.node_count();
         let mut sum = vec![Vector3::zeros(); nodes];
@@ -253,6 +268,16 @@ impl<'a> System<'a> {
             }
             matrix.offsets.push(matrix.rows.len());
             matrix.vertices.push(matrix.offsets.len() - 1);
+        }
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |l, v| l.max(v.abs()));
+        let (stiffness, coupling) = matrix.values.split_at(matrix.offsets[self.free]);
+        let scale = largest(stiffness) / largest(coupling);
+        self.pressure_scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        for j in self.free..matrix.dim() {
+            for k in matrix.offsets[j]..matrix.offsets[j + 1] {
+                let both = matrix.rows[k] >= self.free;
+                matrix.values[k] *= if both { self.pressure_scale.powi(2) } else { self.pressure_scale };
+            }
         }
         matrix
     }
