@@ -86,23 +86,3 @@ pub(crate) fn clip(text: &str) -> String {
         None => line,
     }
 }
-
-/// The known name nearest to `name`, if near enough to be what was meant.
-pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let name = clip(name);
-    known
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 3)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
-/// `did you mean 'x'?` where something is near, and the list of what is known.
-pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
-    let list = format!("known here: {}", known.join(", "));
-    match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean '{near}'? ({list})"),
-        None => list,
-    }
-}
