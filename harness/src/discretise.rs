@@ -8,6 +8,7 @@ use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
 use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
 
 use crate::Failure;
+use crate::error::Key;
 
 /// Which quadrature points share a dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,10 +228,10 @@ impl Efg {
             }
             Integration::Grid { spacing, points } => {
                 let Some(shape) = &self.shape else {
-                    return Err(Failure::Unsupported(
-                        "integration over a clipped grid needs a body in closed form; a mesh file has no inside \
-                         test, so use rule = \"gauss\" or \"cell-smoothed\""
-                            .into(),
+                    return Err(Failure::unavailable(
+                        Key::Method("integration.rule"),
+                        "clips a grid by a body in closed form; a mesh and an octant have no inside test",
+                        "take rule = \"gauss\" or \"cell-smoothed\"",
                     ));
                 };
                 let [min, max] = shape.bounds();

@@ -4,6 +4,7 @@ use geometry::{Matrix3, Point3, Vector3};
 use reports::{PlanEntry, Record, SurfaceField};
 use serde::Serialize;
 
+use crate::Failure;
 use crate::timing::Summary;
 
 /// The identity of a run: what distinguishes it from every other one.
@@ -113,6 +114,23 @@ pub struct Outcome {
     pub transfers: Vec<Transfer>,
     /// Surface displacement, where the scene asks for it.
     pub field: Option<SurfaceField>,
+}
+
+/// A run that gave no numbers.
+#[derive(Clone, Debug)]
+pub struct Unfinished {
+    /// Why.
+    pub failure: Failure,
+    /// Stages it would have run and skipped; empty if it failed before they were known.
+    pub plan: Vec<Stage>,
+    /// Nodes and elements as far as they were made, the rest 0.
+    pub size: Size,
+}
+
+impl From<Failure> for Unfinished {
+    fn from(failure: Failure) -> Unfinished {
+        Unfinished { failure, plan: Vec::new(), size: Size::default() }
+    }
 }
 
 impl Outcome {

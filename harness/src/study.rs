@@ -164,11 +164,11 @@ impl Plan {
                 });
                 let outcome = match group {
                     Ok(group) => group.run(&group.scenario(task.method.clone(), task.level), task.picture),
-                    Err(failure) => Err(failure.clone()),
+                    Err(failure) => Err(failure.clone().into()),
                 };
                 match outcome {
                     Ok(outcome) => TaskResult::finished(&outcome),
-                    Err(failure) => TaskResult::failed(&case, &task.method.id, &failure),
+                    Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
                 }
             });
             if !known && let Err(bad) = result.store(store, &key) {

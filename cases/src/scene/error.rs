@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-/// Whether a file is wrong, or right but ahead of what can run.
+/// Whether a file is wrong, or right but ahead of what can run, or beyond its method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The input is wrong: exit code 2.
     Invalid,
     /// The input is well formed, but asks for something that can't run yet: exit code 3.
     NotAvailable,
+    /// The input is well formed, but the method could not run on it or did not converge: exit code 3.
+    NotRun,
 }
 
 /// One finding about an input file. Prints as `file:line: key 'path': 'found' problem; help`.
