@@ -11,6 +11,7 @@ use crate::outcome::{Outcome, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
 use crate::run::{self, Asks, Repeats, run};
 use crate::scenario::Scenario;
+use crate::work::Work;
 use crate::{Failure, body, reach};
 
 /// What every run of a scene shares.
@@ -22,6 +23,7 @@ pub struct Group<'a> {
     targets: Vec<Point3>,
     schemes: Vec<(String, Scheme)>,
     reference: Option<run::Reference>,
+    reference_work: Work,
     repeats: Repeats,
 }
 
@@ -59,6 +61,7 @@ impl<'a> Group<'a> {
             probes,
             schemes: schemes(scene)?,
             reference: None,
+            reference_work: Work::default(),
             repeats,
         })
     }
@@ -84,6 +87,7 @@ impl<'a> Group<'a> {
         };
         let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
             .map_err(|failure| scenario.locate(failure))?;
+        self.reference_work = solved.outcome.work;
         self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
         Ok(())
     }
@@ -98,6 +102,11 @@ impl<'a> Group<'a> {
             poisson: self.poisson,
             size_key: None,
         }
+    }
+
+    /// What the reference took, once for all methods; nothing where none had to run.
+    pub fn reference_work(&self) -> Work {
+        self.reference_work
     }
 
     /// Runs one method; `picture` keeps its surface displacement.
@@ -128,7 +137,10 @@ impl<'a> Group<'a> {
     }
 
     fn wants(&self) -> Wants {
-        Wants { targets: !self.targets.is_empty(), schemes: !self.schemes.is_empty() }
+        // Known before the reference has run, so that a plan says what the run will do.
+        let nodes_of_reference = matches!(self.scene.reference, Some(Reference::Method { .. }));
+        let targets = nodes_of_reference || !self.targets.is_empty();
+        Wants { targets, schemes: targets && !self.schemes.is_empty() }
     }
 
     fn schemes_for(&self, method: &Discretisation) -> &[(String, Scheme)] {

@@ -4,6 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::outcome::{Outcome, Stage, Unfinished};
+use crate::work::Work;
 
 /// One run as `tissuebench run --format json` prints it.
 #[derive(Serialize)]
@@ -24,6 +25,8 @@ pub struct RunObject<'a> {
     /// Rigid tools; no procedure drives any yet.
     tools: [(); 0],
     plan: &'a [Stage],
+    /// Counts of what was done; all 0 in a run that failed.
+    work: Work,
 }
 
 #[derive(Serialize)]
@@ -77,6 +80,7 @@ impl<'a> RunObject<'a> {
                 .collect(),
             tools: [],
             plan: &outcome.plan,
+            work: outcome.work,
         }
     }
 
@@ -95,6 +99,7 @@ impl<'a> RunObject<'a> {
             probes: Vec::new(),
             tools: [],
             plan: &run.plan,
+            work: Work::default(),
         }
     }
 }

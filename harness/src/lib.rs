@@ -31,5 +31,6 @@ pub mod study;
 pub mod task;
 pub mod timing;
 pub mod transfer;
+pub mod work;
 
 pub use error::Failure;

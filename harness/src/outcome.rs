@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::timing::Summary;
+use crate::work::Work;
 
 /// The identity of a run: what distinguishes it from every other one.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +115,8 @@ pub struct Outcome {
     pub transfers: Vec<Transfer>,
     /// Surface displacement, where the scene asks for it.
     pub field: Option<SurfaceField>,
+    /// What was done for all this.
+    pub work: Work,
 }
 
 /// A run that gave no numbers.

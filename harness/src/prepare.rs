@@ -10,6 +10,7 @@ use crate::discretise::{Discretisation, Efg, Essential, Volume};
 use crate::error::Key;
 use crate::place::{self, CutTriangle, Place, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
+use crate::work::Work;
 
 /// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
 const CUT_POINTS: usize = 6;
@@ -43,8 +44,8 @@ pub struct Prepared {
 }
 
 /// Fills every table.
-pub fn prepare(method: &Discretisation, setup: &Setup) -> Result<Prepared, Failure> {
-    let volume = method.volume()?;
+pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Result<Prepared, Failure> {
+    let volume = method.volume(work)?;
     let spacing = method.spacing(&volume.rows);
     let mut prepared = Prepared {
         volume,
@@ -64,6 +65,10 @@ pub fn prepare(method: &Discretisation, setup: &Setup) -> Result<Prepared, Failu
             Discretisation::Efg(efg) => prepared.hold_weakly(method, efg, held)?,
         }
     }
+    work.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
+    work.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
+    work.multiplier_rows += prepared.constraints.len() as u64;
+    work.fixed_dofs += prepared.fixed.len() as u64;
     Ok(prepared)
 }
 

@@ -5,8 +5,9 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "dofs", "elements", "method", "metrics", "nodes", "phases", "plan", "probes", "scene", "status", "tools",
+    "work",
 ];
 
 #[test]

@@ -29,7 +29,7 @@ pressure = "1 kPa"
 id = "tet4"
 family = "fem"
 element = "tet4"
-size = { cells = [2, 2, 1] }
+size = { cells = [2, 2, 2] }
 
 [[method]]
 id = "efg"
@@ -72,7 +72,7 @@ const OF_FILE: &[(&str, &str)] = &[
         "shape = \"box\"\nsize = [\"40 mm\", \"40 mm\", \"20 mm\"]",
         "shape = \"file\"\npath = \"two.msh\"\nunit = \"mm\"",
     ),
-    ("size = { cells = [2, 2, 1] }", "size = { file = \"two.msh\", unit = \"mm\" }"),
+    ("size = { cells = [2, 2, 2] }", "size = { file = \"two.msh\", unit = \"mm\" }"),
     ("nodes = 60", "size = { file = \"two.msh\", unit = \"mm\" }"),
     ("on = \"z-max\"", "on = \"roof\""),
 ];
@@ -255,7 +255,7 @@ const CASES: &[Case] = &[
             ("on = \"z-max\"", "on = \"surface\""),
             ("z == 0 mm", "z <= 0 mm"),
         ],
-        edit: ("size = { cells = [2, 2, 1] }", "size = { cells = [2, 2, 1] } #<"),
+        edit: ("size = { cells = [2, 2, 2] }", "size = { cells = [2, 2, 2] } #<"),
         key: "method[0].size.cells",
         says: &["is for boxes, not for a ball", "level, nodes or spacing"],
         stops: &["tet4"],
@@ -263,7 +263,7 @@ const CASES: &[Case] = &[
     },
     Case {
         name: "a mesh too fine to be meant",
-        edit: ("size = { cells = [2, 2, 1] }", "size = { spacing = \"1 um\" } #<"),
+        edit: ("size = { cells = [2, 2, 2] }", "size = { spacing = \"1 um\" } #<"),
         key: "method[0].size.spacing",
         says: &["'1 um' makes 20000 cells", "1000"],
         stops: &["tet4"],
@@ -271,7 +271,7 @@ const CASES: &[Case] = &[
     },
     Case {
         name: "jitter that folds cells",
-        edit: ("cells = [2, 2, 1] }", "cells = [6, 6, 3] }\njitter = { fraction = 0.49, seed = 3 } #<"),
+        edit: ("cells = [2, 2, 2] }", "cells = [6, 6, 3] }\njitter = { fraction = 0.49, seed = 3 } #<"),
         key: "method[0].jitter.fraction",
         says: &["'0.49'", "is inverted: det J = -", "smaller"],
         stops: &["tet4"],
@@ -350,6 +350,23 @@ const CASES: &[Case] = &[
         code: 3,
         key: "method[1].integration.rule",
         says: &["'grid' clips a grid", "\"gauss\" or \"cell-smoothed\""],
+        stops: &["efg"],
+        ..SOUND
+    },
+    Case {
+        name: "a grid over several regions",
+        base: &[(
+            "[[support]]",
+            "[[region]]\nname = \"tumour\"\nwhere = \"z >= 10 mm\"\nmaterial = { law = \"linear\", young = \"5 kPa\", \
+             poisson = 0.3 }\n\n[[support]]",
+        )],
+        edit: (
+            "integration = { rule = \"gauss\", points = 4 }",
+            "integration = { rule = \"grid\", points = 8 } #<",
+        ),
+        code: 3,
+        key: "method[1].integration.rule",
+        says: &["'grid' does not know the region"],
         stops: &["efg"],
         ..SOUND
     },
@@ -479,8 +496,8 @@ fn a_failed_run_still_says_what_it_would_have_done() {
     let dir = tempfile::tempdir().unwrap();
     let path = write(&dir, "free.toml", &SCENE.replace("\"xyz\"", "\"z\""));
     let objects = json(&tissuebench(&["run", &path, "--format", "json"]));
-    // 3 x 3 x 2 nodes and 2 x 2 x 1 boxes of six.
-    assert_eq!((&objects[0]["nodes"], &objects[0]["elements"]), (&18.into(), &24.into()));
+    // 3 x 3 x 3 nodes and 2 x 2 x 2 boxes of six.
+    assert_eq!((&objects[0]["nodes"], &objects[0]["elements"]), (&27.into(), &48.into()));
     assert_eq!(objects[1]["nodes"], 60);
     for object in &objects {
         assert_eq!(object["status"], "could-not-run");
