@@ -1,13 +1,16 @@
 //! The scene's body as a mesh of the size asked for, or as a closed form for clouds.
 
-use cases::scene::{Body, Jitter, MeshFile, Size};
+use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
-    self, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, kidney_mesh, raise_order, sphere_shell_mesh,
+    self, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, kidney_mesh, raise_order,
+    sphere_shell_mesh,
 };
+use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, msh, quality};
 
 use crate::Failure;
+use crate::error::Key;
 
 /// More nodes than this are a typing error rather than a wish on one machine.
 const MOST_NODES: usize = 3_000_000;
@@ -15,7 +18,7 @@ const MOST_NODES: usize = 3_000_000;
 /// A mesh of the body in cells of one kind, checked for inverted cells.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     let mesh = unchecked(body, kind, size, jitter)?;
-    quality::check(&mesh).map_err(|bad| Failure::Run(bad.to_string()))?;
+    quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
     Ok(mesh)
 }
 
@@ -36,7 +39,8 @@ fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -
         return from_file(file, kind);
     }
     if let (Some(_), true) = (jitter, !matches!(body, Body::Box { .. })) {
-        return Err(Failure::Input(format!("jitter is for boxes; a {} has none", body.name())));
+        let problem = format!("is for boxes; a {} has none", body.name());
+        return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
         let mesh = match *body {
@@ -57,18 +61,15 @@ fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -
             }
             Body::Kidney => kidney_mesh(kind, n),
             Body::File(ref file) => {
-                return Err(Failure::Input(format!(
-                    "the body is the mesh of {}; its methods take size = {{ file = \"...\" }}",
-                    file.path.display()
-                )));
+                let problem = format!("is of a family of meshes, but the body is {}", file.path.display());
+                let help = "give the method a mesh too: size = { file = \"...\" }";
+                return Err(Failure::input(Key::Size(""), problem, help));
             }
         };
-        let mesh = mesh?;
+        let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;
         if mesh.points().len() > MOST_NODES {
-            return Err(Failure::Input(format!(
-                "{} nodes are asked for; at most {MOST_NODES} are made",
-                mesh.points().len()
-            )));
+            let problem = format!("asks for {} nodes; at most {MOST_NODES} are made", mesh.points().len());
+            return Err(Failure::input(Key::Size(""), problem, "make it coarser"));
         }
         Ok(mesh)
     };
@@ -78,18 +79,19 @@ fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -
         Size::Spacing(spacing) => {
             let n = narrowest(body) / spacing;
             if !(n.is_finite() && n < 1e3) {
-                return Err(Failure::Input(format!(
-                    "a spacing of {spacing} m makes {n:.0} cells across the body"
-                )));
+                let problem = format!("makes {n:.0} cells across the body");
+                return Err(Failure::input(Key::Size("spacing"), problem, "at most 1000 are made"));
             }
             family(n.round().max(1.0) as usize)
         }
         Size::Cells { cells, grading } => match *body {
-            Body::Box { min, max } => Ok(cuboid(kind, min, max, cells, grading, jitter)?),
-            _ => Err(Failure::Input(format!(
-                "cells = [nx, ny, nz] is for boxes; a {} takes level, nodes or spacing",
-                body.name()
-            ))),
+            Body::Box { min, max } => {
+                cuboid(kind, min, max, cells, grading, jitter).map_err(|bad| ungenerated(bad, size, jitter))
+            }
+            _ => {
+                let problem = format!("is for boxes, not for a {}", body.name());
+                Err(Failure::input(Key::Size("cells"), problem, "give level, nodes or spacing"))
+            }
         },
         Size::File(_) => unreachable!("returned above"),
     }
@@ -105,6 +107,28 @@ fn cuboid(
 ) -> Result<Mesh, generate::GenerateError> {
     let jitter = jitter.map(|j| generate::Jitter { fraction: j.fraction, seed: j.seed });
     box_mesh(kind, min.into(), max.into(), cells, grading, jitter)
+}
+
+/// A cell turned inside out, by the file that holds it, by jitter, or by the size asked for.
+fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
+    let (key, help) = match (size, jitter) {
+        (Size::File(_), _) => (Key::Size("file"), "its corners have to be in the order of the format"),
+        (_, Some(_)) => (Key::Method("jitter.fraction"), "make it smaller"),
+        _ => (Key::Size(""), "make the grading closer to 1, or the mesh finer"),
+    };
+    Failure::input(key, format!("gives a mesh in which {bad}"), help)
+}
+
+fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failure {
+    match bad {
+        GenerateError::Inverted(bad) => inverted(bad, size, jitter),
+        GenerateError::Cells { .. } | GenerateError::Value { .. } => {
+            Failure::input(Key::Size(""), format!("makes no mesh: {bad}"), "")
+        }
+        GenerateError::Mesh(_) => {
+            Failure::at(ErrorKind::NotRun, Key::Size(""), format!("makes no mesh: {bad}"), "")
+        }
+    }
 }
 
 /// The ends of an upright cylinder under the names that scenes know.
@@ -156,18 +180,21 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
 
 /// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.
 fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
-    let mesh = msh::read(&file.path, file.unit).map_err(|bad| Failure::Input(bad.to_string()))?;
+    let unread = |bad: msh::MshError| {
+        Failure::input(Key::Size("file"), format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file")
+    };
+    let mesh = msh::read(&file.path, file.unit).map_err(unread)?;
     let fits = |mesh: &Mesh, kind| (0..mesh.cell_count()).all(|c| mesh.kind(c) == kind);
     match kind {
         _ if fits(&mesh, kind) => Ok(mesh),
         CellKind::Tet10 if fits(&mesh, CellKind::Tet4) => Ok(raise_order(&mesh)),
         CellKind::Hex20 if fits(&mesh, CellKind::Hex8) => Ok(raise_order(&mesh)),
-        _ => Err(Failure::Input(format!(
-            "{} holds {} cells, not {}",
-            file.path.display(),
-            mesh.uniform_kind().map_or("mixed", CellKind::name),
-            kind.name()
-        ))),
+        _ => {
+            let found = mesh.uniform_kind().map_or("mixed", CellKind::name);
+            let problem = format!("holds {found} cells, not {}", kind.name());
+            let help = format!("tissuebench mesh convert ... --element {}", kind.name());
+            Err(Failure::input(Key::Size("file"), problem, &help))
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use reports::{RunSet, Status};
 use crate::cli::{Cli, Command, Format, RunArgs, VerifyArgs};
 use crate::group::{Group, case_name};
 use crate::json::RunObject;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Unfinished};
 use crate::run::Repeats;
 use crate::study::Plan;
 use crate::{Failure, check, list, mesh_files, provenance};
@@ -96,11 +96,16 @@ fn run(args: &RunArgs) -> u8 {
         Err(failure) => {
             if args.format == Format::Json {
                 for &index in &chosen {
-                    let reason = format!("its reference could not run: {failure}");
-                    print_json(&RunObject::failed(&case, &scene.methods[index].id, reason, &[]));
+                    let method = &scene.methods[index];
+                    print_json(&RunObject::failed(
+                        &case,
+                        &method.id,
+                        &unreferenced(&scene, method, &failure),
+                    ));
                 }
             }
-            return fail(&failure);
+            eprintln!("{failure} (every method)");
+            return failure.exit_code();
         }
     };
     let mut code = 0;
@@ -128,11 +133,12 @@ fn run(args: &RunArgs) -> u8 {
                 }
                 outcomes.push(outcome);
             }
-            Err(failure) => {
-                eprintln!("{case} {}: {failure}", method.id);
+            Err(unfinished) => {
                 if args.format == Format::Json {
-                    print_json(&RunObject::failed(&case, &method.id, failure.to_string(), &[]));
+                    print_json(&RunObject::failed(&case, &method.id, &unfinished));
                 }
+                let failure = unfinished.failure;
+                eprintln!("{failure} (method '{}')", method.id);
                 set.failures.push(reports::Failure {
                     case: case.clone(),
                     method: method.id.clone(),
@@ -163,6 +169,14 @@ fn run(args: &RunArgs) -> u8 {
     code
 }
 
+/// A method that did not run because its reference could not: what it would have done.
+fn unreferenced(scene: &Scene, method: &scene::Method, failure: &Failure) -> Unfinished {
+    let planned =
+        Group::unreferenced(scene, REPEATS).and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
+    let (plan, size) = planned.unwrap_or_default();
+    Unfinished { failure: failure.clone(), plan, size }
+}
+
 fn print_json(object: &RunObject) {
     println!("{}", serde_json::to_string(object).expect("finite numbers and text"));
 }
@@ -179,8 +193,11 @@ fn plan(path: &Path, methods: &[String]) -> u8 {
         let stages = Group::unreferenced(&scene, REPEATS)
             .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
         match stages {
-            Ok(stages) => print!("{}", list::stages(&method.id, &stages)),
-            Err(failure) => code = code.max(fail(&failure)),
+            Ok((stages, _)) => print!("{}", list::stages(&method.id, &stages)),
+            Err(failure) => {
+                eprintln!("{failure} (method '{}')", method.id);
+                code = code.max(failure.exit_code());
+            }
         }
     }
     code

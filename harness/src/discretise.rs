@@ -8,6 +8,8 @@ use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
 use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
 
 use crate::Failure;
+use crate::error::Key;
+use crate::work::Work;
 
 /// Which quadrature points share a dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +97,7 @@ pub enum Discretisation {
 pub struct Volume {
     /// The quadrature.
     pub rows: VolumeRows,
-    /// Region of each point.
+    /// Region of each point; empty where the body is of one.
     pub region: Vec<u16>,
     /// Points that share a dilation.
     pub groups: Option<DilationGroups>,
@@ -142,8 +144,8 @@ impl Discretisation {
     }
 
     /// Fills the volume tables (and, for a cloud, builds the supports first).
-    pub fn volume(&self) -> Result<Volume, Failure> {
-        match self {
+    pub fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
+        let volume = match self {
             Discretisation::Fem(fem) => {
                 let rows = fem::volume_rows(&fem.mesh, &VolumeRule::STANDARD)?;
                 let groups = match fem.dilation {
@@ -151,11 +153,15 @@ impl Discretisation {
                     Dilation::Element => Some(fem::element_dilation(&fem.mesh, &VolumeRule::STANDARD)?),
                     Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
                 };
-                let region = fem::regions(&fem.mesh, &VolumeRule::STANDARD);
-                Ok(Volume { rows, region, groups, approximation: None, mls: None, volume_error: None })
+                let region = of_regions(&fem.mesh, |mesh| fem::regions(mesh, &VolumeRule::STANDARD));
+                Volume { rows, region, groups, approximation: None, mls: None, volume_error: None }
             }
-            Discretisation::Efg(efg) => efg.volume(),
-        }
+            Discretisation::Efg(efg) => efg.volume(work)?,
+        };
+        work.volume_rows += volume.rows.weights().len() as u64;
+        work.dilation_groups += volume.groups.as_ref().map_or(0, DilationGroups::len) as u64;
+        work.point_laws += volume.region.len() as u64;
+        Ok(volume)
     }
 
     /// Values on facets, with the method's own surface rule.
@@ -203,36 +209,51 @@ impl Discretisation {
         match (self, &volume.approximation) {
             (Discretisation::Efg(efg), Some(approximation)) => {
                 let (rows, _) = efg::gauss_rows(approximation, &efg.background, ERROR_POINTS)?;
-                Ok((rows, efg::gauss_regions(&efg.background, ERROR_POINTS)))
+                Ok((rows, of_regions(&efg.background, |mesh| efg::gauss_regions(mesh, ERROR_POINTS))))
             }
             _ => {
                 let rule = &VolumeRule::FINE;
-                Ok((fem::volume_rows(self.mesh(), rule)?, fem::regions(self.mesh(), rule)))
+                let region = of_regions(self.mesh(), |mesh| fem::regions(mesh, rule));
+                Ok((fem::volume_rows(self.mesh(), rule)?, region))
             }
         }
     }
+}
+
+/// The region of each point where there are several; where there is one, nothing is looked up for any point.
+fn of_regions(mesh: &Mesh, points: impl Fn(&Mesh) -> Vec<u16>) -> Vec<u16> {
+    if mesh.region_names().len() > 1 { points(mesh) } else { Vec::new() }
 }
 
 /// Points per background tetrahedron of the error quadrature of clouds (degree 5).
 const ERROR_POINTS: usize = 14;
 
 impl Efg {
-    fn volume(&self) -> Result<Volume, Failure> {
+    fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
         let radii = self.support.radii(&self.cloud.points, &self.cloud.spacing)?;
+        work.support_radii += radii.len() as u64;
         let approximation = Approximation::new(self.cloud.points.clone(), radii, self.kernel, self.basis)?;
         let (rows, mls, region, volume_error) = match self.integration {
             Integration::Gauss { points } => {
                 let (rows, mls) = efg::gauss_rows(&approximation, &self.background, points)?;
-                (rows, mls, efg::gauss_regions(&self.background, points), None)
+                let region = of_regions(&self.background, |mesh| efg::gauss_regions(mesh, points));
+                (rows, mls, region, None)
             }
             Integration::Grid { spacing, points } => {
                 let Some(shape) = &self.shape else {
-                    return Err(Failure::Unsupported(
-                        "integration over a clipped grid needs a body in closed form; a mesh file has no inside \
-                         test, so use rule = \"gauss\" or \"cell-smoothed\""
-                            .into(),
+                    return Err(Failure::unavailable(
+                        Key::Method("integration.rule"),
+                        "clips a grid by a body in closed form; a mesh and an octant have no inside test",
+                        "take rule = \"gauss\" or \"cell-smoothed\"",
                     ));
                 };
+                if self.background.region_names().len() > 1 {
+                    return Err(Failure::unavailable(
+                        Key::Method("integration.rule"),
+                        "does not know the region of a grid's points, and the body has several",
+                        "take rule = \"gauss\" or \"cell-smoothed\"",
+                    ));
+                }
                 let [min, max] = shape.bounds();
                 let inside = |x: &Point3| shape.inside(x);
                 let (rows, grid, mls) = efg::grid_rows(&approximation, inside, (min, max), spacing, points)?;
@@ -240,7 +261,7 @@ impl Efg {
             }
             Integration::CellSmoothed { face_points } => {
                 let (rows, mls) = efg::smoothed_rows(&approximation, &self.background, face_points)?;
-                (rows, mls, efg::smoothed_regions(&self.background), None)
+                (rows, mls, of_regions(&self.background, efg::smoothed_regions), None)
             }
         };
         let groups = match self.dilation {

@@ -1,25 +1,111 @@
-//! Why a run gave no numbers, and which exit code that is.
+//! Why a run gave no numbers, which key of the scene that is about, and which exit code it means.
+
+use cases::scene::{ErrorKind, Scene, SceneError};
 
 /// What stopped a run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The input asks for something that makes no sense: exit code 2.
+    /// At one key of a scene; prints as `file:line: key 'path': 'found' problem; help`.
+    #[error("{0}")]
+    Scene(Box<SceneError>),
+    /// Known to be about a part of the scene whose file and line are still to be looked up.
+    #[error("{}", .0.problem)]
+    At(Box<Finding>),
+    /// Input that is no scene makes no sense.
     #[error("{0}")]
     Input(String),
-    /// The input is sound but beyond what can run: exit code 3.
-    #[error("{0}")]
-    Unsupported(String),
-    /// The method could not run or did not converge: exit code 3.
+    /// Tables of a cloud could not be made.
+    #[error(transparent)]
+    Efg(#[from] efg::EfgError),
+    /// Assembly or solution failed.
+    #[error(transparent)]
+    Solve(#[from] mechanics::SolveError),
+    /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
 }
 
+/// A failure that knows its part of the scene, not yet the place in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Whose fault it is: what exit code it means.
+    pub kind: ErrorKind,
+    /// The part of the scene.
+    pub key: Key,
+    /// What is wrong.
+    pub problem: String,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+/// A part of a scene as code sees it that knows neither the scene nor the method's place in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A key of the scene, such as `support[0].where`.
+    Scene(String),
+    /// A key below the method; the method itself if empty.
+    Method(&'static str),
+    /// A key below the size that mesh or cloud were made in; the size itself if empty.
+    Size(&'static str),
+    /// A key below the size of the background cells.
+    Background(&'static str),
+}
+
 impl Failure {
+    /// Input that makes no sense at a key.
+    pub fn input(key: Key, problem: impl Into<String>, help: &str) -> Failure {
+        Failure::at(ErrorKind::Invalid, key, problem, help)
+    }
+
+    /// Sound input that can't be had yet.
+    pub fn unavailable(key: Key, problem: impl Into<String>, help: &str) -> Failure {
+        Failure::at(ErrorKind::NotAvailable, key, problem, help)
+    }
+
+    pub(crate) fn at(kind: ErrorKind, key: Key, problem: impl Into<String>, help: &str) -> Failure {
+        let help = (!help.is_empty()).then(|| help.to_string());
+        Failure::At(Box::new(Finding { kind, key, problem: problem.into(), help }))
+    }
+
+    /// Bad input at a key of a scene.
+    pub(crate) fn of_scene(scene: &Scene, kind: ErrorKind, key: &str, problem: &str, help: &str) -> Failure {
+        let help = (!help.is_empty()).then_some(help);
+        Failure::Scene(Box::new(scene.error(kind, key, problem, help)))
+    }
+
+    /// The same failure of the background cells' size where it was of a size.
+    pub(crate) fn of_background(mut self) -> Failure {
+        if let Failure::At(finding) = &mut self
+            && let Key::Size(below) = finding.key
+        {
+            finding.key = Key::Background(below);
+        }
+        self
+    }
+
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Failure::Scene(error) => error.kind,
+            Failure::At(finding) => finding.kind,
+            Failure::Input(_) => ErrorKind::Invalid,
+            Failure::Efg(_) | Failure::Solve(_) | Failure::Run(_) => ErrorKind::NotRun,
+        }
+    }
+
     /// The exit code of a program that met this.
     pub fn exit_code(&self) -> u8 {
-        match self {
-            Failure::Input(_) => 2,
-            Failure::Unsupported(_) | Failure::Run(_) => 3,
+        match self.kind() {
+            ErrorKind::Invalid => 2,
+            ErrorKind::NotAvailable | ErrorKind::NotRun => 3,
+        }
+    }
+
+    /// The status of a run that ended with this, in its JSON object.
+    pub fn status(&self) -> &'static str {
+        match self.kind() {
+            ErrorKind::Invalid => "bad-input",
+            ErrorKind::NotAvailable => "not-available",
+            ErrorKind::NotRun => "could-not-run",
         }
     }
 }
@@ -34,12 +120,11 @@ macro_rules! run_failures {
     )*};
 }
 
-run_failures!(
-    fem::FemError,
-    efg::EfgError,
-    interp::InterpError,
-    shape::ShapeError,
-    mechanics::SolveError,
-    geometry::MeshError,
-    geometry::generate::GenerateError
-);
+run_failures!(fem::FemError, shape::ShapeError);
+
+impl From<interp::InterpError> for Failure {
+    fn from(error: interp::InterpError) -> Failure {
+        let key = Key::Scene("output.transfer".into());
+        Failure::at(ErrorKind::NotRun, key, format!("can't be made: {error}"), "")
+    }
+}

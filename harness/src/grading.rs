@@ -5,6 +5,7 @@ use geometry::shapes::Shape;
 use geometry::{Point3, Refinement};
 
 use crate::Failure;
+use crate::error::Key;
 
 /// Coarse over fine spacing of a graded cloud.
 const RATIO: f64 = 2.5;
@@ -22,10 +23,9 @@ pub fn refinement(shape: &(dyn Shape + Send + Sync), region: &Region) -> Result<
         }
     }
     if (0..3).any(|a| from[a] > to[a]) {
-        return Err(Failure::Input(format!(
-            "graded-towards = \"{}\" holds nowhere in the body, which spans {low} to {high} m",
-            region.text
-        )));
+        let problem = format!("holds nowhere in the body, which spans {low} to {high} m");
+        let help = "check the signs and the unit of the region";
+        return Err(Failure::input(Key::Method("graded_towards"), problem, help));
     }
     let centre = Point3::from((from.coords + to.coords) / 2.0);
     let radius = (to - from).norm() / 2.0;

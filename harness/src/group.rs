@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use cases::scene::{self, Family, Output, Reference, Scene, Size, Target};
+use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use geometry::{Point3, msh};
 use interp::Scheme;
 
 use crate::discretise::Discretisation;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
 use crate::run::{self, Asks, Repeats, run};
 use crate::scenario::Scenario;
-use crate::{Failure, body};
+use crate::work::Work;
+use crate::{Failure, body, reach};
 
 /// What every run of a scene shares.
 pub struct Group<'a> {
@@ -22,6 +23,7 @@ pub struct Group<'a> {
     targets: Vec<Point3>,
     schemes: Vec<(String, Scheme)>,
     reference: Option<run::Reference>,
+    reference_work: Work,
     repeats: Repeats,
 }
 
@@ -38,10 +40,10 @@ impl<'a> Group<'a> {
         match &scene.reference {
             Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
             Some(Reference::Record(path)) => {
-                return Err(Failure::Unsupported(format!(
-                    "reference = {{ record = \"{}\" }} is not available yet; exact solutions and methods are",
-                    path.display()
-                )));
+                let problem = format!("is a stored record ({}), which is not available yet", path.display());
+                let help = "exact solutions and methods are";
+                let kind = ErrorKind::NotAvailable;
+                return Err(Failure::of_scene(scene, kind, "reference.record", &problem, help));
             }
             Some(Reference::Exact { .. }) | None => {}
         }
@@ -55,10 +57,11 @@ impl<'a> Group<'a> {
             scene,
             case: case_name(scene),
             poisson: None,
-            targets: targets(&scene.output, &probes)?,
+            targets: targets(scene, &probes)?,
             probes,
-            schemes: schemes(&scene.output)?,
+            schemes: schemes(scene)?,
             reference: None,
+            reference_work: Work::default(),
             repeats,
         })
     }
@@ -68,7 +71,8 @@ impl<'a> Group<'a> {
         if let Some(size) = size {
             resize(&mut method, size);
         }
-        let scenario = self.scenario(method, 0);
+        let mut scenario = self.scenario(method, 0);
+        scenario.size_key = size.map(|_| "reference.size".into());
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
         if self.targets.is_empty() {
             self.targets = discretisation.nodes().to_vec();
@@ -81,19 +85,35 @@ impl<'a> Group<'a> {
             repeats: Repeats { most: 1, seconds: 0.0 },
             reference: None,
         };
-        let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)?;
+        let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
+            .map_err(|failure| scenario.locate(failure))?;
+        self.reference_work = solved.outcome.work;
         self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
         Ok(())
     }
 
     /// One of the scene's methods, as a run of this group.
     pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'a> {
-        Scenario { case: self.case.clone(), scene: self.scene, method, level, poisson: self.poisson }
+        Scenario {
+            case: self.case.clone(),
+            scene: self.scene,
+            method,
+            level,
+            poisson: self.poisson,
+            size_key: None,
+        }
+    }
+
+    /// What the reference took, once for all methods; nothing where none had to run.
+    pub fn reference_work(&self) -> Work {
+        self.reference_work
     }
 
     /// Runs one method; `picture` keeps its surface displacement.
-    pub fn run(&self, scenario: &Scenario, picture: bool) -> Result<Outcome, Failure> {
-        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+    pub fn run(&self, scenario: &Scenario, picture: bool) -> Result<Outcome, Unfinished> {
+        let discretisation = scenario.discretise()?;
+        let size = size(&discretisation);
+        let setup = scenario.setup().map_err(|failure| Unfinished { failure, plan: Vec::new(), size })?;
         let stages = plan(&discretisation, &setup, self.wants());
         let asks = Asks {
             probes: &self.probes,
@@ -103,16 +123,24 @@ impl<'a> Group<'a> {
             repeats: self.repeats,
             reference: self.reference.as_ref(),
         };
-        Ok(run(scenario.identity(), stages, &discretisation, &setup, &asks)?.outcome)
+        match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {
+            Ok(solved) => Ok(solved.outcome),
+            Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan: stages, size }),
+        }
     }
 
-    /// The plan of one method, without running it.
-    pub fn plan(&self, scenario: &Scenario) -> Result<Vec<crate::outcome::Stage>, Failure> {
-        Ok(plan(&scenario.discretise()?, &scenario.setup()?, self.wants()))
+    /// The plan of one method, without running it. An empty place is refused as a run refuses it.
+    pub fn plan(&self, scenario: &Scenario) -> Result<(Vec<Stage>, Sizes), Failure> {
+        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+        reach::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
+        Ok((plan(&discretisation, &setup, self.wants()), size(&discretisation)))
     }
 
     fn wants(&self) -> Wants {
-        Wants { targets: !self.targets.is_empty(), schemes: !self.schemes.is_empty() }
+        // Known before the reference has run, so that a plan says what the run will do.
+        let nodes_of_reference = matches!(self.scene.reference, Some(Reference::Method { .. }));
+        let targets = nodes_of_reference || !self.targets.is_empty();
+        Wants { targets, schemes: targets && !self.schemes.is_empty() }
     }
 
     fn schemes_for(&self, method: &Discretisation) -> &[(String, Scheme)] {
@@ -137,13 +165,30 @@ pub fn resize(method: &mut scene::Method, size: &Size) {
     }
 }
 
-fn targets(output: &Output, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
-    for transfer in &output.transfers {
+/// What is known of the sizes before any table is filled.
+fn size(method: &Discretisation) -> Sizes {
+    let (nodes, elements) = (method.nodes().len() as u64, method.mesh().cell_count() as u64);
+    Sizes { nodes, elements, ..Sizes::default() }
+}
+
+/// The key of a transfer, which may stand alone or in a list.
+fn transfer_key(scene: &Scene, index: usize, below: &str) -> String {
+    let listed = format!("output.transfer[{index}]");
+    let key = if scene.has(&listed) { listed } else { "output.transfer".into() };
+    format!("{key}.{below}")
+}
+
+fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
+    for (index, transfer) in scene.output.transfers.iter().enumerate() {
         match &transfer.to {
             Target::ReferenceNodes => {}
             Target::Probes => return Ok(probes.to_vec()),
             Target::File(file) => {
-                let mesh = msh::read(&file.path, file.unit).map_err(|bad| Failure::Input(bad.to_string()))?;
+                let mesh = msh::read(&file.path, file.unit).map_err(|bad| {
+                    let (key, problem) =
+                        (transfer_key(scene, index, "to.file"), format!("can't be read: {bad}"));
+                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, "give a Gmsh 2.2 ASCII file")
+                })?;
                 return Ok(mesh.points().to_vec());
             }
         }
@@ -152,14 +197,15 @@ fn targets(output: &Output, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
 }
 
 /// Schemes with their settings; the method's own rows are always compared with them.
-fn schemes(output: &Output) -> Result<Vec<(String, Scheme)>, Failure> {
+fn schemes(scene: &Scene) -> Result<Vec<(String, Scheme)>, Failure> {
     let mut list = Vec::new();
-    for transfer in &output.transfers {
+    for (index, transfer) in scene.output.transfers.iter().enumerate() {
         if transfer.scheme == scene::SchemeName::Own {
             continue;
         }
         let default = Scheme::from_name(transfer.scheme.name()).ok_or_else(|| {
-            Failure::Unsupported(format!("transfer scheme \"{}\" is not available", transfer.scheme.name()))
+            let key = transfer_key(scene, index, "scheme");
+            Failure::of_scene(scene, ErrorKind::NotAvailable, &key, "is not available", "")
         })?;
         let pick = |dilatation: f64| transfer.dilatation.unwrap_or(dilatation);
         list.push(match default {

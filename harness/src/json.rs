@@ -3,18 +3,19 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::outcome::{Outcome, Stage};
+use crate::outcome::{Outcome, Stage, Unfinished};
+use crate::work::Work;
 
 /// One run as `tissuebench run --format json` prints it.
 #[derive(Serialize)]
 pub struct RunObject<'a> {
     scene: &'a str,
     method: &'a str,
-    /// `ok` or `failed`.
+    /// `ok`, or what kind of failure: `bad-input`, `not-available` or `could-not-run`.
     status: &'static str,
-    /// Why it failed; absent on success.
+    /// Why it failed, with file, line and key; absent on success.
     #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
+    message: Option<String>,
     nodes: u64,
     elements: u64,
     dofs: u64,
@@ -24,6 +25,8 @@ pub struct RunObject<'a> {
     /// Rigid tools; no procedure drives any yet.
     tools: [(); 0],
     plan: &'a [Stage],
+    /// Counts of what was done; all 0 in a run that failed.
+    work: Work,
 }
 
 #[derive(Serialize)]
@@ -53,7 +56,7 @@ impl<'a> RunObject<'a> {
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
             status: "ok",
-            reason: None,
+            message: None,
             nodes: outcome.size.nodes,
             elements: outcome.size.elements,
             dofs: outcome.size.dofs,
@@ -77,24 +80,26 @@ impl<'a> RunObject<'a> {
                 .collect(),
             tools: [],
             plan: &outcome.plan,
+            work: outcome.work,
         }
     }
 
-    /// A run that gave no numbers.
-    pub fn failed(scene: &'a str, method: &'a str, reason: String, plan: &'a [Stage]) -> RunObject<'a> {
+    /// A run that gave no numbers: what it would have done, and how large it got.
+    pub fn failed(scene: &'a str, method: &'a str, run: &'a Unfinished) -> RunObject<'a> {
         RunObject {
             scene,
             method,
-            status: "failed",
-            reason: Some(reason),
-            nodes: 0,
-            elements: 0,
-            dofs: 0,
+            status: run.failure.status(),
+            message: Some(run.failure.to_string()),
+            nodes: run.size.nodes,
+            elements: run.size.elements,
+            dofs: run.size.dofs,
             metrics: BTreeMap::new(),
             phases: BTreeMap::new(),
             probes: Vec::new(),
             tools: [],
-            plan,
+            plan: &run.plan,
+            work: Work::default(),
         }
     }
 }

@@ -4,7 +4,9 @@ use geometry::{Matrix3, Point3, Vector3};
 use reports::{PlanEntry, Record, SurfaceField};
 use serde::Serialize;
 
+use crate::Failure;
 use crate::timing::Summary;
+use crate::work::Work;
 
 /// The identity of a run: what distinguishes it from every other one.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,6 +115,25 @@ pub struct Outcome {
     pub transfers: Vec<Transfer>,
     /// Surface displacement, where the scene asks for it.
     pub field: Option<SurfaceField>,
+    /// What was done for all this.
+    pub work: Work,
+}
+
+/// A run that gave no numbers.
+#[derive(Clone, Debug)]
+pub struct Unfinished {
+    /// Why.
+    pub failure: Failure,
+    /// Stages it would have run and skipped; empty if it failed before they were known.
+    pub plan: Vec<Stage>,
+    /// Nodes and elements as far as they were made, the rest 0.
+    pub size: Size,
+}
+
+impl From<Failure> for Unfinished {
+    fn from(failure: Failure) -> Unfinished {
+        Unfinished { failure, plan: Vec::new(), size: Size::default() }
+    }
 }
 
 impl Outcome {

@@ -3,6 +3,9 @@
 use cases::scene::{Region, Relation};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
+use crate::Failure;
+use crate::error::Key;
+
 pub use cases::scene::Place;
 
 /// The part of a boundary where something acts.
@@ -30,13 +33,13 @@ impl CutTriangle {
 
 /// Diagonal of the mesh's bounding box times the relative tolerance of regions, m.
 pub fn tolerance(mesh: &Mesh) -> f64 {
-    let mut low = mesh.points()[0];
-    let mut high = low;
-    for p in mesh.points() {
-        low = low.inf(p);
-        high = high.sup(p);
-    }
+    let (low, high) = bounds(mesh);
     Region::TOLERANCE * (high - low).norm()
+}
+
+fn bounds(mesh: &Mesh) -> (Point3, Point3) {
+    let first = mesh.points()[0];
+    mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
 /// Whether `x` lies in the place's region; true for a place that is given by name.
@@ -47,18 +50,34 @@ pub fn holds(place: &Place, x: &Point3, tolerance: f64) -> bool {
     }
 }
 
-/// How the place reads in the scene file.
-pub fn text(place: &Place) -> String {
-    match place {
-        Place::On(names) => format!("on = \"{}\"", names.join("\", \"")),
-        Place::Where(region) => format!("where = \"{}\"", region.text),
-        Place::Everywhere => "no place given".into(),
-    }
+/// The key of the place, below `key` of what acts there.
+pub fn key(place: &Place, key: &str) -> Key {
+    Key::Scene(match place {
+        Place::On(_) => format!("{key}.on"),
+        Place::Where(_) => format!("{key}.where"),
+        Place::Everywhere => key.into(),
+    })
 }
 
-/// The facets that a place names (`surface` is the whole boundary of any mesh), or an error that lists the names
-/// there are; the whole boundary for a place given by comparisons.
-pub fn facets(place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, String> {
+/// What the mesh spans, in the millimetres that scenes mostly give.
+pub fn extent(mesh: &Mesh) -> String {
+    let (low, high) = bounds(mesh);
+    // To the nanometre: 0.04 m times 1000 is not 40 in the last digit.
+    let millimetres = |m: f64| (m * 1e9).round() / 1e6;
+    let along =
+        |a: usize| format!("{} = {} to {}", ["x", "y", "z"][a], millimetres(low[a]), millimetres(high[a]));
+    format!("the mesh spans {} mm", (0..3).map(along).collect::<Vec<_>>().join(", "))
+}
+
+/// What acts at `key` on a place of nothing.
+pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
+    let help = format!("{}; check the signs and the unit", extent(mesh));
+    Failure::input(self::key(place, key), "touches nothing of the body", &help)
+}
+
+/// The facets that the place of what acts at `key` names (`surface` is the whole boundary of any mesh), or an error
+/// that lists the names there are; the whole boundary for a place given by comparisons.
+pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failure> {
     let Place::On(names) = place else { return Ok(mesh.boundary()) };
     let mut all = Vec::new();
     for name in names {
@@ -67,7 +86,9 @@ pub fn facets(place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, String> {
             None if name == "surface" => all.extend(mesh.boundary()),
             None => {
                 let known: Vec<&str> = std::iter::once("surface").chain(mesh.group_names()).collect();
-                return Err(format!("the mesh has no surface named '{name}'; it has {}", known.join(", ")));
+                let problem = format!("names '{name}', a surface that the mesh does not have");
+                let help = format!("it has {}", known.join(", "));
+                return Err(Failure::input(self::key(place, key), problem, &help));
             }
         }
     }
@@ -78,9 +99,9 @@ pub fn facets(place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, String> {
 
 /// Sorted indices of the nodes in the place: those of its named facets, or any node of the mesh where its
 /// comparisons hold.
-pub fn nodes(place: &Place, mesh: &Mesh) -> Result<Vec<u32>, String> {
+pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure> {
     if let Place::On(_) = place {
-        return Ok(mesh.facet_group_nodes(&facets(place, mesh)?));
+        return Ok(mesh.facet_group_nodes(&facets(key, place, mesh)?));
     }
     let tolerance = tolerance(mesh);
     Ok((0..mesh.points().len() as u32)
@@ -91,10 +112,10 @@ pub fn nodes(place: &Place, mesh: &Mesh) -> Result<Vec<u32>, String> {
 /// The part of the boundary in the place. A facet counts as whole when all its corners and its centroid are in the
 /// region; a facet that the region cuts is clipped by the region's planes, so that the loaded area is the region's
 /// own and not that of the facets near it (on a 1331-node kidney, facets are half as wide as the jaw).
-pub fn patch(place: &Place, mesh: &Mesh) -> Result<Patch, String> {
+pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     let tolerance = tolerance(mesh);
     let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
-    for facet in facets(place, mesh)? {
+    for facet in facets(key, place, mesh)? {
         let corners = corners(mesh, facet);
         let sum = corners.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords);
         let centre = Point3::from(sum / corners.len() as f64);

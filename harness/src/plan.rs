@@ -7,7 +7,7 @@ use crate::setup::Setup;
 /// Whether the method's displacement is wanted elsewhere than at its own nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wants {
-    /// Displacements at target points.
+    /// Displacements at points that are not the method's nodes.
     pub targets: bool,
     /// Transfer schemes to compare.
     pub schemes: bool,
@@ -65,11 +65,13 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         "supports by elimination",
         cloud.is_none() && !setup.held.is_empty(),
         match cloud {
+            _ if setup.held.is_empty() => "no support in the scene".into(),
             None => "the basis is Kronecker: nodal parameters are displacements".into(),
             Some(_) => "nodal parameters are not displacements".into(),
         },
     );
     let weak = match cloud.map(|efg| efg.essential) {
+        _ if setup.held.is_empty() => (false, "no support in the scene".into()),
         None => (false, "supports are eliminated".into()),
         Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
         Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
@@ -80,7 +82,8 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     add("Newton iterations", false, "linear".into());
     add("contact search", false, "no tool in the scene".into());
     match (cloud.is_some(), wants.targets) {
-        (false, _) => add("transfer", false, "a Kronecker basis: nodal values are displacements".into()),
+        (false, false) => add("transfer", false, "a Kronecker basis: nodal values are displacements".into()),
+        (false, true) => add("transfer", true, "evaluated with the elements' shape functions".into()),
         (true, true) => add("transfer", true, "evaluated with the method's own shape functions".into()),
         (true, false) => add("transfer", true, "to the nodes, with the method's own shape functions".into()),
     }

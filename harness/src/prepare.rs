@@ -7,8 +7,10 @@ use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, Unity};
 
 use crate::Failure;
 use crate::discretise::{Discretisation, Efg, Essential, Volume};
+use crate::error::Key;
 use crate::place::{self, CutTriangle, Place, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
+use crate::work::Work;
 
 /// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
 const CUT_POINTS: usize = 6;
@@ -42,8 +44,8 @@ pub struct Prepared {
 }
 
 /// Fills every table.
-pub fn prepare(method: &Discretisation, setup: &Setup) -> Result<Prepared, Failure> {
-    let volume = method.volume()?;
+pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Result<Prepared, Failure> {
+    let volume = method.volume(work)?;
     let spacing = method.spacing(&volume.rows);
     let mut prepared = Prepared {
         volume,
@@ -63,6 +65,10 @@ pub fn prepare(method: &Discretisation, setup: &Setup) -> Result<Prepared, Failu
             Discretisation::Efg(efg) => prepared.hold_weakly(method, efg, held)?,
         }
     }
+    work.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
+    work.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
+    work.multiplier_rows += prepared.constraints.len() as u64;
+    work.fixed_dofs += prepared.fixed.len() as u64;
     Ok(prepared)
 }
 
@@ -132,10 +138,10 @@ impl Prepared {
     fn load(&mut self, method: &Discretisation, load: &Acting) -> Result<(), Failure> {
         if let Applied::Body(field) = &load.applied {
             let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
-            self.body_force.push(values.map_err(Failure::Input)?);
+            self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
             return Ok(());
         }
-        let patch = place::patch(&load.place, method.mesh()).map_err(Failure::Input)?;
+        let patch = place::patch(&load.key, &load.place, method.mesh())?;
         let before = self.surfaces.len();
         let mut surfaces = Vec::new();
         if !patch.whole.is_empty() {
@@ -148,28 +154,32 @@ impl Prepared {
             let at = surface.points().iter().zip(surface.normals());
             let values = match &load.applied {
                 Applied::Traction(field) => Values::Traction(
-                    at.map(|(x, n)| field(x, n)).collect::<Result<_, _>>().map_err(Failure::Input)?,
+                    at.map(|(x, n)| field(x, n))
+                        .collect::<Result<_, _>>()
+                        .map_err(not_finite(&load.key, "traction"))?,
                 ),
                 Applied::Pressure(field) => Values::Pressure(
-                    at.map(|(x, _)| field(x)).collect::<Result<_, _>>().map_err(Failure::Input)?,
+                    at.map(|(x, _)| field(x))
+                        .collect::<Result<_, _>>()
+                        .map_err(not_finite(&load.key, "pressure"))?,
                 ),
                 Applied::Body(_) => unreachable!("returned above"),
             };
             self.surfaces.push((surface, values));
         }
         if self.surfaces.len() == before {
-            return Err(empty("load", &load.place));
+            return Err(place::empty(&load.key, &load.place, method.mesh()));
         }
         Ok(())
     }
 
     fn hold_nodes(&mut self, mesh: &Mesh, held: &Held) -> Result<(), Failure> {
-        let nodes = place::nodes(&held.place, mesh).map_err(Failure::Input)?;
+        let nodes = place::nodes(&held.key, &held.place, mesh)?;
         if nodes.is_empty() {
-            return Err(empty("support", &held.place));
+            return Err(place::empty(&held.key, &held.place, mesh));
         }
         for node in nodes {
-            let value = (held.value)(&mesh.points()[node as usize]).map_err(Failure::Input)?;
+            let value = (held.value)(&mesh.points()[node as usize]).map_err(not_finite(&held.key, "move"))?;
             for axis in (0..3).filter(|&a| held.axes[a]) {
                 self.fixed.push(FixedDof { node, axis: axis as u8, value: value[axis] });
             }
@@ -180,7 +190,7 @@ impl Prepared {
     /// A support on a basis whose parameters are not displacements: on the facets of the place, and, where the place
     /// has a volume (a clamped end, not a clamped face), on that too.
     fn hold_weakly(&mut self, method: &Discretisation, efg: &Efg, held: &Held) -> Result<(), Failure> {
-        let patch = place::patch(&held.place, &efg.background).map_err(Failure::Input)?;
+        let patch = place::patch(&held.key, &held.place, &efg.background)?;
         let (rows, constraints) = (self.weak.len(), self.constraints.len());
         match efg.essential {
             Essential::Multipliers => {
@@ -222,7 +232,7 @@ impl Prepared {
             }
         }
         if self.weak.len() == rows && self.constraints.len() == constraints {
-            return Err(empty("support", &held.place));
+            return Err(place::empty(&held.key, &held.place, &efg.background));
         }
         Ok(())
     }
@@ -230,9 +240,10 @@ impl Prepared {
     fn hold_flux(&mut self, efg: &Efg, held: &Held, flux: FluxRows, method: Weak) -> Result<(), Failure> {
         let values = at(held, flux.points())?;
         let region = if efg.background.region_names().len() > 1 {
-            return Err(Failure::Unsupported(
-                "weak supports on a body of several regions are not available for clouds; use one region"
-                    .into(),
+            return Err(Failure::unavailable(
+                Key::Method("essential"),
+                "holds weakly, which is not available for clouds on a body of several regions",
+                "take one region, or essential = \"multipliers\"",
             ));
         } else {
             Vec::new()
@@ -272,14 +283,15 @@ impl Prepared {
 }
 
 fn at(held: &Held, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
-    points.iter().map(&held.value).collect::<Result<_, _>>().map_err(Failure::Input)
+    points.iter().map(&held.value).collect::<Result<_, _>>().map_err(not_finite(&held.key, "move"))
 }
 
-fn empty(what: &str, place: &Place) -> Failure {
-    Failure::Input(format!(
-        "the {what} with {} touches nothing of the body; check the signs and the unit of the region",
-        place::text(place)
-    ))
+/// A value that is no number somewhere, of what acts at `key`.
+fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
+    let key = Key::Scene(format!("{key}.{below}"));
+    move |problem| {
+        Failure::input(key.clone(), problem, "it has to be finite at every point of the place it acts on")
+    }
 }
 
 /// `u(x_c) = g(x_c)` at points, by one constraint row per point and held axis.

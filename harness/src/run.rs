@@ -15,6 +15,7 @@ use crate::prepare::{Prepared, prepare};
 use crate::setup::Setup;
 use crate::timing::Timings;
 use crate::transfer::transfers;
+use crate::work::Work;
 
 /// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,21 +76,15 @@ pub fn run(
     crate::memory::reset_peak();
     let mut timings = Timings::default();
     let start = Instant::now();
-    let (mut prepared, mut solution) = solve_once(method, setup, &mut timings)?;
+    let (mut prepared, mut solution, mut work) = solve_once(method, setup, &mut timings)?;
     for _ in 1..asks.repeats.most {
         if start.elapsed().as_secs_f64() > asks.repeats.seconds {
             break;
         }
-        (prepared, solution) = solve_once(method, setup, &mut timings)?;
+        (prepared, solution, work) = solve_once(method, setup, &mut timings)?;
     }
     let memory = crate::memory::peak();
-    if let (Discretisation::Efg(_), false) = (method, asks.targets.is_empty()) {
-        for _ in 0..asks.repeats.most {
-            timings.time("transfer", || -> Result<_, Failure> {
-                Ok(method.at_points(&prepared.volume, asks.targets)?.0.rows().apply(&solution.u))
-            })?;
-        }
-    }
+    let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
     let mut phases = timings.summaries();
     phases.push(("total", timings.total()));
 
@@ -102,7 +97,7 @@ pub fn run(
     };
     let u = solution.u.clone();
     let mut metrics = Vec::new();
-    measure(&mut metrics, method, setup, &prepared, &solution, asks)?;
+    measure(&mut metrics, method, setup, &prepared, &solution, field, asks)?;
     let probes = probes(method, setup, &prepared, &u, asks.probes)?;
     if let (Some(exact), Some(probe)) = (&setup.exact, probes.first()) {
         let e = exact.displacement(&probe.x);
@@ -118,11 +113,11 @@ pub fn run(
         }
     }
     let transfers = match method {
-        Discretisation::Efg(_) => transfers(method, &prepared, &u, asks)?,
+        Discretisation::Efg(_) => transfers(method, &prepared, &u, asks, &mut work)?,
         Discretisation::Fem(_) => Vec::new(),
     };
     let field = if asks.picture { Some(picture(&identity, method, &prepared, &u)?) } else { None };
-    let outcome = Outcome { identity, size, metrics, phases, memory, probes, plan, transfers, field };
+    let outcome = Outcome { identity, size, metrics, phases, memory, probes, plan, transfers, field, work };
     Ok(Solved { outcome, prepared, u })
 }
 
@@ -130,16 +125,52 @@ fn solve_once(
     method: &Discretisation,
     setup: &Setup,
     timings: &mut Timings,
-) -> Result<(Prepared, Solution), Failure> {
-    let prepared = timings.time("prepare", || prepare(method, setup))?;
+) -> Result<(Prepared, Solution, Work), Failure> {
+    let mut work = Work::default();
+    let prepared = timings.time("prepare", || prepare(method, setup, &mut work))?;
     let solution = {
         let (loads, weak) = (prepared.loads(), prepared.weak());
         let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
         let assembled = timings.time("assemble", || assemble(&problem))?;
+        work.assemblies += 1;
         let factored = timings.time("factor", || assembled.factor())?;
-        timings.time("solve", || factored.solve(1.0))?
+        work.factorisations += 1;
+        let solution = timings.time("solve", || factored.solve(1.0))?;
+        work.solves += 1;
+        solution
     };
-    Ok((prepared, solution))
+    Ok((prepared, solution, work))
+}
+
+/// Displacement (m) at the targets, and how many of these lie outside; at the method's own nodes without targets. There
+/// the parameters of elements are displacements already, and nothing is evaluated.
+fn displacement(
+    method: &Discretisation,
+    prepared: &Prepared,
+    u: &[Vector3],
+    asks: &Asks,
+    timings: &mut Timings,
+    work: &mut Work,
+) -> Result<(Vec<Vector3>, usize), Failure> {
+    let points = match (method, asks.targets.is_empty()) {
+        (Discretisation::Fem(_), true) => return Ok((u.to_vec(), 0)),
+        (Discretisation::Efg(_), true) => method.nodes(),
+        (_, false) => asks.targets,
+    };
+    let once = || -> Result<_, Failure> {
+        let (rows, outside) = method.at_points(&prepared.volume, points)?;
+        Ok((rows.rows().apply(u), outside))
+    };
+    work.transfer_rows += points.len() as u64;
+    let timed = matches!(method, Discretisation::Efg(_)) && !asks.targets.is_empty();
+    if !timed {
+        return once();
+    }
+    let mut field = timings.time("transfer", once)?;
+    for _ in 1..asks.repeats.most {
+        field = timings.time("transfer", once)?;
+    }
+    Ok(field)
 }
 
 pub(crate) fn push(metrics: &mut Vec<Metric>, name: &str, value: f64, unit: &'static str) {
@@ -153,6 +184,7 @@ fn measure(
     setup: &Setup,
     prepared: &Prepared,
     solution: &Solution,
+    (field, outside): (Vec<Vector3>, usize),
     asks: &Asks,
 ) -> Result<(), Failure> {
     let body = Body {
@@ -174,8 +206,6 @@ fn measure(
         }
     }
     let points = if asks.targets.is_empty() { method.nodes() } else { asks.targets };
-    let (rows, outside) = method.at_points(&prepared.volume, points)?;
-    let field = rows.rows().apply(&solution.u);
     let against = match (&setup.exact, asks.reference) {
         (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
         (None, Some(reference)) => Some(reference.targets.clone()),

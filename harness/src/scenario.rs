@@ -1,11 +1,12 @@
 //! From a checked scene and one of its methods to what the solvers take.
 
 use cases::exact::{Exact, Params, exact_by_name};
-use cases::scene::{self, Family, LoadKind, Material, Prescribed, Reference, Scene, VectorField};
-use geometry::{CellKind, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
+use cases::scene::{self, ErrorKind, Family, LoadKind, Material, Prescribed, Reference, Scene, VectorField};
+use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::LinearElastic;
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
+use crate::error::Key;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
@@ -30,6 +31,8 @@ pub struct Scenario<'a> {
     pub level: u32,
     /// Poisson's ratio in place of the scene's.
     pub poisson: Option<f64>,
+    /// The key that the size is from where it is not the method's own.
+    pub size_key: Option<String>,
 }
 
 impl Scenario<'_> {
@@ -95,6 +98,10 @@ impl Scenario<'_> {
 
     /// Nodes, cells and rules.
     pub fn discretise(&self) -> Result<Discretisation, Failure> {
+        self.nodes_and_cells().map_err(|failure| self.locate(failure))
+    }
+
+    fn nodes_and_cells(&self) -> Result<Discretisation, Failure> {
         match &self.method.family {
             Family::Fem(fem) => {
                 let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
@@ -109,13 +116,19 @@ impl Scenario<'_> {
 
     fn cloud(&self, efg: &scene::Efg) -> Result<Efg, Failure> {
         let shape = body::shape(&self.scene.body);
-        let bad = |e: geometry::CloudError| Failure::Run(e.to_string());
+        let bad = |e: CloudError| match e {
+            CloudError::TooFew { .. } | CloudError::TooMany { .. } => {
+                Failure::input(Key::Size(""), format!("makes no cloud: {e}"), "")
+            }
+            _ => Failure::at(ErrorKind::NotRun, Key::Size(""), format!("makes no cloud: {e}"), ""),
+        };
         let need_shape = || {
             shape.as_deref().ok_or_else(|| {
-                Failure::Unsupported(
-                    "a cloud of an exact count needs a body in closed form (box, cylinder, ball, whole sphere-shell, \
-                     kidney); take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }"
-                        .into(),
+                Failure::unavailable(
+                    Key::Method("nodes"),
+                    "makes a cloud of an exact count, which needs a body in closed form (box, cylinder, ball, \
+                     whole sphere-shell, kidney)",
+                    "take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }",
                 )
             })
         };
@@ -138,7 +151,9 @@ impl Scenario<'_> {
             }
         };
         let background = match &efg.background {
-            Some(size) => body::mesh(&self.scene.body, CellKind::Tet4, size, None)?,
+            Some(size) => {
+                body::mesh(&self.scene.body, CellKind::Tet4, size, None).map_err(Failure::of_background)?
+            }
             None => default,
         };
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
@@ -201,10 +216,12 @@ impl Scenario<'_> {
                 }
             }
             if !hit {
-                let key = format!("region[{index}]");
-                let error =
-                    self.scene.error(&key, "holds no cell of the mesh", Some("check its place and its unit"));
-                return Err(Failure::Input(error.to_string()));
+                let (key, help) = match &region.place {
+                    scene::Place::On(_) => ("on", format!("the mesh has {}", mesh.region_names().join(", "))),
+                    _ => ("where", format!("{}; check its signs and its unit", place::extent(&mesh))),
+                };
+                let key = Key::Scene(format!("region[{index}].{key}"));
+                return Err(Failure::input(key, "holds no cell of the mesh", &help));
             }
         }
         let names = std::iter::once("body".into()).chain(self.scene.regions.iter().map(|r| r.name.clone()));
@@ -213,6 +230,10 @@ impl Scenario<'_> {
 
     /// Materials, supports, loads and the exact solution.
     pub fn setup(&self) -> Result<Setup, Failure> {
+        self.acting().map_err(|failure| self.locate(failure))
+    }
+
+    fn acting(&self) -> Result<Setup, Failure> {
         let e = self.elastic()?;
         let mut materials = vec![law(e)?];
         for region in &self.scene.regions {
@@ -223,11 +244,13 @@ impl Scenario<'_> {
             .scene
             .supports
             .iter()
-            .map(|support| {
+            .enumerate()
+            .map(|(index, support)| {
                 let motion = support.motion.clone();
                 let exact = motion.iter().flatten().any(|p| matches!(p, Prescribed::Exact));
                 let exact = if exact { Some(self.exact(e)?.ok_or_else(no_exact)?) } else { None };
                 Ok(Held {
+                    key: format!("support[{index}]"),
                     place: support.place.clone(),
                     axes: std::array::from_fn(|a| support.motion[a].is_some()),
                     value: Box::new(move |x| {
@@ -249,7 +272,8 @@ impl Scenario<'_> {
             .scene
             .loads
             .iter()
-            .map(|load| {
+            .enumerate()
+            .map(|(index, load)| {
                 let applied = match load.kind.clone() {
                     LoadKind::Traction(VectorField::Exact) => {
                         let exact = self.exact(e)?.ok_or_else(no_exact)?;
@@ -267,7 +291,7 @@ impl Scenario<'_> {
                         Applied::Body(Box::new(move |x| components(&c, x)))
                     }
                 };
-                Ok(Acting { place: load.place.clone(), applied })
+                Ok(Acting { key: format!("load[{index}]"), place: load.place.clone(), applied })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Setup { materials, held, loads, exact })
@@ -280,12 +304,13 @@ impl Scenario<'_> {
         let params = Params { young: e.young, poisson: e.poisson, values };
         exact_by_name(name, &params)
             .map(Some)
-            .map_err(|bad| Failure::Input(self.scene.error("reference", &bad.to_string(), None).to_string()))
+            .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))
     }
 }
 
 fn no_exact() -> Failure {
-    Failure::Input("\"exact\" needs [reference] exact = \"...\"".into())
+    let problem = "has no exact solution, which \"exact\" values need";
+    Failure::input(Key::Scene("reference".into()), problem, "add [reference] exact = \"...\"")
 }
 
 fn value(field: &scene::ScalarField, x: &Point3) -> Result<f64, String> {
@@ -299,15 +324,17 @@ fn components(fields: &[scene::ScalarField; 3], x: &Point3) -> Result<Vector3, S
 fn elastic(material: &Material, poisson: Option<f64>) -> Result<scene::Elastic, Failure> {
     match material {
         Material::Linear(e) => Ok(scene::Elastic { poisson: poisson.unwrap_or(e.poisson), ..*e }),
-        other => Err(Failure::Unsupported(format!(
-            "law = \"{}\" is not available yet; \"linear\" is",
-            other.name()
-        ))),
+        other => Err(Failure::unavailable(
+            Key::Scene("material.law".into()),
+            format!("the {} law is not available yet", other.name()),
+            "law = \"linear\" is",
+        )),
     }
 }
 
 fn law(e: scene::Elastic) -> Result<LinearElastic, Failure> {
-    LinearElastic::new(e.young, e.poisson).map_err(|bad| Failure::Input(bad.to_string()))
+    LinearElastic::new(e.young, e.poisson)
+        .map_err(|bad| Failure::input(Key::Scene("material".into()), bad.to_string(), ""))
 }
 
 fn kind(element: scene::Element) -> CellKind {
@@ -324,8 +351,10 @@ fn dilation(dilation: scene::Dilation) -> Result<Dilation, Failure> {
         scene::Dilation::Standard => Ok(Dilation::Standard),
         scene::Dilation::ElementMean => Ok(Dilation::Element),
         scene::Dilation::NodalMean => Ok(Dilation::Nodal),
-        scene::Dilation::Mixed => Err(Failure::Unsupported(
-            "dilation = \"mixed\" is not available yet; element-mean and nodal-mean are".into(),
+        scene::Dilation::Mixed => Err(Failure::unavailable(
+            Key::Method("dilation"),
+            "is not available yet",
+            "\"element-mean\" and \"nodal-mean\" are",
         )),
     }
 }
@@ -333,7 +362,7 @@ fn dilation(dilation: scene::Dilation) -> Result<Dilation, Failure> {
 fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {
     use efg::Kernel;
     let default = Kernel::from_name(kernel.name.name())
-        .ok_or_else(|| Failure::Unsupported(format!("kernel \"{}\" is not available", kernel.name.name())))?;
+        .ok_or_else(|| Failure::unavailable(Key::Method("kernel"), "is not available", ""))?;
     Ok(match default {
         Kernel::Gaussian { alpha } => Kernel::Gaussian { alpha: kernel.alpha.unwrap_or(alpha) },
         Kernel::Exponential { alpha, power } => {

@@ -15,6 +15,8 @@ pub type TractionField = Box<dyn Fn(&Point3, &Vector3) -> Result<Vector3, String
 
 /// A prescribed displacement.
 pub struct Held {
+    /// The support's key in the scene, such as `support[0]`.
+    pub key: String,
     /// Where.
     pub place: Place,
     /// Which of x, y, z.
@@ -35,6 +37,8 @@ pub enum Applied {
 
 /// A load and where it acts.
 pub struct Acting {
+    /// The load's key in the scene, such as `load[0]`.
+    pub key: String,
     /// Where; ignored by a body force.
     pub place: Place,
     /// What.

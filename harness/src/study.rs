@@ -13,6 +13,7 @@ use crate::cli::VerifyArgs;
 use crate::group::{Group, case_name, resize};
 use crate::run::Repeats;
 use crate::task::{self, TaskResult};
+use crate::work::Work;
 use crate::{Failure, check};
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
@@ -46,6 +47,8 @@ pub struct Finished {
     pub failed: Vec<u8>,
     /// Runs done.
     pub ran: usize,
+    /// Work done now, references included; stored runs took none.
+    pub work: Work,
 }
 
 impl Plan {
@@ -159,17 +162,22 @@ impl Plan {
             let stored = if args.resume { TaskResult::load(store, &key) } else { None };
             let known = stored.is_some();
             let result = stored.unwrap_or_else(|| {
+                let mut shared = Work::default();
                 let group = group.get_or_insert_with(|| {
-                    Group::new(scene, task.poisson, if args.quick { QUICK } else { REPEATS })
+                    let group = Group::new(scene, task.poisson, if args.quick { QUICK } else { REPEATS });
+                    shared = group.as_ref().map_or(shared, Group::reference_work);
+                    group
                 });
                 let outcome = match group {
                     Ok(group) => group.run(&group.scenario(task.method.clone(), task.level), task.picture),
-                    Err(failure) => Err(failure.clone()),
+                    Err(failure) => Err(failure.clone().into()),
                 };
-                match outcome {
+                let mut result = match outcome {
                     Ok(outcome) => TaskResult::finished(&outcome),
-                    Err(failure) => TaskResult::failed(&case, &task.method.id, &failure),
-                }
+                    Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
+                };
+                result.work += shared;
+                result
             });
             if !known && let Err(bad) = result.store(store, &key) {
                 bar.println(format!("warning: {} could not be stored: {bad}", store.display()));
@@ -182,7 +190,9 @@ impl Plan {
     fn collect(&self, results: BTreeMap<usize, TaskResult>) -> Finished {
         let mut set = RunSet::default();
         let mut failed = Vec::new();
+        let mut work = Work::default();
         for (&index, result) in &results {
+            work += result.work;
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
             set.fields.extend(result.fields.iter().cloned());
@@ -197,7 +207,7 @@ impl Plan {
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = crate::provenance::provenance(&texts, 0);
-        Finished { set, failed, ran: results.len() }
+        Finished { set, failed, ran: results.len(), work }
     }
 
     /// Checks of one run: the scene's own and those of the study's run table.

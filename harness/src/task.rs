@@ -6,6 +6,7 @@ use reports::{Failure as FailedRun, PlanEntry, Record, SurfaceField};
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::Outcome;
+use crate::work::Work;
 
 /// What one run leaves.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -18,6 +19,9 @@ pub struct TaskResult {
     pub fields: Vec<SurfaceField>,
     /// Why it failed, with its exit code.
     pub failure: Option<(FailedRun, u8)>,
+    /// What was done for it now: nothing where it was stored.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 impl TaskResult {
@@ -28,6 +32,7 @@ impl TaskResult {
             plans: outcome.plan_entries(),
             fields: outcome.field.iter().cloned().collect(),
             failure: None,
+            work: outcome.work,
         }
     }
 

@@ -11,6 +11,7 @@ use crate::outcome::{Metric, Transfer};
 use crate::prepare::Prepared;
 use crate::run::{Asks, push, push_difference};
 use crate::timing::Timings;
+use crate::work::Work;
 
 /// Name of the method's own shape functions among the schemes: no transfer at all.
 pub const OWN_ROWS: &str = "own-rows";
@@ -25,6 +26,7 @@ pub fn transfers(
     prepared: &Prepared,
     u: &[Vector3],
     asks: &Asks,
+    work: &mut Work,
 ) -> Result<Vec<Transfer>, Failure> {
     if asks.schemes.is_empty() || asks.targets.is_empty() {
         return Ok(Vec::new());
@@ -41,6 +43,7 @@ pub fn transfers(
             let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
             let build = || scheme.rows(nodes, mesh, asks.targets);
             let ((rows, info), timing) = timed(asks, build, |(rows, _)| rows.rows(), &at_nodes)?;
+            work.transfer_tables += 1;
             let field = rows.rows().apply(&at_nodes);
             let mut metrics = Vec::new();
             if let Some(reference) = asks.reference {

@@ -7,7 +7,6 @@
 mod affine;
 mod cantilever;
 mod elastic;
-mod names;
 mod params;
 mod polylog;
 mod pure_bending;
@@ -28,6 +27,7 @@ pub use saint_venant::SaintVenantFlexure;
 pub use thick_sphere::ThickSphere;
 pub use uniaxial_compression::UniaxialCompression;
 
+use crate::names::nearest;
 use params::Values;
 
 /// A position in the reference configuration, in metres.
@@ -83,7 +83,7 @@ fn entry(name: &str) -> Result<&'static (&'static str, &'static [Parameter], Bui
         let known: Vec<&'static str> = exact_names().collect();
         ExactError::UnknownSolution {
             name: name.into(),
-            nearest: names::nearest(name, &known),
+            nearest: nearest(name, known.iter().copied()),
             known: known.join(", "),
         }
     })

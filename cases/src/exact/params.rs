@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::names::nearest;
+use crate::names::nearest;
 
 /// Material and case parameters, all in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl Values {
             return Err(ExactError::UnknownParameter {
                 solution,
                 name: name.clone(),
-                nearest: nearest(name, &known),
+                nearest: nearest(name, known.iter().copied()),
                 known: known.join(", "),
             });
         }

@@ -7,8 +7,10 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::names::suggest;
+
 use super::document::written;
-use super::error::{Problem, suggest};
+use super::error::Problem;
 use super::expression::Expression;
 use super::region::Region;
 use super::units::Dimension;

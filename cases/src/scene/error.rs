@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-/// Whether a file is wrong, or right but ahead of what can run.
+/// Whether a file is wrong, or right but ahead of what can run, or beyond its method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The input is wrong: exit code 2.
     Invalid,
     /// The input is well formed, but asks for something that can't run yet: exit code 3.
     NotAvailable,
+    /// The input is well formed, but the method could not run on it or did not converge: exit code 3.
+    NotRun,
 }
 
 /// One finding about an input file. Prints as `file:line: key 'path': 'found' problem; help`.
@@ -84,25 +86,5 @@ pub(crate) fn clip(text: &str) -> String {
     match line.char_indices().nth(80) {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
-    }
-}
-
-/// The known name nearest to `name`, if near enough to be what was meant.
-pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let name = clip(name);
-    known
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 3)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
-/// `did you mean 'x'?` where something is near, and the list of what is known.
-pub(crate) fn suggest(name: &str, known: &[&str]) -> String {
-    let list = format!("known here: {}", known.join(", "));
-    match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean '{near}'? ({list})"),
-        None => list,
     }
 }

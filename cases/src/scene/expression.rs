@@ -11,7 +11,9 @@ use std::str::CharIndices;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 
-use super::error::{Problem, suggest};
+use crate::names::suggest;
+
+use super::error::Problem;
 
 /// An expression in the coordinates, compiled to postfix order.
 #[derive(Clone, Debug)]

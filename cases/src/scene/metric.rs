@@ -1,6 +1,8 @@
 //! The metrics that checks may name.
 
-use super::error::{Problem, suggest};
+use crate::names::suggest;
+
+use super::error::Problem;
 use super::units::Dimension;
 
 /// A number computed from one run, or from a family of runs at several levels.

@@ -51,11 +51,16 @@ impl Scene {
         self.methods.iter().find(|method| method.id == id)
     }
 
+    /// Whether the file has `key`.
+    pub fn has(&self, key: &str) -> bool {
+        self.origin.has(key)
+    }
+
     /// An error about `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from 0), found
     /// only while running: an empty region, an inverted element. It names file, line and value.
-    pub fn error(&self, key: &str, problem: &str, help: Option<&str>) -> SceneError {
+    pub fn error(&self, kind: ErrorKind, key: &str, problem: &str, help: Option<&str>) -> SceneError {
         let problem = Problem { found: None, problem: problem.to_string(), help: help.map(str::to_string) };
-        self.origin.error(ErrorKind::Invalid, key, problem)
+        self.origin.error(kind, key, problem)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Quantities with units as text (`"20 kPa"`, `"0.5 /m"`), read into SI.
 
-use super::error::{Problem, nearest};
+use crate::names::nearest;
+
+use super::error::Problem;
 
 /// Exponents of metre, kilogram, second and radian.
 pub type Exponents = [i8; 4];

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::names::nearest;
+
 use super::document::{Origin, sorted};
-use super::error::{ErrorKind, Problem, SceneError, nearest};
+use super::error::{ErrorKind, Problem, SceneError};
 
 /// Collects findings about one file.
 pub(crate) struct Report<'o> {

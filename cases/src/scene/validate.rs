@@ -1,8 +1,9 @@
 //! What a scene's parts demand of each other.
 
 use crate::exact::{Params, exact_by_name};
+use crate::names::suggest;
 
-use super::error::{Problem, suggest};
+use super::error::Problem;
 use super::field::{Prescribed, VectorField};
 use super::metric::Needs;
 use super::model::{LoadKind, Place, Scene};

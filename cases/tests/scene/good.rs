@@ -200,7 +200,8 @@ fn what_waits_for_later_is_read_and_then_named() {
 
 #[test]
 fn an_error_found_while_running_names_its_line() {
-    let error = scene().error("support[0].where", "holds no node", Some("check the unit"));
+    let error =
+        scene().error(ErrorKind::Invalid, "support[0].where", "holds no node", Some("check the unit"));
     let line = 1 + SCENE[..SCENE.find("where = \"z").expect("there")].matches('\n').count();
     let said =
         format!("cases/block.toml:{line}: key 'support[0].where': 'z == 0 mm' holds no node; check the unit");

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::exact::{exact_names, exact_parameters};
-use crate::scene::error::{Problem, suggest};
+use crate::names::suggest;
+use crate::scene::error::Problem;
 use crate::scene::keys::*;
 use crate::scene::metric::Metric;
 use crate::scene::output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};

@@ -19,9 +19,14 @@ pub struct Pressed {
 impl Pressed {
     /// A cube of n^3 cells of six tet4: `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them held.
     pub fn new(n: usize) -> Pressed {
+        Pressed::of(CellKind::Tet4, n)
+    }
+
+    /// The same cube in other cells.
+    pub fn of(kind: CellKind, n: usize) -> Pressed {
         let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
         let max = Point3::new(0.04, 0.04, 0.04);
-        let mesh = box_mesh(CellKind::Tet4, Point3::origin(), max, [n; 3], [1.0; 3], jitter).unwrap();
+        let mesh = box_mesh(kind, Point3::origin(), max, [n; 3], [1.0; 3], jitter).unwrap();
         let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
         let top = fem::surface_rows(&mesh, mesh.group("z-max").unwrap(), &SurfaceRule::STANDARD).unwrap();
         let held = mesh.facet_group_nodes(mesh.group("z-min").unwrap());

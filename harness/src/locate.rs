@@ -1,0 +1,144 @@
+//! From what stopped a run to the key of the scene that caused it: file, line and value.
+
+use cases::scene::{Cloud, ErrorKind, Family, Scene, SupportRule};
+use efg::EfgError;
+use mechanics::SolveError;
+
+use crate::Failure;
+use crate::error::{Finding, Key};
+use crate::scenario::Scenario;
+
+impl Scenario<'_> {
+    /// The failure of this run at the key of the scene that it is about.
+    pub fn locate(&self, failure: Failure) -> Failure {
+        let finding = match failure {
+            Failure::Scene(_) => return failure,
+            Failure::At(finding) => *finding,
+            Failure::Input(problem) => finding(ErrorKind::Invalid, Key::Method(""), problem, ""),
+            Failure::Run(problem) => finding(ErrorKind::NotRun, Key::Method(""), problem, ""),
+            Failure::Efg(error) => self.of_cloud(&error),
+            Failure::Solve(error) => self.of_solve(&error),
+        };
+        let key = self.key(&finding.key);
+        let help = finding.help.as_deref();
+        Failure::Scene(Box::new(self.scene.error(finding.kind, &key, &finding.problem, help)))
+    }
+
+    fn key(&self, key: &Key) -> String {
+        let index = self.scene.methods.iter().position(|m| m.id == self.method.id);
+        let method = index.map_or("method".into(), |i| format!("method[{i}]"));
+        match key {
+            Key::Scene(key) => key.clone(),
+            Key::Method(below) => joined(&method, below),
+            Key::Background(below) => joined(&format!("{method}.background"), below),
+            Key::Size(below) => match (&self.size_key, &self.method.family) {
+                (Some(key), _) => joined(key, below),
+                (None, Family::Efg(efg)) if !matches!(efg.cloud, Cloud::Mesh { .. }) => {
+                    format!("{method}.nodes")
+                }
+                (None, _) => joined(&format!("{method}.size"), below),
+            },
+        }
+    }
+
+    fn of_cloud(&self, error: &EfgError) -> Finding {
+        let support = match &self.method.family {
+            Family::Efg(efg) => match efg.support {
+                SupportRule::Dilatation(_) => Key::Method("dilatation"),
+                SupportRule::Neighbours { .. } => Key::Method("neighbours"),
+            },
+            Family::Fem(_) => Key::Method(""),
+        };
+        let (kind, key, help) = match error {
+            EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
+                (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
+            }
+            EfgError::BadRadius { .. } => {
+                (ErrorKind::NotRun, support, "a node needs another one at a distance")
+            }
+            EfgError::TooFewNodes { .. } => (ErrorKind::Invalid, Key::Size(""), "ask for more nodes"),
+            EfgError::EmptyGrid { .. } => {
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it finer")
+            }
+            EfgError::HugeGrid { .. } => {
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it coarser")
+            }
+            EfgError::NoRule { .. } => (
+                ErrorKind::Invalid,
+                Key::Method("integration.points"),
+                "in a tetrahedron 1, 4, 11 and more are known",
+            ),
+            _ => (ErrorKind::NotRun, Key::Method(""), ""),
+        };
+        finding(kind, key, error.to_string(), help)
+    }
+
+    fn of_solve(&self, error: &SolveError) -> Finding {
+        let cloud = matches!(self.method.family, Family::Efg(_));
+        let essential = Key::Method("essential");
+        let text = error.to_string();
+        match error {
+            SolveError::RigidMotion { .. } => rigid(self.scene, text),
+            SolveError::Conflict { .. } => finding(
+                ErrorKind::Invalid,
+                supports(self.scene),
+                text,
+                "let the places of the supports meet only where their values agree",
+            ),
+            SolveError::NotCoercive { .. } => {
+                finding(ErrorKind::NotRun, essential, text, "{ method = \"nitsche\", factor = ... }")
+            }
+            SolveError::Inconsistent { .. } | SolveError::BadWeak { .. } | SolveError::ZeroPivot => {
+                finding(ErrorKind::NotRun, if cloud { essential } else { supports(self.scene) }, text, "")
+            }
+            SolveError::NotPositiveDefinite | SolveError::OrphanNode { .. } if cloud => finding(
+                ErrorKind::NotRun,
+                Key::Method("integration"),
+                text,
+                "take more integration points, or a finer background",
+            ),
+            SolveError::NotPositiveDefinite => finding(ErrorKind::NotRun, Key::Method("element"), text, ""),
+            SolveError::OrphanNode { .. } => {
+                let help = "every node of the mesh has to belong to a cell";
+                finding(ErrorKind::NotRun, Key::Size(""), text, help)
+            }
+            SolveError::TooLarge { .. } => finding(ErrorKind::NotRun, Key::Size(""), text, "make it coarser"),
+            _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
+        }
+    }
+}
+
+/// A motion that no support holds is blamed on the supports there are; on the body if there is none.
+fn rigid(scene: &Scene, motions: String) -> Finding {
+    let help = "hold it: [[support]] with a place (on or where) and fix = \"xyz\", or the axes that are free";
+    let (key, problem) = match scene.supports.len() {
+        0 => (Key::Scene("body".into()), format!("is held by no [[support]]: {motions}")),
+        1 => (supports(scene), format!("does not hold the body: {motions}")),
+        count => {
+            let lines: Vec<String> = (0..count)
+                .map(|i| scene.error(ErrorKind::NotRun, &format!("support[{i}]"), "", None).line.to_string())
+                .collect();
+            let problem = format!(
+                "does not hold the body, all {count} together (lines {}): {motions}",
+                lines.join(", ")
+            );
+            (Key::Scene("support".into()), problem)
+        }
+    };
+    finding(ErrorKind::NotRun, key, problem, help)
+}
+
+/// The list of supports, or what the only one prescribes.
+fn supports(scene: &Scene) -> Key {
+    let only = ["support[0].fix", "support[0].move"].into_iter().find(|key| scene.has(key));
+    let key = if scene.supports.len() == 1 { only.unwrap_or("support[0]") } else { "support" };
+    Key::Scene(key.into())
+}
+
+fn finding(kind: ErrorKind, key: Key, problem: String, help: &str) -> Finding {
+    Finding { kind, key, problem, help: (!help.is_empty()).then(|| help.into()) }
+}
+
+fn joined(key: &str, below: &str) -> String {
+    if below.is_empty() { key.into() } else { format!("{key}.{below}") }
+}

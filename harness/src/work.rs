@@ -1,0 +1,73 @@
+//! What a run did, counted as it did it: a stage that the plan skips must have left nothing here.
+
+use std::ops::AddAssign;
+
+use serde::Serialize;
+
+/// Counts of one pass over a run; repeats for timings do the same again and are not added up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Work {
+    /// Support radii of nodes found.
+    pub support_radii: u64,
+    /// Shape function rows with gradients at integration points.
+    pub volume_rows: u64,
+    /// Groups of points that share a dilation.
+    pub dilation_groups: u64,
+    /// Integration points given the law of their own region.
+    pub point_laws: u64,
+    /// Rows of values alone on loaded surfaces.
+    pub surface_rows: u64,
+    /// Rows with gradients (or of penalty points) where a support is weak.
+    pub flux_rows: u64,
+    /// Constraint rows with multipliers.
+    pub multiplier_rows: u64,
+    /// Degrees of freedom eliminated.
+    pub fixed_dofs: u64,
+    /// Stiffness matrices assembled.
+    pub assemblies: u64,
+    /// Matrices factored.
+    pub factorisations: u64,
+    /// Right-hand sides solved for.
+    pub solves: u64,
+    /// Shape function rows that turn nodal parameters into displacements at nodes or targets.
+    pub transfer_rows: u64,
+    /// Tables of transfer schemes built.
+    pub transfer_tables: u64,
+}
+
+impl Work {
+    /// What a stage of a [plan](crate::plan) left; `None` for a stage that no code here can run yet.
+    pub fn of(&self, stage: &str) -> Option<u64> {
+        Some(match stage {
+            "supports" => self.support_radii,
+            "shape functions" => self.volume_rows,
+            "volumetric projection" => self.dilation_groups,
+            "elasticity tensor per region" => self.point_laws,
+            "stiffness" => self.assemblies,
+            "supports by elimination" => self.fixed_dofs,
+            "weak supports" => self.flux_rows + self.multiplier_rows,
+            "factorisation" => self.factorisations,
+            "transfer" => self.transfer_rows,
+            "transfer schemes" => self.transfer_tables,
+            _ => return None,
+        })
+    }
+}
+
+impl AddAssign for Work {
+    fn add_assign(&mut self, other: Work) {
+        self.support_radii += other.support_radii;
+        self.volume_rows += other.volume_rows;
+        self.dilation_groups += other.dilation_groups;
+        self.point_laws += other.point_laws;
+        self.surface_rows += other.surface_rows;
+        self.flux_rows += other.flux_rows;
+        self.multiplier_rows += other.multiplier_rows;
+        self.fixed_dofs += other.fixed_dofs;
+        self.assemblies += other.assemblies;
+        self.factorisations += other.factorisations;
+        self.solves += other.solves;
+        self.transfer_rows += other.transfer_rows;
+        self.transfer_tables += other.transfer_tables;
+    }
+}

@@ -1,0 +1,143 @@
+//! A stage that a plan skips does nothing, one that it runs does something: told by counters of the work itself.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use cases::scene::{self, Scene};
+use common::{BLOCK, cases, inside, write};
+use harness::cli::VerifyArgs;
+use harness::group::Group;
+use harness::outcome::Outcome;
+use harness::run::Repeats;
+use harness::study::Plan;
+use harness::work::Work;
+
+/// Stages for which there is no code yet, so that they can only be skipped.
+const AHEAD: [&str; 3] = ["mass", "Newton iterations", "contact search"];
+
+fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
+    let group = Group::new(scene, None, Repeats { most: repeats, seconds: 60.0 }).unwrap();
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), false);
+    scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
+}
+
+/// Every stage against its counter; returns the (stage, ran) pairs met.
+fn check(outcome: &Outcome) -> BTreeSet<(&'static str, bool)> {
+    let who = format!("{} {}", outcome.identity.case, outcome.identity.method);
+    for stage in &outcome.plan {
+        match outcome.work.of(stage.stage) {
+            Some(count) => assert_eq!(count > 0, stage.ran, "{who}: {stage:?}, counted {count}"),
+            None => assert!(AHEAD.contains(&stage.stage) && !stage.ran, "{who}: {stage:?}"),
+        }
+    }
+    outcome.plan.iter().map(|stage| (stage.stage, stage.ran)).collect()
+}
+
+/// What no small committed scene has: two materials, multipliers, a method as reference, a transfer scheme.
+fn all_at_once() -> Scene {
+    let parts = [
+        BLOCK.trim_end_matches("]\n"),
+        r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "multipliers" }]
+"#,
+        r#"region = [{ name = "soft", where = "x <= 20 mm", material = { law = "linear", young = "5 kPa", poisson = 0.3 } }]
+"#,
+        r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }
+"#,
+        r#"output = { transfer = { to = "reference-nodes", scheme = "shepard" } }
+"#,
+    ];
+    scene::parse(&parts.concat().replace("where = \"z == 0 mm\"", "on = \"z-min\""), "all-at-once.toml")
+        .unwrap()
+}
+
+#[test]
+fn what_a_plan_skips_is_not_done_and_what_it_runs_is() {
+    let mut met = BTreeSet::new();
+    for name in [
+        "cantilever",
+        "compression",
+        "first",
+        "patch-displacement",
+        "patch-traction",
+        "pure-bending",
+        "quadratic-patch",
+        "rigid-motion",
+        "saint-venant",
+        "thick-sphere",
+    ] {
+        let scene = scene::load(Path::new(&cases(&format!("{name}.toml")))).unwrap();
+        runs(&scene, 1).iter().for_each(|outcome| met.extend(check(outcome)));
+    }
+    runs(&all_at_once(), 1).iter().for_each(|outcome| met.extend(check(outcome)));
+    // Each stage with two faces was seen with both.
+    for stage in [
+        "supports",
+        "volumetric projection",
+        "elasticity tensor per region",
+        "supports by elimination",
+        "weak supports",
+        "transfer",
+        "transfer schemes",
+    ] {
+        assert!(met.contains(&(stage, true)) && met.contains(&(stage, false)), "{stage}: {met:?}");
+    }
+}
+
+#[test]
+fn a_plan_told_beforehand_is_that_of_the_run() {
+    let load = |name| scene::load(Path::new(&cases(name))).unwrap();
+    for scene in [load("first.toml"), load("pure-bending.toml"), all_at_once()] {
+        let name = scene.file();
+        let before = Group::unreferenced(&scene, Repeats { most: 1, seconds: 0.0 }).unwrap();
+        let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
+        for method in scene.methods.iter().take(2) {
+            let (told, size) = before.plan(&before.scenario(method.clone(), 0)).unwrap();
+            let outcome = group.run(&group.scenario(method.clone(), 0), false).unwrap();
+            assert_eq!(told, outcome.plan, "{name}");
+            assert_eq!((size.nodes, size.elements), (outcome.size.nodes, outcome.size.elements), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_run_factors_once_however_often_it_is_timed() {
+    let scene = scene::load(Path::new(&cases("first.toml"))).unwrap();
+    let (once, often) = (runs(&scene, 1), runs(&scene, 4));
+    for (once, often) in once.iter().zip(&often) {
+        assert_eq!((once.work.assemblies, once.work.factorisations, once.work.solves), (1, 1, 1));
+        assert_eq!(once.work, often.work);
+    }
+    // Loads ask for values alone; gradients are evaluated where a support is weak, and nowhere else.
+    let [elements, cloud] = [once[0].work, once[1].work];
+    assert!(elements.surface_rows > 0 && elements.flux_rows == 0, "{elements:?}");
+    assert!(cloud.surface_rows > 0 && cloud.flux_rows > 0 && cloud.multiplier_rows == 0, "{cloud:?}");
+}
+
+#[test]
+fn stored_runs_do_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let reference = r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }"#;
+    let scene = write(&dir, "block.toml", &format!("{BLOCK}\n{reference}\n"));
+    let study = write(&dir, "study.toml", &format!("title = \"One\"\n[[run]]\nscene = '{scene}'\n"));
+    let work = |resume: bool| -> Work {
+        let plan = Plan::new(scene::load_study(Path::new(&study)).unwrap()).unwrap();
+        let args = VerifyArgs {
+            study: None,
+            quick: false,
+            filter: None,
+            shard: None,
+            jobs: 1,
+            resume,
+            out: inside(&dir, "out").into(),
+        };
+        let finished = plan.execute(&args);
+        assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
+        finished.work
+    };
+    // The method and the reference it is compared with.
+    assert_eq!(work(false).factorisations, 2);
+    assert_eq!(work(true), Work::default());
+    assert_eq!(work(false).factorisations, 2);
+}
