@@ -31,7 +31,7 @@ fn main() {
     let tools = [DrivenTool { tool: &up, drive: Drive::Closure(7e-3) }, DrivenTool { tool: &low, drive: Drive::Closure(7e-3) }];
     let problem = StaticProblem { nodes: mesh.points(), solid: Solid { volume: &volume, laws: &laws, region: &[], dilation }, loads: &[], fixed: &fixed, held: &[],
         contact: Some(&contact), tools: &tools };
-    let params = StaticParams { steps: 10, smallest: 1.0 / 64.0, newton: NewtonParams { tolerance: 1e-9, iterations: 25 }, augmentations: 0 };
+    let params = StaticParams { steps: args.get(5).map_or(10, |a| a.parse().unwrap()), smallest: 1.0 / 64.0, newton: NewtonParams { tolerance: 1e-9, iterations: 25 }, augmentations: 0 };
     let start = std::time::Instant::now();
     println!("{} nodes {} cells {} points", mesh.points().len(), mesh.cell_count(), volume.weights().len());
     let path = solve_static(&problem, &params, |s, _, _| {

@@ -4,7 +4,7 @@
 //! ends with its residual.
 
 mod dense;
-mod lu;
+mod unsymmetric;
 mod ordering;
 mod sparse;
 
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use crate::{SolveError, Stiffness};
 
-pub(crate) use lu::Unsymmetric;
+pub(crate) use unsymmetric::Unsymmetric;
 pub(crate) use sparse::Symbolic;
 
 /// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
@@ -42,8 +42,6 @@ pub enum SolverPath {
     SparseLlt,
     /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
     SparseLdlt,
-    /// `P A Q = L U` with partial pivoting, in faer's column order.
-    SparseLu,
 }
 
 impl SolverPath {
@@ -55,7 +53,6 @@ impl SolverPath {
             SolverPath::DenseLdlt => "dense-ldlt",
             SolverPath::SparseLlt => "sparse-llt",
             SolverPath::SparseLdlt => "sparse-ldlt",
-            SolverPath::SparseLu => "sparse-lu",
         }
     }
 }

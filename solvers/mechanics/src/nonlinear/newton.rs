@@ -251,7 +251,6 @@ impl<'a> Newton<'a> {
             }
             let (next, length) = self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
-            if std::env::var("DBG").is_ok() { eprintln!("  {residual:.3e} {energy:.2e} {length:.3} slope {slope:.3e} active {:?}", balance.contacts.iter().map(|c| c.as_ref().map_or(0, |c| c.points().len())).collect::<Vec<_>>()); }
             log.push(Iteration { residual, energy, length });
             balance = next;
         }
@@ -395,7 +394,7 @@ impl<'a> Newton<'a> {
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
         let mut step = self.system.gather(&right, &right_pressure);
-        let factored = self.factor(matrix, &skew)?;
+        let factored = self.factor(matrix, skew)?;
         self.solve(&factored, &mut step)?;
         let closures = self.drive(&factored, state, balance, time, &mut step)?;
         Ok((step, closures))
@@ -410,15 +409,19 @@ impl<'a> Newton<'a> {
         Ok(())
     }
 
-    /// Cholesky while the tangent is definite; `L D L^T` with a pressure field or past a limit point; LU with sliding
-    /// friction.
+    /// Cholesky while the tangent is definite; `L D L^T` with a pressure field or past a limit point; the factor of the
+    /// symmetric part as a preconditioner with sliding friction.
     fn factor(
         &mut self,
         matrix: linear_solver::Symmetric,
-        skew: &[(usize, usize, f64)],
+        skew: Vec<(usize, usize, f64)>,
     ) -> Result<Factored, StaticError> {
         if !skew.is_empty() {
-            return Ok(Factored::Unsymmetric(Unsymmetric::new(&matrix, skew)?));
+            // The symmetric part first: it is factored ten times faster and its fill is a third of LU's.
+            return match self.factor(matrix, Vec::new())? {
+                Factored::Symmetric(part) => Ok(Factored::Unsymmetric(Unsymmetric::new(part, skew))),
+                unsymmetric => Ok(unsymmetric),
+            };
         }
         if self.symbolic.is_none() {
             self.symbolic = Some(linear_solver::analyse(&matrix, DENSE_LIMIT)?);
