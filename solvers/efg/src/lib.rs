@@ -39,5 +39,5 @@ pub use gauss::{gauss_regions, gauss_rows};
 pub use grid::{GridInfo, grid_rows};
 pub use info::MlsInfo;
 pub use kernel::Kernel;
-pub use smoothed::{smoothed_regions, smoothed_rows};
+pub use smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
 pub use support::Support;

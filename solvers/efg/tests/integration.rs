@@ -4,7 +4,7 @@ mod common;
 
 use common::{jittered_box, on_mesh};
 use efg::{
-    Basis, EfgError, Kernel, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
+    Basis, EfgError, Kernel, Smoothing, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
     smoothed_rows, surface_rows,
 };
 use geometry::generate::{kidney_mesh, raise_order};
@@ -53,12 +53,12 @@ fn smoothing_meets_the_integration_constraint_to_rounding() {
     ] {
         let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline, Basis::Linear);
         for face_points in [1, 3, 6] {
-            let (volume, _) = smoothed_rows(&mls, &mesh, face_points).unwrap();
+            let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, face_points).unwrap();
             let violation = constraint_violation(&mls, &mesh, &volume, face_points);
             assert!(violation < 1e-14, "{face_points} points: {violation:e}");
         }
         // The boundary must use the same points, or the constraint is lost: this is what the test above can see.
-        let (volume, _) = smoothed_rows(&mls, &mesh, 1).unwrap();
+        let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 1).unwrap();
         assert!(constraint_violation(&mls, &mesh, &volume, 3) > 1e-4);
         // Plain Gauss points do not meet it.
         let (volume, _) = gauss_rows(&mls, &mesh, 4).unwrap();
@@ -71,10 +71,10 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     for basis in Basis::ALL {
         let mls = on_mesh(&mesh, common::dilatation(basis), Kernel::WendlandC2, basis);
-        let (volume, info) = smoothed_rows(&mls, &mesh, 3).unwrap();
+        let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 3).unwrap();
         assert_eq!(info.fallbacks(), 0);
         assert_eq!(volume.weights().len(), mesh.cell_count());
-        assert_eq!(smoothed_regions(&mesh).len(), mesh.cell_count());
+        assert_eq!(smoothed_regions(&mesh, Smoothing::Constant).len(), mesh.cell_count());
         assert!((volume.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
         let (plain, _) = mls.point_rows(volume.points()).unwrap();
         for q in 0..mesh.cell_count() {
@@ -102,7 +102,7 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
 fn smoothed_gradients_are_cell_means() {
     let mesh = jittered_box(CellKind::Tet4, 3);
     let mls = on_mesh(&mesh, 2.5, Kernel::WendlandC4, Basis::Linear);
-    let (smoothed, _) = smoothed_rows(&mls, &mesh, 12).unwrap();
+    let (smoothed, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 12).unwrap();
     let (fine, _) = gauss_rows(&mls, &mesh, 24).unwrap();
     for cell in [0, 50, 100] {
         let mut mean = vec![Vector3::zeros(); mls.nodes().len()];
@@ -202,16 +202,24 @@ fn backgrounds_it_cannot_use_are_refused() {
     let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
     let curved = raise_order(&mesh);
     let hexes = jittered_box(CellKind::Hex8, 3);
-    assert!(matches!(smoothed_rows(&mls, &hexes, 1), Err(EfgError::CellKind { cell: 0, .. })));
+    assert!(matches!(
+        smoothed_rows(&mls, &hexes, Smoothing::Constant, 1),
+        Err(EfgError::CellKind { cell: 0, .. })
+    ));
     assert!(matches!(gauss_rows(&mls, &curved, 4), Err(EfgError::CellKind { kind: CellKind::Tet10, .. })));
     assert!(matches!(gauss_rows(&mls, &mesh, 5), Err(EfgError::NoRule { points: 5, .. })));
     assert!(matches!(gauss_rows(&mls, &hexes, 4), Err(EfgError::NoRule { points: 4, .. })));
-    assert!(matches!(smoothed_rows(&mls, &mesh, 2), Err(EfgError::NoRule { points: 2, .. })));
+    assert!(matches!(
+        smoothed_rows(&mls, &mesh, Smoothing::Constant, 2),
+        Err(EfgError::NoRule { points: 2, .. })
+    ));
     let facet = [Facet { cell: 0, face: 0 }];
     assert!(matches!(surface_rows(&mls, &hexes, &facet, 3), Err(EfgError::NoRule { points: 3, .. })));
     // Mirrored, every cell is inside out.
     let mirrored = mesh.moved(|p| Point3::new(0.04 - p.x, p.y, p.z)).unwrap();
-    for refused in [gauss_rows(&mls, &mirrored, 4).err(), smoothed_rows(&mls, &mirrored, 1).err()] {
+    for refused in
+        [gauss_rows(&mls, &mirrored, 4).err(), smoothed_rows(&mls, &mirrored, Smoothing::Constant, 1).err()]
+    {
         assert!(
             matches!(refused, Some(EfgError::InvertedCell { cell: 0, det_j }) if det_j < 0.0),
             "{refused:?}"

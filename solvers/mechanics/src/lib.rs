@@ -16,6 +16,7 @@
 
 mod body;
 mod constraint;
+mod dilation;
 mod error;
 mod linear_solver;
 mod load;
