@@ -19,6 +19,7 @@
 mod approximation;
 mod basis;
 mod buckets;
+mod cell_fields;
 mod cells;
 mod error;
 mod facets;

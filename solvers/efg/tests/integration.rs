@@ -5,7 +5,7 @@ mod common;
 use common::{jittered_box, on_mesh};
 use efg::{
     Basis, EfgError, Kernel, Smoothing, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
-    smoothed_rows, surface_rows,
+    smoothed_rows, smoothed_trace, surface_rows,
 };
 use geometry::generate::{kidney_mesh, raise_order};
 use geometry::{CellKind, Facet, Mesh};
@@ -224,5 +224,73 @@ fn backgrounds_it_cannot_use_are_refused() {
             matches!(refused, Some(EfgError::InvertedCell { cell: 0, det_j }) if det_j < 0.0),
             "{refused:?}"
         );
+    }
+}
+
+/// To second order: gradients of quadratic fields at all four points, for every kernel.
+#[test]
+fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
+    let mesh = jittered_box(CellKind::Tet4, 3);
+    for kernel in Kernel::ALL {
+        let mls = on_mesh(&mesh, 2.2, kernel, Basis::Quadratic);
+        let error = |face_points| {
+            let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Linear, face_points).unwrap();
+            assert_eq!(info.fallbacks(), 0);
+            assert_eq!(volume.weights().len(), smoothed_regions(&mesh, Smoothing::Linear).len());
+            assert!((volume.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
+            let mut worst = 0.0f64;
+            for (q, x) in volume.points().iter().enumerate() {
+                let (nodes, grads) = volume.row(q);
+                let slope: Vector3 = nodes
+                    .iter()
+                    .zip(grads)
+                    .map(|(&n, g)| g * common::field(Basis::Quadratic, &mls.nodes()[n as usize]).0)
+                    .sum();
+                worst = worst.max((slope - common::field(Basis::Quadratic, x).1).norm());
+            }
+            worst
+        };
+        assert!(error(6) < 1e-11, "{}: {:e}", kernel.name(), error(6));
+        // Three points per face are of degree 2, one too few.
+        assert!(error(3) > 1e-4, "{}: {:e}", kernel.name(), error(3));
+    }
+}
+
+/// Traces carry linear fields to the surface, and their lengths bound what they carry by the volume.
+#[test]
+fn traces_are_exact_and_bounded() {
+    let mesh = jittered_box(CellKind::Tet4, 2);
+    let mls = on_mesh(&mesh, 2.2, Kernel::CubicSpline, Basis::Quadratic);
+    let facets = mesh.boundary();
+    let (surface, _) = surface_rows(&mls, &mesh, &facets, 6).unwrap();
+    for smoothing in [Smoothing::Constant, Smoothing::Linear] {
+        let (volume, _) = smoothed_rows(&mls, &mesh, smoothing, 6).unwrap();
+        let trace = smoothed_trace(&mesh, &facets, smoothing, 6).unwrap();
+        let at = |s: usize, f: &dyn Fn(usize) -> f64| {
+            trace.row(s).0.iter().zip(trace.row(s).1).map(|(&q, c)| c * f(q as usize)).sum::<f64>()
+        };
+        let mut sharpest = 0.0f64;
+        for seed in 0..50u32 {
+            // Any values at the volume's points, not only smooth ones.
+            let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
+            for cell in facets.iter().map(|f| f.cell as usize) {
+                let own = |s: &usize| facets[s / 6].cell as usize == cell;
+                let on: f64 = (0..trace.len())
+                    .filter(own)
+                    .map(|s| surface.weights()[s] * trace.lengths()[s] * at(s, &f).powi(2))
+                    .sum();
+                let n = smoothing.points_per_cell();
+                let inside: f64 =
+                    (n * cell..n * (cell + 1)).map(|q| volume.weights()[q] * f(q).powi(2)).sum();
+                assert!(on <= inside * (1.0 + 1e-12), "{smoothing:?}, cell {cell}: {on:e} {inside:e}");
+                sharpest = sharpest.max(on / inside);
+            }
+        }
+        assert!(sharpest > 0.8, "{smoothing:?}: the bound is {sharpest} of sharp");
+        if smoothing == Smoothing::Linear {
+            for (s, x) in surface.points().iter().enumerate() {
+                assert!((at(s, &|q| volume.points()[q].y) - x.y).abs() < 1e-16);
+            }
+        }
     }
 }
