@@ -162,7 +162,7 @@ fn basis_slopes<const P: usize>(mesh: &Mesh, cell: usize) -> [Vector3; P] {
 /// Which corners of the cell the canonical corners of one of its faces are.
 pub(crate) fn local_corners(mesh: &Mesh, cell: usize, face: usize) -> [usize; 3] {
     let (nodes, local) = (mesh.cell(cell), mesh.kind(cell).faces()[face]);
-    let mut corners = [local[0], local[1], local[2]].map(usize::from);
+    let mut corners = [local[0], local[1], local[2]];
     corners.sort_unstable_by_key(|&c| nodes[c]);
     corners
 }
@@ -251,7 +251,7 @@ fn faces(mesh: &Mesh, cells: &[usize]) -> Faces {
     for (index, &cell) in cells.iter().enumerate() {
         for (face, local) in mesh.kind(cell).faces().iter().enumerate() {
             let nodes = mesh.cell(cell);
-            let (corners, turned) = canonical([0, 1, 2].map(|k| nodes[usize::from(local[k])]));
+            let (corners, turned) = canonical([0, 1, 2].map(|k| nodes[local[k]]));
             all.push((corners, index as u32, face as u8, turned));
         }
     }
