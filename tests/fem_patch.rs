@@ -61,7 +61,15 @@ fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Resu
             let law = &materials[0];
             let gamma = if dilation.is_some() { 40.0 * (1.0 + law.lambda() / law.mu()) } else { 40.0 };
             let method = Weak::Nitsche { gamma };
-            weak.push(WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h: 5e-3 });
+            weak.push(WeakSupport {
+                flux: &flux,
+                axes: [true; 3],
+                values,
+                region: &[],
+                method,
+                h: 5e-3,
+                trace: None,
+            });
         }
     }
     let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &weak };

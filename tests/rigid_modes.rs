@@ -100,7 +100,7 @@ fn six_for_every_integration_of_a_cloud() {
         let radii = Support::Dilatation { factor: dilatation }.radii(&cloud.points, &cloud.spacing).unwrap();
         let mls = Approximation::new(cloud.points.clone(), radii, kernel, Basis::Linear).unwrap();
         let (gauss, _) = efg::gauss_rows(&mls, &mesh, 4).unwrap();
-        let (smoothed, _) = efg::smoothed_rows(&mls, &mesh, 1).unwrap();
+        let (smoothed, _) = efg::smoothed_rows(&mls, &mesh, efg::Smoothing::Constant, 1).unwrap();
         for (name, volume) in [("gauss", &gauss), ("cell-smoothed", &smoothed)] {
             let nodal = DilationGroups::nodal(volume).unwrap();
             for dilation in [None, Some(&nodal)] {

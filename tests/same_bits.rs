@@ -33,7 +33,8 @@ fn run(mesh: &Mesh, tables: impl Fn(&Mesh) -> (VolumeRows, FluxRows, SurfaceRows
     };
     let values = vec![Vector3::zeros(); flux.weights().len()];
     let method = Weak::Penalty { factor: 1e4 };
-    let weak = [WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h: 5e-3 }];
+    let weak =
+        [WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h: 5e-3, trace: None }];
     let loads = [Load::Pressure { surface: &surface, values: vec![2e3; surface.weights().len()] }];
     let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
     let u = mechanics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
@@ -63,7 +64,7 @@ fn cloud(mesh: &Mesh) -> (VolumeRows, FluxRows, SurfaceRows) {
     let mls = Approximation::new(cloud.points, radii, Kernel::CubicSpline, Basis::Linear).unwrap();
     let (held, loaded) = (mesh.group("z-min").unwrap(), mesh.group("z-max").unwrap());
     (
-        efg::smoothed_rows(&mls, mesh, 3).unwrap().0,
+        efg::smoothed_rows(&mls, mesh, efg::Smoothing::Constant, 3).unwrap().0,
         efg::flux_rows(&mls, mesh, held, 3).unwrap().0,
         efg::surface_rows(&mls, mesh, loaded, 3).unwrap().0,
     )

@@ -1,11 +1,11 @@
 //! One method on one body: nodes, cells, and the tables they fill. From here on finite elements and meshless clouds
 //! look the same.
 
-use efg::{Approximation, Basis, Kernel, MlsInfo, Support};
+use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
-use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, TraceRows, VolumeRows};
 
 use crate::Failure;
 use crate::error::Key;
@@ -37,8 +37,10 @@ pub enum Integration {
         /// Points along each axis of a cell.
         points: usize,
     },
-    /// Conforming cell smoothing: one point per tetrahedron, its gradient averaged from the faces.
+    /// Conforming cell smoothing: gradients inside a tetrahedron from values on its faces.
     CellSmoothed {
+        /// Gradients inside a tetrahedron: constant or linear.
+        smoothing: Smoothing,
         /// Points per triangular face.
         face_points: usize,
     },
@@ -259,9 +261,10 @@ impl Efg {
                 let (rows, grid, mls) = efg::grid_rows(&approximation, inside, (min, max), spacing, points)?;
                 (rows, mls, Vec::new(), Some(grid.volume / shape.volume() - 1.0))
             }
-            Integration::CellSmoothed { face_points } => {
-                let (rows, mls) = efg::smoothed_rows(&approximation, &self.background, face_points)?;
-                (rows, mls, of_regions(&self.background, efg::smoothed_regions), None)
+            Integration::CellSmoothed { smoothing, face_points } => {
+                let (rows, mls) =
+                    efg::smoothed_rows(&approximation, &self.background, smoothing, face_points)?;
+                (rows, mls, of_regions(&self.background, |mesh| efg::smoothed_regions(mesh, smoothing)), None)
             }
         };
         let groups = match self.dilation {
@@ -284,8 +287,19 @@ impl Efg {
     /// rounding; 6 (degree 4) for other rules, whose boundary terms shall not be what limits them.
     pub fn face_points(&self) -> usize {
         match self.integration {
-            Integration::CellSmoothed { face_points } => face_points,
+            Integration::CellSmoothed { face_points, .. } => face_points,
             _ => 6,
+        }
+    }
+
+    /// What the smoothed gradients are on facets: Nitsche's traction is made of them. Other rules integrate the gradients of
+    /// the shape functions themselves, which the facets' own tables hold.
+    pub fn trace(&self, facets: &[Facet]) -> Result<Option<TraceRows>, Failure> {
+        match self.integration {
+            Integration::CellSmoothed { smoothing, face_points } => {
+                Ok(Some(efg::smoothed_trace(&self.background, facets, smoothing, face_points)?))
+            }
+            _ => Ok(None),
         }
     }
 

@@ -107,8 +107,14 @@ fn integration(efg: &Efg) -> String {
         Integration::Grid { points, .. } => {
             format!("moving least squares at {points}^3 points per grid cell")
         }
-        Integration::CellSmoothed { face_points } => {
-            format!("moving least squares at {face_points} points per face, smoothed over each cell")
+        Integration::CellSmoothed { smoothing, face_points } => {
+            let gradients = match smoothing {
+                efg::Smoothing::Constant => "constant",
+                efg::Smoothing::Linear => "linear",
+            };
+            format!(
+                "moving least squares at {face_points} points per face, smoothed to {gradients} gradients per cell"
+            )
         }
     }
 }

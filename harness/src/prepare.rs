@@ -3,7 +3,7 @@
 use geometry::quadrature;
 use geometry::{Mesh, Point3, Vector3};
 use mechanics::{Body, ConstraintRow, FixedDof, LinearProblem, Load, Weak, WeakSupport, multiplier_rows};
-use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, Unity};
+use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
 
 use crate::Failure;
 use crate::discretise::{Discretisation, Efg, Essential, Volume};
@@ -28,6 +28,7 @@ struct OwnedWeak {
     values: Vec<Vector3>,
     region: Vec<u16>,
     method: Weak,
+    trace: Option<TraceRows>,
 }
 
 /// All tables of one run.
@@ -93,6 +94,7 @@ impl Prepared {
                 region: &w.region,
                 method: w.method,
                 h: self.spacing,
+                trace: w.trace.as_ref(),
             })
             .collect()
     }
@@ -204,13 +206,14 @@ impl Prepared {
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
                     let flux = method.flux(&self.volume, &patch.whole)?;
-                    self.hold_flux(efg, held, flux, Weak::Nitsche { gamma })?;
+                    let trace = efg.trace(&patch.whole)?;
+                    self.hold_flux(efg, held, flux, Weak::Nitsche { gamma }, trace)?;
                 }
             }
             Essential::Penalty(factor) => {
                 if !patch.whole.is_empty() {
                     let flux = method.flux(&self.volume, &patch.whole)?;
-                    self.hold_flux(efg, held, flux, Weak::Penalty { factor })?;
+                    self.hold_flux(efg, held, flux, Weak::Penalty { factor }, None)?;
                 }
             }
         }
@@ -227,7 +230,7 @@ impl Prepared {
             Essential::Multipliers => {}
             Essential::Nitsche(factor) | Essential::Penalty(factor) => {
                 if let Some(flux) = self.clamped_volume(efg, held)? {
-                    self.hold_flux(efg, held, flux, Weak::Penalty { factor })?;
+                    self.hold_flux(efg, held, flux, Weak::Penalty { factor }, None)?;
                 }
             }
         }
@@ -237,7 +240,14 @@ impl Prepared {
         Ok(())
     }
 
-    fn hold_flux(&mut self, efg: &Efg, held: &Held, flux: FluxRows, method: Weak) -> Result<(), Failure> {
+    fn hold_flux(
+        &mut self,
+        efg: &Efg,
+        held: &Held,
+        flux: FluxRows,
+        method: Weak,
+        trace: Option<TraceRows>,
+    ) -> Result<(), Failure> {
         let values = at(held, flux.points())?;
         let region = if efg.background.region_names().len() > 1 {
             return Err(Failure::unavailable(
@@ -248,7 +258,7 @@ impl Prepared {
         } else {
             Vec::new()
         };
-        self.weak.push(OwnedWeak { flux, axes: held.axes, values, region, method });
+        self.weak.push(OwnedWeak { flux, axes: held.axes, values, region, method, trace });
         Ok(())
     }
 

@@ -277,6 +277,8 @@ pub enum Integration {
     },
     /// Conforming smoothing over the tetrahedra of the background mesh.
     CellSmoothed {
+        /// Displacements it is exact for: 1 linear (constant gradients per cell), 2 quadratic (linear gradients).
+        order: u32,
         /// Points per face: 1, 3 or 6.
         face_points: usize,
     },

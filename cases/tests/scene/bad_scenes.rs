@@ -318,6 +318,18 @@ const METHODS: &[Bad] = &[
         "method[2].integration.points",
         &["1, 3 or 6"],
     ),
+    (
+        "rule = \"cell-smoothed\"",
+        "rule = \"cell-smoothed\", order = 3 #<\n",
+        "method[2].integration.order",
+        &["'3' is not known", "2 for quadratic"],
+    ),
+    (
+        "rule = \"cell-smoothed\"",
+        "rule = \"cell-smoothed\", order = 2, points = 3 #<\n",
+        "method[2].integration.points",
+        &["'3' is too coarse for order 2", "6 points"],
+    ),
     ("factor = 10", "factor = -10 #<\n", "method[1].essential.factor", &["'-10' is not positive"]),
     ("poisson = 0.45", "poisson = 0.5 #<", "material.poisson", &["'0.5'", "below 0.5", "0.4999"]),
     ("poisson = 0.45", "poisson = -1 #<", "material.poisson", &["'-1'", "above -1"]),

@@ -45,7 +45,7 @@ fn methods_keep_every_setting() {
     let Family::Efg(efg) = &scene.methods[2].family else { panic!("efg") };
     assert_eq!(efg.cloud, Cloud::Mesh { size: Size::Level(2), jitter: None });
     assert_eq!(efg.support, SupportRule::Neighbours { k: 15, factor: 1.2 });
-    assert_eq!(efg.integration, Integration::CellSmoothed { face_points: 1 });
+    assert_eq!(efg.integration, Integration::CellSmoothed { order: 1, face_points: 1 });
 }
 
 #[test]

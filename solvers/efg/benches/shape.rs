@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use efg::{Approximation, Basis, Kernel, Support, gauss_rows, smoothed_rows};
+use efg::{Approximation, Basis, Kernel, Smoothing, Support, gauss_rows, smoothed_rows};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, cloud_from_mesh};
 use nalgebra::{DMatrix, DVector};
@@ -113,7 +113,9 @@ fn prepare(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group(name);
     group.bench_function("supports-and-buckets", |b| b.iter(make));
     group.bench_function("gauss-4", |b| b.iter(|| gauss_rows(&make(), &background, 4).unwrap()));
-    group.bench_function("cell-smoothed", |b| b.iter(|| smoothed_rows(&make(), &background, 1).unwrap()));
+    group.bench_function("cell-smoothed", |b| {
+        b.iter(|| smoothed_rows(&make(), &background, Smoothing::Constant, 1).unwrap())
+    });
     group.finish();
 }
 

@@ -19,6 +19,7 @@
 mod approximation;
 mod basis;
 mod buckets;
+mod cell_fields;
 mod cells;
 mod error;
 mod facets;
@@ -39,5 +40,5 @@ pub use gauss::{gauss_regions, gauss_rows};
 pub use grid::{GridInfo, grid_rows};
 pub use info::MlsInfo;
 pub use kernel::Kernel;
-pub use smoothed::{smoothed_regions, smoothed_rows};
+pub use smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
 pub use support::Support;

@@ -1,170 +1,159 @@
-//! Conforming cell smoothing: one integration point per tet4, its gradient the mean over the cell by Gauss's theorem.
+//! Conforming cell smoothing: over each tet4 the gradients are those polynomials, constant or linear, whose moments
+//! Gauss's theorem gives. One table of face points serves both sides of every face.
 
-use geometry::Mesh;
-use rayon::prelude::*;
-use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3, VolumeRows};
+use geometry::{Facet, Mesh};
+use shape::{GradRows, Rows, TraceRows, Unity, VolumeRows};
 
+use crate::cell_fields::{CellFields, combine, face_basis, local_corners, volume_basis};
 use crate::cells::tet_measure;
-use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
+use crate::facets::{triangle_rule, vector_area};
 use crate::{Approximation, EfgError, MlsInfo};
 
-/// Cells per parallel task: fixed, so that results are the same bits at any thread count.
-const CHUNK: usize = 128;
-
-/// The distinct faces of a mesh of tet4, each once.
-struct Faces {
-    /// Canonical corners of each face.
-    corners: Vec<[u32; 3]>,
-    /// The four faces of each cell, and -1 where the cell's outward normal opposes the canonical one.
-    of_cell: Vec<[(u32, f64); 4]>,
+/// The field of smoothed gradients inside a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// Constant, one integration point: exact for linear displacements. Goes with the linear basis.
+    Constant,
+    /// Linear, the four points of degree 2: exact for quadratic displacements. Goes with the quadratic basis and with
+    /// face rules of degree 3 or more (6 points).
+    Linear,
 }
 
-/// Rows of one chunk of cells.
-#[derive(Default)]
-struct Batch {
-    lengths: Vec<usize>,
-    nodes: Vec<u32>,
-    values: Vec<f64>,
-    grads: Vec<Vector3>,
+impl Smoothing {
+    /// Integration points per tet4.
+    pub fn points_per_cell(self) -> usize {
+        match self {
+            Smoothing::Constant => 1,
+            Smoothing::Linear => 4,
+        }
+    }
+
+    /// `c` of the trace inequality `integral_F p^2 <= c (A / V) integral_T p^2` for polynomials of that degree on a
+    /// tetrahedron with face area `A` and volume `V`: `(k + 1) (k + 3) / 3`. Sharp. Source: Warburton and Hesthaven
+    /// (2003), doi:10.1016/S0045-7825(03)00294-9.
+    fn trace_constant(self) -> f64 {
+        match self {
+            Smoothing::Constant => 1.0,
+            Smoothing::Linear => 8.0 / 3.0,
+        }
+    }
 }
 
-/// One row per cell of a tet4 background: values at the centroid, weight the cell's volume `V`, and gradients
-/// smoothed over the cell, `grad~_I = (1/V) sum_faces sum_q w_q phi_I(x_q) n` (1/m).
+/// Rows over a tet4 background, in cell order, with smoothed gradients `grad~_I` (1/m) and the values of the shape
+/// functions themselves, at the centroid ([`Smoothing::Constant`], weight the cell's volume `V`) or at four points
+/// ([`Smoothing::Linear`], weights `V / 4`).
 ///
-/// Each interior face's points are evaluated once and serve both sides with opposite normals, so that
-/// `sum_cells V grad~_I = sum_boundary w phi_I n` to rounding with [`crate::surface_rows`] at the same
-/// `face_points`: linear patch tests pass to rounding. One point per cell with a linear field inside: locks near
-/// incompressibility unless the dilation is projected. Source: Chen, Wu, Yoon and You (2001), smoothing on the
-/// background's cells.
+/// `grad~_I` is the polynomial with, for every `p` of its degree,
+///
+/// ```text
+/// integral_cell grad~_I p = sum_faces sum_q w_q phi_I(x_q) n p(x_q) - sum_q w_q phi_I(x_q) grad p
+/// ```
+///
+/// where the last sum runs over the cell's own points. Each interior face's points are evaluated once and serve both
+/// sides with opposite normals, so that with [`crate::surface_rows`] at the same `face_points`, and body forces at
+/// the same points, stresses of that degree balance their loads to rounding: linear patch tests pass with `Constant`,
+/// quadratic ones with `Linear`. A constant gradient per cell locks near incompressibility unless the dilation is
+/// projected. Sources: Chen, Wu, Yoon and You (2001), smoothing on the background's cells; Duan, Li, Zhang and
+/// Belytschko (2012), doi:10.1002/nme.4325, to second order.
 pub fn smoothed_rows(
     approximation: &Approximation,
     background: &Mesh,
+    smoothing: Smoothing,
     face_points: usize,
 ) -> Result<(VolumeRows, MlsInfo), EfgError> {
-    let rule = triangle_rule(face_points)?;
-    let measures = (0..background.cell_count()).map(|cell| tet_measure(background, cell));
-    let (volumes, centroids): (Vec<f64>, Vec<Point3>) =
-        measures.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-    let faces = faces(background);
-    // Face points first, centroids after: one table, one report.
-    let mut points = Vec::with_capacity(faces.corners.len() * rule.len() + centroids.len());
-    for &corners in &faces.corners {
-        triangle_points(background, corners, &rule, &mut points);
+    let cells: Vec<usize> = (0..background.cell_count()).collect();
+    match smoothing {
+        Smoothing::Constant => rows::<1>(approximation, background, &cells, face_points),
+        Smoothing::Linear => rows::<4>(approximation, background, &cells, face_points),
     }
-    let first_centroid = points.len();
-    points.extend_from_slice(&centroids);
-    let (at, info) = approximation.point_rows(&points)?;
-    let areas: Vec<Vector3> = faces.corners.iter().map(|&c| vector_area(background, c)).collect();
-    let cells: Vec<usize> = (0..volumes.len()).collect();
-    let batches: Vec<Batch> = cells
-        .par_chunks(CHUNK)
-        .map(|chunk| {
-            let mut batch = Batch::default();
-            let mut sum = Sum::new(approximation.nodes().len());
-            for &cell in chunk {
-                for (face, sign) in faces.of_cell[cell] {
-                    let flow = areas[face as usize] * (sign / volumes[cell]);
-                    for q in 0..rule.len() {
-                        // The rule's weights sum to 1/2, the area of the reference triangle.
-                        sum.add_gradient(&at, face as usize * rule.len() + q, flow * (2.0 * rule.weights[q]));
-                    }
-                }
-                sum.add_value(&at, first_centroid + cell);
-                sum.drain_into(&mut batch);
-            }
-            batch
-        })
-        .collect();
+}
 
+fn rows<const P: usize>(
+    approximation: &Approximation,
+    background: &Mesh,
+    cells: &[usize],
+    face_points: usize,
+) -> Result<(VolumeRows, MlsInfo), EfgError> {
+    let (fields, info) = CellFields::<P>::new(approximation, background, cells, face_points)?;
+    let basis = volume_basis::<P>();
+    let entries = P * fields.nodes.len();
     let mut offsets = vec![0];
-    let (mut nodes, mut values, mut grads) = (Vec::new(), Vec::new(), Vec::new());
-    for batch in batches {
-        for length in batch.lengths {
-            offsets.push(offsets[offsets.len() - 1] + length);
+    let mut nodes = Vec::with_capacity(entries);
+    let (mut values, mut grads) = (Vec::with_capacity(entries), Vec::with_capacity(entries));
+    let mut weights = Vec::with_capacity(P * cells.len());
+    for index in 0..cells.len() {
+        let range = fields.offsets[index]..fields.offsets[index + 1];
+        for q in 0..P {
+            nodes.extend_from_slice(&fields.nodes[range.clone()]);
+            values.extend(fields.values[range.clone()].iter().map(|v| v[q]));
+            grads.extend(fields.slopes[range.clone()].iter().map(|s| combine(s, &basis[q])));
+            offsets.push(nodes.len());
+            weights.push(fields.volumes[index] / P as f64);
         }
-        nodes.extend_from_slice(&batch.nodes);
-        values.extend_from_slice(&batch.values);
-        grads.extend_from_slice(&batch.grads);
     }
-    let rows = Rows::new(approximation.nodes().len(), offsets, nodes, values, Unity::Within(1e-8))?;
-    let volume = VolumeRows::new(GradRows::new(centroids, rows, grads)?, volumes)?;
-    Ok((volume, info))
+    let rows = Rows::new(approximation.nodes().len(), offsets, nodes, values, UNITY)?;
+    Ok((VolumeRows::new(GradRows::new(fields.points, rows, grads)?, weights)?, info))
+}
+
+/// What the smoothed gradients of [`smoothed_rows`] are at the points of [`crate::flux_rows`] on the same facets: those
+/// of the cell behind the facet, as combinations of its own integration points. The lengths are `h = V / (c A)` with `A`
+/// (m^2) the area of all listed facets of the cell and `c` = 1 for constant, 8/3 for linear gradients.
+///
+/// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma > 1`, whatever supports
+/// overlap and whatever Poisson's ratio. With gradients of the shape functions themselves no such factor is known:
+/// smoothing does not see all of them.
+pub fn smoothed_trace(
+    background: &Mesh,
+    facets: &[Facet],
+    smoothing: Smoothing,
+    face_points: usize,
+) -> Result<TraceRows, EfgError> {
+    let rule = triangle_rule(face_points)?;
+    let mut areas = vec![0.0; background.cell_count()];
+    for facet in facets {
+        let (cell, face) = (facet.cell as usize, facet.face as usize);
+        tet_measure(background, cell)?;
+        let corners = local_corners(background, cell, face).map(|c| background.cell(cell)[c]);
+        areas[cell] += vector_area(background, corners).norm();
+    }
+    let (mut offsets, mut points, mut coefficients) = (vec![0], Vec::new(), Vec::new());
+    let mut lengths = Vec::with_capacity(facets.len() * rule.len());
+    let count = smoothing.points_per_cell();
+    for facet in facets {
+        let cell = facet.cell as usize;
+        let corners = local_corners(background, cell, facet.face as usize);
+        let h = tet_measure(background, cell)?.0 / (smoothing.trace_constant() * areas[cell]);
+        for xi in &rule.points {
+            points.extend((count * cell..count * (cell + 1)).map(|q| q as u32));
+            match smoothing {
+                Smoothing::Constant => coefficients.push(1.0),
+                Smoothing::Linear => coefficients.extend(from_four_points(face_basis(corners, xi))),
+            }
+            offsets.push(points.len());
+            lengths.push(h);
+        }
+    }
+    Ok(TraceRows::new(count * background.cell_count(), offsets, points, coefficients, lengths)?)
+}
+
+/// Coefficients by which the values at the four points of degree 2 make those at a point of given barycentric
+/// coordinates, for linear fields. The points have coordinates `a` once and `b` three times, so that
+/// `f(x) = sum_q (l_q - b) / (a - b) f(x_q)`.
+fn from_four_points(barycentric: [f64; 4]) -> [f64; 4] {
+    let basis = volume_basis::<4>();
+    std::array::from_fn(|q| {
+        let own = (0..4).max_by(|&i, &j| basis[q][i].total_cmp(&basis[q][j])).expect("four coordinates");
+        let (a, b) = (basis[q][own], basis[q][(own + 1) % 4]);
+        (barycentric[own] - b) / (a - b)
+    })
 }
 
 /// Region of the background at every point of [`smoothed_rows`].
-pub fn smoothed_regions(background: &Mesh) -> Vec<u16> {
-    (0..background.cell_count()).map(|cell| background.region(cell)).collect()
+pub fn smoothed_regions(background: &Mesh, smoothing: Smoothing) -> Vec<u16> {
+    (0..background.cell_count())
+        .flat_map(|cell| std::iter::repeat_n(background.region(cell), smoothing.points_per_cell()))
+        .collect()
 }
 
-/// A row being summed, dense over the nodes with a list of those touched.
-struct Sum {
-    value: Vec<f64>,
-    grad: Vec<Vector3>,
-    seen: Vec<bool>,
-    touched: Vec<u32>,
-}
-
-impl Sum {
-    fn new(nodes: usize) -> Sum {
-        let (value, grad) = (vec![0.0; nodes], vec![Vector3::zeros(); nodes]);
-        Sum { value, grad, seen: vec![false; nodes], touched: Vec::new() }
-    }
-
-    fn touch(&mut self, node: u32) {
-        if !std::mem::replace(&mut self.seen[node as usize], true) {
-            self.touched.push(node);
-        }
-    }
-
-    fn add_gradient(&mut self, at: &PointRows, row: usize, flow: Vector3) {
-        let (nodes, values) = at.rows().row(row);
-        for (&node, &value) in nodes.iter().zip(values) {
-            self.touch(node);
-            self.grad[node as usize] += flow * value;
-        }
-    }
-
-    fn add_value(&mut self, at: &PointRows, row: usize) {
-        let (nodes, values) = at.rows().row(row);
-        for (&node, &value) in nodes.iter().zip(values) {
-            self.touch(node);
-            self.value[node as usize] += value;
-        }
-    }
-
-    /// Appends the row by ascending node and clears.
-    fn drain_into(&mut self, batch: &mut Batch) {
-        self.touched.sort_unstable();
-        batch.lengths.push(self.touched.len());
-        for &node in &self.touched {
-            let i = node as usize;
-            batch.nodes.push(node);
-            batch.values.push(std::mem::take(&mut self.value[i]));
-            batch.grads.push(std::mem::take(&mut self.grad[i]));
-            self.seen[i] = false;
-        }
-        self.touched.clear();
-    }
-}
-
-fn faces(mesh: &Mesh) -> Faces {
-    let mut all: Vec<([u32; 3], u32, u8, bool)> = Vec::with_capacity(4 * mesh.cell_count());
-    for cell in 0..mesh.cell_count() {
-        for (face, local) in mesh.kind(cell).faces().iter().enumerate() {
-            let nodes = mesh.cell(cell);
-            let (corners, turned) = canonical([nodes[local[0]], nodes[local[1]], nodes[local[2]]]);
-            all.push((corners, cell as u32, face as u8, turned));
-        }
-    }
-    all.sort_unstable();
-    let mut corners: Vec<[u32; 3]> = Vec::with_capacity(all.len() / 2);
-    let mut of_cell = vec![[(0, 1.0); 4]; mesh.cell_count()];
-    for (triangle, cell, face, turned) in all {
-        if corners.last() != Some(&triangle) {
-            corners.push(triangle);
-        }
-        let sign = if turned { -1.0 } else { 1.0 };
-        of_cell[cell as usize][face as usize] = (corners.len() as u32 - 1, sign);
-    }
-    Faces { corners, of_cell }
-}
+/// Rows sum to one within this; those of sound supports do within 1e-14.
+const UNITY: Unity = Unity::Within(1e-8);

@@ -4,8 +4,8 @@ mod common;
 
 use common::{jittered_box, on_mesh};
 use efg::{
-    Basis, EfgError, Kernel, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
-    smoothed_rows, surface_rows,
+    Basis, EfgError, Kernel, Smoothing, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
+    smoothed_rows, smoothed_trace, surface_rows,
 };
 use geometry::generate::{kidney_mesh, raise_order};
 use geometry::{CellKind, Facet, Mesh};
@@ -53,12 +53,12 @@ fn smoothing_meets_the_integration_constraint_to_rounding() {
     ] {
         let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline, Basis::Linear);
         for face_points in [1, 3, 6] {
-            let (volume, _) = smoothed_rows(&mls, &mesh, face_points).unwrap();
+            let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, face_points).unwrap();
             let violation = constraint_violation(&mls, &mesh, &volume, face_points);
             assert!(violation < 1e-14, "{face_points} points: {violation:e}");
         }
         // The boundary must use the same points, or the constraint is lost: this is what the test above can see.
-        let (volume, _) = smoothed_rows(&mls, &mesh, 1).unwrap();
+        let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 1).unwrap();
         assert!(constraint_violation(&mls, &mesh, &volume, 3) > 1e-4);
         // Plain Gauss points do not meet it.
         let (volume, _) = gauss_rows(&mls, &mesh, 4).unwrap();
@@ -71,10 +71,10 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     for basis in Basis::ALL {
         let mls = on_mesh(&mesh, common::dilatation(basis), Kernel::WendlandC2, basis);
-        let (volume, info) = smoothed_rows(&mls, &mesh, 3).unwrap();
+        let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 3).unwrap();
         assert_eq!(info.fallbacks(), 0);
         assert_eq!(volume.weights().len(), mesh.cell_count());
-        assert_eq!(smoothed_regions(&mesh).len(), mesh.cell_count());
+        assert_eq!(smoothed_regions(&mesh, Smoothing::Constant).len(), mesh.cell_count());
         assert!((volume.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
         let (plain, _) = mls.point_rows(volume.points()).unwrap();
         for q in 0..mesh.cell_count() {
@@ -102,7 +102,7 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
 fn smoothed_gradients_are_cell_means() {
     let mesh = jittered_box(CellKind::Tet4, 3);
     let mls = on_mesh(&mesh, 2.5, Kernel::WendlandC4, Basis::Linear);
-    let (smoothed, _) = smoothed_rows(&mls, &mesh, 12).unwrap();
+    let (smoothed, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 12).unwrap();
     let (fine, _) = gauss_rows(&mls, &mesh, 24).unwrap();
     for cell in [0, 50, 100] {
         let mut mean = vec![Vector3::zeros(); mls.nodes().len()];
@@ -202,19 +202,95 @@ fn backgrounds_it_cannot_use_are_refused() {
     let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
     let curved = raise_order(&mesh);
     let hexes = jittered_box(CellKind::Hex8, 3);
-    assert!(matches!(smoothed_rows(&mls, &hexes, 1), Err(EfgError::CellKind { cell: 0, .. })));
+    assert!(matches!(
+        smoothed_rows(&mls, &hexes, Smoothing::Constant, 1),
+        Err(EfgError::CellKind { cell: 0, .. })
+    ));
     assert!(matches!(gauss_rows(&mls, &curved, 4), Err(EfgError::CellKind { kind: CellKind::Tet10, .. })));
     assert!(matches!(gauss_rows(&mls, &mesh, 5), Err(EfgError::NoRule { points: 5, .. })));
     assert!(matches!(gauss_rows(&mls, &hexes, 4), Err(EfgError::NoRule { points: 4, .. })));
-    assert!(matches!(smoothed_rows(&mls, &mesh, 2), Err(EfgError::NoRule { points: 2, .. })));
+    assert!(matches!(
+        smoothed_rows(&mls, &mesh, Smoothing::Constant, 2),
+        Err(EfgError::NoRule { points: 2, .. })
+    ));
     let facet = [Facet { cell: 0, face: 0 }];
     assert!(matches!(surface_rows(&mls, &hexes, &facet, 3), Err(EfgError::NoRule { points: 3, .. })));
     // Mirrored, every cell is inside out.
     let mirrored = mesh.moved(|p| Point3::new(0.04 - p.x, p.y, p.z)).unwrap();
-    for refused in [gauss_rows(&mls, &mirrored, 4).err(), smoothed_rows(&mls, &mirrored, 1).err()] {
+    for refused in
+        [gauss_rows(&mls, &mirrored, 4).err(), smoothed_rows(&mls, &mirrored, Smoothing::Constant, 1).err()]
+    {
         assert!(
             matches!(refused, Some(EfgError::InvertedCell { cell: 0, det_j }) if det_j < 0.0),
             "{refused:?}"
         );
+    }
+}
+
+/// To second order: gradients of quadratic fields at all four points, for every kernel.
+#[test]
+fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
+    let mesh = jittered_box(CellKind::Tet4, 3);
+    for kernel in Kernel::ALL {
+        let mls = on_mesh(&mesh, 2.2, kernel, Basis::Quadratic);
+        let error = |face_points| {
+            let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Linear, face_points).unwrap();
+            assert_eq!(info.fallbacks(), 0);
+            assert_eq!(volume.weights().len(), smoothed_regions(&mesh, Smoothing::Linear).len());
+            assert!((volume.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
+            let mut worst = 0.0f64;
+            for (q, x) in volume.points().iter().enumerate() {
+                let (nodes, grads) = volume.row(q);
+                let slope: Vector3 = nodes
+                    .iter()
+                    .zip(grads)
+                    .map(|(&n, g)| g * common::field(Basis::Quadratic, &mls.nodes()[n as usize]).0)
+                    .sum();
+                worst = worst.max((slope - common::field(Basis::Quadratic, x).1).norm());
+            }
+            worst
+        };
+        assert!(error(6) < 1e-11, "{}: {:e}", kernel.name(), error(6));
+        // Three points per face are of degree 2, one too few.
+        assert!(error(3) > 1e-4, "{}: {:e}", kernel.name(), error(3));
+    }
+}
+
+/// Traces carry linear fields to the surface, and their lengths bound what they carry by the volume.
+#[test]
+fn traces_are_exact_and_bounded() {
+    let mesh = jittered_box(CellKind::Tet4, 2);
+    let mls = on_mesh(&mesh, 2.2, Kernel::CubicSpline, Basis::Quadratic);
+    let facets = mesh.boundary();
+    let (surface, _) = surface_rows(&mls, &mesh, &facets, 6).unwrap();
+    for smoothing in [Smoothing::Constant, Smoothing::Linear] {
+        let (volume, _) = smoothed_rows(&mls, &mesh, smoothing, 6).unwrap();
+        let trace = smoothed_trace(&mesh, &facets, smoothing, 6).unwrap();
+        let at = |s: usize, f: &dyn Fn(usize) -> f64| {
+            trace.row(s).0.iter().zip(trace.row(s).1).map(|(&q, c)| c * f(q as usize)).sum::<f64>()
+        };
+        let mut sharpest = 0.0f64;
+        for seed in 0..50u32 {
+            // Any values at the volume's points, not only smooth ones.
+            let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
+            for cell in facets.iter().map(|f| f.cell as usize) {
+                let own = |s: &usize| facets[s / 6].cell as usize == cell;
+                let on: f64 = (0..trace.len())
+                    .filter(own)
+                    .map(|s| surface.weights()[s] * trace.lengths()[s] * at(s, &f).powi(2))
+                    .sum();
+                let n = smoothing.points_per_cell();
+                let inside: f64 =
+                    (n * cell..n * (cell + 1)).map(|q| volume.weights()[q] * f(q).powi(2)).sum();
+                assert!(on <= inside * (1.0 + 1e-12), "{smoothing:?}, cell {cell}: {on:e} {inside:e}");
+                sharpest = sharpest.max(on / inside);
+            }
+        }
+        assert!(sharpest > 0.8, "{smoothing:?}: the bound is {sharpest} of sharp");
+        if smoothing == Smoothing::Linear {
+            for (s, x) in surface.points().iter().enumerate() {
+                assert!((at(s, &|q| volume.points()[q].y) - x.y).abs() < 1e-16);
+            }
+        }
     }
 }

@@ -17,6 +17,7 @@
 mod body;
 mod constraint;
 mod contact;
+mod dilation;
 mod error;
 mod linear_solver;
 mod load;

@@ -2,6 +2,7 @@
 
 use crate::body::check_len;
 use crate::constraint::{self, ConstraintRow};
+use crate::dilation::Projected;
 use crate::load::{Load, nodal_forces};
 use crate::pattern::BlockPattern;
 use crate::rigid;
@@ -48,7 +49,7 @@ pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveE
     body.check()?;
     let nodes = body.nodes.len();
     for (index, support) in problem.weak.iter().enumerate() {
-        support.check(index, nodes, body.materials)?;
+        support.check(index, &body)?;
     }
     let prescribed = prescribed(nodes, problem.fixed)?;
     let rows = constraint::sorted(problem.constraints, nodes)?;
@@ -58,11 +59,13 @@ pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveE
     let points_of = points.incidence(nodes);
     let groups = GradTable::groups(&body)?;
     let groups_of = groups.as_ref().map(|table| table.incidence(nodes));
+    let traced = problem.weak.iter().filter_map(|s| s.trace).flat_map(|t| t.points().iter().copied());
+    let projected = Projected::new(&body, traced);
     let weak: Vec<_> = problem
         .weak
         .iter()
         .map(|support| {
-            let table = WeakTable::new(support, body.materials);
+            let table = WeakTable::new(support, &body, projected.as_ref());
             let incidence = table.incidence(nodes);
             (table, incidence)
         })

@@ -3,12 +3,13 @@
 //! displacements. Each axis may be held on its own (rollers).
 
 use rayon::prelude::*;
-use shape::FluxRows;
+use shape::{FluxRows, TraceRows};
 
 use crate::body::{check_len, check_regions, region_of};
+use crate::dilation::Projected;
 use crate::pattern::{Connectivity, Incidence};
 use crate::stiffness::Stiffness;
-use crate::{LinearElastic, Matrix3, SolveError, Vector3};
+use crate::{Body, Matrix3, SolveError, Vector3};
 
 /// How a weak support holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,26 +37,29 @@ pub struct WeakSupport<'a> {
     pub axes: [bool; 3],
     /// Prescribed displacement at each surface point, m; components along axes not held are ignored.
     pub values: Vec<Vector3>,
-    /// Region of each surface point (index into the body's materials); empty when all are of region 0. The traction
-    /// is that of the plain law, without volumetric projection.
+    /// Region of each surface point (index into the body's materials); empty when all are of region 0.
     pub region: &'a [u16],
     /// Nitsche or penalty.
     pub method: Weak,
-    /// Length scale of the discretisation at the surface, m.
+    /// Length scale of the discretisation at the surface, m; with a trace Nitsche's `h` is the trace's own.
     pub h: f64,
+    /// From what Nitsche's traction is made: the body's own quadrature points, with their projected dilation if there
+    /// is one, or, without a trace, the gradients of `flux` by the plain law. With a trace the matrix is definite for
+    /// every `gamma > 1` and any Poisson's ratio: `|sigma n|^2 <= (lambda + 2 mu) sigma : eps` pointwise, and the trace's
+    /// lengths bound the surface integral by the energy.
+    pub trace: Option<&'a TraceRows>,
 }
 
 impl WeakSupport<'_> {
-    pub(crate) fn check(
-        &self,
-        support: usize,
-        node_count: usize,
-        materials: &[LinearElastic],
-    ) -> Result<(), SolveError> {
+    pub(crate) fn check(&self, support: usize, body: &Body) -> Result<(), SolveError> {
         let points = self.flux.weights().len();
         check_len("values of a weak support", self.values.len(), points)?;
-        check_len("nodes of a weak support", self.flux.at().rows().node_count(), node_count)?;
-        check_regions(self.region, points, materials)?;
+        check_len("nodes of a weak support", self.flux.at().rows().node_count(), body.nodes.len())?;
+        check_regions(self.region, points, body.materials)?;
+        if let Some(trace) = self.trace {
+            check_len("trace of a weak support", trace.len(), points)?;
+            check_len("volume points of a trace", trace.point_count(), body.volume.weights().len())?;
+        }
         let (what, value) = match self.method {
             Weak::Nitsche { gamma } => ("gamma", gamma),
             Weak::Penalty { factor } => ("factor", factor),
@@ -91,46 +95,80 @@ pub(crate) struct WeakTable {
     held: Matrix3,
 }
 
+/// What one node contributes at one surface point.
+#[derive(Clone, Copy)]
+struct Entry {
+    phi: f64,
+    /// Gradient of the traction's strain, 1/m.
+    grad: Vector3,
+    /// Gradient of the traction's projected dilation, 1/m.
+    dilation: Vector3,
+}
+
 impl WeakTable {
-    pub fn new(support: &WeakSupport, materials: &[LinearElastic]) -> WeakTable {
+    pub fn new(support: &WeakSupport, body: &Body, projected: Option<&Projected>) -> WeakTable {
         let at = support.flux.at();
         let points = support.flux.weights().len();
         let held = Matrix3::from_diagonal(&Vector3::from_fn(|a, _| f64::from(u8::from(support.axes[a]))));
+        let nitsche = matches!(support.method, Weak::Nitsche { .. });
+        let trace = support.trace.filter(|_| nitsche);
         let mut offsets = vec![0];
         let (mut nodes, mut phi, mut traction) = (Vec::new(), Vec::new(), Vec::new());
         let mut beta = Vec::with_capacity(points);
-        let mut row: Vec<(u32, f64, Vector3)> = Vec::new();
+        let none = Entry { phi: 0.0, grad: Vector3::zeros(), dilation: Vector3::zeros() };
+        let (mut row, mut seen) = (vec![none; body.nodes.len()], vec![false; body.nodes.len()]);
+        let mut touched: Vec<u32> = Vec::new();
         for q in 0..points {
-            let law = &materials[region_of(support.region, q)];
+            let law = &body.materials[region_of(support.region, q)];
             let (lambda, mu) = (law.lambda(), law.mu());
             let n = support.flux.normals()[q];
-            let (row_nodes, values) = at.rows().row(q);
-            row.clear();
-            row.extend(row_nodes.iter().zip(values).zip(at.row(q).1).map(|((&node, &v), &g)| (node, v, g)));
-            row.sort_by_key(|e| e.0);
-            row.dedup_by(|next, kept| {
-                let same = next.0 == kept.0;
-                if same {
-                    kept.1 += next.1;
-                    kept.2 += next.2;
+            let mut add = |node: u32, phi: f64, grad: Vector3, dilation: Vector3| {
+                let i = node as usize;
+                if !std::mem::replace(&mut seen[i], true) {
+                    touched.push(node);
                 }
-                same
-            });
-            for &(node, v, g) in &row {
+                row[i].phi += phi;
+                row[i].grad += grad;
+                row[i].dilation += dilation;
+            };
+            let (row_nodes, values) = at.rows().row(q);
+            for ((&node, &value), &g) in row_nodes.iter().zip(values).zip(at.row(q).1) {
+                add(node, value, if trace.is_some() { Vector3::zeros() } else { g }, Vector3::zeros());
+            }
+            if let Some(trace) = trace {
+                for (&p, &c) in trace.row(q).0.iter().zip(trace.row(q).1) {
+                    let (nodes, grads) = body.volume.row(p as usize);
+                    nodes.iter().zip(grads).for_each(|(&i, g)| add(i, 0.0, g * c, Vector3::zeros()));
+                    let dilation = projected.map_or(&[][..], |d| d.row(p as usize));
+                    dilation.iter().for_each(|&(i, b)| add(i, 0.0, Vector3::zeros(), b * c));
+                }
+            }
+            // With a projection the mean stress is kappa times the projected dilation, as in the energy.
+            let (shear, bulk) = match (trace, projected) {
+                (Some(_), Some(_)) => (-2.0 / 3.0 * mu, law.bulk()),
+                _ => (lambda, 0.0),
+            };
+            touched.sort_unstable();
+            for &node in &touched {
+                let Entry { phi: value, grad: g, dilation: b } =
+                    std::mem::replace(&mut row[node as usize], none);
+                seen[node as usize] = false;
                 nodes.push(node);
-                phi.push(v);
+                phi.push(value);
                 // t_a of a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c)
-                traction.push(match support.method {
-                    Weak::Nitsche { .. } => {
-                        held * (n * g.transpose() * lambda
-                            + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
-                    }
-                    Weak::Penalty { .. } => Matrix3::zeros(),
+                traction.push(if nitsche {
+                    held * (n * (g * shear + b * bulk).transpose()
+                        + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
+                } else {
+                    Matrix3::zeros()
                 });
             }
+            touched.clear();
             offsets.push(nodes.len());
             beta.push(match support.method {
-                Weak::Nitsche { gamma } => gamma * (lambda + 2.0 * mu) / support.h,
+                Weak::Nitsche { gamma } => {
+                    gamma * (lambda + 2.0 * mu) / trace.map_or(support.h, |t| t.lengths()[q])
+                }
                 Weak::Penalty { factor } => factor * law.young() / support.h,
             });
         }

@@ -80,6 +80,7 @@ fn by_nitsche_on_all_sides_and_axis_by_axis() {
             region: &[],
             method: Weak::Nitsche { gamma: 20.0 },
             h: 0.01,
+            trace: None,
         };
         for weak in [vec![held([true; 3])], vec![held([true, false, false]), held([false, true, true])]] {
             let problem = LinearProblem { body, loads: &[], fixed: &[], constraints: &[], weak: &weak };
@@ -112,6 +113,7 @@ fn by_nitsche_rollers_and_tractions() {
             region: &[],
             method: Weak::Nitsche { gamma: 20.0 },
             h: 0.01,
+            trace: None,
         })
         .collect();
     let pulled = block.surface(&["x-max", "y-max", "z-max"]);
@@ -143,6 +145,7 @@ fn penalty_error_falls_with_the_factor() {
             region: &[],
             method: Weak::Penalty { factor },
             h: 0.01,
+            trace: None,
         }];
         let problem = LinearProblem { body, loads: &[], fixed: &[], constraints: &[], weak: &weak };
         let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();

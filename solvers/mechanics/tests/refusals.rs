@@ -76,6 +76,7 @@ fn weak_supports_and_rows_count_as_holds() {
             region: &[],
             method: Weak::Penalty { factor: 1e4 },
             h: 0.01,
+            trace: None,
         }]
     };
     attempt(body, &[], &[], &[], &weak([true; 3])).unwrap();
@@ -176,6 +177,7 @@ fn too_small_a_nitsche_factor_is_an_error() {
             region: &[],
             method: Weak::Nitsche { gamma: 0.05 },
             h: 0.01,
+            trace: None,
         }];
         let body = block.body(&material);
         let problem = LinearProblem { body, loads: &[], fixed: &[], constraints: &[], weak: &weak };
@@ -244,7 +246,8 @@ fn bad_input_is_named() {
 
     let weak = |method, h| {
         let values = vec![Vector3::zeros(); flux.weights().len()];
-        let support = WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h };
+        let support =
+            WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h, trace: None };
         attempt(body, &[], &[], &[], &[support]).err()
     };
     for (method, h) in [

@@ -143,7 +143,15 @@ fn same_bits_with_one_and_two_threads() {
             let loads = [Load::Pressure { surface: &surface, values: vec![2e3; surface.weights().len()] }];
             let values = vec![Vector3::zeros(); flux.weights().len()];
             let method = Weak::Nitsche { gamma: 50.0 };
-            let weak = [WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h: 0.004 }];
+            let weak = [WeakSupport {
+                flux: &flux,
+                axes: [true; 3],
+                values,
+                region: &[],
+                method,
+                h: 0.004,
+                trace: None,
+            }];
             let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
             let assembled = assemble(&problem).unwrap();
             let k = assembled.stiffness().clone();

@@ -9,10 +9,12 @@
 mod dilation;
 mod rows;
 mod tables;
+mod trace;
 
 pub use dilation::DilationGroups;
 pub use rows::{Rows, ShapeError, Unity};
 pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+pub use trace::TraceRows;
 
 /// A position in the reference configuration, in metres.
 pub type Point3 = nalgebra::Point3<f64>;

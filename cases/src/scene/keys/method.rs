@@ -115,8 +115,8 @@ pub(crate) enum IntegrationKeys {
     Gauss { points: u32 },
     /// Gauss points in the cells of a grid, those outside the body left out
     Grid { points: u32, spacing: Option<Q<Length>> },
-    /// Conforming smoothing over tetrahedra, with points per face
-    CellSmoothed { points: Option<u32> },
+    /// Conforming smoothing over tetrahedra, with points per face; order 2 goes with the quadratic basis and 6 points
+    CellSmoothed { points: Option<u32>, order: Option<u32> },
 }
 
 /// How prescribed displacements are imposed

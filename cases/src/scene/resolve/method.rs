@@ -185,15 +185,29 @@ fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integra
             let spacing = spacing.map(|q| positive(q.0, &format!("{key}.integration.spacing"), report));
             Integration::Grid { points: points as usize, spacing }
         }
-        IntegrationKeys::CellSmoothed { points } => {
-            let points = points.unwrap_or(1);
+        IntegrationKeys::CellSmoothed { points, order } => {
+            let order = order.unwrap_or(1);
+            let known = [1, 2].contains(&order);
+            report.require(
+                known,
+                &format!("{key}.integration.order"),
+                "is not known",
+                "1 is exact for linear displacements, 2 for quadratic ones",
+            );
+            let points = points.unwrap_or(if order == 2 { 6 } else { 1 });
+            report.require(
+                order != 2 || ![1, 3].contains(&points),
+                &at,
+                "is too coarse for order 2",
+                "6 points per face are exact to the degree it needs",
+            );
             report.require(
                 [1, 3, 6].contains(&points),
                 &at,
                 "is no face rule",
                 "points per face are 1, 3 or 6",
             );
-            Integration::CellSmoothed { face_points: points as usize }
+            Integration::CellSmoothed { order, face_points: points as usize }
         }
     }
 }
