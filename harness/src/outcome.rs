@@ -206,7 +206,8 @@ impl Outcome {
             transfer.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
         rows.extend(self.times("prepare", &transfer.build));
         rows.extend(self.times("transfer", &transfer.apply));
-        let from = format!("from={}", self.identity.method);
+        // One method id may stand for many kernels: without theirs, transfers from two of them would be one row.
+        let from = format!("from={};kernel={}", self.identity.method, self.identity.variant);
         let parameters =
             if transfer.parameters.is_empty() { from } else { format!("{from};{}", transfer.parameters) };
         for row in &mut rows {

@@ -47,8 +47,8 @@ pub use material::{
     volume_change,
 };
 pub use nonlinear::{
-    Dilation, Drive, DrivenTool, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError, StaticParams,
-    StaticPath, StaticProblem, Step, ToolState, Worst, solve_static,
+    Dilation, Drive, DrivenTool, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError,
+    StaticParams, StaticPath, StaticProblem, Step, ToolState, Worst, solve_static,
 };
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};

@@ -4,16 +4,16 @@
 //! ends with its residual.
 
 mod dense;
-mod unsymmetric;
 mod ordering;
 mod sparse;
+mod unsymmetric;
 
 use std::sync::Arc;
 
 use crate::{SolveError, Stiffness};
 
-pub(crate) use unsymmetric::Unsymmetric;
 pub(crate) use sparse::Symbolic;
+pub(crate) use unsymmetric::Unsymmetric;
 
 /// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
 /// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless

@@ -85,25 +85,14 @@ impl Sparse {
     pub fn solve(&self, b: &mut [f64]) -> Result<(), SolveError> {
         let n = b.len();
         let scratch = self.symbolic.cholesky.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let mut memory = MemBuffer::try_new(scratch)
-            .map_err(|_| too_large(n, &"no memory for the solve"))?;
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(n, &"no memory for the solve"))?;
         let stack = MemStack::new(&mut memory);
         let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
         let cholesky = &self.symbolic.cholesky;
         if !self.definite {
-            LdltRef::new(cholesky, &self.values).solve_in_place_with_conj(
-                Conj::No,
-                rhs,
-                Par::Seq,
-                stack,
-            );
+            LdltRef::new(cholesky, &self.values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, stack);
         } else {
-            LltRef::new(cholesky, &self.values).solve_in_place_with_conj(
-                Conj::No,
-                rhs,
-                Par::Seq,
-                stack,
-            );
+            LltRef::new(cholesky, &self.values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, stack);
         }
         Ok(())
     }

@@ -14,5 +14,5 @@ pub use error::{Inverted, StaticError, Worst};
 pub use newton::{Iteration, NewtonParams};
 pub use solid::{Dilation, Solid};
 pub use statics::{
-    DrivenTool, Drive, HeldSurface, StaticParams, StaticPath, StaticProblem, Step, ToolState, solve_static,
+    Drive, DrivenTool, HeldSurface, StaticParams, StaticPath, StaticProblem, Step, ToolState, solve_static,
 };

@@ -97,9 +97,7 @@ impl Factored {
 
 impl<'a> Newton<'a> {
     pub fn new(problem: &'a StaticProblem<'a>, params: &'a NewtonParams) -> Result<Newton<'a>, StaticError> {
-        for (what, value) in
-            [("tolerance", params.tolerance), ("iterations", params.iterations as f64)]
-        {
+        for (what, value) in [("tolerance", params.tolerance), ("iterations", params.iterations as f64)] {
             if !(value > 0.0) {
                 return Err(StaticError::Parameter { what, value, need: "it must be positive" });
             }
@@ -249,7 +247,8 @@ impl<'a> Newton<'a> {
             if first_energy == 0.0 {
                 first_energy = slope.abs();
             }
-            let (next, length) = self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
+            let (next, length) =
+                self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
             log.push(Iteration { residual, energy, length });
             balance = next;
@@ -316,8 +315,7 @@ impl<'a> Newton<'a> {
 
     /// Forces in a state.
     fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
-        let internal =
-            self.problem.solid.internal(self.system.pairs.as_ref(), &state.u, &state.pressure)?;
+        let internal = self.problem.solid.internal(self.system.pairs.as_ref(), &state.u, &state.pressure)?;
         let inner = self.system.internal_force(&internal);
         let mut out: Vec<Vector3> = self.load.iter().map(|f| f * time).collect();
         for (held, table) in self.problem.held.iter().zip(&self.system.surfaces) {
@@ -557,7 +555,12 @@ impl<'a> Newton<'a> {
             let now: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
             // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
             let smaller = norm(&unknowns) <= (1.0 - 0.1 * length) * before;
-            if now.abs() <= (1.0 - 0.2 * length) * slope.abs() || smaller || held_move.is_some() || saddle || trial >= 6 {
+            if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
+                || smaller
+                || held_move.is_some()
+                || saddle
+                || trial >= 6
+            {
                 return Ok((balance, length));
             }
             // Secant between slope at 0 and now at `length`, kept between a tenth and a half of it.

@@ -127,8 +127,8 @@ impl Split {
         let (c, T, theta) = (self.scale, &self.T, self.theta);
         let Z = (Y + P_term) * (c / 3.0);
         let (t, z) = (flat(T), flat(&Z));
-        let mut by_FF = A * (c * c) - z * t.transpose() - t * z.transpose()
-            + t * t.transpose() * ((FAF + s_term) / 9.0);
+        let mut by_FF =
+            A * (c * c) - z * t.transpose() - t * z.transpose() + t * t.transpose() * ((FAF + s_term) / 9.0);
         if s_term != 0.0 {
             // (s / 3) F^-T dF^T F^-T
             for i in 0..3 {

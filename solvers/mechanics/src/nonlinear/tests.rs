@@ -38,8 +38,7 @@ fn split_derivatives_are_those_of_its_energy() {
         let (H, theta1) = (gradient(), 0.27);
         let (first, second) = at(&H, theta1).second(&law);
         let scale = YOUNG;
-        let by_theta =
-            (at(&H, theta1 + h).energy(&law) - at(&H, theta1 - h).energy(&law)) / (2.0 * h);
+        let by_theta = (at(&H, theta1 + h).energy(&law) - at(&H, theta1 - h).energy(&law)) / (2.0 * h);
         assert!((by_theta - first.by_theta).abs() < 1e-7 * scale, "{}", law.name());
         let (up, down) = (at(&H, theta1 + h).first(&law), at(&H, theta1 - h).first(&law));
         let slope = (up.by_theta - down.by_theta) / (2.0 * h);
@@ -54,7 +53,12 @@ fn split_derivatives_are_those_of_its_energy() {
             assert!((slope - first.by_F[k]).abs() < 1e-7 * scale, "{} {k}", law.name());
             let slope = flat(&((up.first(&law).by_F - down.first(&law).by_F) / (2.0 * h)));
             let found = second.by_FF.column(k);
-            assert!((slope - found).norm() < 1e-6 * scale, "{} {k}: {:e}", law.name(), (slope - found).norm());
+            assert!(
+                (slope - found).norm() < 1e-6 * scale,
+                "{} {k}: {:e}",
+                law.name(),
+                (slope - found).norm()
+            );
         }
     }
 }
@@ -136,15 +140,15 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
             let matrix = system.assemble(&hessian, &[]);
             let n = total.len();
             // Displacements of size 1e-2 and pressures of size 1e3 in one direction of differentiation.
-            let direction: Vec<f64> = (0..n)
-                .map(|k| (0.9 * k as f64).cos() * if k < 3 * nodes { 1e-2 } else { 1e3 })
-                .collect();
+            let direction: Vec<f64> =
+                (0..n).map(|k| (0.9 * k as f64).cos() * if k < 3 * nodes { 1e-2 } else { 1e3 }).collect();
             let h = 1e-5;
             let shifted = |s: f64| {
                 let (mut u, mut p) = (u.clone(), p.clone());
                 system.scatter_add(&direction, s, &mut u, &mut p);
                 let (energy, internal) = gradient(&u, &p);
-                let force = system.gather(&system.internal_force(&internal), &system.pressure_gradient(&internal));
+                let force =
+                    system.gather(&system.internal_force(&internal), &system.pressure_gradient(&internal));
                 (energy, force)
             };
             let (up, down) = (shifted(h), shifted(-h));
