@@ -17,6 +17,7 @@
 mod body;
 mod constraint;
 mod error;
+mod explicit;
 mod linear_solver;
 mod load;
 mod material;
@@ -32,6 +33,7 @@ mod weak;
 pub use body::Body;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
+pub use explicit::{ExplicitBody, ExplicitError, InternalForce, InvertedPoint, LanePath, locality_order};
 pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{

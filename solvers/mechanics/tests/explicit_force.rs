@@ -1,0 +1,138 @@
+//! Internal forces: every lane path against the plain loop, the plain loop against its energy, bits against threads.
+
+mod common;
+
+use common::{Block, gradient};
+use geometry::CellKind;
+use mechanics::{ExplicitBody, InternalForce, LanePath, Law, NeoHookean, Vector3};
+use shape::DilationGroups;
+
+/// Two regions of different stiffness, mixed point by point.
+fn laws() -> [Law; 2] {
+    [(20e3, 0.495), (35e3, 0.3)]
+        .map(|(young, poisson)| Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()))
+}
+
+fn regions(block: &Block) -> Vec<u16> {
+    (0..block.volume.weights().len()).map(|q| u16::from(q % 5 > 2)).collect()
+}
+
+/// A bent, twisted and stretched state with strains around 0.2, times `amount`.
+fn deformed(block: &Block, amount: f64) -> Vec<Vector3> {
+    let field = |x: &mechanics::Point3| {
+        let wave = Vector3::new((150.0 * x.y).sin(), (120.0 * x.z).cos(), (180.0 * x.x).sin()) * 1e-3;
+        (gradient() * 5.0 * x.coords + wave) * amount
+    };
+    block.mesh.points().iter().map(field).collect()
+}
+
+fn largest(f: &[Vector3]) -> f64 {
+    f.iter().map(|f| f.amax()).fold(0.0, f64::max)
+}
+
+fn difference(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max) / largest(b)
+}
+
+fn forces(force: &mut InternalForce, u: &[Vector3]) -> Vec<Vector3> {
+    let mut f = vec![Vector3::repeat(f64::NAN); u.len()];
+    force.evaluate(u, &mut f).unwrap();
+    f
+}
+
+/// All paths on one table against the plain loop, at large strain and at 1e-6 of it.
+fn paths_agree(block: &Block, groups: Option<&DilationGroups>, kernel: &str) {
+    let (laws, region) = (laws(), regions(block));
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &region, groups };
+    for amount in [1.0, 1e-6] {
+        let u = deformed(block, amount);
+        let expected = forces(&mut InternalForce::plain(body).unwrap(), &u);
+        assert!(largest(&expected) > 1e-9);
+        for path in LanePath::available() {
+            let mut force = InternalForce::new(body, path).unwrap();
+            assert_eq!(force.kernel(), kernel);
+            // Sums of some 20 terms of mixed sign; the volumetric part is 50 times the rest at nu = 0.495.
+            let tolerance = 1e-13;
+            let error = difference(&forces(&mut force, &u), &expected);
+            assert!(error < tolerance, "{kernel}, {}, {amount}: {error:e}", path.name());
+        }
+    }
+}
+
+#[test]
+fn tet4_lanes_agree_with_the_plain_loop() {
+    paths_agree(&Block::new(CellKind::Tet4, [5, 4, 3]), None, "tet4");
+}
+
+#[test]
+fn nodal_dilation_lanes_agree_with_the_plain_loop() {
+    let block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    let groups = DilationGroups::nodal(&block.volume).unwrap();
+    paths_agree(&block, Some(&groups), "tet4 nodal dilation");
+}
+
+#[test]
+fn plain_forces_are_the_gradient_of_the_energy() {
+    let block = Block::new(CellKind::Tet4, [2, 2, 1]);
+    let (laws, region) = (laws(), regions(&block));
+    let nodal = DilationGroups::nodal(&block.volume).unwrap();
+    for groups in [None, Some(&nodal)] {
+        let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &region, groups };
+        let mut force = InternalForce::plain(body).unwrap();
+        let u = deformed(&block, 1.0);
+        let f = forces(&mut force, &u);
+        let step = 1e-7;
+        for node in 0..u.len() {
+            for axis in 0..3 {
+                let at = |sign: f64| {
+                    let mut moved = u.clone();
+                    moved[node][axis] += sign * step;
+                    force.energy(&moved).unwrap()
+                };
+                let slope = (at(1.0) - at(-1.0)) / (2.0 * step);
+                // Central difference: step^2 of curvature and 1e-16 E / step of rounding, both near 1e-8 of f.
+                assert!((slope - f[node][axis]).abs() < 1e-6 * largest(&f), "{node} {axis}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bits_do_not_depend_on_threads() {
+    // More than one chunk of elements.
+    let block = Block::new(CellKind::Tet4, [12, 9, 9]);
+    let laws = laws();
+    let u = deformed(&block, 0.5);
+    let nodal = DilationGroups::nodal(&block.volume).unwrap();
+    for groups in [None, Some(&nodal)] {
+        let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups };
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| forces(&mut InternalForce::new(body, LanePath::best()).unwrap(), &u))
+        };
+        let one = run(1);
+        for threads in [2, 3] {
+            assert_eq!(run(threads), one, "{threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_point_inside_out_is_named() {
+    let block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    let laws = laws();
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let mut u = deformed(&block, 0.1);
+    let node = block.volume.row(57).0[2] as usize;
+    u[node] += Vector3::new(0.05, 0.02, 0.01);
+    let mut f = vec![Vector3::zeros(); u.len()];
+    let expected = InternalForce::plain(body).unwrap().evaluate(&u, &mut f).unwrap_err();
+    assert!(expected.det_f <= 0.0 && block.volume.row(expected.point).0.contains(&(node as u32)));
+    for path in LanePath::available() {
+        let mut force = InternalForce::new(body, path).unwrap();
+        assert_eq!(force.evaluate(&u, &mut f), Err(expected), "{}", path.name());
+    }
+    u[node].x = f64::NAN;
+    let error = InternalForce::new(body, LanePath::best()).unwrap().evaluate(&u, &mut f).unwrap_err();
+    assert!(error.det_f.is_nan());
+}
