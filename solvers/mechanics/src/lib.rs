@@ -33,7 +33,10 @@ mod weak;
 pub use body::Body;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
-pub use explicit::{ExplicitBody, ExplicitError, InternalForce, InvertedPoint, LanePath, locality_order};
+pub use explicit::{
+    Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
+    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, critical_step, locality_order, lumped_mass,
+};
 pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{
