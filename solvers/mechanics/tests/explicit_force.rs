@@ -65,6 +65,38 @@ fn tet4_lanes_agree_with_the_plain_loop() {
 }
 
 #[test]
+fn rows_of_other_lengths_agree_with_the_plain_loop() {
+    for kind in [CellKind::Hex8, CellKind::Tet10, CellKind::Hex20] {
+        paths_agree(&Block::new(kind, [3, 3, 2]), None, "rows");
+    }
+    paths_agree(&ragged(), None, "rows");
+}
+
+/// Rows of many lengths, as a meshless cloud has them: the points of a tet4 mesh see the nodes of two elements more,
+/// averaged so that linear fields stay exact.
+fn ragged() -> Block {
+    let mut block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    let (volume, n) = (&block.volume, block.volume.weights().len());
+    let (mut offsets, mut nodes, mut values, mut grads) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+    for q in 0..n {
+        let seen = 1 + q % 7;
+        for k in 0..seen {
+            let other = (q + k) % n;
+            nodes.extend(volume.row(other).0);
+            values.extend(volume.rows().row(other).1.iter().map(|v| v / seen as f64));
+            grads.extend(volume.row(other).1.iter().map(|g| g / seen as f64));
+        }
+        offsets.push(nodes.len());
+    }
+    let count = block.mesh.points().len();
+    let rows = shape::Rows::new(count, offsets, nodes, values, shape::Unity::Within(1e-12)).unwrap();
+    assert_eq!(rows.uniform_len(), None);
+    let at = shape::GradRows::new(volume.points().to_vec(), rows, grads).unwrap();
+    block.volume = shape::VolumeRows::new(at, volume.weights().to_vec()).unwrap();
+    block
+}
+
+#[test]
 fn nodal_dilation_lanes_agree_with_the_plain_loop() {
     let block = Block::new(CellKind::Tet4, [5, 4, 3]);
     let groups = DilationGroups::nodal(&block.volume).unwrap();

@@ -3,6 +3,7 @@
 use shape::{DilationGroups, VolumeRows};
 
 use super::moduli::Moduli;
+use super::rows::Ragged;
 use super::tet4::Tet4;
 use super::{ExplicitError, InvertedPoint, LanePath, plain};
 use crate::material::{Law, Material};
@@ -70,16 +71,21 @@ pub struct InternalForce<'a> {
 enum Engine {
     Plain,
     Tet4(Tet4),
+    Ragged(Ragged),
 }
 
 impl<'a> InternalForce<'a> {
     /// Chooses the kernel by the table and the laws; lanes run on `path`.
     pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
-        let engine = match (body.moduli(), body.volume.rows().uniform_len()) {
-            (Some(moduli), Some(4)) => Tet4::new(&body, &moduli).map(Engine::Tet4),
-            _ => None,
-        };
+        let engine = body.moduli().and_then(|moduli| {
+            let tet4 = match body.volume.rows().uniform_len() {
+                Some(4) => Tet4::new(&body, &moduli).map(Engine::Tet4),
+                _ => None,
+            };
+            let ragged = || Ragged::new(&body, &moduli).filter(|_| body.groups.is_none()).map(Engine::Ragged);
+            tet4.or_else(ragged)
+        });
         Ok(InternalForce { body, engine: engine.unwrap_or(Engine::Plain), path })
     }
 
@@ -104,6 +110,7 @@ impl<'a> InternalForce<'a> {
         match &self.engine {
             Engine::Plain => "plain",
             Engine::Tet4(tet4) => tet4.name(),
+            Engine::Ragged(_) => "rows",
         }
     }
 
@@ -118,6 +125,7 @@ impl<'a> InternalForce<'a> {
         let upright = match &mut self.engine {
             Engine::Plain => return plain_forces(&self.body, u, f),
             Engine::Tet4(tet4) => tet4.forces(self.path, u, f),
+            Engine::Ragged(ragged) => ragged.forces(self.path, u, f),
         };
         if !upright {
             plain::check(self.body.volume, u)?;

@@ -14,6 +14,7 @@ mod nodal;
 mod order;
 mod path;
 mod plain;
+mod rows;
 mod tet4;
 
 pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
