@@ -14,6 +14,7 @@ mod nodal;
 mod order;
 mod path;
 mod plain;
+mod quad;
 mod rows;
 mod tet4;
 

@@ -6,11 +6,11 @@
 
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
-use super::lane_math::madd;
 use super::moduli::Moduli;
 use super::neo_lanes::strained;
 use super::order::locality_order;
 use super::path::{LANES, LanePath, on_path};
+use super::quad::axpy;
 use crate::Vector3;
 
 /// Points per chunk: the displacements and forces of their nodes (64 bytes each) stay in the second-level cache, the
@@ -137,9 +137,8 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
             let columns: [Slot; 3] = std::array::from_fn(|j| [p[j][l], p[3 + j][l], p[6 + j][l], 0.0]);
             for (&node, g) in chunk.nodes[start..end].iter().zip(&chunk.grads[start..end]) {
                 let at = &mut f[node as usize];
-                for i in 0..4 {
-                    let m = madd::<FMA>;
-                    at[i] = m(columns[0][i], g[0], m(columns[1][i], g[1], m(columns[2][i], g[2], at[i])));
+                for j in 0..3 {
+                    axpy::<FMA>(g[j], &columns[j], at);
                 }
             }
             start = end;
@@ -157,9 +156,7 @@ fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot]) -> [
     let mut add = |side: usize, node: u16, g: &[f64; 3]| {
         let v = &u[node as usize];
         for j in 0..3 {
-            for i in 0..4 {
-                sums[side][j][i] = madd::<FMA>(v[i], g[j], sums[side][j][i]);
-            }
+            axpy::<FMA>(g[j], v, &mut sums[side][j]);
         }
     };
     for (n, g) in pairs.0.0.iter().zip(pairs.1.0) {

@@ -11,6 +11,7 @@ use super::neo_lanes::strained;
 use super::nodal::Nodal;
 use super::order::locality_order;
 use super::path::{LANES, LanePath, on_path};
+use super::quad::{add, axpy, lanes_of_differences, quads_of_lanes};
 use crate::Vector3;
 
 /// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
@@ -143,35 +144,30 @@ impl Chunk {
 
 /// Displacements relative to node 0, [3 a + i].
 #[inline(always)]
-fn gather(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
+fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
+    let at = |a: usize| -> [&Slot; LANES] { std::array::from_fn(|l| &u[block.nodes[a][l] as usize]) };
+    let origin: [Slot; LANES] = at(0).map(|slot| *slot);
     let mut d = [[0.0; LANES]; 9];
-    for l in 0..LANES {
-        let origin = u[block.nodes[0][l] as usize];
-        for a in 0..3 {
-            let p = u[block.nodes[a + 1][l] as usize];
-            for i in 0..3 {
-                d[3 * a + i][l] = p[i] - origin[i];
-            }
-        }
+    for a in 0..3 {
+        let lanes = lanes_of_differences::<FMA>(at(a + 1), &origin);
+        d[3 * a..3 * a + 3].copy_from_slice(&lanes);
     }
     d
 }
 
+/// Adds the forces of nodes 1 to 3, and minus their sum on node 0. The pads stay as they are.
 #[inline(always)]
-fn scatter(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
+fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
+    let mut sum = [[0.0; 4]; LANES];
+    for a in 0..3 {
+        let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
+        for l in 0..LANES {
+            add::<FMA>(&quads[l], &mut f[block.nodes[a + 1][l] as usize]);
+            axpy::<FMA>(-1.0, &quads[l], &mut sum[l]);
+        }
+    }
     for l in 0..LANES {
-        let mut sum = [0.0; 4];
-        for a in 0..3 {
-            let at = &mut f[block.nodes[a + 1][l] as usize];
-            for i in 0..3 {
-                at[i] += out[3 * a + i][l];
-                sum[i] += out[3 * a + i][l];
-            }
-        }
-        let at = &mut f[block.nodes[0][l] as usize];
-        for i in 0..3 {
-            at[i] -= sum[i];
-        }
+        add::<FMA>(&sum[l], &mut f[block.nodes[0][l] as usize]);
     }
 }
 
@@ -208,7 +204,7 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
     let mut good = [1.0; LANES];
     for &(end, Moduli { mu, lambda }) in &chunk.runs {
         for block in &chunk.blocks[first..end] {
-            let d = gather(block, u);
+            let d = gather::<FMA>(block, u);
             let mut out = [[0.0; LANES]; 9];
             for l in 0..LANES {
                 let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
@@ -216,7 +212,7 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
                 let p = x.stress::<FMA>(block.weight[l], mu, lambda);
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
-            scatter(block, &out, f);
+            scatter::<FMA>(block, &out, f);
         }
         first = end;
     }
@@ -234,7 +230,7 @@ fn dilations_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], sums: &mut [[f64;
     let mut good = [1.0; LANES];
     for &(end, Moduli { mu, .. }) in &chunk.runs {
         for block in &chunk.blocks[first..end] {
-            let d = gather(block, u);
+            let d = gather::<FMA>(block, u);
             let mut out = [[0.0; LANES]; 2];
             for l in 0..LANES {
                 let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
@@ -266,7 +262,7 @@ fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) {
     let mut first = 0;
     for &(end, Moduli { mu, .. }) in &chunk.runs {
         for block in &chunk.blocks[first..end] {
-            let d = gather(block, u);
+            let d = gather::<FMA>(block, u);
             let mut shared = [[0.0; LANES]; 2];
             for l in 0..LANES {
                 for a in 0..4 {
@@ -281,7 +277,7 @@ fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) {
                 let p = x.dilated_stress::<FMA>(block.weight[l], mu, shared[0][l], shared[1][l]);
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
-            scatter(block, &out, f);
+            scatter::<FMA>(block, &out, f);
         }
         first = end;
     }
