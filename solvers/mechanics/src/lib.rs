@@ -35,7 +35,8 @@ pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
 pub use explicit::{
     Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
-    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, critical_step, locality_order, lumped_mass,
+    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, RelaxationInfo, RelaxationParams,
+    StaticLoad, critical_step, locality_order, lumped_mass, relax,
 };
 pub use linear_solver::SolverPath;
 pub use load::Load;

@@ -103,7 +103,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         if let Some(node) = mass.iter().position(|&m| !(m > 0.0 && m.is_finite())) {
             return Err(ExplicitError::NodalMass { node, mass: mass[node] });
         }
-        let held = held(n, prescribed)?;
+        let held = held(n, prescribed.iter().map(|p| (p.node, p.axis)))?;
         let zeros = vec![Vector3::zeros(); n];
         let mut dynamics = Dynamics {
             force,
@@ -305,10 +305,10 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     }
 }
 
-/// Marks the prescribed degrees of freedom; each may be named once.
-fn held(nodes: usize, prescribed: &[Prescribed]) -> Result<Vec<bool>, ExplicitError> {
+/// Marks the (node, axis) of a list among all degrees of freedom; each may be named once.
+pub(super) fn held(nodes: usize, list: impl Iterator<Item = (u32, u8)>) -> Result<Vec<bool>, ExplicitError> {
     let mut held = vec![false; 3 * nodes];
-    for &Prescribed { node, axis, .. } in prescribed {
+    for (node, axis) in list {
         let bad = |why| Err(ExplicitError::BadDof { node: node as usize, axis, why });
         if node as usize >= nodes || axis > 2 {
             return bad("there is no such node or axis");

@@ -98,4 +98,14 @@ pub enum ExplicitError {
         /// Critical time step, s.
         critical: f64,
     },
+    /// A relaxation that has not come to rest.
+    #[error("not at rest after {steps} steps: estimated relative error {error:e} (tolerance {tolerance:e})")]
+    NotRelaxed {
+        /// Steps made.
+        steps: usize,
+        /// Estimated relative error.
+        error: f64,
+        /// Tolerance.
+        tolerance: f64,
+    },
 }

@@ -15,6 +15,7 @@ mod order;
 mod path;
 mod plain;
 mod quad;
+mod relaxation;
 mod rows;
 mod tet4;
 
@@ -25,3 +26,4 @@ pub use force::{ExplicitBody, InternalForce};
 pub use mass::{Lumping, lumped_mass};
 pub use order::locality_order;
 pub use path::LanePath;
+pub use relaxation::{RelaxationInfo, RelaxationParams, StaticLoad, relax};

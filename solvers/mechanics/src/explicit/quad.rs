@@ -18,11 +18,8 @@ pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     if WIDE {
         // SAFETY: WIDE stands for AVX2 and FMA; unaligned loads and stores of four f64 inside their arrays.
         unsafe {
-            let sum = _mm256_fmadd_pd(
-                _mm256_set1_pd(a),
-                _mm256_loadu_pd(x.as_ptr()),
-                _mm256_loadu_pd(y.as_ptr()),
-            );
+            let sum =
+                _mm256_fmadd_pd(_mm256_set1_pd(a), _mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(y.as_ptr()));
             _mm256_storeu_pd(y.as_mut_ptr(), sum);
         }
         return;
@@ -66,7 +63,11 @@ pub(super) fn lanes_of_differences<const WIDE: bool>(
 
 /// The other way: for every lane the quad (x, y, z, 0).
 #[inline(always)]
-pub(super) fn quads_of_lanes<const WIDE: bool>(x: &[f64; LANES], y: &[f64; LANES], z: &[f64; LANES]) -> [Slot; LANES] {
+pub(super) fn quads_of_lanes<const WIDE: bool>(
+    x: &[f64; LANES],
+    y: &[f64; LANES],
+    z: &[f64; LANES],
+) -> [Slot; LANES] {
     let mut out = [[0.0; 4]; LANES];
     #[cfg(target_arch = "x86_64")]
     if WIDE {
