@@ -40,9 +40,19 @@ fn forces(force: &mut InternalForce, u: &[Vector3]) -> Vec<Vector3> {
     f
 }
 
-/// All paths on one table against the plain loop, at large strain and at 1e-6 of it.
 fn paths_agree(block: &Block, groups: Option<&DilationGroups>, kernel: &str) {
-    let (laws, region) = (laws(), regions(block));
+    paths_agree_by(block, groups, kernel, &|q| u16::from(q % 5 > 2));
+}
+
+/// All paths on one table against the plain loop, at large strain and at 1e-6 of it.
+fn paths_agree_by(
+    block: &Block,
+    groups: Option<&DilationGroups>,
+    kernel: &str,
+    region: &dyn Fn(usize) -> u16,
+) {
+    let laws = laws();
+    let region: Vec<u16> = (0..block.volume.weights().len()).map(region).collect();
     let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &region, groups };
     for amount in [1.0, 1e-6] {
         let u = deformed(block, amount);
@@ -65,8 +75,20 @@ fn tet4_lanes_agree_with_the_plain_loop() {
 }
 
 #[test]
+fn hexahedra_agree_with_the_plain_loop() {
+    let block = Block::new(CellKind::Hex8, [5, 4, 3]);
+    // One law per element.
+    let element = |q: usize| q / 8;
+    paths_agree_by(&block, None, "hex8", &|q| u16::from(element(q) % 5 > 2));
+    let groups = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
+    paths_agree_by(&block, Some(&groups), "hex8 mean dilation", &|q| u16::from(element(q) % 5 > 2));
+    // Laws that change within an element: point by point.
+    paths_agree(&block, None, "rows");
+}
+
+#[test]
 fn rows_of_other_lengths_agree_with_the_plain_loop() {
-    for kind in [CellKind::Hex8, CellKind::Tet10, CellKind::Hex20] {
+    for kind in [CellKind::Tet10, CellKind::Hex20] {
         paths_agree(&Block::new(kind, [3, 3, 2]), None, "rows");
     }
     paths_agree(&ragged(), None, "rows");

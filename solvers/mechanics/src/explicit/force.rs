@@ -2,6 +2,7 @@
 
 use shape::{DilationGroups, VolumeRows};
 
+use super::hex8::Hex8;
 use super::moduli::Moduli;
 use super::rows::Ragged;
 use super::tet4::Tet4;
@@ -71,6 +72,7 @@ pub struct InternalForce<'a> {
 enum Engine {
     Plain,
     Tet4(Tet4),
+    Hex8(Hex8),
     Ragged(Ragged),
 }
 
@@ -79,12 +81,15 @@ impl<'a> InternalForce<'a> {
     pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
         let engine = body.moduli().and_then(|moduli| {
-            let tet4 = match body.volume.rows().uniform_len() {
+            let element = match body.volume.rows().uniform_len() {
                 Some(4) => Tet4::new(&body, &moduli).map(Engine::Tet4),
+                Some(8) => Hex8::new(&body, &moduli).map(Engine::Hex8),
                 _ => None,
             };
-            let ragged = || Ragged::new(&body, &moduli).filter(|_| body.groups.is_none()).map(Engine::Ragged);
-            tet4.or_else(ragged)
+            element.or_else(|| match body.groups {
+                None => Ragged::new(&body, &moduli).map(Engine::Ragged),
+                Some(_) => None,
+            })
         });
         Ok(InternalForce { body, engine: engine.unwrap_or(Engine::Plain), path })
     }
@@ -110,6 +115,7 @@ impl<'a> InternalForce<'a> {
         match &self.engine {
             Engine::Plain => "plain",
             Engine::Tet4(tet4) => tet4.name(),
+            Engine::Hex8(hex8) => hex8.name(),
             Engine::Ragged(_) => "rows",
         }
     }
@@ -125,6 +131,7 @@ impl<'a> InternalForce<'a> {
         let upright = match &mut self.engine {
             Engine::Plain => return plain_forces(&self.body, u, f),
             Engine::Tet4(tet4) => tet4.forces(self.path, u, f),
+            Engine::Hex8(hex8) => hex8.forces(self.path, u, f),
             Engine::Ragged(ragged) => ragged.forces(self.path, u, f),
         };
         if !upright {

@@ -6,6 +6,7 @@ mod chunks;
 mod critical_step;
 mod error;
 mod force;
+mod hex8;
 mod lane_math;
 mod mass;
 mod moduli;

@@ -94,3 +94,21 @@ impl Strained {
         std::array::from_fn(|k| madd::<FMA>(shape, less[k], volume * cof_f[k]))
     }
 }
+
+/// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,
+/// `1 / V_a`, `M_a = sum share w mu` and `L_a = sum share w lambda`.
+#[inline(always)]
+pub(super) fn close_group<const FMA: bool>(
+    j: f64,
+    b: f64,
+    per_volume: f64,
+    mu: f64,
+    lambda: f64,
+) -> [f64; 2] {
+    let d = inverse_cbrt_less_1::<FMA>(j);
+    // J^(2/3) - 1 = (1 + j) (1 + d) - 1.
+    let sigma = madd::<FMA>(j, d, j + d);
+    let (y, s) = (1.0 + d, 1.0 + sigma);
+    let p = madd::<FMA>(b, s, madd::<FMA>(sigma, mu, lambda * ln_1p::<FMA>(j)));
+    [s, p * (y * y * y) * per_volume]
+}

@@ -15,8 +15,8 @@ use shape::DilationGroups;
 
 use super::chunks::{Border, Slot};
 use super::force::ExplicitBody;
-use super::lane_math::{inverse_cbrt_less_1, ln_1p, madd};
 use super::moduli::Moduli;
+use super::neo_lanes::close_group;
 use super::path::{LANES, LanePath, on_path};
 
 pub(super) struct Nodal {
@@ -101,13 +101,7 @@ on_path! {
 #[inline(always)]
 fn close_lanes<const FMA: bool>(constants: &[Constants], sums: &[[f64; 2]], closed: &mut [[f64; 2]]) {
     let one = |c: &Constants, [j, b]: [f64; 2]| {
-        let j = j * c.per_volume;
-        let d = inverse_cbrt_less_1::<FMA>(j);
-        // J^(2/3) - 1 = (1 + j) (1 + d) - 1.
-        let sigma = madd::<FMA>(j, d, j + d);
-        let (y, s) = (1.0 + d, 1.0 + sigma);
-        let p = madd::<FMA>(b, s, madd::<FMA>(sigma, c.mu, c.lambda * ln_1p::<FMA>(j)));
-        [s, p * (y * y * y) * c.per_volume]
+        close_group::<FMA>(j * c.per_volume, b, c.per_volume, c.mu, c.lambda)
     };
     // In blocks of fixed length, so that the loop becomes vector instructions.
     let whole = sums.len() / LANES * LANES;
