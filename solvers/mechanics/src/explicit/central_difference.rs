@@ -166,11 +166,11 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     ) -> Result<(), ExplicitError> {
         for _ in 0..steps {
             let recheck = self.params.recheck;
-            if recheck > 0 && self.step > 0 && self.step % recheck == 0 {
+            if recheck > 0 && self.step > 0 && self.step.is_multiple_of(recheck) {
                 self.check_step()?;
             }
             let kinetic = self.accelerate(external)?;
-            if every > 0 && self.step % every == 0 {
+            if every > 0 && self.step.is_multiple_of(every) {
                 let balance = self.balance(kinetic)?;
                 record(&balance, &self.u);
             }

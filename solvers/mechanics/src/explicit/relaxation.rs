@@ -97,7 +97,7 @@ pub fn relax(
         force.evaluate(&u, &mut internal).map_err(at)?;
         external.fill(Vector3::zeros());
         load(&u, &mut external);
-        if params.recheck > 0 && step > 0 && step % params.recheck == 0 {
+        if params.recheck > 0 && step > 0 && step.is_multiple_of(params.recheck) {
             dt = limit(force, &u)?;
         }
 
