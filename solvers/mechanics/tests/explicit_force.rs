@@ -108,6 +108,13 @@ fn ragged() -> Block {
             values.extend(volume.rows().row(other).1.iter().map(|v| v / seen as f64));
             grads.extend(volume.row(other).1.iter().map(|g| g / seen as f64));
         }
+        // Every other row of an odd length: its last node comes twice.
+        if q % 2 == 0 {
+            let (value, grad) = (values.pop().unwrap(), grads.pop().unwrap());
+            nodes.push(*nodes.last().unwrap());
+            values.extend([0.3 * value, 0.7 * value]);
+            grads.extend([grad * 0.3, grad * 0.7]);
+        }
         offsets.push(nodes.len());
     }
     let count = block.mesh.points().len();
@@ -151,23 +158,39 @@ fn plain_forces_are_the_gradient_of_the_energy() {
     }
 }
 
+/// Tables of several chunks, whose border nodes are summed from copies.
 #[test]
 fn bits_do_not_depend_on_threads() {
-    // More than one chunk of elements.
-    let block = Block::new(CellKind::Tet4, [12, 9, 9]);
+    let block = |kind, cells| Block::new(kind, cells);
+    let tet4 = block(CellKind::Tet4, [12, 9, 9]);
+    let hex8 = block(CellKind::Hex8, [12, 9, 9]);
+    let tet10 = block(CellKind::Tet10, [5, 5, 4]);
+    let nodal = DilationGroups::nodal(&tet4.volume).unwrap();
+    let mean = fem::element_dilation(&hex8.mesh, &fem::VolumeRule::STANDARD).unwrap();
     let laws = laws();
-    let u = deformed(&block, 0.5);
-    let nodal = DilationGroups::nodal(&block.volume).unwrap();
-    for groups in [None, Some(&nodal)] {
+    for (block, groups, kernel) in [
+        (&tet4, None, "tet4"),
+        (&tet4, Some(&nodal), "tet4 nodal dilation"),
+        (&hex8, None, "hex8"),
+        (&hex8, Some(&mean), "hex8 mean dilation"),
+        (&tet10, None, "rows"),
+    ] {
         let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups };
+        let u = deformed(block, 0.5);
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| forces(&mut InternalForce::new(body, LanePath::best()).unwrap(), &u))
+            pool.install(|| {
+                let mut force = InternalForce::new(body, LanePath::best()).unwrap();
+                assert_eq!(force.kernel(), kernel);
+                forces(&mut force, &u)
+            })
         };
         let one = run(1);
         for threads in [2, 3] {
-            assert_eq!(run(threads), one, "{threads} threads");
+            assert_eq!(run(threads), one, "{kernel}, {threads} threads");
         }
+        let error = difference(&one, &forces(&mut InternalForce::plain(body).unwrap(), &u));
+        assert!(error < 1e-13, "{kernel}: {error:e}");
     }
 }
 
