@@ -13,7 +13,7 @@
 //!
 //! What each kernel waits for, from its measured distance to these bounds: tet4 for the gather and scatter of 16 nodes'
 //! quads per lane pair (12 ns, 2.5 times the arithmetic); hex8 for arithmetic and the traffic of its 36 accumulators
-//! with the first-level cache (1.8 times); EFG for loads, eight per neighbour (twice the memory bound out of cache).
+//! with the first-level cache (88 ns, 1.8 times; 148 out of cache); EFG for loads, eight per neighbour (63 ns in cache, 87 out of it).
 //! Not covered: quadratic elements (they take the EFG kernel), laws other than neo-Hookean and nodal dilation of EFG
 //! rows (both take the plain loop).
 

@@ -247,11 +247,13 @@ fn value_at(beta: usize, q: usize) -> usize {
 /// `8 du_i/dxi_beta`, [3 i + beta][value].
 #[inline(always)]
 fn derivatives<const FMA: bool>(block: &Block, u: &[Slot]) -> [[Lanes; 4]; 9] {
-    let at = |a: usize| -> [&Slot; LANES] { std::array::from_fn(|l| &u[block.nodes[a][l] as usize]) };
-    let origin: [Slot; LANES] = at(0).map(|slot| *slot);
+    let mut origin = [[0.0; 4]; LANES];
+    for l in 0..LANES {
+        origin[l] = u[block.nodes[0][l] as usize];
+    }
     let mut nodal = [[[0.0; LANES]; 3]; 8];
     for a in 1..8 {
-        nodal[a] = lanes_of_differences::<FMA>(at(a), &origin);
+        nodal[a] = lanes_of_differences::<FMA>(u, &block.nodes[a], &origin);
     }
     let mut d = [[[0.0; LANES]; 4]; 9];
     for i in 0..3 {

@@ -61,7 +61,7 @@ impl Strained {
         let (cof_f, less) = self.parts::<FMA>();
         let per_j = w / (1.0 + self.j);
         let (shape, volume) = (mu * per_j, lambda * ln_1p::<FMA>(self.j) * per_j);
-        std::array::from_fn(|k| madd::<FMA>(shape, less[k], volume * cof_f[k]))
+        combined::<FMA>(shape, &less, volume, &cof_f)
     }
 
     /// `I1 - 3 = 2 tr H + H : H`.
@@ -91,8 +91,17 @@ impl Strained {
         // J^-1 = y^3: no division.
         let shape = w * mu * s * (y * y) * (y * y * y);
         let volume = madd::<FMA>(-shape, self.i1::<FMA>() / 3.0, w * p);
-        std::array::from_fn(|k| madd::<FMA>(shape, less[k], volume * cof_f[k]))
+        combined::<FMA>(shape, &less, volume, &cof_f)
     }
+}
+
+#[inline(always)]
+fn combined<const FMA: bool>(a: f64, x: &[f64; 9], b: f64, y: &[f64; 9]) -> [f64; 9] {
+    let mut sum = [0.0; 9];
+    for k in 0..9 {
+        sum[k] = madd::<FMA>(a, x[k], b * y[k]);
+    }
+    sum
 }
 
 /// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,

@@ -145,11 +145,13 @@ impl Chunk {
 /// Displacements relative to node 0, [3 a + i].
 #[inline(always)]
 fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
-    let at = |a: usize| -> [&Slot; LANES] { std::array::from_fn(|l| &u[block.nodes[a][l] as usize]) };
-    let origin: [Slot; LANES] = at(0).map(|slot| *slot);
+    let mut origin = [[0.0; 4]; LANES];
+    for l in 0..LANES {
+        origin[l] = u[block.nodes[0][l] as usize];
+    }
     let mut d = [[0.0; LANES]; 9];
     for a in 0..3 {
-        let lanes = lanes_of_differences::<FMA>(at(a + 1), &origin);
+        let lanes = lanes_of_differences::<FMA>(u, &block.nodes[a + 1], &origin);
         d[3 * a..3 * a + 3].copy_from_slice(&lanes);
     }
     d
@@ -174,11 +176,13 @@ fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slo
 /// `H_ij = sum_a d_ai g_aj` of one lane.
 #[inline(always)]
 fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
-    std::array::from_fn(|k| {
+    let m = super::lane_math::madd::<FMA>;
+    let mut h = [0.0; 9];
+    for k in 0..9 {
         let (i, j) = (k / 3, k % 3);
-        let m = super::lane_math::madd::<FMA>;
-        m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]))
-    })
+        h[k] = m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]));
+    }
+    h
 }
 
 /// `f_a = w P grad N_a` of one lane.
