@@ -50,7 +50,16 @@ impl State {
             u: vec![Vector3::zeros(); problem.nodes.len()],
             pressure: vec![0.0; problem.solid.pressure_count()],
             closures: vec![0.0; problem.tools.len()],
-            history: problem.tools.iter().map(|t| History::new(t.tool, points)).collect(),
+            history: (problem.tools.iter())
+                .map(|t| {
+                    let mut history = History::new(t.tool, points);
+                    if let Some(surface) = problem.contact {
+                        let still = vec![Vector3::zeros(); problem.nodes.len()];
+                        history.commit_all(None, surface, t.tool, 0.0, &still);
+                    }
+                    history
+                })
+                .collect(),
         }
     }
 }
@@ -168,8 +177,11 @@ impl<'a> Newton<'a> {
                 balance = self.balance(&state, time)?;
             }
         }
-        for (history, contacts) in state.history.iter_mut().zip(&balance.contacts) {
-            history.commit(contacts.as_ref());
+        if let Some(surface) = self.problem.contact {
+            for (k, (history, contacts)) in state.history.iter_mut().zip(&balance.contacts).enumerate() {
+                let (tool, closure) = (self.problem.tools[k].tool, state.closures[k]);
+                history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
+            }
         }
         let tools = (balance.contacts.iter().zip(&state.closures))
             .map(|(contacts, &closure)| match contacts {
