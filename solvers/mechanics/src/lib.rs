@@ -19,6 +19,7 @@ mod constraint;
 mod contact;
 mod dilation;
 mod error;
+mod implicit;
 mod linear_solver;
 mod load;
 mod material;
@@ -39,6 +40,10 @@ pub use contact::{
     PointContact, Slip, Tool, ToolShape,
 };
 pub use error::SolveError;
+pub use implicit::{
+    Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
+    solve_in_time,
+};
 pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{
