@@ -19,6 +19,7 @@ mod constraint;
 mod contact;
 mod dilation;
 mod error;
+mod explicit;
 mod implicit;
 mod linear_solver;
 mod load;
@@ -40,6 +41,11 @@ pub use contact::{
     PointContact, Slip, Tool, ToolShape,
 };
 pub use error::SolveError;
+pub use explicit::{
+    Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
+    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, RelaxationInfo, RelaxationParams,
+    StaticLoad, critical_step, locality_order, lumped_mass, relax,
+};
 pub use implicit::{
     Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
     solve_in_time,

@@ -4,7 +4,7 @@ use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
 use super::{Energy, TimeError};
 use crate::contact::ContactCounts;
-use crate::nonlinear::{Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
+use crate::nonlinear::{Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
 use crate::{Drive, Step, Vector3};
 
 /// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
@@ -186,8 +186,11 @@ impl<'a> March<'a> {
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
         self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
-        let (state, step) =
-            self.newton.step(&self.state, self.before.as_ref(), time, self.params.augmentations)?;
+        let (before, augmentations) = (self.before.as_ref(), self.params.augmentations);
+        let (state, step) = self
+            .newton
+            .step(&self.state, before, time, augmentations, Descent::Nearest)
+            .or_else(|_| self.newton.step(&self.state, before, time, augmentations, Descent::Down))?;
         let mut motion = self.motion_at(time, dt, &state.u);
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {
