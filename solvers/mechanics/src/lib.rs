@@ -20,6 +20,7 @@ mod contact;
 mod dilation;
 mod error;
 mod explicit;
+mod implicit;
 mod linear_solver;
 mod load;
 mod material;
@@ -44,6 +45,10 @@ pub use explicit::{
     Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
     InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, RelaxationInfo, RelaxationParams,
     StaticLoad, critical_step, locality_order, lumped_mass, relax,
+};
+pub use implicit::{
+    Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
+    solve_in_time,
 };
 pub use linear_solver::SolverPath;
 pub use load::Load;
