@@ -1,0 +1,11 @@
+//! Statics at large displacements and with contact, against exact solutions.
+
+mod common;
+
+mod contact_patch;
+mod driven;
+mod finite_patch;
+mod friction;
+mod hertz;
+mod homogeneous;
+mod quadratic;
