@@ -15,7 +15,9 @@ pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
         return records.iter().filter(|r| r.quantity == metric).map(|r| r.value).reduce(f64::max);
     }
     let quantity = if metric == "condition" { "condition-max" } else { metric };
-    records.iter().filter(own).find(|r| r.quantity == quantity && r.statistic == "value").map(|r| r.value)
+    // The history's records have the phase of their step.
+    let plain = |r: &&Record| r.quantity == quantity && r.statistic == "value" && r.phase.is_empty();
+    records.iter().filter(own).find(plain).map(|r| r.value)
 }
 
 /// The observed order between the two finest levels of a family of runs, each given by its records; the quantity is

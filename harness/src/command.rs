@@ -131,6 +131,11 @@ fn run(args: &RunArgs) -> u8 {
                     let value = check::value(check.metric.name, &records);
                     set.checks.push(check::judge(check, &case, &method.id, value));
                 }
+                if let Some(failure) = &outcome.stalled {
+                    eprintln!("stalled: {failure} (method '{}')", method.id);
+                    set.failures.push(stalled(&outcome, failure));
+                    code = code.max(failure.exit_code());
+                }
                 outcomes.push(outcome);
             }
             Err(unfinished) => {
@@ -167,6 +172,15 @@ fn run(args: &RunArgs) -> u8 {
         }
     }
     code
+}
+
+/// A path that ended early, among what failed; its numbers are kept beside.
+pub(crate) fn stalled(outcome: &Outcome, failure: &Failure) -> reports::Failure {
+    reports::Failure {
+        case: outcome.identity.case.clone(),
+        method: outcome.identity.method.clone(),
+        reason: format!("stalled: {failure}"),
+    }
 }
 
 /// A method that did not run because its reference could not: what it would have done.

@@ -5,7 +5,7 @@ use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
-use shape::{DilationGroups, FluxRows, GradRows, PointRows, SurfaceRows, TraceRows, VolumeRows};
+use shape::{DilationGroups, FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, VolumeRows};
 
 use crate::Failure;
 use crate::error::Key;
@@ -20,6 +20,8 @@ pub enum Dilation {
     Element,
     /// One per node, shared out by the shape values.
     Nodal,
+    /// A pressure field of its own, linear between the corners.
+    Mixed,
 }
 
 /// How a cloud is integrated over.
@@ -103,6 +105,8 @@ pub struct Volume {
     pub region: Vec<u16>,
     /// Points that share a dilation.
     pub groups: Option<DilationGroups>,
+    /// Shape values of the pressure field at the points, where the method has one.
+    pub pressure: Option<Rows>,
     /// The cloud's approximation; `None` for elements.
     pub approximation: Option<Approximation>,
     /// What moving least squares met; `None` for elements.
@@ -151,16 +155,21 @@ impl Discretisation {
             Discretisation::Fem(fem) => {
                 let rows = fem::volume_rows(&fem.mesh, &VolumeRule::STANDARD)?;
                 let groups = match fem.dilation {
-                    Dilation::Standard => None,
+                    Dilation::Standard | Dilation::Mixed => None,
                     Dilation::Element => Some(fem::element_dilation(&fem.mesh, &VolumeRule::STANDARD)?),
                     Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
                 };
+                let pressure = match fem.dilation {
+                    Dilation::Mixed => Some(fem::pressure_rows(&fem.mesh, &VolumeRule::STANDARD)?),
+                    _ => None,
+                };
                 let region = of_regions(&fem.mesh, |mesh| fem::regions(mesh, &VolumeRule::STANDARD));
-                Volume { rows, region, groups, approximation: None, mls: None, volume_error: None }
+                Volume { rows, region, groups, pressure, approximation: None, mls: None, volume_error: None }
             }
             Discretisation::Efg(efg) => efg.volume(work)?,
         };
         work.volume_rows += volume.rows.weights().len() as u64;
+        work.pressure_parameters += volume.pressure.as_ref().map_or(0, Rows::node_count) as u64;
         work.dilation_groups += volume.groups.as_ref().map_or(0, DilationGroups::len) as u64;
         work.point_laws += volume.region.len() as u64;
         Ok(volume)
@@ -173,6 +182,18 @@ impl Discretisation {
                 Ok(efg::surface_rows(approximation, &efg.background, facets, efg.face_points())?.0)
             }
             _ => Ok(fem::surface_rows(self.mesh(), facets, &SurfaceRule::FINE)?),
+        }
+    }
+
+    /// Values on the whole outer boundary, where tools may touch.
+    pub fn contact_surface(&self, volume: &Volume) -> Result<SurfaceRows, Failure> {
+        let facets = self.mesh().boundary();
+        match (self, &volume.approximation) {
+            (Discretisation::Efg(efg), Some(approximation)) => {
+                let points = CONTACT_RULE.points(FaceKind::Tri3);
+                Ok(efg::surface_rows(approximation, &efg.background, &facets, points)?.0)
+            }
+            _ => Ok(fem::surface_rows(self.mesh(), &facets, &CONTACT_RULE)?),
         }
     }
 
@@ -227,6 +248,10 @@ fn of_regions(mesh: &Mesh, points: impl Fn(&Mesh) -> Vec<u16>) -> Vec<u16> {
     if mesh.region_names().len() > 1 { points(mesh) } else { Vec::new() }
 }
 
+/// Points that tools touch: 3 per linear and 6 per quadratic triangle, 2 x 2 and 3 x 3 per quadrilateral. On a kidney of
+/// 1331 nodes between two jaws, more points per triangle than 3 change the force by 0.1 %.
+const CONTACT_RULE: SurfaceRule = SurfaceRule::STANDARD;
+
 /// Points per background tetrahedron of the error quadrature of clouds (degree 5).
 const ERROR_POINTS: usize = 14;
 
@@ -271,8 +296,16 @@ impl Efg {
             Dilation::Standard => None,
             Dilation::Element => Some(self.cell_groups(rows.weights().len())?),
             Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
+            Dilation::Mixed => {
+                return Err(Failure::unavailable(
+                    Key::Method("dilation"),
+                    "is not available for clouds",
+                    "\"element-mean\" and \"nodal-mean\" are",
+                ));
+            }
         };
-        Ok(Volume { rows, region, groups, approximation: Some(approximation), mls: Some(mls), volume_error })
+        let (pressure, approximation, mls) = (None, Some(approximation), Some(mls));
+        Ok(Volume { rows, region, groups, pressure, approximation, mls, volume_error })
     }
 
     /// One group per background cell: the points of a cell stand together, equally many in each.

@@ -20,6 +20,9 @@ pub enum Failure {
     /// Assembly or solution failed.
     #[error(transparent)]
     Solve(#[from] mechanics::SolveError),
+    /// A static procedure carried nothing.
+    #[error(transparent)]
+    Static(#[from] mechanics::StaticError),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -88,7 +91,7 @@ impl Failure {
             Failure::Scene(error) => error.kind,
             Failure::At(finding) => finding.kind,
             Failure::Input(_) => ErrorKind::Invalid,
-            Failure::Efg(_) | Failure::Solve(_) | Failure::Run(_) => ErrorKind::NotRun,
+            Failure::Efg(_) | Failure::Solve(_) | Failure::Static(_) | Failure::Run(_) => ErrorKind::NotRun,
         }
     }
 

@@ -78,7 +78,7 @@ impl<'a> Group<'a> {
             self.targets = discretisation.nodes().to_vec();
         }
         let asks = Asks {
-            probes: &[],
+            probes: &self.probes,
             targets: &self.targets,
             schemes: &[],
             picture: false,
@@ -87,6 +87,9 @@ impl<'a> Group<'a> {
         };
         let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
             .map_err(|failure| scenario.locate(failure))?;
+        if let Some(stalled) = solved.outcome.stalled {
+            return Err(scenario.locate(stalled));
+        }
         self.reference_work = solved.outcome.work;
         self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
         Ok(())
@@ -124,7 +127,10 @@ impl<'a> Group<'a> {
             reference: self.reference.as_ref(),
         };
         match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {
-            Ok(solved) => Ok(solved.outcome),
+            Ok(mut solved) => {
+                solved.outcome.stalled = solved.outcome.stalled.map(|failure| scenario.locate(failure));
+                Ok(solved.outcome)
+            }
             Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan: stages, size }),
         }
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::outcome::{Outcome, Stage, Unfinished};
+use crate::outcome::{LoadStep, Outcome, Stage, Unfinished};
 use crate::work::Work;
 
 /// One run as `tissuebench run --format json` prints it.
@@ -11,9 +11,10 @@ use crate::work::Work;
 pub struct RunObject<'a> {
     scene: &'a str,
     method: &'a str,
-    /// `ok`, or what kind of failure: `bad-input`, `not-available` or `could-not-run`.
+    /// `ok`; `stalled` for a static path that ended early, whose numbers are those of the load it carried; or what kind of
+    /// failure: `bad-input`, `not-available` or `could-not-run`.
     status: &'static str,
-    /// Why it failed, with file, line and key; absent on success.
+    /// Why it failed or ended early, with file, line and key; absent on success.
     #[serde(skip_serializing_if = "Option::is_none")]
     message: Option<String>,
     nodes: u64,
@@ -22,8 +23,11 @@ pub struct RunObject<'a> {
     metrics: BTreeMap<&'a str, Number>,
     phases: BTreeMap<&'a str, f64>,
     probes: Vec<ProbeObject>,
-    /// Rigid tools; no procedure drives any yet.
-    tools: [(); 0],
+    /// Rigid tools at the end.
+    tools: Vec<ToolObject<'a>>,
+    /// Load steps of a static procedure, as far as it came; absent in a linear one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    steps: Vec<StepObject<'a>>,
     plan: &'a [Stage],
     /// Counts of what was done; all 0 in a run that failed.
     work: Work,
@@ -33,6 +37,33 @@ pub struct RunObject<'a> {
 struct Number {
     value: f64,
     unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct ToolObject<'a> {
+    name: &'a str,
+    /// m.
+    closure: f64,
+    /// On the tool, N.
+    force: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct StepObject<'a> {
+    /// Part of the loading, 0 to 1.
+    load: f64,
+    /// J.
+    strain_energy: f64,
+    smallest_j: f64,
+    iterations: u64,
+    tools: Vec<ToolObject<'a>>,
+    /// Displacement at the probes, m.
+    probes: Vec<[f64; 3]>,
+}
+
+fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
+    let each = names.iter().zip(&step.tools);
+    each.map(|(name, t)| ToolObject { name, closure: t.closure, force: t.force.into() }).collect()
 }
 
 #[derive(Serialize)]
@@ -55,8 +86,8 @@ impl<'a> RunObject<'a> {
         RunObject {
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
-            status: "ok",
-            message: None,
+            status: if outcome.stalled.is_some() { "stalled" } else { "ok" },
+            message: outcome.stalled.as_ref().map(ToString::to_string),
             nodes: outcome.size.nodes,
             elements: outcome.size.elements,
             dofs: outcome.size.dofs,
@@ -78,7 +109,19 @@ impl<'a> RunObject<'a> {
                     ],
                 })
                 .collect(),
-            tools: [],
+            tools: outcome.last.as_ref().map_or_else(Vec::new, |last| tools(&outcome.tools, last)),
+            steps: outcome
+                .steps
+                .iter()
+                .map(|step| StepObject {
+                    load: step.load,
+                    strain_energy: step.strain_energy,
+                    smallest_j: step.smallest_j,
+                    iterations: step.iterations,
+                    tools: tools(&outcome.tools, step),
+                    probes: step.probes.iter().map(|&u| u.into()).collect(),
+                })
+                .collect(),
             plan: &outcome.plan,
             work: outcome.work,
         }
@@ -97,7 +140,8 @@ impl<'a> RunObject<'a> {
             metrics: BTreeMap::new(),
             phases: BTreeMap::new(),
             probes: Vec::new(),
-            tools: [],
+            tools: Vec::new(),
+            steps: Vec::new(),
             plan: &run.plan,
             work: Work::default(),
         }

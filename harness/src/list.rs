@@ -66,7 +66,7 @@ pub fn verdict(check: &Check) -> String {
 
 /// A table of finished runs: sizes, errors, displacement, milliseconds per phase.
 pub fn outcomes(outcomes: &[Outcome]) -> String {
-    let columns: [(&str, &str, f64); 8] = [
+    let columns: [(&str, &str, f64); 13] = [
         ("l2", "L2 [%]", 100.0),
         ("energy", "energy [%]", 100.0),
         ("pressure", "pressure [%]", 100.0),
@@ -75,6 +75,11 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         ("max-y", "max y [mm]", 1e3),
         ("max-z", "max z [mm]", 1e3),
         ("tip", "probe/exact", 1.0),
+        ("load-carried", "load [%]", 100.0),
+        ("tool-force", "force [N]", 1.0),
+        ("tool-force-error", "force error [%]", 100.0),
+        ("smallest-j", "least J", 1.0),
+        ("newton-iterations", "iterations", 1.0),
     ];
     let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();

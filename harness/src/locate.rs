@@ -2,7 +2,7 @@
 
 use cases::scene::{Cloud, ErrorKind, Family, Scene, SupportRule};
 use efg::EfgError;
-use mechanics::SolveError;
+use mechanics::{SolveError, StaticError};
 
 use crate::Failure;
 use crate::error::{Finding, Key};
@@ -18,6 +18,7 @@ impl Scenario<'_> {
             Failure::Run(problem) => finding(ErrorKind::NotRun, Key::Method(""), problem, ""),
             Failure::Efg(error) => self.of_cloud(&error),
             Failure::Solve(error) => self.of_solve(&error),
+            Failure::Static(error) => self.of_static(&error),
         };
         let key = self.key(&finding.key);
         let help = finding.help.as_deref();
@@ -73,6 +74,19 @@ impl Scenario<'_> {
         finding(kind, key, error.to_string(), help)
     }
 
+    fn of_static(&self, error: &StaticError) -> Finding {
+        match error {
+            StaticError::Solve(error) => self.of_solve(error),
+            StaticError::Contact(_) => {
+                finding(ErrorKind::NotRun, Key::Scene("tool".into()), error.to_string(), "")
+            }
+            StaticError::Parameter { .. } => {
+                finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")
+            }
+            _ => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+        }
+    }
+
     fn of_solve(&self, error: &SolveError) -> Finding {
         let cloud = matches!(self.method.family, Family::Efg(_));
         let essential = Key::Method("essential");
@@ -107,6 +121,10 @@ impl Scenario<'_> {
         }
     }
 }
+
+/// What helps a static procedure that ends early, if anything does.
+const MORE_STEPS: &str =
+    "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may carry more";
 
 /// A motion that no support holds is blamed on the supports there are; on the body if there is none.
 fn rigid(scene: &Scene, motions: String) -> Finding {

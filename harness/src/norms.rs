@@ -40,6 +40,16 @@ impl Ratio {
     }
 }
 
+/// `|u_h - u| / |u|` in L2 alone: what can be said where the stress is that of another law.
+pub fn l2(fine: &VolumeRows, u: &[Vector3], exact: &dyn Exact) -> Option<f64> {
+    let mut l2 = Ratio::default();
+    for ((x, w), u) in fine.points().iter().zip(fine.weights()).zip(fine.rows().apply(u)) {
+        let u_exact = exact.displacement(x);
+        l2.add(*w, (u - u_exact).norm_squared(), u_exact.norm_squared());
+    }
+    l2.root(l2.exact)
+}
+
 /// Errors of the parameters `u`. `fine` (with the region of each point) is a quadrature of higher order than the
 /// solver's own; with a volumetric projection, whose pressure lives at the solver's points, stresses are compared
 /// there.

@@ -66,6 +66,40 @@ pub struct Probe {
     pub stress: Matrix3,
 }
 
+/// A tool at the end of a load step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolStep {
+    /// Way from its start, m.
+    pub closure: f64,
+    /// Force on the tool, N.
+    pub force: Vector3,
+    /// Force that it exerts along its way, N.
+    pub pushed: f64,
+    /// Surface points in contact.
+    pub active: u64,
+    /// Deepest penetration, m.
+    pub penetration: f64,
+}
+
+/// The end of a load step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadStep {
+    /// Part of the loading, 0 to 1.
+    pub load: f64,
+    /// One per tool of the scene.
+    pub tools: Vec<ToolStep>,
+    /// Strain energy, J.
+    pub strain_energy: f64,
+    /// Smallest volume ratio of all quadrature points.
+    pub smallest_j: f64,
+    /// Linear systems solved.
+    pub iterations: u64,
+    /// Displacement at the scene's probes, m.
+    pub probes: Vec<Vector3>,
+    /// Errors against the reference at the same step.
+    pub against: Vec<Metric>,
+}
+
 /// One stage of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Stage {
@@ -117,6 +151,14 @@ pub struct Outcome {
     pub field: Option<SurfaceField>,
     /// What was done for all this.
     pub work: Work,
+    /// Names of the tools.
+    pub tools: Vec<String>,
+    /// The last converged state of a static procedure.
+    pub last: Option<LoadStep>,
+    /// The load steps of a static procedure, as far as it came.
+    pub steps: Vec<LoadStep>,
+    /// Why a static procedure ended early; its numbers are then those of the load it carried.
+    pub stalled: Option<Failure>,
 }
 
 /// A run that gave no numbers.
@@ -153,7 +195,39 @@ impl Outcome {
         for transfer in &self.transfers {
             records.extend(self.transfer_records(transfer));
         }
+        records.extend(self.step_records());
         records
+    }
+
+    /// The history, under the phases `step-0` (where every tool starts) to `step-N`. The first tool's numbers are
+    /// `closure` and `tool-force`, the second's `closure-2` and `tool-force-2`.
+    fn step_records(&self) -> Vec<Record> {
+        let mut rows = Vec::new();
+        if !self.steps.is_empty() {
+            for index in 0..self.tools.len() {
+                rows.push(self.record(&of_tool("closure", index), "m", "step-0", "value", 0.0));
+                rows.push(self.record(&of_tool("tool-force", index), "N", "step-0", "value", 0.0));
+            }
+        }
+        for (number, step) in self.steps.iter().enumerate() {
+            let phase = format!("step-{}", number + 1);
+            let mut push = |name: &str, unit: &str, value: f64| {
+                rows.push(self.record(name, unit, &phase, "value", value))
+            };
+            push("load-carried", "1", step.load);
+            push("strain-energy", "J", step.strain_energy);
+            push("smallest-j", "1", step.smallest_j);
+            push("newton-iterations", "1", step.iterations as f64);
+            for (index, tool) in step.tools.iter().enumerate() {
+                push(&of_tool("closure", index), "m", tool.closure);
+                push(&of_tool("tool-force", index), "N", tool.pushed);
+                push(&of_tool("contact-points", index), "1", tool.active as f64);
+            }
+            for metric in &step.against {
+                push(&metric.name, metric.unit, metric.value);
+            }
+        }
+        rows
     }
 
     /// The plan as rows for the report.
@@ -219,4 +293,9 @@ impl Outcome {
         }
         rows
     }
+}
+
+/// The name of a tool's quantity: the bare one for the first tool, numbered from 2 for the others.
+pub fn of_tool(quantity: &str, index: usize) -> String {
+    if index == 0 { quantity.into() } else { format!("{quantity}-{}", index + 1) }
 }

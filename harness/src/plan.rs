@@ -16,7 +16,7 @@ pub struct Wants {
 /// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
-/// Stages of a linear static run, in order.
+/// Stages of a linear or a static run, in order.
 pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> {
     let mut stages = Vec::new();
     let mut add = |stage, ran, why: String| stages.push(Stage { stage, ran, why });
@@ -48,6 +48,9 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         }
         Dilation::Element => add("volumetric projection", true, "one dilation per cell".into()),
         Dilation::Nodal => add("volumetric projection", true, "one dilation per node".into()),
+        Dilation::Mixed => {
+            add("volumetric projection", true, "a pressure field, linear between the corners".into());
+        }
     }
     let one = setup.materials.len() == 1;
     add(
@@ -60,7 +63,9 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         },
     );
     add("mass", false, "static".into());
-    add("stiffness", true, "linear static".into());
+    let steps = setup.statics.map(|params| params.steps);
+    let stiffness = if steps.is_some() { "the tangent of every iteration" } else { "linear static" };
+    add("stiffness", true, stiffness.into());
     add(
         "supports by elimination",
         cloud.is_none() && !setup.held.is_empty(),
@@ -78,9 +83,31 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),
     };
     add("weak supports", weak.0, weak.1);
-    add("factorisation", true, "one, for all load levels".into());
-    add("Newton iterations", false, "linear".into());
-    add("contact search", false, "no tool in the scene".into());
+    match steps {
+        None => {
+            add("factorisation", true, "one, for all load levels".into());
+            add("Newton iterations", false, "linear".into());
+        }
+        Some(steps) => {
+            add("factorisation", true, "one for each iteration, analysed once".into());
+            let steps = if steps == 1 { "1 load step".into() } else { format!("{steps} load steps") };
+            let why = match (setup.laws.iter().all(|l| l.is_small_strain()), setup.tools.is_empty()) {
+                (true, true) => format!("{steps}; law and loads are linear, so one each would do"),
+                (false, true) => format!("{steps} of a law of large strain"),
+                (_, false) => format!("{steps} with contact"),
+            };
+            add("Newton iterations", true, why);
+        }
+    }
+    let tools: Vec<&str> = setup.tools.iter().map(|t| t.name.as_str()).collect();
+    let rubbing = setup.tools.iter().any(|t| t.tool.law().friction() > 0.0);
+    let (search, friction) = match (tools.is_empty(), rubbing) {
+        (true, _) => ("no tool in the scene".into(), "no tool in the scene"),
+        (false, true) => (tools.join(", "), "Coulomb friction, one slip per point and tool"),
+        (false, false) => (tools.join(", "), "no tool has friction"),
+    };
+    add("contact search", !tools.is_empty(), search);
+    add("friction history", rubbing, friction.into());
     match (cloud.is_some(), wants.targets) {
         (false, false) => add("transfer", false, "a Kronecker basis: nodal values are displacements".into()),
         (false, true) => add("transfer", true, "evaluated with the elements' shape functions".into()),

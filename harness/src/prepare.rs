@@ -2,7 +2,9 @@
 
 use geometry::quadrature;
 use geometry::{Mesh, Point3, Vector3};
-use mechanics::{Body, ConstraintRow, FixedDof, LinearProblem, Load, Weak, WeakSupport, multiplier_rows};
+use mechanics::{
+    Body, ConstraintRow, FixedDof, HeldSurface, LinearProblem, Load, Weak, WeakSupport, multiplier_rows,
+};
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
 
 use crate::Failure;
@@ -31,6 +33,14 @@ struct OwnedWeak {
     trace: Option<TraceRows>,
 }
 
+/// A surface held by penalty in a static procedure, with its table owned.
+struct OwnedHeld {
+    surface: SurfaceRows,
+    axes: [bool; 3],
+    values: Vec<Vector3>,
+    beta: f64,
+}
+
 /// All tables of one run.
 pub struct Prepared {
     /// The volume tables.
@@ -42,6 +52,9 @@ pub struct Prepared {
     fixed: Vec<FixedDof>,
     constraints: Vec<ConstraintRow>,
     weak: Vec<OwnedWeak>,
+    held: Vec<OwnedHeld>,
+    /// Where tools may touch; `None` without tools.
+    pub contact: Option<SurfaceRows>,
 }
 
 /// Fills every table.
@@ -56,6 +69,8 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
         fixed: Vec::new(),
         constraints: Vec::new(),
         weak: Vec::new(),
+        held: Vec::new(),
+        contact: None,
     };
     for load in &setup.loads {
         prepared.load(method, load)?;
@@ -70,6 +85,17 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     work.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
     work.multiplier_rows += prepared.constraints.len() as u64;
     work.fixed_dofs += prepared.fixed.len() as u64;
+    if setup.statics.is_some() {
+        prepared.hold_by_penalty(setup)?;
+    }
+    if !setup.tools.is_empty() {
+        let surface = method.contact_surface(&prepared.volume)?;
+        let points = surface.weights().len() as u64;
+        work.contact_points += points;
+        work.friction_points +=
+            points * setup.tools.iter().filter(|t| t.tool.law().friction() > 0.0).count() as u64;
+        prepared.contact = Some(surface);
+    }
     Ok(prepared)
 }
 
@@ -95,6 +121,24 @@ impl Prepared {
                 method: w.method,
                 h: self.spacing,
                 trace: w.trace.as_ref(),
+            })
+            .collect()
+    }
+
+    /// Degrees of freedom held at values.
+    pub fn fixed(&self) -> &[FixedDof] {
+        &self.fixed
+    }
+
+    /// The surfaces held by penalty in a static procedure, borrowed as the solver takes them.
+    pub fn held(&self) -> Vec<HeldSurface<'_>> {
+        self.held
+            .iter()
+            .map(|h| HeldSurface {
+                surface: &h.surface,
+                axes: h.axes,
+                values: h.values.clone(),
+                beta: h.beta,
             })
             .collect()
     }
@@ -236,6 +280,30 @@ impl Prepared {
         }
         if self.weak.len() == rows && self.constraints.len() == constraints {
             return Err(place::empty(&held.key, &held.place, &efg.background));
+        }
+        Ok(())
+    }
+
+    /// Weak supports as penalties of `factor E / h`, as the linear procedure has them; at finite strain no other kind is known.
+    fn hold_by_penalty(&mut self, setup: &Setup) -> Result<(), Failure> {
+        let young = setup.materials[0].young();
+        let penalty = |weak: &OwnedWeak| match weak.method {
+            Weak::Penalty { factor } => Some(factor * young / self.spacing),
+            Weak::Nitsche { .. } => None,
+        };
+        let betas: Option<Vec<f64>> = self.weak.iter().map(penalty).collect();
+        let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
+            return Err(Failure::unavailable(
+                Key::Method("essential"),
+                "is not available in a static procedure",
+                "essential = \"penalty\" is",
+            ));
+        };
+        for (weak, beta) in self.weak.drain(..).zip(betas) {
+            let flux = weak.flux;
+            let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
+            let surface = SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?;
+            self.held.push(OwnedHeld { surface, axes: weak.axes, values: weak.values, beta });
         }
         Ok(())
     }

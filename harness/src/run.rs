@@ -4,15 +4,16 @@ use std::time::Instant;
 
 use geometry::{Point3, Vector3};
 use interp::Scheme;
-use mechanics::{Body, Solution, assemble};
+use mechanics::{Body, Law, Material as _, Matrix3, SolveInfo, assemble};
 use reports::SurfaceField;
 
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::norms::{difference, exact_at, norms};
-use crate::outcome::{Identity, Metric, Outcome, Probe, Size, Stage};
+use crate::norms::{self, difference, exact_at, norms};
+use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
 use crate::prepare::{Prepared, prepare};
 use crate::setup::Setup;
+use crate::statics::{self, Path};
 use crate::timing::Timings;
 use crate::transfer::transfers;
 use crate::work::Work;
@@ -35,6 +36,8 @@ pub struct Reference {
     pub method: String,
     /// Displacement at the scene's target points, m.
     pub targets: Vec<Vector3>,
+    /// Its load steps, where the procedure has some.
+    pub steps: Vec<LoadStep>,
     /// Evaluates the reference at any point, m.
     pub at: Evaluate,
 }
@@ -65,6 +68,19 @@ pub struct Solved {
     pub u: Vec<Vector3>,
 }
 
+/// What a procedure came to.
+struct Solution {
+    /// Nodal parameters at the end, m.
+    u: Vec<Vector3>,
+    dofs: usize,
+    /// Relative residual at the end.
+    residual: f64,
+    /// Of a linear procedure.
+    info: Option<SolveInfo>,
+    /// Of a static procedure.
+    path: Option<Path>,
+}
+
 /// Runs one method.
 pub fn run(
     identity: Identity,
@@ -92,12 +108,17 @@ pub fn run(
         nodes: method.nodes().len() as u64,
         elements: method.mesh().cell_count() as u64,
         points: prepared.volume.rows.weights().len() as u64,
-        dofs: solution.info.dofs as u64,
+        dofs: solution.dofs as u64,
         spacing: prepared.spacing,
     };
     let u = solution.u.clone();
     let mut metrics = Vec::new();
     measure(&mut metrics, method, setup, &prepared, &solution, field, asks)?;
+    let (last, steps, stalled) = match solution.path {
+        Some(path) => history(&mut metrics, method, &prepared, path, asks)?,
+        None => (None, Vec::new(), None),
+    };
+    let tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     let probes = probes(method, setup, &prepared, &u, asks.probes)?;
     if let (Some(exact), Some(probe)) = (&setup.exact, probes.first()) {
         let e = exact.displacement(&probe.x);
@@ -117,7 +138,22 @@ pub fn run(
         Discretisation::Fem(_) => Vec::new(),
     };
     let field = if asks.picture { Some(picture(&identity, method, &prepared, &u)?) } else { None };
-    let outcome = Outcome { identity, size, metrics, phases, memory, probes, plan, transfers, field, work };
+    let outcome = Outcome {
+        identity,
+        size,
+        metrics,
+        phases,
+        memory,
+        probes,
+        plan,
+        transfers,
+        field,
+        work,
+        tools,
+        last,
+        steps,
+        stalled,
+    };
     Ok(Solved { outcome, prepared, u })
 }
 
@@ -128,6 +164,12 @@ fn solve_once(
 ) -> Result<(Prepared, Solution, Work), Failure> {
     let mut work = Work::default();
     let prepared = timings.time("prepare", || prepare(method, setup, &mut work))?;
+    if let Some(params) = &setup.statics {
+        let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, &mut work))?;
+        let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
+        let solution = Solution { u, dofs, residual, info: None, path: Some(path) };
+        return Ok((prepared, solution, work));
+    }
     let solution = {
         let (loads, weak) = (prepared.loads(), prepared.weak());
         let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
@@ -135,9 +177,9 @@ fn solve_once(
         work.assemblies += 1;
         let factored = timings.time("factor", || assembled.factor())?;
         work.factorisations += 1;
-        let solution = timings.time("solve", || factored.solve(1.0))?;
+        let mechanics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
         work.solves += 1;
-        solution
+        Solution { u, dofs: info.dofs, residual: info.residual, info: Some(info), path: None }
     };
     Ok((prepared, solution, work))
 }
@@ -194,7 +236,15 @@ fn measure(
         region: &prepared.volume.region,
         dilation: prepared.volume.groups.as_ref(),
     };
-    if let Some(exact) = &setup.exact {
+    // Stresses are compared with Hooke's; a pressure field of its own is another stress than the displacement's.
+    let hooke = setup.laws.iter().all(Law::is_small_strain) && prepared.volume.pressure.is_none();
+    if let (Some(exact), false) = (&setup.exact, hooke) {
+        let (fine, _) = method.error_rows(&prepared.volume)?;
+        if let Some(value) = norms::l2(&fine, &solution.u, exact.as_ref()) {
+            push(metrics, "l2", value, "1");
+        }
+    }
+    if let (Some(exact), true) = (&setup.exact, hooke) {
         let (fine, region) = method.error_rows(&prepared.volume)?;
         let n = norms(&body, &fine, &region, &solution.u, exact.as_ref())?;
         for (name, value) in
@@ -208,7 +258,11 @@ fn measure(
     let points = if asks.targets.is_empty() { method.nodes() } else { asks.targets };
     let against = match (&setup.exact, asks.reference) {
         (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
-        (None, Some(reference)) => Some(reference.targets.clone()),
+        // A path that ended early is compared with the reference step by step, not with its end.
+        (None, Some(reference)) if solution.path.as_ref().is_none_or(|p| p.failure.is_none()) => {
+            Some(reference.targets.clone())
+        }
+        (None, Some(_)) => None,
         (None, None) => None,
     };
     if let Some(against) = against {
@@ -223,10 +277,16 @@ fn measure(
     }
     push(metrics, "max", field.iter().fold(0.0, |m: f64, u| m.max(u.norm())), "m");
     push(metrics, "targets-outside", outside as f64, "1");
-    push(metrics, "strain-energy", mechanics::strain_energy(&body, &solution.u)?, "J");
+    let energy = match &solution.path {
+        Some(path) => path.last.strain_energy,
+        None => mechanics::strain_energy(&body, &solution.u)?,
+    };
+    push(metrics, "strain-energy", energy, "J");
     push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
-    push(metrics, "residual", solution.info.residual, "1");
-    push(metrics, "factor-nonzeros", solution.info.factor_nonzeros as f64, "1");
+    push(metrics, "residual", solution.residual, "1");
+    if let Some(info) = &solution.info {
+        push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
+    }
     let resultant = prepared.resultant();
     for (axis, name) in ["load-x", "load-y", "load-z"].into_iter().enumerate() {
         push(metrics, name, resultant[axis], "N");
@@ -246,6 +306,69 @@ fn measure(
         push(metrics, "volume-error", error, "1");
     }
     Ok(())
+}
+
+/// What a static path left: its last state, its load steps with their errors against the reference's, and why it ended
+/// early.
+type History = (Option<LoadStep>, Vec<LoadStep>, Option<Failure>);
+
+fn history(
+    metrics: &mut Vec<Metric>,
+    method: &Discretisation,
+    prepared: &Prepared,
+    path: Path,
+    asks: &Asks,
+) -> Result<History, Failure> {
+    let Path { mut steps, fields, last, iterations, cut_backs, failure, .. } = path;
+    push(metrics, "load-carried", last.load, "1");
+    push(metrics, "smallest-j", last.smallest_j, "1");
+    push(metrics, "load-steps", steps.len() as f64, "1");
+    push(metrics, "newton-iterations", iterations as f64, "1");
+    push(metrics, "cut-backs", cut_backs as f64, "1");
+    for (index, tool) in last.tools.iter().enumerate() {
+        push(metrics, &of_tool("closure", index), tool.closure, "m");
+        push(metrics, &of_tool("tool-force", index), tool.pushed, "N");
+        push(metrics, &of_tool("contact-points", index), tool.active as f64, "1");
+    }
+    if let Some(deepest) = last.tools.iter().map(|t| t.penetration).reduce(f64::max) {
+        push(metrics, "penetration", deepest, "m");
+    }
+    if !asks.probes.is_empty() {
+        let (rows, _) = method.at_points(&prepared.volume, asks.probes)?;
+        for (step, u) in steps.iter_mut().zip(&fields) {
+            step.probes = rows.rows().apply(u);
+        }
+    }
+    if let Some(reference) = asks.reference {
+        for (step, of_reference) in steps.iter_mut().zip(&reference.steps) {
+            step.against = against(step, of_reference);
+        }
+        if let (Some(end), None) = (steps.last(), &failure) {
+            metrics.extend(end.against.iter().cloned());
+        }
+    }
+    Ok((Some(last), steps, failure.map(Failure::Static)))
+}
+
+/// Errors of one step against the reference's at the same part of the load: of every tool's force, relative, and the
+/// largest of the displacements at the probes.
+fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
+    let mut metrics = Vec::new();
+    for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
+        if other.pushed != 0.0 {
+            push(
+                &mut metrics,
+                &of_tool("tool-force-error", index),
+                (tool.pushed / other.pushed - 1.0).abs(),
+                "1",
+            );
+        }
+    }
+    let distances = step.probes.iter().zip(&reference.probes).map(|(u, v)| (u - v).norm());
+    if let Some(largest) = distances.reduce(f64::max) {
+        push(&mut metrics, "probe-difference", largest, "m");
+    }
+    metrics
 }
 
 /// RMS per direction and of the magnitude, and the largest difference.
@@ -270,9 +393,23 @@ fn probes(
     }
     let rows = method.gradients_at(&prepared.volume, points)?;
     // Stresses at probes are pointwise, of the first region's law unless the body has one only.
-    let stress = mechanics::stress(&rows, u, &setup.materials, &[])?;
+    let stress = if setup.statics.is_none() {
+        mechanics::stress(&rows, u, &setup.materials, &[])?
+    } else {
+        rows.displacement_gradients(u).iter().map(|h| cauchy(&setup.laws[0], h)).collect()
+    };
     let field = rows.rows().apply(u);
     Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())
+}
+
+/// Cauchy stress `P F^T / J` (Pa) at a displacement gradient; `P` itself at small strain.
+fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
+    let p = law.stress(h);
+    if law.is_small_strain() {
+        return p;
+    }
+    let f = Matrix3::identity() + h;
+    p * f.transpose() / f.determinant()
 }
 
 /// Displacement of the boundary's corner nodes.
@@ -314,5 +451,6 @@ pub fn reference(method: Discretisation, solved: Solved, targets: &[Point3]) -> 
         Ok(method.at_points(&prepared.volume, points)?.0.rows().apply(&u))
     };
     let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
-    Ok(Reference { method: outcome.identity.method, targets: points, at: Box::new(at) })
+    let (method, steps) = (outcome.identity.method, outcome.steps);
+    Ok(Reference { method, targets: points, steps, at: Box::new(at) })
 }

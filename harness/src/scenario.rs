@@ -1,16 +1,19 @@
 //! From a checked scene and one of its methods to what the solvers take.
 
 use cases::exact::{Exact, Params, exact_by_name};
-use cases::scene::{self, ErrorKind, Family, LoadKind, Material, Prescribed, Reference, Scene, VectorField};
+use cases::scene::{
+    self, ErrorKind, Family, LoadKind, Prescribed, ProcedureKind, Reference, Scene, VectorField,
+};
 use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
-use mechanics::LinearElastic;
+use mechanics::{Law, LinearElastic, NewtonParams, StaticParams};
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
 use crate::error::Key;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
-use crate::{Failure, body};
+use crate::tools::tools;
+use crate::{Failure, body, law};
 
 /// Stabilisation of Nitsche's method with smoothed gradients where the scene gives none: times (lambda + 2 mu) / h with h
 /// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
@@ -20,6 +23,9 @@ const NITSCHE_SMOOTHED: f64 = 4.0;
 const NITSCHE: f64 = 100.0;
 /// Penalty where the scene gives none: times E / h.
 const PENALTY: f64 = 1e4;
+
+/// Part of a load step below which cutting it back is given up: six halvings.
+const SMALLEST: f64 = 1.0 / 64.0;
 
 /// A scene's method with what a study changes of it.
 #[derive(Clone, Debug)]
@@ -85,6 +91,10 @@ impl Scenario<'_> {
                 ("efg", efg.kernel.name.name().to_string(), seed)
             }
         };
+        let law = self.scene.material.name();
+        if self.scene.procedure.kind != ProcedureKind::Linear {
+            pairs.push(("law", law.into()));
+        }
         pairs.sort();
         Identity {
             case: self.case.clone(),
@@ -92,14 +102,35 @@ impl Scenario<'_> {
             family,
             variant,
             parameters: pairs.iter().map(|(k, v)| format!("{k}={v}")).collect::<Vec<_>>().join(";"),
-            poisson: self.elastic().map_or(0.0, |e| e.poisson),
+            poisson: self.laws().map_or(0.0, |(_, materials)| materials[0].poisson()),
             level: self.level,
             seed,
         }
     }
 
-    fn elastic(&self) -> Result<scene::Elastic, Failure> {
-        elastic(&self.scene.material, self.poisson)
+    /// The laws by region, and their limits at small strain.
+    fn laws(&self) -> Result<(Vec<Law>, Vec<LinearElastic>), Failure> {
+        let regions = self.scene.regions.iter().enumerate();
+        let regions = regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, None));
+        let all =
+            std::iter::once(("material".to_string(), &self.scene.material, self.poisson)).chain(regions);
+        all.map(|(key, material, poisson)| {
+            let law = law::law(material, poisson, &key)?;
+            let linear = law::small_strain(&law, &key)?;
+            Ok((law, linear))
+        })
+        .collect()
+    }
+
+    fn statics(&self) -> Option<StaticParams> {
+        let procedure = self.scene.procedure;
+        let newton = procedure.newton;
+        (procedure.kind == ProcedureKind::Static).then_some(StaticParams {
+            steps: procedure.steps,
+            smallest: SMALLEST,
+            newton: NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations },
+            augmentations: newton.augmentations,
+        })
     }
 
     /// Nodes, cells and rules.
@@ -113,7 +144,7 @@ impl Scenario<'_> {
                 let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
                 Ok(Discretisation::Fem(Fem {
                     mesh: self.with_regions(mesh)?,
-                    dilation: dilation(fem.dilation)?,
+                    dilation: dilation(fem.dilation),
                 }))
             }
             Family::Efg(efg) => self.cloud(efg).map(Discretisation::Efg),
@@ -197,7 +228,7 @@ impl Scenario<'_> {
             },
             integration,
             essential,
-            dilation: dilation(efg.dilation)?,
+            dilation: dilation(efg.dilation),
         })
     }
 
@@ -246,11 +277,8 @@ impl Scenario<'_> {
     }
 
     fn acting(&self) -> Result<Setup, Failure> {
-        let e = self.elastic()?;
-        let mut materials = vec![law(e)?];
-        for region in &self.scene.regions {
-            materials.push(law(elastic(&region.material, None)?)?);
-        }
+        let (laws, materials) = self.laws()?;
+        let e = materials[0];
         let exact = self.exact(e)?;
         let held = self
             .scene
@@ -306,14 +334,15 @@ impl Scenario<'_> {
                 Ok(Acting { key: format!("load[{index}]"), place: load.place.clone(), applied })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Setup { materials, held, loads, exact })
+        let (tools, statics) = (tools(self.scene)?, self.statics());
+        Ok(Setup { laws, materials, held, loads, tools, statics, exact })
     }
 
     /// The scene's exact solution for this run's material; `None` where the scene names none.
-    fn exact(&self, e: scene::Elastic) -> Result<Option<Box<dyn Exact>>, Failure> {
+    fn exact(&self, e: LinearElastic) -> Result<Option<Box<dyn Exact>>, Failure> {
         let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
         let values = parameters.clone();
-        let params = Params { young: e.young, poisson: e.poisson, values };
+        let params = Params { young: e.young(), poisson: e.poisson(), values };
         exact_by_name(name, &params)
             .map(Some)
             .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))
@@ -333,22 +362,6 @@ fn components(fields: &[scene::ScalarField; 3], x: &Point3) -> Result<Vector3, S
     Ok(Vector3::new(value(&fields[0], x)?, value(&fields[1], x)?, value(&fields[2], x)?))
 }
 
-fn elastic(material: &Material, poisson: Option<f64>) -> Result<scene::Elastic, Failure> {
-    match material {
-        Material::Linear(e) => Ok(scene::Elastic { poisson: poisson.unwrap_or(e.poisson), ..*e }),
-        other => Err(Failure::unavailable(
-            Key::Scene("material.law".into()),
-            format!("the {} law is not available yet", other.name()),
-            "law = \"linear\" is",
-        )),
-    }
-}
-
-fn law(e: scene::Elastic) -> Result<LinearElastic, Failure> {
-    LinearElastic::new(e.young, e.poisson)
-        .map_err(|bad| Failure::input(Key::Scene("material".into()), bad.to_string(), ""))
-}
-
 fn kind(element: scene::Element) -> CellKind {
     match element {
         scene::Element::Tet4 => CellKind::Tet4,
@@ -358,16 +371,12 @@ fn kind(element: scene::Element) -> CellKind {
     }
 }
 
-fn dilation(dilation: scene::Dilation) -> Result<Dilation, Failure> {
+fn dilation(dilation: scene::Dilation) -> Dilation {
     match dilation {
-        scene::Dilation::Standard => Ok(Dilation::Standard),
-        scene::Dilation::ElementMean => Ok(Dilation::Element),
-        scene::Dilation::NodalMean => Ok(Dilation::Nodal),
-        scene::Dilation::Mixed => Err(Failure::unavailable(
-            Key::Method("dilation"),
-            "is not available yet",
-            "\"element-mean\" and \"nodal-mean\" are",
-        )),
+        scene::Dilation::Standard => Dilation::Standard,
+        scene::Dilation::ElementMean => Dilation::Element,
+        scene::Dilation::NodalMean => Dilation::Nodal,
+        scene::Dilation::Mixed => Dilation::Mixed,
     }
 }
 

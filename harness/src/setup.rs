@@ -2,9 +2,10 @@
 
 use cases::exact::Exact;
 use geometry::{Point3, Vector3};
-use mechanics::LinearElastic;
+use mechanics::{Law, LinearElastic, StaticParams};
 
 use crate::place::Place;
+use crate::tools::SetTool;
 
 /// A vector field of position (m); an error says where it was not finite.
 pub type VectorField = Box<dyn Fn(&Point3) -> Result<Vector3, String> + Send + Sync>;
@@ -48,11 +49,17 @@ pub struct Acting {
 /// Everything that does not depend on the method.
 pub struct Setup {
     /// One law per region of the mesh.
+    pub laws: Vec<Law>,
+    /// The limit of each law at small strain: the law itself in a linear procedure.
     pub materials: Vec<LinearElastic>,
     /// Supports.
     pub held: Vec<Held>,
     /// Loads.
     pub loads: Vec<Acting>,
+    /// Rigid tools.
+    pub tools: Vec<SetTool>,
+    /// How a static procedure is stepped; `None` for a linear one.
+    pub statics: Option<StaticParams>,
     /// The exact solution, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
 }

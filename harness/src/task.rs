@@ -11,7 +11,7 @@ use crate::work::Work;
 /// What one run leaves.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TaskResult {
-    /// Numbers; empty if it failed.
+    /// Numbers; empty if it failed, those of the load it carried if it stalled.
     pub records: Vec<Record>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
@@ -31,7 +31,7 @@ impl TaskResult {
             records: outcome.records(),
             plans: outcome.plan_entries(),
             fields: outcome.field.iter().cloned().collect(),
-            failure: None,
+            failure: outcome.stalled.as_ref().map(|f| (crate::command::stalled(outcome, f), f.exit_code())),
             work: outcome.work,
         }
     }

@@ -13,6 +13,8 @@ pub struct Work {
     pub volume_rows: u64,
     /// Groups of points that share a dilation.
     pub dilation_groups: u64,
+    /// Parameters of a pressure field.
+    pub pressure_parameters: u64,
     /// Integration points given the law of their own region.
     pub point_laws: u64,
     /// Rows of values alone on loaded surfaces.
@@ -23,9 +25,19 @@ pub struct Work {
     pub multiplier_rows: u64,
     /// Degrees of freedom eliminated.
     pub fixed_dofs: u64,
-    /// Stiffness matrices assembled.
+    /// Surface points at which tools may touch.
+    pub contact_points: u64,
+    /// Of these, points that keep a history of friction, once for each tool.
+    pub friction_points: u64,
+    /// Searches for contact, one for each tool and state.
+    pub contact_evaluations: u64,
+    /// Of these, skipped whole: no point near the tool.
+    pub contact_skips: u64,
+    /// Linear systems of Newton's method on the way to converged steps.
+    pub newton_iterations: u64,
+    /// Stiffness matrices assembled; in a static procedure those of converged steps.
     pub assemblies: u64,
-    /// Matrices factored.
+    /// Matrices factored; in a static procedure those of converged steps.
     pub factorisations: u64,
     /// Right-hand sides solved for.
     pub solves: u64,
@@ -41,12 +53,15 @@ impl Work {
         Some(match stage {
             "supports" => self.support_radii,
             "shape functions" => self.volume_rows,
-            "volumetric projection" => self.dilation_groups,
+            "volumetric projection" => self.dilation_groups + self.pressure_parameters,
             "elasticity tensor per region" => self.point_laws,
             "stiffness" => self.assemblies,
             "supports by elimination" => self.fixed_dofs,
             "weak supports" => self.flux_rows + self.multiplier_rows,
             "factorisation" => self.factorisations,
+            "Newton iterations" => self.newton_iterations,
+            "contact search" => self.contact_evaluations,
+            "friction history" => self.friction_points,
             "transfer" => self.transfer_rows,
             "transfer schemes" => self.transfer_tables,
             _ => return None,
@@ -59,11 +74,17 @@ impl AddAssign for Work {
         self.support_radii += other.support_radii;
         self.volume_rows += other.volume_rows;
         self.dilation_groups += other.dilation_groups;
+        self.pressure_parameters += other.pressure_parameters;
         self.point_laws += other.point_laws;
         self.surface_rows += other.surface_rows;
         self.flux_rows += other.flux_rows;
         self.multiplier_rows += other.multiplier_rows;
         self.fixed_dofs += other.fixed_dofs;
+        self.contact_points += other.contact_points;
+        self.friction_points += other.friction_points;
+        self.contact_evaluations += other.contact_evaluations;
+        self.contact_skips += other.contact_skips;
+        self.newton_iterations += other.newton_iterations;
         self.assemblies += other.assemblies;
         self.factorisations += other.factorisations;
         self.solves += other.solves;

@@ -1,10 +1,11 @@
 //! What a sound scene may ask for and can't have yet.
 
 use super::error::{ErrorKind, Problem, SceneError};
-use super::method::{Dilation, Family};
-use super::model::{Material, Scene};
+use super::method::{Dilation, Essential, Family};
+use super::model::Scene;
 use super::output::Reference;
-use super::tool::ProcedureKind;
+use super::procedure::ProcedureKind;
+use super::tool::ToolShape;
 
 impl Scene {
     /// Every part of the scene that no solver here runs yet; empty if all of it runs.
@@ -14,32 +15,39 @@ impl Scene {
             let problem = Problem::new(format!("{what} is not available yet")).help(help);
             errors.push(self.origin.error(ErrorKind::NotAvailable, key, problem));
         };
-        if !matches!(self.material, Material::Linear(_)) {
-            add("material.law", format!("the {} law", self.material.name()), "law = \"linear\" is");
-        }
-        for (i, region) in self.regions.iter().enumerate() {
-            if !matches!(region.material, Material::Linear(_)) {
-                let key = format!("region[{i}].material.law");
-                add(&key, format!("the {} law", region.material.name()), "law = \"linear\" is");
+        for (i, tool) in self.tools.iter().enumerate() {
+            if let ToolShape::File(_) = tool.shape {
+                let help = "plate, rounded-box, sphere, cylinder and capsule are";
+                add(&format!("tool[{i}].shape"), "the distance to a mesh".into(), help);
             }
         }
-        for (i, tool) in self.tools.iter().enumerate() {
-            add(
-                &format!("tool[{i}]"),
-                format!("contact with '{}'", tool.name),
-                "give the load itself: [[load]]",
-            );
-        }
-        match self.procedure.kind {
-            ProcedureKind::Linear | ProcedureKind::Static => {}
-            kind => add("procedure.kind", format!("the {} procedure", kind.name()), "kind = \"linear\" is"),
+        let kind = self.procedure.kind;
+        if !matches!(kind, ProcedureKind::Linear | ProcedureKind::Static) {
+            let help = "kind = \"linear\" and \"static\" are";
+            add("procedure.kind", format!("the {} procedure", kind.name()), help);
         }
         for (i, method) in self.methods.iter().enumerate() {
-            let (Family::Fem(super::method::Fem { dilation, .. })
-            | Family::Efg(super::method::Efg { dilation, .. })) = &method.family;
-            if *dilation == Dilation::Mixed {
-                let help = "\"element-mean\" and \"nodal-mean\" are";
-                add(&format!("method[{i}].dilation"), "dilation = \"mixed\"".into(), help);
+            let at = |key: &str| format!("method[{i}].{key}");
+            match &method.family {
+                Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Linear => {
+                    let help =
+                        "procedure = { kind = \"static\" } has it, with the linear law in one step too";
+                    add(&at("dilation"), "dilation = \"mixed\" in a linear procedure".into(), help);
+                }
+                Family::Fem(_) => {}
+                Family::Efg(efg) => {
+                    if efg.dilation == Dilation::Mixed {
+                        let help = "\"element-mean\" and \"nodal-mean\" are";
+                        add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
+                    }
+                    let what = match efg.essential {
+                        _ if kind != ProcedureKind::Static => continue,
+                        Essential::Penalty { .. } => continue,
+                        Essential::Nitsche { .. } => "Nitsche's method in a static procedure",
+                        Essential::Multipliers => "a support by multipliers in a static procedure",
+                    };
+                    add(&at("essential"), what.into(), "essential = \"penalty\" is");
+                }
             }
         }
         if let Some(Reference::Record(_)) = &self.reference {

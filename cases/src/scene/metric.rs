@@ -31,6 +31,14 @@ pub enum Needs {
     Levels,
     /// A transfer.
     Transfer,
+    /// A static procedure.
+    Static,
+    /// A tool.
+    Tool,
+    /// A tool, and a method as `[reference]`.
+    ToolReference,
+    /// Probes, and a method as `[reference]`.
+    ProbesReference,
 }
 
 const fn metric(name: &'static str, dimension: Dimension, needs: Needs, meaning: &'static str) -> Metric {
@@ -76,12 +84,46 @@ impl Metric {
         metric("order-energy", Dimension::None, Needs::Levels, "observed order of the energy error"),
         metric("order-pressure", Dimension::None, Needs::Levels, "observed order of the pressure error"),
         metric("transfer-rms", Dimension::Length, Needs::Transfer, "root mean square error after transfer"),
+        metric(
+            "probe-difference",
+            Dimension::Length,
+            Needs::ProbesReference,
+            "largest distance from the reference method's displacement at the probes, at the end",
+        ),
+        metric("closure", Dimension::Length, Needs::Tool, "way of the first tool"),
+        metric("tool-force", Dimension::Force, Needs::Tool, "force of the first tool along its way"),
+        metric(
+            "tool-force-error",
+            Dimension::None,
+            Needs::ToolReference,
+            "error of the first tool's force over that of the reference method, at the end",
+        ),
+        metric("penetration", Dimension::Length, Needs::Tool, "deepest penetration of a tool"),
+        metric(
+            "load-carried",
+            Dimension::None,
+            Needs::Static,
+            "part of the loading that was carried, 0 to 1",
+        ),
+        metric(
+            "smallest-j",
+            Dimension::None,
+            Needs::Static,
+            "smallest volume ratio J of all quadrature points",
+        ),
+        metric("newton-iterations", Dimension::None, Needs::Static, "Newton iterations of all steps"),
+        metric("cut-backs", Dimension::None, Needs::Static, "load steps that failed and were cut"),
         metric("max-x", Dimension::Length, Needs::Run, "largest displacement along x, either way"),
         metric("max-y", Dimension::Length, Needs::Run, "largest displacement along y, either way"),
         metric("max-z", Dimension::Length, Needs::Run, "largest displacement along z, either way"),
         metric("max", Dimension::Length, Needs::Run, "largest displacement"),
         metric("strain-energy", Dimension::Energy, Needs::Run, "strain energy"),
-        metric("residual", Dimension::None, Needs::Run, "relative residual of the linear solve"),
+        metric(
+            "residual",
+            Dimension::None,
+            Needs::Run,
+            "relative residual of the linear solve, or of the last static step",
+        ),
         metric("condition", Dimension::None, Needs::Run, "largest condition estimate of a moment matrix"),
         metric(
             "fallbacks",

@@ -6,6 +6,7 @@
 
 mod available;
 mod conform;
+mod demands;
 mod document;
 mod error;
 mod expression;
@@ -15,6 +16,7 @@ mod method;
 mod metric;
 mod model;
 mod output;
+mod procedure;
 mod quantity;
 mod region;
 mod report;
@@ -35,12 +37,13 @@ pub use method::{
     MeshFile, Method, Size, SupportRule,
 };
 pub use metric::{Metric, Needs};
-pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Scene, Support};
+pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};
+pub use procedure::{Newton, Procedure, ProcedureKind};
 pub use quantity::{Exponents, Quantity};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};
-pub use tool::{Drive, Procedure, ProcedureKind, Tool, ToolShape};
+pub use tool::{Drive, Friction, Tool, ToolShape};
 pub use units::Dimension;
 
 /// Reads the scene in a file. The name in messages is `path` as given.
@@ -56,6 +59,7 @@ pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
     // Parts that could not be resolved are left out of the scene: what the rest demands of them can't be judged.
     if let (Some(scene), true) = (&scene, report.is_clean()) {
         validate::scene(scene, &mut report);
+        demands::scene(scene, &mut report);
     }
     let errors = report.finish();
     match scene {

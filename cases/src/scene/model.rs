@@ -5,8 +5,9 @@ use super::error::{ErrorKind, Problem, SceneError};
 use super::field::{Prescribed, ScalarField, VectorField};
 use super::method::{MeshFile, Method};
 use super::output::{Check, Output, Reference};
+use super::procedure::Procedure;
 use super::region::Region;
-use super::tool::{Procedure, Tool};
+use super::tool::Tool;
 
 /// A checked scene.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct Scene {
     pub body: Body,
     /// The material wherever no region has its own.
     pub material: Material,
+    /// Its relaxation over time; nothing relaxes where empty.
+    pub prony: Vec<Relaxation>,
     /// Parts of the body with a material of their own; later ones win.
     pub regions: Vec<MaterialRegion>,
     /// Prescribed displacements.
@@ -149,6 +152,8 @@ pub enum Material {
     SaintVenantKirchhoff(Elastic),
     /// Neo-Hookean.
     NeoHookean(Elastic),
+    /// Neo-Hookean in the isochoric invariant, as Abaqus and CalculiX have it.
+    NeoHookeanIsochoric(Elastic),
     /// Hencky, in logarithmic strain.
     Hencky(Elastic),
     /// Mooney-Rivlin; pascals, kilograms per cubic metre.
@@ -180,6 +185,7 @@ impl Material {
             Material::Linear(_) => "linear",
             Material::SaintVenantKirchhoff(_) => "saint-venant-kirchhoff",
             Material::NeoHookean(_) => "neo-hookean",
+            Material::NeoHookeanIsochoric(_) => "neo-hookean-isochoric",
             Material::Hencky(_) => "hencky",
             Material::MooneyRivlin { .. } => "mooney-rivlin",
             Material::Ogden { .. } => "ogden",
@@ -192,6 +198,7 @@ impl Material {
             Material::Linear(e)
             | Material::SaintVenantKirchhoff(e)
             | Material::NeoHookean(e)
+            | Material::NeoHookeanIsochoric(e)
             | Material::Hencky(e) => Some(e),
             Material::MooneyRivlin { .. } | Material::Ogden { .. } => None,
         }
@@ -207,6 +214,17 @@ pub struct MaterialRegion {
     pub place: Place,
     /// Its material.
     pub material: Material,
+    /// Its relaxation over time; nothing relaxes where empty.
+    pub prony: Vec<Relaxation>,
+}
+
+/// A term of a Prony series: a share of the shear response that relaxes exponentially.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relaxation {
+    /// The share, between 0 and 1.
+    pub g: f64,
+    /// Its time in seconds, positive.
+    pub tau: f64,
 }
 
 /// Where something acts.

@@ -1,4 +1,4 @@
-//! Rigid tools and procedures: read and checked in full, though only linear statics without tools runs today.
+//! Rigid tools: their shapes, how they are driven and how they touch.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -16,12 +16,35 @@ pub struct Tool {
     pub at: [f64; 3],
     /// Unit direction of motion.
     pub along: [f64; 3],
+    /// Unit axis of a cylinder or capsule, or outward normal of a plate's face; `None` for other shapes.
+    pub axis: Option<[f64; 3]>,
     /// How it is driven.
     pub drive: Drive,
     /// Time of the ramp in seconds (dynamics).
     pub over: Option<f64>,
-    /// Coulomb coefficient.
-    pub friction: f64,
+    /// Normal pressure per penetration, in pascals per metre.
+    pub penalty: f64,
+    /// Friction; none if the file gives none, or a coefficient of 0.
+    pub friction: Option<Friction>,
+}
+
+impl Tool {
+    /// Area (m2) of the face that a mean pressure acts on: that of a rounded box which closes along one of its axes, roundings
+    /// included. Other shapes have no face of their own.
+    pub fn face_area(&self) -> Option<f64> {
+        let ToolShape::RoundedBox { half, .. } = self.shape else { return None };
+        let closes = (0..3).find(|&a| self.along[a].abs() > 1.0 - 1e-9)?;
+        Some((0..3).filter(|&a| a != closes).map(|a| 2.0 * half[a]).product())
+    }
+}
+
+/// Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Coefficient, positive.
+    pub coefficient: f64,
+    /// Tangential traction per elastic slip while the surfaces stick, in pascals per metre.
+    pub stick: f64,
 }
 
 /// Shape names of tools.
@@ -39,7 +62,7 @@ pub(crate) enum ToolShapeName {
 /// Shapes of tools; lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ToolShape {
-    /// A half space.
+    /// A half space with a flat face.
     Plate,
     /// A box whose edges are rounded.
     RoundedBox {
@@ -76,45 +99,8 @@ pub enum ToolShape {
 pub enum Drive {
     /// Distance moved, in metres.
     Closure(f64),
-    /// Total force, in newtons.
+    /// Total force along the way, in newtons.
     Force(f64),
-    /// Mean pressure, in pascals.
+    /// Mean pressure on the tool's face, in pascals.
     Pressure(f64),
-}
-
-/// Kinds of procedures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ProcedureKind {
-    /// One linear solve.
-    Linear,
-    /// Quasi-static load steps.
-    Static,
-    /// Explicit dynamics.
-    Explicit,
-    /// Implicit dynamics.
-    ImplicitDynamic,
-}
-
-impl ProcedureKind {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            ProcedureKind::Linear => "linear",
-            ProcedureKind::Static => "static",
-            ProcedureKind::Explicit => "explicit",
-            ProcedureKind::ImplicitDynamic => "implicit-dynamic",
-        }
-    }
-}
-
-/// How the scene is stepped.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Procedure {
-    /// Its kind; linear where the file has no `[procedure]`.
-    pub kind: ProcedureKind,
-    /// Load steps, 1 unless given.
-    pub steps: usize,
-    /// End of the time axis in seconds (dynamics).
-    pub duration: Option<f64>,
 }

@@ -26,6 +26,8 @@ pub enum Dimension {
     Time,
     /// Newtons per cubic metre.
     BodyForce,
+    /// Pascals per metre: slopes of contact. The same units as a force per volume, another meaning.
+    ContactSlope,
     /// One per metre.
     Curvature,
     /// Radians.
@@ -37,7 +39,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    const ALL: [Dimension; 11] = [
+    const ALL: [Dimension; 12] = [
         Dimension::Length,
         Dimension::Pressure,
         Dimension::Density,
@@ -45,6 +47,7 @@ impl Dimension {
         Dimension::LineForce,
         Dimension::Time,
         Dimension::BodyForce,
+        Dimension::ContactSlope,
         Dimension::Curvature,
         Dimension::Angle,
         Dimension::Energy,
@@ -60,7 +63,7 @@ impl Dimension {
             Dimension::Force => [1, 1, -2, 0],
             Dimension::LineForce => [0, 1, -2, 0],
             Dimension::Time => [0, 0, 1, 0],
-            Dimension::BodyForce => [-2, 1, -2, 0],
+            Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0],
             Dimension::Curvature => [-1, 0, 0, 0],
             Dimension::Angle => [0, 0, 0, 1],
             Dimension::Energy => [2, 1, -2, 0],
@@ -78,6 +81,7 @@ impl Dimension {
             Dimension::LineForce => "force per length",
             Dimension::Time => "time",
             Dimension::BodyForce => "force per volume",
+            Dimension::ContactSlope => "pressure per length",
             Dimension::Curvature => "curvature",
             Dimension::Angle => "angle",
             Dimension::Energy => "energy",
@@ -95,6 +99,7 @@ impl Dimension {
             Dimension::LineForce => "N/m",
             Dimension::Time => "s",
             Dimension::BodyForce => "N/m^3",
+            Dimension::ContactSlope => "Pa/m",
             Dimension::Curvature => "1/m",
             Dimension::Angle => "rad",
             Dimension::Energy => "J",
@@ -112,6 +117,7 @@ impl Dimension {
             Dimension::LineForce => &["N/m", "mN/mm", "kN/m"],
             Dimension::Time => &["s", "ms", "us", "min", "h"],
             Dimension::BodyForce => &["N/m^3", "kN/m^3", "N/mm^3"],
+            Dimension::ContactSlope => &["MPa/mm", "kPa/mm", "Pa/m", "N/mm^3"],
             Dimension::Curvature => &["/m", "1/m", "/mm", "/cm"],
             Dimension::Angle => &["deg", "rad", "mrad"],
             Dimension::Energy => &["J", "mJ", "N mm"],
@@ -201,7 +207,7 @@ macro_rules! dims {
         }
     )*};
 }
-dims!(Length, Pressure, Density, Force, Time, BodyForce);
+dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope);
 
 /// A quantity of dimension `D` in a file: text outside, SI inside.
 pub(crate) struct Q<D>(pub f64, PhantomData<D>);

@@ -8,6 +8,7 @@ use super::field::{Prescribed, VectorField};
 use super::metric::Needs;
 use super::model::{LoadKind, Place, Scene};
 use super::output::{Check, Reference, Target};
+use super::procedure::ProcedureKind;
 use super::report::{Report, which};
 
 /// Notes every contradiction.
@@ -81,10 +82,21 @@ fn targets(scene: &Scene, report: &mut Report) {
 /// What a check, in the scene or in a study of it, demands of the scene; `key` is the path of the check.
 pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&check.methods, scene, &format!("{key}.method"), report);
+    let of_method = matches!(scene.reference, Some(Reference::Method { .. }));
     let lacks = match check.metric.needs {
         Needs::Reference | Needs::Levels if scene.reference.is_none() => "needs a [reference] in the scene",
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
             "needs a [reference] and output.probes in the scene"
+        }
+        Needs::Static if scene.procedure.kind != ProcedureKind::Static => {
+            "needs [procedure] kind = \"static\" in the scene"
+        }
+        Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
+        Needs::ToolReference if scene.tools.is_empty() || !of_method => {
+            "needs a [[tool]] and [reference] method = \"...\" in the scene"
+        }
+        Needs::ProbesReference if scene.output.probes.is_empty() || !of_method => {
+            "needs output.probes and [reference] method = \"...\" in the scene"
         }
         Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",
         _ => return,

@@ -107,7 +107,7 @@ const KEYS: &[Bad] = &[
     ("poisson = 0.45", "poisson = nan #<", "material.poisson", &["'nan' is not a finite number"]),
     ("poisson = 0.45", "poisson = -inf #<", "material.poisson", &["not a finite number"]),
     ("poisson = 0.45", "poisson = 2026-01-01 #<", "material.poisson", &["is a date"]),
-    ("kind = \"static\"", "kind = \"statik\" #<", "procedure.kind", &["did you mean 'static'?"]),
+    ("kind = \"linear\"", "kind = \"statik\" #<", "procedure.kind", &["did you mean 'static'?"]),
     (
         "kernel = \"cubic-spline\"",
         "kernel = \"cubic\" #<",

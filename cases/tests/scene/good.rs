@@ -19,7 +19,10 @@ fn a_scene_arrives_in_si() {
     let Material::Linear(core) = &scene.regions[0].material else { panic!("linear") };
     assert_eq!(core.young, 4e4);
     assert_eq!(scene.output.probes, [[0.0, 0.0, 0.005]]);
-    assert_eq!(scene.procedure, Procedure { kind: ProcedureKind::Static, steps: 10, duration: None });
+    assert_eq!(
+        scene.procedure,
+        Procedure { kind: ProcedureKind::Linear, steps: 10, duration: None, newton: Newton::STANDARD }
+    );
     assert_eq!(scene.checks[0].bound, Bound::Within { at_least: None, at_most: Some(1e-4) });
     assert_eq!(scene.checks[0].methods, ["tet4", "efg-83"]);
     let Bound::KnownBand { low, high, reason } = &scene.checks[1].bound else { panic!("a band") };
@@ -161,41 +164,187 @@ fn decimal_units_lose_no_bit() {
     }
 }
 
+/// The scene in a static procedure, clouds held as that can.
+fn still() -> String {
+    let text =
+        SCENE.replace("kind = \"linear\"", "kind = \"static\"").replace("\"multipliers\"", "\"penalty\"");
+    text.replace("{ method = \"nitsche\", factor = 10 }", "{ method = \"penalty\", factor = 1e4 }")
+}
+
+const JAW: &str = "[[tool]]\nname = \"upper jaw\"\nshape = \"rounded-box\"\nhalf = [\"5 mm\", \"10 mm\", \"4 mm\"]\n\
+    radius = \"1.5 mm\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
+    drive = { closure = \"7 mm\" }\npenalty = \"0.5 MPa/mm\"\nfriction = 0.15\nstick = \"100 N/mm^3\"\n";
+
 #[test]
 fn what_waits_for_later_is_read_and_then_named() {
-    let tool = "[[tool]]\nname = \"upper jaw\"\nshape = \"rounded-box\"\nhalf = [\"5 mm\", \"10 mm\", \"4 mm\"]\n\
-        radius = \"1.5 mm\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
-        drive = { closure = \"7 mm\" }\nfriction = 0.15\n[procedure]\n";
-    let changes = [
-        ("[procedure]\n", tool, "tool[0]", "contact with 'upper jaw' is not available yet"),
+    let static_and = |from: &str, to: &str| {
+        let text = still();
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    };
+    let linear = |from: &str, to: &str| edited(from, to);
+    for (text, to, key, said) in [
         (
-            "law = \"linear\"\nyoung",
-            "law = \"neo-hookean\"\nyoung",
-            "material.law",
-            "the neo-hookean law is not available yet",
+            linear("\"linear\"\nsteps", "\"explicit\"\nsteps"),
+            "explicit",
+            "procedure.kind",
+            "the explicit procedure is not available yet",
         ),
         (
-            "law = \"linear\", ",
-            "law = \"hencky\", ",
-            "region[0].material.law",
-            "the hencky law is not available yet",
+            linear("\"tet4\"\ndilation = \"nodal-mean\"", "\"tet10\"\ndilation = \"mixed\""),
+            "mixed",
+            "method[0].dilation",
+            "dilation = \"mixed\" in a linear procedure is not available yet",
         ),
-        ("\"static\"", "\"explicit\"", "procedure.kind", "the explicit procedure is not available yet"),
-        ("\"nodal-mean\"", "\"mixed\"", "method[0].dilation", "dilation = \"mixed\" is not available yet"),
-    ];
-    for (from, to, key, said) in changes {
-        let text = edited(from, to);
-        let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        (
+            static_and("essential = \"penalty\"", "essential = \"nitsche\""),
+            "nitsche",
+            "method[2].essential",
+            "Nitsche's method in a static procedure is not available yet",
+        ),
+        (
+            static_and("essential = \"penalty\"", "essential = \"multipliers\""),
+            "multipliers",
+            "method[2].essential",
+            "a support by multipliers in a static procedure is not available yet",
+        ),
+        (
+            static_and(
+                "integration = { rule = \"cell-smoothed\" }",
+                "integration = { rule = \"cell-smoothed\" }\ndilation = \"mixed\"",
+            ),
+            "mixed",
+            "method[2].dilation",
+            "dilation = \"mixed\" for clouds is not available yet",
+        ),
+        (
+            static_and(
+                "[procedure]\n",
+                &format!(
+                    "{}[procedure]\n",
+                    JAW.replace("rounded-box", "file").replace("radius", "path = \"Cargo.toml\"\nradius")
+                ),
+            ),
+            "\"file\"",
+            "tool[0].shape",
+            "the distance to a mesh is not available yet",
+        ),
+    ] {
+        let scene = parse(&text, &format!("{}/s.toml", env!("CARGO_MANIFEST_DIR")))
+            .unwrap_or_else(|e| panic!("{}", e[0]));
         let ahead = scene.unavailable();
         assert_eq!(ahead.len(), 1, "{ahead:?}");
         assert_eq!((ahead[0].kind, ahead[0].key.as_str()), (ErrorKind::NotAvailable, key));
         assert!(ahead[0].to_string().contains(said), "{}", ahead[0]);
-        let at = text.find(to).expect("replaced");
-        assert!(ahead[0].line > text[..at].matches('\n').count(), "{}", ahead[0]);
+        let line = 1 + text[..text.find(to).expect("replaced")].matches('\n').count();
+        assert_eq!(ahead[0].line, line, "{}", ahead[0]);
     }
-    let scene = parse(&edited("[procedure]\n", tool), "s.toml").expect("sound");
-    assert_eq!(scene.tools[0].along, [0.0, 0.0, -1.0]);
-    assert_eq!(scene.tools[0].drive, Drive::Closure(0.007));
+}
+
+#[test]
+fn a_static_scene_runs_with_everything_it_knows() {
+    let text = still().replacen("[procedure]\n", &format!("{JAW}[procedure]\n"), 1);
+    let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+    assert!(scene.unavailable().is_empty());
+    let tool = &scene.tools[0];
+    assert_eq!((tool.along, tool.axis, tool.drive), ([0.0, 0.0, -1.0], None, Drive::Closure(0.007)));
+    assert_eq!(tool.penalty, 5e8);
+    assert_eq!(tool.friction, Some(Friction { coefficient: 0.15, stick: 1e11 }));
+    assert!((tool.face_area().unwrap() - 2e-4).abs() < 1e-18);
+    let slanted = text.replace("[0, 0, -2]", "[0, 1, -2]");
+    assert_eq!(parse(&slanted, "s.toml").expect("sound").tools[0].face_area(), None);
+    // A plate looks where it goes, a roller lies along z, unless the file says otherwise.
+    let plate = |more: &str| {
+        let jaw = format!(
+            "[[tool]]\nname = \"p\"\nshape = \"plate\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
+            drive = {{ closure = \"7 mm\" }}\npenalty = \"1 kPa/mm\"\n{more}\n[procedure]\n"
+        );
+        parse(&still().replacen("[procedure]\n", &jaw, 1), "s.toml").expect("sound").tools[0].clone()
+    };
+    assert_eq!((plate("").axis, plate("").friction), (Some([0.0, 0.0, -1.0]), None));
+    assert_eq!(plate("axis = [0, 3, 0]").axis, Some([0.0, 1.0, 0.0]));
+    let steps =
+        still().replace("steps = 10", "steps = 5\ntolerance = 1e-6\niterations = 12\naugmentations = 2");
+    let newton = Newton { tolerance: 1e-6, iterations: 12, augmentations: 2 };
+    let procedure = parse(&steps, "s.toml").expect("sound").procedure;
+    assert_eq!(procedure, Procedure { kind: ProcedureKind::Static, steps: 5, duration: None, newton });
+}
+
+#[test]
+fn contradictions_of_a_static_scene_name_their_key() {
+    let with_jaw = still().replacen("[procedure]\n", &format!("{JAW}[procedure]\n"), 1);
+    let tet4 = "dilation = \"nodal-mean\"";
+    for (from, to, key, said) in [
+        ("penalty = \"0.5 MPa/mm\"\n", "", "tool[0].penalty", "is missing; add a pressure per length"),
+        (
+            "penalty = \"0.5 MPa/mm\"",
+            "penalty = \"0.5 MPa\"",
+            "tool[0].penalty",
+            "is a pressure, where a pressure per length",
+        ),
+        ("penalty = \"0.5 MPa/mm\"", "penalty = 5e8", "tool[0].penalty", "has no unit"),
+        ("stick = \"100 N/mm^3\"\n", "", "tool[0].stick", "is missing; friction needs"),
+        ("friction = 0.15\n", "", "tool[0].stick", "goes with friction only"),
+        ("friction = 0.15", "friction = -1", "tool[0].friction", "is negative"),
+        (
+            "friction = 0.15",
+            "friction = 0.15\naxis = [0, 0, 1]",
+            "tool[0].axis",
+            "does not belong to this shape",
+        ),
+        ("[0, 0, -2]", "[0, 0, 0]", "tool[0].along", "has no direction"),
+        ("closure = \"7 mm\" }", "force = \"-1 N\" }", "tool[0].drive.force", "is not positive"),
+        (
+            "closure = \"7 mm\" }",
+            "closure = \"7 mm\", over = \"1 s\" }",
+            "tool[0].drive.over",
+            "is the time of a ramp",
+        ),
+        (
+            "[0, 0, -2]\ndrive = { closure = \"7 mm\" }",
+            "[0, 1, -2]\ndrive = { pressure = \"1 kPa\" }",
+            "tool[0].drive.pressure",
+            "has no face to act on",
+        ),
+        (
+            "kind = \"static\"",
+            "kind = \"linear\"",
+            "tool[0]",
+            "'upper jaw' touches the body, but the procedure is linear",
+        ),
+        (
+            tet4,
+            "dilation = \"mixed\"",
+            "method[0].dilation",
+            "'mixed' has no stable pressure field with tet4",
+        ),
+        ("steps = 10", "steps = 10\ntolerance = 1", "procedure.tolerance", "is no tolerance"),
+        ("steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"),
+        ("steps = 10", "steps = 10\nduration = \"1 s\"", "procedure.duration", "has nothing to last"),
+        (
+            "poisson = 0.45\n",
+            "poisson = 0.45\nprony = [{ g = 0.3, tau = \"1 s\" }]\n",
+            "material.prony",
+            "relaxes over time, which a static procedure has not",
+        ),
+        (
+            "poisson = 0.45\n",
+            "poisson = 0.45\nprony = [{ g = 1.3, tau = \"1 s\" }]\n",
+            "material.prony",
+            "relaxes everything",
+        ),
+        ("poisson = 0.45\n", "poisson = 0.45\nc10 = \"1 kPa\"\n", "material.c10", "is not a known key"),
+    ] {
+        assert!(with_jaw.contains(from), "{from}");
+        let text = with_jaw.replacen(from, to, 1);
+        let errors = parse(&text, "s.toml").expect_err(to);
+        let found = errors.iter().find(|e| e.key == key).unwrap_or_else(|| panic!("{key}: {errors:?}"));
+        assert!(found.to_string().contains(said), "{found}");
+    }
+    let large = SCENE.replacen("law = \"linear\"", "law = \"hencky\"", 1);
+    let errors = parse(&large, "s.toml").expect_err("linear");
+    assert!(errors.len() == 1 && errors[0].key == "material.law", "{errors:?}");
+    assert!(errors[0].to_string().contains("'hencky' is a law of large strain, but the procedure is linear"));
 }
 
 #[test]
@@ -227,10 +376,12 @@ fn all_shapes_and_laws_are_read() {
     }
     for law in [
         "law = \"saint-venant-kirchhoff\"\nyoung = \"1 kPa\"\npoisson = 0.3",
+        "law = \"neo-hookean-isochoric\"\nyoung = \"1 kPa\"\npoisson = 0.3",
+        "law = \"mooney-rivlin\"\nyoung = \"1 kPa\"\npoisson = 0.3\nshare = 0.2",
         "law = \"mooney-rivlin\"\nc10 = \"1 kPa\"\nc01 = \"1 kPa\"\nbulk = \"1 MPa\"",
         "law = \"ogden\"\nmu = [\"1 kPa\", \"2 kPa\"]\nalpha = [2, -2]\nbulk = \"1 MPa\"",
     ] {
-        let text = edited("law = \"linear\"\nyoung = \"20 kPa\"\npoisson = 0.45", law);
+        let text = still().replace("law = \"linear\"\nyoung = \"20 kPa\"\npoisson = 0.45", law);
         let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
         assert!(law.contains(&format!("\"{}\"", scene.material.name())));
     }

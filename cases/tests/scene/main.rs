@@ -36,7 +36,7 @@ traction = ["0 Pa", "1 kPa", { unit = "kPa", of = "x" }]
 [[load]]
 body = ["0 N/m^3", "0 N/m^3", "-9810 N/m^3"]
 [procedure]
-kind = "static"
+kind = "linear"
 steps = 10
 [[method]]
 id = "tet4"

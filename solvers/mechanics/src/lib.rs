@@ -19,6 +19,7 @@ mod constraint;
 mod contact;
 mod dilation;
 mod error;
+mod explicit;
 mod linear_solver;
 mod load;
 mod material;
@@ -39,6 +40,11 @@ pub use contact::{
     PointContact, Slip, Tool, ToolShape,
 };
 pub use error::SolveError;
+pub use explicit::{
+    Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
+    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, RelaxationInfo, RelaxationParams,
+    StaticLoad, critical_step, locality_order, lumped_mass, relax,
+};
 pub use linear_solver::SolverPath;
 pub use load::Load;
 pub use material::{

@@ -7,7 +7,7 @@ use super::Names;
 use crate::scene::expression::Expression;
 use crate::scene::region::Region;
 use crate::scene::tool::ToolShapeName;
-use crate::scene::units::{BodyForce, Dim, Force, Length, Pressure, Q, Time, Unit};
+use crate::scene::units::{BodyForce, ContactSlope, Dim, Force, Length, Pressure, Q, Time, Unit};
 
 /// The word "exact": values from the solution that `[reference]` names
 #[derive(Deserialize, JsonSchema)]
@@ -115,17 +115,24 @@ pub(crate) struct ToolKeys {
     pub at: [Q<Length>; 3],
     /// Direction of motion
     pub along: [f64; 3],
+    /// Axis of a cylinder or capsule (along z unless given); outward normal of a plate's face (its direction of motion unless given)
+    pub axis: Option<[f64; 3]>,
     pub drive: DriveKeys,
+    /// Normal pressure per penetration
+    pub penalty: Q<ContactSlope>,
+    /// Coulomb coefficient
     pub friction: Option<f64>,
+    /// Tangential traction per elastic slip, with friction
+    pub stick: Option<Q<ContactSlope>>,
 }
 
-/// How a tool is driven
+/// How a tool is driven: one of closure, force along its way, and mean pressure on its face
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DriveKeys {
     pub closure: Option<Q<Length>>,
     pub force: Option<Q<Force>>,
     pub pressure: Option<Q<Pressure>>,
-    /// Time of the ramp
+    /// Time of the ramp (dynamics)
     pub over: Option<Q<Time>>,
 }

@@ -12,8 +12,8 @@ pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
 
+use super::procedure::ProcedureKind;
 use super::region::Region;
-use super::tool::ProcedureKind;
 use super::units::{Density, Length, Pressure, Q, Time, Unit};
 
 /// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
@@ -69,41 +69,62 @@ pub(crate) enum BodyKeys {
 
 /// A material law and its constants
 #[derive(Deserialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "law", rename_all = "kebab-case")]
 pub(crate) enum MaterialKeys {
     /// Isotropic linear elasticity at small strain
-    Linear {
-        young: Q<Pressure>,
-        poisson: f64,
-        density: Option<Q<Density>>,
-    },
-    SaintVenantKirchhoff {
-        young: Q<Pressure>,
-        poisson: f64,
-        density: Option<Q<Density>>,
-    },
-    NeoHookean {
-        young: Q<Pressure>,
-        poisson: f64,
-        density: Option<Q<Density>>,
-    },
-    Hencky {
-        young: Q<Pressure>,
-        poisson: f64,
-        density: Option<Q<Density>>,
-    },
-    MooneyRivlin {
-        c10: Q<Pressure>,
-        c01: Q<Pressure>,
-        bulk: Q<Pressure>,
-        density: Option<Q<Density>>,
-    },
-    Ogden {
-        mu: Vec<Q<Pressure>>,
-        alpha: Vec<f64>,
-        bulk: Q<Pressure>,
-        density: Option<Q<Density>>,
-    },
+    Linear(ElasticKeys),
+    SaintVenantKirchhoff(ElasticKeys),
+    NeoHookean(ElasticKeys),
+    /// As Abaqus and CalculiX have it: C10 (I1bar - 3) + (J - 1)^2 / D1
+    NeoHookeanIsochoric(ElasticKeys),
+    Hencky(ElasticKeys),
+    MooneyRivlin(MooneyRivlinKeys),
+    Ogden(OgdenKeys),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ElasticKeys {
+    pub young: Q<Pressure>,
+    pub poisson: f64,
+    pub density: Option<Q<Density>>,
+    #[serde(default)]
+    pub prony: Vec<PronyKeys>,
+}
+
+/// Constants c10, c01 and bulk, or young, poisson and share
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MooneyRivlinKeys {
+    pub c10: Option<Q<Pressure>>,
+    pub c01: Option<Q<Pressure>>,
+    pub bulk: Option<Q<Pressure>>,
+    pub young: Option<Q<Pressure>>,
+    pub poisson: Option<f64>,
+    /// Of the second constant: c01 / (c10 + c01)
+    pub share: Option<f64>,
+    pub density: Option<Q<Density>>,
+    #[serde(default)]
+    pub prony: Vec<PronyKeys>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OgdenKeys {
+    pub mu: Vec<Q<Pressure>>,
+    pub alpha: Vec<f64>,
+    pub bulk: Q<Pressure>,
+    pub density: Option<Q<Density>>,
+    #[serde(default)]
+    pub prony: Vec<PronyKeys>,
+}
+
+/// A share of the shear response that relaxes, and its time
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PronyKeys {
+    pub g: f64,
+    pub tau: Q<Time>,
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -129,8 +150,14 @@ pub(crate) enum Names {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ProcedureKeys {
     pub kind: ProcedureKind,
-    /// Load steps
+    /// Load steps at whose ends results are told; 1 unless given
     pub steps: Option<u32>,
+    /// Relative residual of a static step; 1e-8 unless given
+    pub tolerance: Option<f64>,
+    /// Most iterations of a static step; 25 unless given
+    pub iterations: Option<u32>,
+    /// Uzawa iterations of contact per static step; 0 (a plain penalty) unless given
+    pub augmentations: Option<u32>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
 }

@@ -1,4 +1,4 @@
-//! Supports, loads and tools.
+//! Supports and loads.
 
 use crate::scene::error::Problem;
 use crate::scene::field::{Prescribed, ScalarField, VectorField};
@@ -6,10 +6,9 @@ use crate::scene::keys::*;
 use crate::scene::model::{Load, LoadKind, Place, Support};
 use crate::scene::region::Region;
 use crate::scene::report::Report;
-use crate::scene::tool::{Drive, Tool, ToolShape, ToolShapeName};
 use crate::scene::units::Dim;
 
-use super::{MILLIMETRE, mesh_file, names, positive, raw};
+use super::names;
 
 pub(super) fn place(
     on: Option<Names>,
@@ -137,80 +136,4 @@ pub(super) fn load(keys: LoadKeys, index: usize, report: &mut Report) -> Option<
         report.add(&format!("{key}.{stray}"), problem);
     }
     Some(Load { place, kind })
-}
-
-pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<Tool> {
-    let key = format!("tool[{index}]");
-    let need = |value: Option<f64>, name: &str, report: &mut Report| {
-        if value.is_none() {
-            report.missing(&format!("{key}.{name}"), "this shape needs it");
-        }
-        value
-    };
-    let positive =
-        |value: f64, name: &str, report: &mut Report| positive(value, &format!("{key}.{name}"), report);
-    let radius = keys.radius.map(|q| positive(q.0, "radius", report));
-    let length = keys.length.map(|q| positive(q.0, "length", report));
-    let shape = match keys.shape {
-        ToolShapeName::Plate => ToolShape::Plate,
-        ToolShapeName::RoundedBox => match keys.half {
-            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: need(radius, "radius", report)? },
-            None => {
-                report.missing(&format!("{key}.half"), "a rounded-box needs its half extents");
-                return None;
-            }
-        },
-        ToolShapeName::Sphere => ToolShape::Sphere { radius: need(radius, "radius", report)? },
-        ToolShapeName::Cylinder => ToolShape::Cylinder {
-            radius: need(radius, "radius", report)?,
-            length: need(length, "length", report)?,
-        },
-        ToolShapeName::Capsule => ToolShape::Capsule {
-            radius: need(radius, "radius", report)?,
-            length: need(length, "length", report)?,
-        },
-        ToolShapeName::File => match keys.path {
-            Some(path) => {
-                let unit = keys.unit.map_or(MILLIMETRE, |u| u.0);
-                ToolShape::File(mesh_file(&path, unit, &format!("{key}.path"), report))
-            }
-            None => {
-                report.missing(&format!("{key}.path"), "name the mesh file");
-                return None;
-            }
-        },
-    };
-    let drive = match (keys.drive.closure, keys.drive.force, keys.drive.pressure) {
-        (Some(q), None, None) => Drive::Closure(q.0),
-        (None, Some(q), None) => Drive::Force(q.0),
-        (None, None, Some(q)) => Drive::Pressure(q.0),
-        _ => {
-            let help = "give one of closure, force and pressure";
-            report.add(&format!("{key}.drive"), Problem::new("is not one drive").help(help));
-            return None;
-        }
-    };
-    let norm = keys.along.iter().map(|a| a * a).sum::<f64>().sqrt();
-    report.require(
-        norm > 0.0,
-        &format!("{key}.along"),
-        "has no direction",
-        "give a direction such as [0, 0, -1]",
-    );
-    let friction = keys.friction.unwrap_or(0.0);
-    report.require(
-        friction >= 0.0,
-        &format!("{key}.friction"),
-        "is negative",
-        "give a coefficient of 0 or more",
-    );
-    Some(Tool {
-        name: keys.name,
-        shape,
-        at: raw(keys.at),
-        along: keys.along.map(|a| a / norm),
-        drive,
-        over: keys.drive.over.map(|q| q.0),
-        friction,
-    })
 }

@@ -1,20 +1,24 @@
 //! From the keys of a file to the types the program works with; every finding is noted at its key.
 
 mod condition;
+mod material;
 mod method;
 mod output;
+mod tool;
 
 use super::error::Problem;
-use super::keys::{BodyKeys, MaterialKeys, Names, ProcedureKeys, SceneKeys};
+use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
-use super::model::{Body, Elastic, Material, MaterialRegion, Scene};
+use super::model::{Body, MaterialRegion, Scene};
+use super::procedure::{Newton, Procedure, ProcedureKind};
 use super::report::Report;
-use super::tool::{Procedure, ProcedureKind};
 use super::units::{Dim, Q};
-use condition::{load, place, support, tool};
+use condition::{load, place, support};
+use material::material;
 use method::method;
 pub(crate) use output::checks;
 use output::{output, reference};
+use tool::tool;
 
 /// Unit of a mesh file's numbers unless the scene gives another: what CAD programs and Gmsh models of organs are in.
 const MILLIMETRE: f64 = 1e-3;
@@ -22,12 +26,12 @@ const MILLIMETRE: f64 = 1e-3;
 /// `None` only together with findings.
 pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let body = body(keys.body, report);
-    let material = material(keys.material, "material", report);
+    let (material, prony) = material(keys.material, "material", report);
     let regions = keys.region.into_iter().enumerate().map(|(i, r)| {
         let key = format!("region[{i}]");
         let place = place(r.on, r.place, &key, report, true);
-        let material = self::material(r.material, &format!("{key}.material"), report);
-        MaterialRegion { name: r.name, place, material }
+        let (material, prony) = self::material(r.material, &format!("{key}.material"), report);
+        MaterialRegion { name: r.name, place, material, prony }
     });
     let regions = regions.collect();
     let supports = keys.support.into_iter().enumerate().map(|(i, s)| support(s, i, report)).collect();
@@ -45,6 +49,7 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
         source: keys.source,
         body: body?,
         material,
+        prony,
         regions,
         supports,
         loads,
@@ -125,59 +130,31 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
     })
 }
 
-fn elastic(young: f64, poisson: f64, density: Option<f64>, key: &str, report: &mut Report) -> Elastic {
-    report.require(young > 0.0, &format!("{key}.young"), "is not positive", "soft tissue has 1 to 100 kPa");
-    let help = "give a ratio above -1 and below 0.5; for nearly incompressible tissue 0.49 to 0.4999";
-    let holds = poisson > -1.0 && poisson < 0.5;
-    report.require(
-        holds,
-        &format!("{key}.poisson"),
-        "is not a Poisson's ratio of a compressible solid",
-        help,
-    );
-    if let Some(density) = density {
-        positive(density, &format!("{key}.density"), report);
-    }
-    Elastic { young, poisson, density }
-}
-
-fn material(keys: MaterialKeys, key: &str, report: &mut Report) -> Material {
-    type E = MaterialKeys;
-    match keys {
-        E::Linear { young, poisson, density } => {
-            Material::Linear(elastic(young.0, poisson, density.map(|d| d.0), key, report))
-        }
-        E::SaintVenantKirchhoff { young, poisson, density } => {
-            Material::SaintVenantKirchhoff(elastic(young.0, poisson, density.map(|d| d.0), key, report))
-        }
-        E::NeoHookean { young, poisson, density } => {
-            Material::NeoHookean(elastic(young.0, poisson, density.map(|d| d.0), key, report))
-        }
-        E::Hencky { young, poisson, density } => {
-            Material::Hencky(elastic(young.0, poisson, density.map(|d| d.0), key, report))
-        }
-        E::MooneyRivlin { c10, c01, bulk, density } => Material::MooneyRivlin {
-            c10: c10.0,
-            c01: c01.0,
-            bulk: positive(bulk.0, &format!("{key}.bulk"), report),
-            density: density.map(|d| positive(d.0, &format!("{key}.density"), report)),
-        },
-        E::Ogden { mu, alpha, bulk, density } => {
-            let holds = mu.len() == alpha.len() && !mu.is_empty();
-            report.require(holds, &format!("{key}.alpha"), "does not match mu", "give one alpha for each mu");
-            Material::Ogden {
-                terms: mu.iter().map(|m| m.0).zip(alpha).collect(),
-                bulk: positive(bulk.0, &format!("{key}.bulk"), report),
-                density: density.map(|d| positive(d.0, &format!("{key}.density"), report)),
-            }
-        }
-    }
-}
-
 fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
-    let Some(keys) = keys else { return Procedure { kind: ProcedureKind::Linear, steps: 1, duration: None } };
+    let newton = Newton::STANDARD;
+    let Some(keys) = keys else {
+        return Procedure { kind: ProcedureKind::Linear, steps: 1, duration: None, newton };
+    };
     let steps = keys.steps.unwrap_or(1);
     report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
     let duration = keys.duration.map(|q| positive(q.0, "procedure.duration", report));
-    Procedure { kind: keys.kind, steps: steps as usize, duration }
+    let tolerance = keys.tolerance.unwrap_or(newton.tolerance);
+    // Rounding leaves about 1e-13 of the forces of a nearly incompressible body.
+    let sound = (1e-12..=1e-2).contains(&tolerance);
+    report.require(sound, "procedure.tolerance", "is no tolerance", "give 1e-12 to 1e-2; 1e-8 is usual");
+    let iterations = keys.iterations.map_or(newton.iterations, |n| n as usize);
+    report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
+    let augmentations = keys.augmentations.map_or(newton.augmentations, |n| n as usize);
+    let given = [
+        ("tolerance", keys.tolerance.is_some()),
+        ("iterations", keys.iterations.is_some()),
+        ("augmentations", keys.augmentations.is_some()),
+    ];
+    for (name, _) in given.into_iter().filter(|(_, given)| *given && keys.kind != ProcedureKind::Static) {
+        let help = format!("a {} procedure takes none: leave it out", keys.kind.name());
+        let problem = Problem::new("goes with kind = \"static\" only").help(help);
+        report.add(&format!("procedure.{name}"), problem);
+    }
+    let newton = Newton { tolerance, iterations, augmentations };
+    Procedure { kind: keys.kind, steps: steps as usize, duration, newton }
 }

@@ -1,6 +1,7 @@
 //! What contact keeps between converged steps: elastic slip for friction, multipliers for the augmented Lagrangian.
 
-use super::{Contacts, Slip, Tool};
+use super::{ContactSurface, Contacts, Slip, Tool};
+use crate::Vector3;
 
 /// History of all points of a surface against one tool. Evaluating contact never changes it: during the iterations of
 /// a step every trial state starts from the last committed one.
@@ -51,6 +52,28 @@ impl ContactHistory {
     /// Largest multiplier, Pa.
     pub(super) fn largest_multiplier(&self) -> f64 {
         self.largest
+    }
+
+    /// As [`ContactHistory::commit`], and the place of every point that does not touch is kept too, so that one which
+    /// touches in the next step has friction from its touch on. For large steps: it looks at every point.
+    pub fn commit_all(
+        &mut self,
+        contacts: Option<&Contacts>,
+        surface: &ContactSurface,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+    ) {
+        self.commit(contacts);
+        let touching = contacts.map_or(&[][..], |c| c.points());
+        for (q, slip) in self.slip.iter_mut().enumerate() {
+            if touching.binary_search(&(q as u32)).is_err() {
+                let at = tool.local(closure, &surface.position(q, u));
+                // A point that would touch were it not for its multiplier has no way left to its touch.
+                *slip = Slip::at(&at, tool.shape().foot(&at).0.max(0.0));
+                self.stuck.push(q as u32);
+            }
+        }
     }
 
     /// After a converged step: the slip of the points that touch is kept, all others forget theirs. `None` when the

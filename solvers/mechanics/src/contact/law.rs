@@ -12,8 +12,9 @@
 //!
 //! Positions are those in the tool's frame, so a tool that moves drags the tissue. Projecting `e_n` on the present
 //! tangent plane can only shorten it: on a curved tool the spring never gains energy. A point that comes into contact
-//! starts without elastic slip where the step that finds it touching ends (its friction lags by that one step);
-//! a point that leaves forgets.
+//! has `e_n = 0` and only the part `g / (g - g_n)` of its motion since the last commit, that after the touch, counts;
+//! `g_n > 0` is the gap it had then. Without that part friction lags by one step, and a step that lets many points
+//! touch at once slides away sideways. A point whose last place is not known starts where it is found.
 //! Source: Wriggers, Computational Contact Mechanics (2006), ch. 5 and 6; Simo & Laursen (1992).
 
 use super::ContactError;
@@ -79,6 +80,8 @@ impl ContactLaw {
             traction: normal * pressure,
             slip: Slip::NONE,
             drift: Vector3::zeros(),
+            after: 0.0,
+            speed: Vector3::zeros(),
             state: State::Free,
             dissipated: 0.0,
         };
@@ -86,10 +89,20 @@ impl ContactLaw {
             return Some(response);
         }
         let Some(last) = history.0 else {
-            response.slip = Slip(Some(Stick { stretch: Vector3::zeros(), at: *at }));
+            response.slip = Slip::at(at, 0.0);
             return Some(response);
         };
-        let drift = last.stretch + at - last.at;
+        let motion = at - last.at;
+        // The part of the way after the touch; a multiplier may hold a point that is still outside: none of it.
+        let (after, by_gap) = if last.gap > 0.0 && gap < 0.0 {
+            let whole = last.gap - gap;
+            (-gap / whole, -last.gap / (whole * whole))
+        } else {
+            (if last.gap > 0.0 { 0.0 } else { 1.0 }, 0.0)
+        };
+        let drift = last.stretch + motion * after;
+        response.after = after;
+        response.speed = motion * by_gap;
         let trial = drift - normal * normal.dot(&drift);
         let (length, limit) = (trial.norm(), self.friction * pressure);
         let mut stretch = trial;
@@ -101,7 +114,7 @@ impl ContactLaw {
             response.dissipated = limit * (length - limit / self.stick);
         }
         response.traction -= stretch * self.stick;
-        response.slip = Slip(Some(Stick { stretch, at: *at }));
+        response.slip = Slip(Some(Stick { stretch, at: *at, gap: 0.0 }));
         Some(response)
     }
 
@@ -109,19 +122,20 @@ impl ContactLaw {
     ///
     /// ```text
     /// normal  -k_n n n^T + p H
-    /// stick   -k_t A,    A = de*/dx = (I - n n^T) - (n . v) H - n (H v)^T,   v = e_n + x - x_n
+    /// stick   -k_t A,    A = de*/dx = (I - n n^T) V - (n . v) H - n (H v)^T
+    ///                    v = e_n + c (x - x_n),  V = dv/dx = c I + (x - x_n) (dc/dg n)^T
     /// slip    mu k_n s n^T - (mu p / |e*|) (I - s s^T) A,                    s = e* / |e*|
     /// ```
     ///
-    /// The slip part is not symmetric. As `x` is relative to the tool, the derivative by the tool's own displacement
+    /// with `c = 1`, or the part of the motion after the touch. The slip part is not symmetric. As `x` is relative to the tool, the derivative by the tool's own displacement
     /// `d` is `dt/dd = -dt/dx`, history included: for a tool that closes along `a`, `dt/dclosure = -(dt/dx) a`.
     #[inline]
     pub(super) fn tangent(&self, response: &Response, normal: &Vector3, hessian: &Matrix3) -> Matrix3 {
         let mut tangent = hessian * response.pressure - normal * normal.transpose() * self.penalty;
         let trial_slope = || {
             let v = &response.drift;
-            Matrix3::identity()
-                - normal * normal.transpose()
+            let across = Matrix3::identity() - normal * normal.transpose();
+            across * response.after + (across * response.speed) * normal.transpose()
                 - hessian * normal.dot(v)
                 - normal * (hessian * v).transpose()
         };
@@ -154,11 +168,18 @@ struct Stick {
     stretch: Vector3,
     /// Where the point was, m.
     at: Vector3,
+    /// Gap it had, m; 0 if it touched.
+    gap: f64,
 }
 
 impl Slip {
-    /// A point not in contact.
+    /// A point of which nothing is known.
     pub const NONE: Slip = Slip(None);
+
+    /// A point without elastic slip at `at` (tool's frame, m) with `gap` (m, 0 if it touches).
+    pub(super) fn at(at: &Vector3, gap: f64) -> Slip {
+        Slip(Some(Stick { stretch: Vector3::zeros(), at: *at, gap }))
+    }
 
     /// Elastic slip `e` (m) in the tool's frame, `t_t = -k_t e`; zero for a point not in contact.
     pub fn stretch(&self) -> Vector3 {
@@ -177,8 +198,12 @@ pub(super) struct Response {
     pub slip: Slip,
     /// Frictional work since the last commit, J/m^2: `mu p (|e*| - mu p / k_t)` in slip.
     pub dissipated: f64,
-    /// `v = e_n + x - x_n`, m.
+    /// `v = e_n + c (x - x_n)`, m.
     drift: Vector3,
+    /// `c`: part of the motion that friction sees.
+    after: f64,
+    /// `(x - x_n) dc/dg`.
+    speed: Vector3,
     state: State,
 }
 

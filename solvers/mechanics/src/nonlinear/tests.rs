@@ -157,7 +157,13 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
             let size: f64 = total.iter().zip(&direction).map(|(f, d)| (f * d).abs()).sum();
             assert!((slope - work).abs() < 1e-7 * size, "{name}: {slope} {work}");
             let mut product = vec![0.0; n];
-            matrix.subtract_product(&direction, &mut product);
+            // The matrix is that of scaled pressures.
+            let unscaled =
+                |x: &mut [f64]| x[3 * nodes..].iter_mut().for_each(|p| *p /= system.pressure_scale);
+            let mut scaled = direction.clone();
+            unscaled(&mut scaled);
+            matrix.subtract_product(&scaled, &mut product);
+            unscaled(&mut product);
             for part in [0..3 * nodes, 3 * nodes..n] {
                 let norm = |x: &dyn Fn(usize) -> f64| part.clone().map(|k| x(k).powi(2)).sum::<f64>().sqrt();
                 let error = norm(&|k| (up.1[k] - down.1[k]) / (2.0 * h) + product[k]);

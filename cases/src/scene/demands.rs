@@ -1,0 +1,96 @@
+//! What a procedure and the other parts of a scene demand of each other.
+
+use super::error::Problem;
+use super::field::VectorField;
+use super::method::{Dilation, Element, Family};
+use super::model::{LoadKind, Material, Relaxation, Scene};
+use super::output::Reference;
+use super::procedure::ProcedureKind;
+use super::report::Report;
+use super::tool::Drive;
+
+/// Notes every contradiction.
+pub(crate) fn scene(scene: &Scene, report: &mut Report) {
+    laws(scene, report);
+    tools(scene, report);
+    mixed(scene, report);
+    if scene.procedure.duration.is_some() && timeless(scene) {
+        let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
+        report.add("procedure.duration", Problem::new("has nothing to last").help(help));
+    }
+}
+
+fn timeless(scene: &Scene) -> bool {
+    matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static)
+}
+
+/// Every material with its key.
+fn materials(scene: &Scene) -> Vec<(String, &Material, &[Relaxation])> {
+    let regions = scene.regions.iter().enumerate();
+    std::iter::once(("material".to_string(), &scene.material, scene.prony.as_slice()))
+        .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, r.prony.as_slice())))
+        .collect()
+}
+
+fn laws(scene: &Scene, report: &mut Report) {
+    let materials = materials(scene);
+    let linear = |material: &Material| matches!(material, Material::Linear(_));
+    for (key, material, prony) in &materials {
+        if scene.procedure.kind == ProcedureKind::Linear && !linear(material) {
+            let problem = Problem::new("is a law of large strain, but the procedure is linear");
+            let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";
+            report.add(&format!("{key}.law"), problem.found(material.name()).help(help));
+        }
+        if !prony.is_empty() && timeless(scene) {
+            let problem =
+                format!("relaxes over time, which a {} procedure has not", scene.procedure.kind.name());
+            let help = "leave it out: young and poisson are then the moduli of the load's own duration";
+            report.add(&format!("{key}.prony"), Problem::new(problem).help(help));
+        }
+    }
+    let Some((_, large, _)) = materials.iter().find(|m| !linear(m.1)) else { return };
+    let Some(Reference::Exact { name, .. }) = &scene.reference else { return };
+    for (i, load) in scene.loads.iter().enumerate() {
+        if let LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact) = load.kind {
+            let problem =
+                format!("takes the load of {name}, a solution at small strain, for the {} law", large.name());
+            report.add(&format!("load[{i}]"), Problem::new(problem).help("take law = \"linear\""));
+        }
+    }
+}
+
+fn tools(scene: &Scene, report: &mut Report) {
+    for (i, tool) in scene.tools.iter().enumerate() {
+        let at = |name: &str| format!("tool[{i}].{name}");
+        if scene.procedure.kind == ProcedureKind::Linear {
+            let problem =
+                Problem::new(format!("'{}' touches the body, but the procedure is linear", tool.name));
+            let help = "contact is not linear: add [procedure] kind = \"static\" and steps = 10";
+            report.add(&format!("tool[{i}]"), problem.help(help));
+        }
+        if scene.tools[..i].iter().any(|other| other.name == tool.name) {
+            report.add(&at("name"), Problem::new("is the name of another tool").help("names are unique"));
+        }
+        if tool.over.is_some() && timeless(scene) {
+            let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
+            report.add(&at("drive.over"), Problem::new("is the time of a ramp").help(help));
+        }
+        if matches!(tool.drive, Drive::Pressure(_)) && tool.face_area().is_none() {
+            let help =
+                "only a rounded-box that closes along x, y or z has a face of a known area; give force";
+            report.add(&at("drive.pressure"), Problem::new("has no face to act on").help(help));
+        }
+    }
+}
+
+/// A pressure field of its own, linear between the corners, is stable with elements of second order only.
+fn mixed(scene: &Scene, report: &mut Report) {
+    for (i, method) in scene.methods.iter().enumerate() {
+        let Family::Fem(fem) = &method.family else { continue };
+        if fem.dilation == Dilation::Mixed && matches!(fem.element, Element::Tet4 | Element::Hex8) {
+            let problem = format!("has no stable pressure field with {}", fem.element.name());
+            let help = "take tet10 or hex20, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)";
+            report.add(&format!("method[{i}].dilation"), Problem::new(problem).found("mixed").help(help));
+        }
+    }
+}

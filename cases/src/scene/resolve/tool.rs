@@ -1,0 +1,120 @@
+//! Tools.
+
+use crate::scene::error::Problem;
+use crate::scene::keys::ToolKeys;
+use crate::scene::report::Report;
+use crate::scene::tool::{Drive, Friction, Tool, ToolShape, ToolShapeName};
+
+use super::{MILLIMETRE, mesh_file, positive, raw};
+
+pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<Tool> {
+    let key = format!("tool[{index}]");
+    let need = |value: Option<f64>, name: &str, report: &mut Report| {
+        if value.is_none() {
+            report.missing(&format!("{key}.{name}"), "this shape needs it");
+        }
+        value
+    };
+    let positive =
+        |value: f64, name: &str, report: &mut Report| positive(value, &format!("{key}.{name}"), report);
+    let radius = keys.radius.map(|q| positive(q.0, "radius", report));
+    let length = keys.length.map(|q| positive(q.0, "length", report));
+    let shape = match keys.shape {
+        ToolShapeName::Plate => ToolShape::Plate,
+        ToolShapeName::RoundedBox => match keys.half {
+            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: need(radius, "radius", report)? },
+            None => {
+                report.missing(&format!("{key}.half"), "a rounded-box needs its half extents");
+                return None;
+            }
+        },
+        ToolShapeName::Sphere => ToolShape::Sphere { radius: need(radius, "radius", report)? },
+        ToolShapeName::Cylinder => ToolShape::Cylinder {
+            radius: need(radius, "radius", report)?,
+            length: need(length, "length", report)?,
+        },
+        ToolShapeName::Capsule => ToolShape::Capsule {
+            radius: need(radius, "radius", report)?,
+            length: need(length, "length", report)?,
+        },
+        ToolShapeName::File => match keys.path {
+            Some(path) => {
+                let unit = keys.unit.map_or(MILLIMETRE, |u| u.0);
+                ToolShape::File(mesh_file(&path, unit, &format!("{key}.path"), report))
+            }
+            None => {
+                report.missing(&format!("{key}.path"), "name the mesh file");
+                return None;
+            }
+        },
+    };
+    let drive = match (keys.drive.closure, keys.drive.force, keys.drive.pressure) {
+        (Some(q), None, None) => Drive::Closure(q.0),
+        (None, Some(q), None) => Drive::Force(positive(q.0, "drive.force", report)),
+        (None, None, Some(q)) => Drive::Pressure(positive(q.0, "drive.pressure", report)),
+        _ => {
+            let help = "give one of closure, force and pressure";
+            report.add(&format!("{key}.drive"), Problem::new("is not one drive").help(help));
+            return None;
+        }
+    };
+    let along = unit(keys.along, &format!("{key}.along"), report)?;
+    let given = keys.axis.map(|axis| unit(axis, &format!("{key}.axis"), report));
+    let axis = match keys.shape {
+        ToolShapeName::Plate => Some(given.unwrap_or(Some(along))?),
+        ToolShapeName::Cylinder | ToolShapeName::Capsule => Some(given.unwrap_or(Some([0.0, 0.0, 1.0]))?),
+        ToolShapeName::RoundedBox | ToolShapeName::Sphere | ToolShapeName::File => {
+            let help = "a box stands along the axes of the scene; leave it out";
+            report.require(given.is_none(), &format!("{key}.axis"), "does not belong to this shape", help);
+            None
+        }
+    };
+    let penalty = self::positive(keys.penalty.0, &format!("{key}.penalty"), report);
+    let friction = friction(keys.friction, keys.stick.map(|q| q.0), &key, report);
+    Some(Tool {
+        name: keys.name,
+        shape,
+        at: raw(keys.at),
+        along,
+        axis,
+        drive,
+        over: keys.drive.over.map(|q| q.0),
+        penalty,
+        friction,
+    })
+}
+
+fn friction(
+    coefficient: Option<f64>,
+    stick: Option<f64>,
+    key: &str,
+    report: &mut Report,
+) -> Option<Friction> {
+    let at = |name: &str| format!("{key}.{name}");
+    let coefficient = coefficient.unwrap_or(0.0);
+    report.require(coefficient >= 0.0, &at("friction"), "is negative", "give a coefficient of 0 or more");
+    let stick = stick.map(|stick| positive(stick, &at("stick"), report));
+    match (coefficient > 0.0, stick) {
+        (true, Some(stick)) => Some(Friction { coefficient, stick }),
+        (true, None) => {
+            let help =
+                "friction needs the slope of the traction while the surfaces stick: stick = \"0.1 MPa/mm\"";
+            report.missing(&at("stick"), help);
+            None
+        }
+        (false, Some(_)) => {
+            let problem =
+                Problem::new("goes with friction only").help("leave it out, or give friction = 0.15");
+            report.add(&at("stick"), problem);
+            None
+        }
+        (false, None) => None,
+    }
+}
+
+/// A direction as a unit vector.
+fn unit(direction: [f64; 3], key: &str, report: &mut Report) -> Option<[f64; 3]> {
+    let norm = direction.iter().map(|a| a * a).sum::<f64>().sqrt();
+    report.require(norm > 0.0, key, "has no direction", "give a direction such as [0, 0, -1]");
+    (norm > 0.0).then(|| direction.map(|a| a / norm))
+}

@@ -1,0 +1,128 @@
+//! Internal forces: one evaluation of each kernel beside the plain loop of the same run, which is what to compare with
+//! on a machine that is not quiet. Strains near 0.1, neo-Hookean, nodes and points of a structured grid.
+//!
+//! Per element and evaluation (per point for EFG; a fused product counts two flops, `ln` and the cube root some 30):
+//!
+//! | kernel | bytes | flops | memory at 20 GB/s | arithmetic at 40 Gflop/s |
+//! |---|---|---|---|---|
+//! | tet4 | 88 (9 gradients, weight, 4 short nodes) | 190 | 4.4 ns | 4.8 ns |
+//! | tet4 nodal dilation | 176 (two passes) | 390 | 8.8 ns | 9.8 ns |
+//! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2000 | 33 ns | 50 ns |
+//! | hex8 mean dilation | 656 (second pass from cache) | 3300 | 33 ns | 83 ns |
+//! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 870 | 40 ns | 22 ns |
+//!
+//! What each kernel waits for, from its measured distance to these bounds: tet4 for the gather and scatter of 16 nodes'
+//! quads per lane pair (12 ns, 2.5 times the arithmetic); hex8 for arithmetic and the traffic of its 36 accumulators
+//! with the first-level cache (88 ns, 1.8 times; 148 out of cache); EFG for loads, eight per neighbour (63 ns in cache, 87 out of it).
+//! Not covered: quadratic elements (they take the EFG kernel), laws other than neo-Hookean and nodal dilation of EFG
+//! rows (both take the plain loop).
+
+mod common;
+
+use std::time::Duration;
+
+use criterion::{
+    BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
+};
+use geometry::CellKind;
+use geometry::generate::{Jitter, box_mesh};
+use mechanics::{ExplicitBody, InternalForce, LanePath, Law, NeoHookean, Point3, Vector3};
+use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
+
+fn compare(group: &mut BenchmarkGroup<WallTime>, body: ExplicitBody, u: &[Vector3], items: usize) {
+    let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+    let (one, two) = (threads(1), threads(2));
+    let mut f = vec![Vector3::zeros(); u.len()];
+    group.throughput(Throughput::Elements(items as u64));
+    let mut plain = InternalForce::plain(body).unwrap();
+    let mut lanes: Vec<_> =
+        LanePath::available().into_iter().map(|path| InternalForce::new(body, path).unwrap()).collect();
+    let kernel = lanes[0].kernel();
+    group.bench_function(format!("{kernel}, {items}, plain loop"), |b| {
+        one.install(|| b.iter(|| plain.evaluate(u, &mut f).unwrap()))
+    });
+    for force in &mut lanes {
+        let name = format!("{kernel}, {items}, {}, 1 thread", force.path().name());
+        group.bench_function(name, |b| one.install(|| b.iter(|| force.evaluate(u, &mut f).unwrap())));
+    }
+    let best = lanes.last_mut().unwrap();
+    let name = format!("{kernel}, {items}, {}, 2 threads", best.path().name());
+    group.bench_function(name, |b| two.install(|| b.iter(|| best.evaluate(u, &mut f).unwrap())));
+}
+
+/// Points spread over the cells of a grid, each with its (up to) 31 nearest grid nodes: the counts and the locality of
+/// a meshless cloud. The gradients are smooth nonsense of the right size.
+fn cloud(cells: usize, per_cell: usize) -> (VolumeRows, usize) {
+    let (n, h) = (cells + 1, 0.04 / cells as f64);
+    let (mut points, mut offsets, mut nodes, mut grads) = (Vec::new(), vec![0], Vec::new(), Vec::new());
+    for cell in 0..cells * cells * cells {
+        let c = [cell % cells, cell / cells % cells, cell / cells / cells];
+        for k in 0..per_cell {
+            let t = (k as f64 + 0.5) / per_cell as f64;
+            let p = Point3::new(c[0] as f64 + t, c[1] as f64 + 0.4, c[2] as f64 + 1.0 - t);
+            let around = |axis: usize| c[axis].saturating_sub(1)..(c[axis] + 3).min(n);
+            let mut near = Vec::new();
+            for z in around(2) {
+                for y in around(1) {
+                    for x in around(0) {
+                        let distance = (Point3::new(x as f64, y as f64, z as f64) - p).norm();
+                        near.push((distance, (x + n * (y + n * z)) as u32));
+                    }
+                }
+            }
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            near.truncate(31);
+            near.sort_by_key(|a| a.1);
+            for (i, (_, node)) in near.iter().enumerate() {
+                let s = i as f64;
+                nodes.push(*node);
+                grads.push(Vector3::new(s.sin(), s.cos(), (2.0 * s).sin()) / h);
+            }
+            offsets.push(nodes.len());
+            points.push(p * h);
+        }
+    }
+    let count = points.len();
+    let values = vec![0.0; nodes.len()];
+    let rows = Rows::new(n * n * n, offsets, nodes, values, Unity::NotPromised).unwrap();
+    (VolumeRows::new(GradRows::new(points, rows, grads).unwrap(), vec![1e-9; count]).unwrap(), n * n * n)
+}
+
+fn benches(c: &mut Criterion) {
+    let mut group = c.benchmark_group("explicit");
+    group.sample_size(20).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(300));
+    let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
+    for (kind, cells, per_cell) in
+        [(CellKind::Tet4, 10, 6), (CellKind::Tet4, 26, 6), (CellKind::Hex8, 18, 1), (CellKind::Hex8, 46, 1)]
+    {
+        let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
+        let max = Point3::new(0.04, 0.04, 0.04);
+        let mesh = box_mesh(kind, Point3::origin(), max, [cells; 3], [1.0; 3], jitter).unwrap();
+        let rule = fem::VolumeRule::STANDARD;
+        let volume = fem::volume_rows(&mesh, &rule).unwrap();
+        let groups = match kind {
+            CellKind::Tet4 => DilationGroups::nodal(&volume).unwrap(),
+            _ => fem::element_dilation(&mesh, &rule).unwrap(),
+        };
+        let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
+        let u: Vec<Vector3> = mesh.points().iter().map(field).collect();
+        for groups in [None, Some(&groups)] {
+            let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups };
+            compare(&mut group, body, &u, cells * cells * cells * per_cell);
+        }
+    }
+    for (cells, per_cell) in [(6, 28), (18, 18)] {
+        let (volume, nodes) = cloud(cells, per_cell);
+        // Of the order of the grid spacing times a strain of 0.01.
+        let wave = |i: usize| {
+            Vector3::new((i as f64).sin(), 0.3, (0.5 * i as f64).cos()) * (4e-4 / cells as f64 / 31.0)
+        };
+        let u: Vec<Vector3> = (0..nodes).map(wave).collect();
+        let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups: None };
+        compare(&mut group, body, &u, volume.weights().len());
+    }
+    group.finish();
+}
+
+criterion_group!(stage, benches);
+criterion_main!(stage);

@@ -1,0 +1,86 @@
+//! Lumped mass.
+
+use shape::VolumeRows;
+
+use super::ExplicitError;
+
+/// How the consistent mass matrix `M_IJ = sum_q rho w N_I N_J` is brought onto its diagonal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lumping {
+    /// Row sums, `m_I = sum_q rho w N_I`: for linear elements and moving least squares. The corners of quadratic
+    /// elements would get zero or negative mass.
+    RowSum,
+    /// Diagonal scaling of Hinton, Rock & Zienkiewicz (1976), point set by point set: the diagonal `sum_q rho w N_I^2`
+    /// scaled to the mass of the element. Always positive.
+    DiagonalScaling,
+}
+
+impl Lumping {
+    /// Diagonal scaling where some shape value is negative enough to be quadratic (rows of 10 or 20 nodes of one
+    /// length), row sums elsewhere.
+    pub fn for_table(volume: &VolumeRows) -> Lumping {
+        match volume.rows().uniform_len() {
+            Some(10 | 20) => Lumping::DiagonalScaling,
+            _ => Lumping::RowSum,
+        }
+    }
+}
+
+/// Nodal masses (kg), all positive; their sum is `sum_q rho w`. `density` (kg/m^3) by region index, `region` of every
+/// point or empty when all are of region 0.
+pub fn lumped_mass(
+    volume: &VolumeRows,
+    density: &[f64],
+    region: &[u16],
+    lumping: Lumping,
+) -> Result<Vec<f64>, ExplicitError> {
+    let rows = volume.rows();
+    if !region.is_empty() && region.len() != rows.len() {
+        return Err(ExplicitError::Length {
+            what: "region indices",
+            found: region.len(),
+            expected: rows.len(),
+        });
+    }
+    if let Some(&value) = density.iter().find(|&&rho| !(rho > 0.0 && rho.is_finite())) {
+        return Err(ExplicitError::BadParameter { what: "density", value, allowed: "positive and finite" });
+    }
+    let mut point_mass = Vec::with_capacity(rows.len());
+    for (q, &w) in volume.weights().iter().enumerate() {
+        let region = region.get(q).copied().unwrap_or(0) as usize;
+        match density.get(region) {
+            Some(rho) => point_mass.push(rho * w),
+            None => return Err(ExplicitError::NoLaw { point: q, region, laws: density.len() }),
+        }
+    }
+    let mut mass = vec![0.0; rows.node_count()];
+    match lumping {
+        Lumping::RowSum => {
+            for (q, m) in point_mass.iter().enumerate() {
+                let (nodes, values) = rows.row(q);
+                nodes.iter().zip(values).for_each(|(&node, n)| mass[node as usize] += m * n);
+            }
+        }
+        Lumping::DiagonalScaling => {
+            let mut first = 0;
+            while first < rows.len() {
+                let nodes = rows.row(first).0;
+                let end = (first..rows.len()).find(|&q| rows.row(q).0 != nodes).unwrap_or(rows.len());
+                let mut diagonal = vec![0.0; nodes.len()];
+                for q in first..end {
+                    let values = rows.row(q).1;
+                    diagonal.iter_mut().zip(values).for_each(|(d, n)| *d += point_mass[q] * n * n);
+                }
+                let total: f64 = point_mass[first..end].iter().sum();
+                let scale = total / diagonal.iter().sum::<f64>();
+                nodes.iter().zip(&diagonal).for_each(|(&node, d)| mass[node as usize] += scale * d);
+                first = end;
+            }
+        }
+    }
+    // `!(m > 0)`: a NaN must not pass.
+    match mass.iter().position(|&m| !(m > 0.0)) {
+        Some(node) => Err(ExplicitError::NodalMass { node, mass: mass[node] }),
+        None => Ok(mass),
+    }
+}

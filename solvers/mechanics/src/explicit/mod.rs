@@ -1,0 +1,30 @@
+//! Explicit computation in the reference configuration: internal forces, lumped mass, critical step, central
+//! differences and dynamic relaxation.
+
+mod central_difference;
+mod chunks;
+mod critical_step;
+mod error;
+mod force;
+mod hex8;
+mod lane_math;
+mod mass;
+mod moduli;
+mod neo_lanes;
+mod nodal;
+mod order;
+mod path;
+mod plain;
+mod quad;
+mod relaxation;
+mod rows;
+mod tet4;
+
+pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
+pub use critical_step::{CriticalStep, LanczosParams, critical_step};
+pub use error::{ExplicitError, InvertedPoint};
+pub use force::{ExplicitBody, InternalForce};
+pub use mass::{Lumping, lumped_mass};
+pub use order::locality_order;
+pub use path::LanePath;
+pub use relaxation::{RelaxationInfo, RelaxationParams, StaticLoad, relax};

@@ -1,0 +1,123 @@
+//! Nodal-mean dilation on tetrahedra: `J_a = sum_q share w J_q / V_a` at the nodes, between two passes over the elements.
+//!
+//! For the neo-Hookean law the sum over pairs (node a, point q) splits,
+//!
+//! ```text
+//! E = sum_q w mu/2 (J_q^(-2/3) I1_q S_q - 3) + sum_a (-M_a ln J_a + L_a/2 (ln J_a)^2),
+//! S_q = sum_a share J_a^(2/3),  M_a = sum_q share w mu,  L_a = sum_q share w lambda,
+//! ```
+//!
+//! so the first pass brings two numbers to each node, `sum share w (J - 1)` and `B_a = sum share w mu b_q` with
+//! `b = J^(-2/3) I1 / 3 - 1`; the second takes two back, `J_a^(2/3)` and
+//! `p_a = (1/V_a) dE/dJ_a = (B_a (1 + sigma) + sigma M_a + L_a ln J_a) / (J_a V_a)`, `sigma = J_a^(2/3) - 1`.
+
+use shape::DilationGroups;
+
+use super::chunks::{Border, Slot};
+use super::force::ExplicitBody;
+use super::moduli::Moduli;
+use super::neo_lanes::close_group;
+use super::path::{LANES, LanePath, on_path};
+
+pub(super) struct Nodal {
+    /// `sum share w (J - 1)` and `B_a` of each slot.
+    slots: Vec<[f64; 2]>,
+    constants: Vec<Constants>,
+    /// `J_a^(2/3)` and `p_a` of each node.
+    closed: Vec<[f64; 2]>,
+}
+
+/// Of one node: `1 / V_a` (1/m^3), `M_a` and `L_a` (J).
+#[derive(Clone, Copy)]
+struct Constants {
+    per_volume: f64,
+    mu: f64,
+    lambda: f64,
+}
+
+impl Nodal {
+    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares.
+    pub fn new(
+        body: &ExplicitBody,
+        groups: &DilationGroups,
+        moduli: &[Moduli],
+        slots: usize,
+    ) -> Option<Nodal> {
+        let (rows, weights) = (body.volume.rows(), body.volume.weights());
+        let even = rows.values().iter().all(|n| (n - 0.25).abs() < 1e-14);
+        if !even || DilationGroups::nodal(body.volume).as_ref() != Ok(groups) {
+            return None;
+        }
+        let mut sums = vec![[0.0; 3]; rows.node_count()];
+        for (q, &w) in weights.iter().enumerate() {
+            let Moduli { mu, lambda } = moduli[body.region(q) as usize];
+            for &node in rows.row(q).0 {
+                let s = &mut sums[node as usize];
+                s[0] += 0.25 * w;
+                s[1] += 0.25 * w * mu;
+                s[2] += 0.25 * w * lambda;
+            }
+        }
+        // A node of no element has no volume; nothing reads what comes out there.
+        let constants = |s: &[f64; 3]| Constants {
+            per_volume: if s[0] > 0.0 { 1.0 / s[0] } else { 0.0 },
+            mu: s[1],
+            lambda: s[2],
+        };
+        Some(Nodal {
+            slots: vec![[0.0; 2]; slots],
+            constants: sums.iter().map(constants).collect(),
+            closed: vec![[0.0; 2]; rows.node_count()],
+        })
+    }
+
+    pub fn slots(&mut self) -> &mut [[f64; 2]] {
+        &mut self.slots
+    }
+
+    /// From the sums of the first pass to what the second needs.
+    pub fn close(&mut self, path: LanePath, border: &Border) {
+        let constants = &self.constants;
+        border.sum(&self.slots, &mut self.closed, |closed, first, sums| {
+            close(path, &constants[first..first + sums.len()], sums, closed);
+        });
+    }
+
+    /// `J_a^(2/3)` into the pad of the displacements, `p_a` into that of the forces, which start from zero.
+    #[inline(always)]
+    pub fn load(&self, nodes: &[u32], u: &mut [Slot], f: &mut [Slot]) {
+        for ((&node, u), f) in nodes.iter().zip(u).zip(f) {
+            let [s, p] = self.closed[node as usize];
+            u[3] = s;
+            *f = [0.0, 0.0, 0.0, p];
+        }
+    }
+}
+
+on_path! {
+    fn close(constants: &[Constants], sums: &[[f64; 2]], closed: &mut [[f64; 2]]) = close_lanes
+}
+
+#[inline(always)]
+fn close_lanes<const FMA: bool>(constants: &[Constants], sums: &[[f64; 2]], closed: &mut [[f64; 2]]) {
+    let one = |c: &Constants, [j, b]: [f64; 2]| {
+        close_group::<FMA>(j * c.per_volume, b, c.per_volume, c.mu, c.lambda)
+    };
+    // In blocks of fixed length, so that the loop becomes vector instructions.
+    let whole = sums.len() / LANES * LANES;
+    let blocks = constants[..whole].chunks_exact(LANES).zip(sums.chunks_exact(LANES));
+    for ((c, s), out) in blocks.zip(closed.chunks_exact_mut(LANES)) {
+        let mut lanes = [[0.0; LANES]; 2];
+        for l in 0..LANES {
+            let [a, b] = one(&c[l], s[l]);
+            lanes[0][l] = a;
+            lanes[1][l] = b;
+        }
+        for l in 0..LANES {
+            out[l] = [lanes[0][l], lanes[1][l]];
+        }
+    }
+    for i in whole..sums.len() {
+        closed[i] = one(&constants[i], sums[i]);
+    }
+}

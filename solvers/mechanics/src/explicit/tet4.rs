@@ -1,0 +1,288 @@
+//! Tetrahedra of four nodes and one point: eight of them in the lanes of one block.
+//!
+//! Gradients of a partition of unity sum to zero, so three of the four are stored and
+//! `H = sum_a (u_a - u_0) grad N_a`; the force on node 0 is minus the sum of the others, momentum is conserved to the
+//! last bit of each element. 88 bytes per element (9 gradients, weight, four 16-bit nodes) instead of 120.
+
+use super::chunks::{Border, ChunkNodes, Slot, load, split};
+use super::force::ExplicitBody;
+use super::moduli::Moduli;
+use super::neo_lanes::strained;
+use super::nodal::Nodal;
+use super::order::locality_order;
+use super::path::{LANES, LanePath, on_path};
+use super::quad::{add, axpy, lanes_of_differences, quads_of_lanes};
+use crate::Vector3;
+
+/// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
+const SIZE: usize = 2048;
+
+/// Standard or nodal-mean dilation on tetrahedra of four nodes.
+pub(super) struct Tet4 {
+    border: Border,
+    chunks: Vec<Chunk>,
+    u: Vec<Slot>,
+    f: Vec<Slot>,
+    nodal: Option<Nodal>,
+}
+
+impl Tet4 {
+    /// None for rows whose gradients do not sum to zero, and for groups other than one per node, shared evenly.
+    pub fn new(body: &ExplicitBody, moduli: &[Moduli]) -> Option<Tet4> {
+        let (volume, rows) = (body.volume, body.volume.rows());
+        for q in 0..rows.len() {
+            let (_, g) = volume.row(q);
+            let size = g.iter().map(Vector3::norm).fold(0.0, f64::max);
+            if !((g[0] + g[1] + g[2] + g[3]).norm() <= 1e-14 * size) {
+                return None;
+            }
+        }
+        let order = locality_order(volume.points());
+        let parts = split(rows.node_count(), &order, SIZE, |q| rows.row(q).0.to_vec());
+        let lists: Vec<Vec<u32>> = parts.iter().map(|p| p.nodes.clone()).collect();
+        let border = Border::new(rows.node_count(), &lists);
+        let law = |q: usize| (body.region(q), moduli[body.region(q) as usize]);
+        let nodal = match body.groups {
+            Some(groups) => Some(Nodal::new(body, groups, moduli, border.slot_count())?),
+            None => None,
+        };
+        let chunk =
+            |part| Chunk::new(part, |q| volume.row(q).1.try_into().unwrap(), |q| volume.weights()[q], law);
+        let chunks = parts.iter().map(chunk).collect();
+        let slots = vec![[0.0; 4]; border.slot_count()];
+        Some(Tet4 { border, chunks, u: slots.clone(), f: slots, nodal })
+    }
+
+    pub fn name(&self) -> &'static str {
+        if self.nodal.is_some() { "tet4 nodal dilation" } else { "tet4" }
+    }
+
+    /// Internal forces; false where some `J` is not positive.
+    pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
+        let Tet4 { border, chunks, u: slots, f: sums, nodal } = self;
+        let upright = match nodal {
+            None => border.for_each(slots, sums, |c, slots, sums| {
+                load(border.chunk(c), u, slots);
+                sums.fill([0.0; 4]);
+                let mut upright = true;
+                internal(path, &chunks[c], slots, sums, &mut upright);
+                upright
+            }),
+            Some(nodal) => {
+                let upright = border.for_each(slots, nodal.slots(), |c, slots, sums| {
+                    load(border.chunk(c), u, slots);
+                    sums.fill([0.0; 2]);
+                    let mut upright = true;
+                    dilations(path, &chunks[c], slots, sums, &mut upright);
+                    upright
+                });
+                nodal.close(path, border);
+                border.for_each(slots, sums, |c, slots, sums| {
+                    nodal.load(border.chunk(c), slots, sums);
+                    dilated(path, &chunks[c], slots, sums);
+                    true
+                });
+                upright
+            }
+        };
+        border.forces(sums, f);
+        upright
+    }
+}
+
+#[repr(C, align(64))]
+pub(super) struct Block {
+    /// Gradients of nodes 1 to 3, [3 a + j].
+    grads: [[f64; LANES]; 9],
+    weight: [f64; LANES],
+    nodes: [[u16; LANES]; 4],
+}
+
+/// Blocks of one chunk, by law.
+pub(super) struct Chunk {
+    blocks: Vec<Block>,
+    /// Blocks up to this one have these moduli.
+    runs: Vec<(usize, Moduli)>,
+}
+
+impl Chunk {
+    pub fn new(
+        chunk: &ChunkNodes,
+        grads: impl Fn(usize) -> [Vector3; 4],
+        weight: impl Fn(usize) -> f64,
+        law: impl Fn(usize) -> (u16, Moduli),
+    ) -> Chunk {
+        let mut order: Vec<usize> = (0..chunk.items.len()).collect();
+        order.sort_by_key(|&k| law(chunk.items[k] as usize).0);
+        let (mut blocks, mut runs) = (Vec::new(), Vec::new());
+        for alike in order.chunk_by(|&a, &b| law(chunk.items[a] as usize).0 == law(chunk.items[b] as usize).0)
+        {
+            for group in alike.chunks(LANES) {
+                // A lane left over has no weight and no gradient: J = 1 and no force, on the chunk's first node.
+                let mut block =
+                    Block { grads: [[0.0; LANES]; 9], weight: [0.0; LANES], nodes: [[0; LANES]; 4] };
+                for (l, &k) in group.iter().enumerate() {
+                    let item = chunk.items[k] as usize;
+                    let g = grads(item);
+                    for a in 0..3 {
+                        for j in 0..3 {
+                            block.grads[3 * a + j][l] = g[a + 1][j];
+                        }
+                    }
+                    block.weight[l] = weight(item);
+                    for a in 0..4 {
+                        block.nodes[a][l] = chunk.local[k][a] as u16;
+                    }
+                }
+                blocks.push(block);
+            }
+            runs.push((blocks.len(), law(chunk.items[alike[0]] as usize).1));
+        }
+        Chunk { blocks, runs }
+    }
+}
+
+/// Displacements relative to node 0, [3 a + i].
+#[inline(always)]
+fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
+    let mut origin = [[0.0; 4]; LANES];
+    for l in 0..LANES {
+        origin[l] = u[block.nodes[0][l] as usize];
+    }
+    let mut d = [[0.0; LANES]; 9];
+    for a in 0..3 {
+        let lanes = lanes_of_differences::<FMA>(u, &block.nodes[a + 1], &origin);
+        d[3 * a..3 * a + 3].copy_from_slice(&lanes);
+    }
+    d
+}
+
+/// Adds the forces of nodes 1 to 3, and minus their sum on node 0. The pads stay as they are.
+#[inline(always)]
+fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
+    let mut sum = [[0.0; 4]; LANES];
+    for a in 0..3 {
+        let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
+        for l in 0..LANES {
+            add::<FMA>(&quads[l], &mut f[block.nodes[a + 1][l] as usize]);
+            axpy::<FMA>(-1.0, &quads[l], &mut sum[l]);
+        }
+    }
+    for l in 0..LANES {
+        add::<FMA>(&sum[l], &mut f[block.nodes[0][l] as usize]);
+    }
+}
+
+/// `H_ij = sum_a d_ai g_aj` of one lane.
+#[inline(always)]
+fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
+    let m = super::lane_math::madd::<FMA>;
+    let mut h = [0.0; 9];
+    for k in 0..9 {
+        let (i, j) = (k / 3, k % 3);
+        h[k] = m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]));
+    }
+    h
+}
+
+/// `f_a = w P grad N_a` of one lane.
+#[inline(always)]
+fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [[f64; LANES]; 9]) {
+    let m = super::lane_math::madd::<FMA>;
+    for a in 0..3 {
+        for i in 0..3 {
+            out[3 * a + i][l] =
+                m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]));
+        }
+    }
+}
+
+on_path! {
+    /// Internal forces of one chunk, added to `f`; `upright` turns false where some `J` is not positive.
+    fn internal(chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) = internal_lanes
+}
+
+#[inline(always)]
+fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) {
+    let mut first = 0;
+    let mut good = [1.0; LANES];
+    for &(end, Moduli { mu, lambda }) in &chunk.runs {
+        for block in &chunk.blocks[first..end] {
+            let d = gather::<FMA>(block, u);
+            let mut out = [[0.0; LANES]; 9];
+            for l in 0..LANES {
+                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
+                good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
+                let p = x.stress::<FMA>(block.weight[l], mu, lambda);
+                forces::<FMA>(&p, &block.grads, l, &mut out);
+            }
+            scatter::<FMA>(block, &out, f);
+        }
+        first = end;
+    }
+    *upright = good == [1.0; LANES];
+}
+
+on_path! {
+    /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
+    fn dilations(chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], upright: &mut bool) = dilations_lanes
+}
+
+#[inline(always)]
+fn dilations_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], upright: &mut bool) {
+    let mut first = 0;
+    let mut good = [1.0; LANES];
+    for &(end, Moduli { mu, .. }) in &chunk.runs {
+        for block in &chunk.blocks[first..end] {
+            let d = gather::<FMA>(block, u);
+            let mut out = [[0.0; LANES]; 2];
+            for l in 0..LANES {
+                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
+                good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
+                let share = 0.25 * block.weight[l];
+                out[0][l] = share * x.j;
+                out[1][l] = share * mu * x.isochoric::<FMA>();
+            }
+            for l in 0..LANES {
+                for a in 0..4 {
+                    let at = &mut sums[block.nodes[a][l] as usize];
+                    at[0] += out[0][l];
+                    at[1] += out[1][l];
+                }
+            }
+        }
+        first = end;
+    }
+    *upright = good == [1.0; LANES];
+}
+
+on_path! {
+    /// Second pass: forces added to `f`. The pads hold `J_a^(2/3)` (of `u`) and `p_a` (of `f`).
+    fn dilated(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) = dilated_lanes
+}
+
+#[inline(always)]
+fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) {
+    let mut first = 0;
+    for &(end, Moduli { mu, .. }) in &chunk.runs {
+        for block in &chunk.blocks[first..end] {
+            let d = gather::<FMA>(block, u);
+            let mut shared = [[0.0; LANES]; 2];
+            for l in 0..LANES {
+                for a in 0..4 {
+                    let at = block.nodes[a][l] as usize;
+                    shared[0][l] += 0.25 * u[at][3];
+                    shared[1][l] += 0.25 * f[at][3];
+                }
+            }
+            let mut out = [[0.0; LANES]; 9];
+            for l in 0..LANES {
+                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
+                let p = x.dilated_stress::<FMA>(block.weight[l], mu, shared[0][l], shared[1][l]);
+                forces::<FMA>(&p, &block.grads, l, &mut out);
+            }
+            scatter::<FMA>(block, &out, f);
+        }
+        first = end;
+    }
+}
