@@ -3,10 +3,10 @@
 //! ```text
 //! Source      Coulomb; Wriggers, Computational Contact Mechanics (2006), ch. 5.2.
 //! Body        box of 2 x 2 x 2 cells, E = 1e13 Pa (its compliance h / E is 1e-6 of the contact's 1 / k), top held still.
-//! Conditions  a plate moves up into its underside and sideways at once, in N = 10 steps, closure d along
-//!             (sin b, 0, cos b). Pressure k_n d cos b; elastic slip begins after the first step: k_t d sin b (1 - 1/N).
-//! Must hold   below the limit tan b = mu k_n / k_t N / (N - 1) by 0.1 %: stick, T / N = 0.999 mu to 1e-4 of it;
-//!             above by 0.1 %: slip, T / N = mu to 1e-9; far above: still mu, along the motion.
+//! Conditions  a plate comes up from 0.02 mm below and sideways at once, in 10 steps, along (sin b, 0, cos b). From the
+//!             touch on the pressure is k_n d cos b and the elastic slip k_t d sin b, d the way since.
+//! Must hold   below the limit tan b = mu k_n / k_t by 0.1 %: stick, T / N = 0.999 mu to 1e-4 of it;
+//!             above by 0.1 %: slip, T / N = mu to 1e-9; far above: still mu, against the motion.
 //! ```
 
 use fem::SurfaceRule;
@@ -18,7 +18,6 @@ use crate::common::*;
 const COEFFICIENT: f64 = 0.15;
 const NORMAL: f64 = 1e8;
 const STICK: f64 = 5e7;
-const STEPS: usize = 10;
 
 /// Force on the plate at the end, N, for `tan b` as a multiple of the limit; the sideways motion is `sideways` (unit).
 fn drag(projection: (CellKind, Projection), factor: f64, sideways: Vector3) -> Vector3 {
@@ -27,15 +26,15 @@ fn drag(projection: (CellKind, Projection), factor: f64, sideways: Vector3) -> V
     let fixed = model.hold(&["z-max"], &[0, 1, 2], |_| Vector3::zeros());
     let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
     let contact = ContactSurface::new(&surface);
-    let lag = STEPS as f64 / (STEPS as f64 - 1.0);
-    let slope = factor * COEFFICIENT * NORMAL / STICK * lag;
+    let slope = factor * COEFFICIENT * NORMAL / STICK;
     let along = (Vector3::z() + sideways * slope).normalize();
     let touch = ContactLaw::coulomb(NORMAL, COEFFICIENT, STICK).unwrap();
-    let plate = Tool::new(ToolShape::Plate, Point3::origin(), Matrix3::identity(), along, touch).unwrap();
+    let plate =
+        Tool::new(ToolShape::Plate, Point3::new(0.0, 0.0, -2e-5), Matrix3::identity(), along, touch).unwrap();
     let tools = [DrivenTool { tool: &plate, drive: Drive::Closure(1e-4) }];
     let problem =
         StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };
-    let path = solve(&format!("{factor}"), &problem, &steps(STEPS));
+    let path = solve(&format!("{factor}"), &problem, &steps(10));
     path.steps.last().unwrap().tools[0].force
 }
 
