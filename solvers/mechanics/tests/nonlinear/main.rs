@@ -8,4 +8,6 @@ mod finite_patch;
 mod friction;
 mod hertz;
 mod homogeneous;
+mod locking;
+mod manufactured;
 mod quadratic;
