@@ -1,6 +1,6 @@
 //! Laws by principal stretches and homogeneous states: what holds for every isotropic law.
 
-use cases::exact::{Elastic, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3};
+use cases::exact::{Elastic, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3};
 
 const YOUNG: f64 = 20e3;
 
@@ -121,4 +121,34 @@ fn hertz_balances_its_far_field() {
     }
     assert!((force / hertz.force() - 1.0).abs() < 1e-5, "{force} for {}", hertz.force());
     assert!(Hertz::new(elastic, 0.0, depth).is_err() && Hertz::new(elastic, radius, f64::NAN).is_err());
+}
+
+#[test]
+fn bent_blocks_balance_their_moments_and_keep_the_volume_when_nearly_incompressible() {
+    let (thickness, curvature) = (0.01, 50.0);
+    let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.49999).unwrap());
+    let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
+    let [inner, middle, outer] = [-0.5, 0.0, 0.5].map(|s| bent.radius(s * thickness));
+    // Rivlin: r^2 is linear in X, k (r_o^2 - r_i^2) = 2 h, and the faces are free when r_i r_o = 1 / k^2.
+    let volume = curvature * (outer * outer - inner * inner) / (2.0 * thickness);
+    assert!((volume - 1.0).abs() < 1e-4, "{volume}");
+    assert!((middle * middle / (0.5 * (inner * inner + outer * outer)) - 1.0).abs() < 1e-5, "{middle}");
+    assert!((inner * outer * curvature * curvature - 1.0).abs() < 1e-4, "{inner} {outer}");
+    // No resultant force: P_t sums up to zero over the thickness, because both faces are free (Simpson).
+    let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.3).unwrap());
+    let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
+    let stress = |s: f64| {
+        let (x, h) = (s * thickness, 1e-5 * thickness);
+        let radial = (bent.radius(x + h) - bent.radius(x - h)) / (2.0 * h);
+        law.principal_stress([radial, curvature * bent.radius(x), 1.0])[1]
+    };
+    let n = 50;
+    let sum: f64 = (0..n)
+        .map(|k| {
+            [(0.0, 1.0), (0.5, 4.0), (1.0, 1.0)].map(|(t, w)| w * stress((k as f64 + t) / n as f64 - 0.5))
+        })
+        .map(|s| s.iter().sum::<f64>() / (6.0 * n as f64))
+        .sum();
+    assert!(sum.abs() < 1e-6 * YOUNG && stress(0.5) > 0.1 * YOUNG, "{sum} {}", stress(0.5));
+    assert!(FiniteBending::new(&law, thickness, 101.0).is_err());
 }

@@ -112,6 +112,7 @@ fn pure_bending_does_not_lock() {
     let soft = bending((CellKind::Tet4, Projection::Standard), 6, 0.3);
     let [found, at_03] = [POISSON, 0.3].map(|nu| bending(TET4, 6, nu));
     assert!(found > soft, "nodal tet4 at nu = 0.4999: {found}; standard at 0.3: {soft}");
+    assert!(found > 0.98 * at_03, "nodal tet4 at nu = 0.4999: {found}; at 0.3: {at_03}");
 }
 
 /// Limit of three values whose differences fall geometrically (Aitken).

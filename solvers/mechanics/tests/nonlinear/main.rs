@@ -1,5 +1,6 @@
 //! Statics at large displacements and with contact, against exact solutions.
 
+mod bending;
 mod common;
 
 mod contact_patch;
