@@ -110,6 +110,11 @@ pub(crate) enum Descent {
     Down,
 }
 
+/// `x . r`.
+fn work(x: &[f64], r: &[f64]) -> f64 {
+    x.iter().zip(r).map(|(x, r)| x * r).sum()
+}
+
 /// A factored tangent.
 enum Factored {
     Symmetric(Factorization),
@@ -329,12 +334,13 @@ impl<'a> Newton<'a> {
             self.indefinite = false;
             let (step, closures) = self.direction(state, &balance, time, held_move.as_deref())?;
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
-            let slope: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
+            let lacking = self.lacking(&balance, time);
+            let slope = work(&step, &unknowns) + work(&closures, &lacking);
             if first_energy == 0.0 {
                 first_energy = slope.abs();
             }
             let (next, length) =
-                self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
+                self.search(state, &step, &closures, held_move.as_deref(), slope, &balance, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
             log.push(Iteration { residual, energy, length, definite: !self.indefinite });
             balance = next;
@@ -378,13 +384,26 @@ impl<'a> Newton<'a> {
         let scale = if balance.scale > 0.0 { balance.scale } else { 1.0 };
         let mut residual = norm(forces) / scale;
         residual = residual.max(norm(volumes) / self.volume);
-        for (driven, contacts) in self.problem.tools.iter().zip(&balance.contacts) {
+        for (driven, lacking) in self.problem.tools.iter().zip(self.lacking(balance, time)) {
             if let Drive::Force(full) = driven.drive {
-                let pushed = contacts.as_ref().map_or(0.0, |c| -c.force().dot(&driven.tool.along()));
-                residual = residual.max((full * tools - pushed).abs() / (full * tools).abs());
+                residual = residual.max(lacking.abs() / (full * tools).abs());
             }
         }
         residual
+    }
+
+    /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
+    /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
+    fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
+        let scale = self.scales(time).tools;
+        (self.problem.tools.iter().zip(&balance.contacts))
+            .map(|(driven, contacts)| match driven.drive {
+                Drive::Force(full) => {
+                    full * scale + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
+                }
+                Drive::Closure(_) => 0.0,
+            })
+            .collect()
     }
 
     fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
@@ -653,12 +672,17 @@ impl<'a> Newton<'a> {
         closures: &[f64],
         held_move: Option<&[Vector3]>,
         slope: f64,
-        out: &[Vector3],
+        last: &Balance,
         time: f64,
     ) -> Result<(Balance, f64), StaticError> {
         let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let before = norm(&self.system.gather(out, &state.pressure.iter().map(|_| 0.0).collect::<Vec<_>>()));
+        let none = vec![0.0; state.pressure.len()];
+        let before = norm(&self.system.gather(&last.out, &none)).hypot(norm(&self.lacking(last, time)));
+        // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
+        let approaches = (self.problem.tools.iter().zip(&last.contacts)).any(|(driven, contacts)| {
+            matches!(driven.drive, Drive::Force(_)) && contacts.as_ref().is_none_or(|c| c.points().is_empty())
+        });
         let mut length = 1.0;
         for trial in 0.. {
             state.u.clone_from(&start.0);
@@ -678,13 +702,15 @@ impl<'a> Newton<'a> {
             };
             let saddle = !state.pressure.is_empty();
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
-            let now: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
+            let lacking = self.lacking(&balance, time);
+            let now = work(step, &unknowns) + work(closures, &lacking);
             // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            let smaller = norm(&unknowns) <= (1.0 - 0.1 * length) * before;
+            let smaller = norm(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
             if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
                 || smaller
                 || held_move.is_some()
                 || saddle
+                || approaches
                 || trial >= 6
             {
                 return Ok((balance, length));
