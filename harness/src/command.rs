@@ -111,6 +111,12 @@ fn run(args: &RunArgs) -> u8 {
     let mut code = 0;
     let mut outcomes: Vec<Outcome> = Vec::new();
     let mut set = RunSet::default();
+    if let Some(failure) = group.reference_stalled() {
+        eprintln!("reference stalled: {failure} (every method is compared with the steps it carried)");
+        let reason = format!("reference stalled: {failure}");
+        set.failures.push(reports::Failure { case: case.clone(), method: "reference".into(), reason });
+        code = failure.exit_code();
+    }
     for index in chosen {
         let method = &scene.methods[index];
         match group.run(&group.scenario(method.clone(), 0), args.out.is_some()) {
