@@ -44,6 +44,10 @@ impl Dense {
         Ok(Dense { lower, definite })
     }
 
+    pub fn negative_pivots(&self) -> usize {
+        (0..self.lower.nrows()).filter(|&j| !self.definite && self.lower[(j, j)] < 0.0).count()
+    }
+
     pub fn solve(&self, b: &mut [f64]) {
         let n = b.len();
         let rhs = MatMut::from_column_major_slice_mut(b, n, 1);

@@ -123,6 +123,13 @@ impl Symmetric {
         m
     }
 
+    /// Multiplies the diagonal of the unknowns before the multipliers by `1 + shift`.
+    pub fn shift(&mut self, shift: f64) {
+        for j in 0..self.multipliers {
+            self.values[self.offsets[j + 1] - 1] *= 1.0 + shift;
+        }
+    }
+
     /// `y -= A x`.
     pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
         for j in 0..self.dim() {
@@ -278,6 +285,16 @@ impl Factorization {
     /// Number of unknowns.
     pub fn dim(&self) -> usize {
         self.matrix.dim()
+    }
+
+    /// Negative pivots: with a saddle matrix as many as multipliers if the rest is definite on their kernel
+    /// (Sylvester's law of inertia).
+    pub fn negative_pivots(&self) -> usize {
+        match &self.factor {
+            Factor::Empty => 0,
+            Factor::Dense(factor) => factor.negative_pivots(),
+            Factor::Sparse(factor) => factor.negative_pivots(),
+        }
     }
 
     /// Numbers stored in the factor.

@@ -97,12 +97,19 @@ impl Sparse {
         Ok(())
     }
 
+    pub fn negative_pivots(&self) -> usize {
+        if self.definite {
+            return 0;
+        }
+        pivots(&self.symbolic.cholesky, &self.values).filter(|p| p.1 < 0.0).count()
+    }
+
     pub fn nonzeros(&self) -> usize {
         self.symbolic.cholesky.len_val()
     }
 }
 
-/// Diagonal of `L` with its place in the elimination order.
+/// Diagonal of `L` (of `D` in `L D L^T`) with its place in the elimination order.
 fn pivots<'a>(
     symbolic: &'a SymbolicCholesky<usize>,
     values: &'a [f64],

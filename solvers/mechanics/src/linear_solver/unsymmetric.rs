@@ -12,7 +12,7 @@ use crate::SolveError;
 /// 0.15 needs about 10.
 const KRYLOV: usize = 40;
 /// Relative residual at which the iteration stops: far below what Newton's method can use.
-const GOAL: f64 = 1e-11;
+const GOAL: f64 = 1e-10;
 
 /// A factored symmetric matrix and a few unsymmetric entries `(row, column, value)` on top of it.
 ///

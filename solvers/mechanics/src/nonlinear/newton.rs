@@ -30,6 +30,8 @@ pub struct Iteration {
     pub energy: f64,
     /// Part of the Newton step that the line search left.
     pub length: f64,
+    /// Whether the tangent was positive definite (on the kernel of the pressures).
+    pub definite: bool,
 }
 
 /// What a load step starts from and ends with.
@@ -86,6 +88,19 @@ pub(crate) struct Newton<'a> {
     symbolic: Option<Option<Arc<Symbolic>>>,
     counts: ContactCounts,
     volume: f64,
+    /// Where a tangent that is not definite leads.
+    descent: Descent,
+    /// Whether the last tangent was not definite.
+    indefinite: bool,
+}
+
+/// What Newton's method looks for where the tangent is not definite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Descent {
+    /// The nearest equilibrium: a symmetric one stays symmetric.
+    Nearest,
+    /// A stable one, down the energy.
+    Down,
 }
 
 /// A factored tangent.
@@ -132,6 +147,8 @@ impl<'a> Newton<'a> {
             symbolic: None,
             counts: ContactCounts::default(),
             volume,
+            descent: Descent::Nearest,
+            indefinite: false,
         })
     }
 
@@ -146,7 +163,9 @@ impl<'a> Newton<'a> {
         before: Option<&State>,
         time: f64,
         augmentations: usize,
+        descent: Descent,
     ) -> Result<(State, Step), StaticError> {
+        self.descent = descent;
         let mut state = State { time, ..start.clone() };
         let mut moved = false;
         if let Some(before) = before {
@@ -247,12 +266,13 @@ impl<'a> Newton<'a> {
             let residual = self.residual(&balance, time);
             let settled = held_move.is_none() && residual <= self.params.tolerance;
             if settled {
-                log.push(Iteration { residual, energy: 0.0, length: 0.0 });
+                log.push(Iteration { residual, energy: 0.0, length: 0.0, definite: true });
                 return Ok(balance);
             }
             if log.len() - first >= self.params.iterations || !residual.is_finite() {
                 return Err(self.not_converged(&balance, residual, log.len() - first));
             }
+            self.indefinite = false;
             let (step, closures) = self.direction(state, &balance, time, held_move.as_deref())?;
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
             let slope: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
@@ -262,7 +282,7 @@ impl<'a> Newton<'a> {
             let (next, length) =
                 self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
-            log.push(Iteration { residual, energy, length });
+            log.push(Iteration { residual, energy, length, definite: !self.indefinite });
             balance = next;
         }
     }
@@ -419,43 +439,49 @@ impl<'a> Newton<'a> {
         Ok(())
     }
 
-    /// Cholesky while the tangent is definite; `L D L^T` with a pressure field or past a limit point; the factor of the
-    /// symmetric part as a preconditioner with sliding friction.
+    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
+    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
+    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
     fn factor(
         &mut self,
         matrix: linear_solver::Symmetric,
         skew: Vec<(usize, usize, f64)>,
     ) -> Result<Factored, StaticError> {
-        if !skew.is_empty() {
-            // The symmetric part first: it is factored ten times faster and its fill is a third of LU's.
-            return match self.factor(matrix, Vec::new())? {
-                Factored::Symmetric(part) => Ok(Factored::Unsymmetric(Unsymmetric::new(part, skew))),
-                unsymmetric => Ok(unsymmetric),
-            };
-        }
         if self.symbolic.is_none() {
             self.symbolic = Some(linear_solver::analyse(&matrix, DENSE_LIMIT)?);
         }
         let symbolic = self.symbolic.as_ref().expect("just analysed").as_ref();
-        let kind = matrix.kind();
-        if kind == Kind::Saddle {
-            return match linear_solver::factor_as(symbolic, matrix, kind) {
-                Ok(factor) => Ok(Factored::Symmetric(factor)),
-                Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
+        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let with_skew = |factor| match skew.is_empty() {
+            true => Factored::Symmetric(factor),
+            false => Factored::Unsymmetric(Unsymmetric::new(factor, skew.clone())),
+        };
+        let shifts: &[f64] = match self.descent {
+            Descent::Nearest => &[0.0],
+            Descent::Down => &[0.0, 1e-3, 1e-2, 0.1, 1.0],
+        };
+        for &shift in shifts {
+            let mut shifted = matrix.clone();
+            shifted.shift(shift);
+            match linear_solver::factor_as(symbolic, shifted, kind) {
+                Ok(factor) if self.descent == Descent::Nearest || factor.negative_pivots() == pressures => {
+                    self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
+                    return Ok(with_skew(factor));
+                }
+                Ok(_) | Err(FactorError::NotDefinite) => {}
+                Err(FactorError::Other(SolveError::NearlySingular { .. } | SolveError::ZeroPivot)) => {}
+                Err(FactorError::Other(error)) => return Err(error.into()),
+            }
+        }
+        if self.descent == Descent::Nearest && kind == Kind::Definite {
+            self.indefinite = true;
+            return match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
+                Ok(factor) => Ok(with_skew(factor)),
                 Err(FactorError::Other(error)) => Err(error.into()),
+                Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
             };
         }
-        match linear_solver::factor_as(symbolic, matrix.clone(), kind) {
-            Ok(factor) => Ok(Factored::Symmetric(factor)),
-            Err(FactorError::NotDefinite | FactorError::Other(SolveError::NearlySingular { .. })) => {
-                match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
-                    Ok(factor) => Ok(Factored::Symmetric(factor)),
-                    Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
-                    Err(FactorError::Other(error)) => Err(error.into()),
-                }
-            }
-            Err(FactorError::Other(error)) => Err(error.into()),
-        }
+        Err(SolveError::NotPositiveDefinite.into())
     }
 
     /// Closures of the tools driven by force, by elimination: with `a = sum w N S along` (S = -dt/dx) the step is

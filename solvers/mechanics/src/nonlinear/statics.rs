@@ -3,7 +3,7 @@
 use shape::SurfaceRows;
 
 use super::error::StaticError;
-use super::newton::{Iteration, Newton, NewtonParams, State};
+use super::newton::{Descent, Iteration, Newton, NewtonParams, State};
 use super::solid::Solid;
 use crate::contact::{ContactCounts, ContactSurface, Tool};
 use crate::{FixedDof, Load, Point3, Vector3};
@@ -157,7 +157,10 @@ pub fn solve_static(
         let time = if reaches { target } else { state.time + step };
         // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
         // a point, the last state is.
-        match newton.step(&state, before.as_ref(), time, params.augmentations) {
+        let reached = newton
+            .step(&state, before.as_ref(), time, params.augmentations, Descent::Nearest)
+            .or_else(|_| newton.step(&state, before.as_ref(), time, params.augmentations, Descent::Down));
+        match reached {
             Ok((reached, mut done)) => {
                 done.wanted = reaches;
                 let quick = done.iterations.len() <= 6;
