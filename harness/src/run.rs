@@ -349,7 +349,7 @@ fn history(
             metrics.extend(end.against.iter().cloned());
         }
     }
-    Ok((Some(last), steps, failure.map(Failure::Static)))
+    Ok((Some(last), steps, failure.map(Failure::from)))
 }
 
 /// Errors of one step against the reference's at the same part of the load: of every tool's force, relative, and the
