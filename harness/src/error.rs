@@ -22,7 +22,7 @@ pub enum Failure {
     Solve(#[from] mechanics::SolveError),
     /// A static procedure carried nothing.
     #[error(transparent)]
-    Static(#[from] mechanics::StaticError),
+    Static(Box<mechanics::StaticError>),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -110,6 +110,12 @@ impl Failure {
             ErrorKind::NotAvailable => "not-available",
             ErrorKind::NotRun => "could-not-run",
         }
+    }
+}
+
+impl From<mechanics::StaticError> for Failure {
+    fn from(error: mechanics::StaticError) -> Failure {
+        Failure::Static(Box::new(error))
     }
 }
 

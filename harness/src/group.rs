@@ -24,6 +24,7 @@ pub struct Group<'a> {
     schemes: Vec<(String, Scheme)>,
     reference: Option<run::Reference>,
     reference_work: Work,
+    reference_stalled: Option<Failure>,
     repeats: Repeats,
 }
 
@@ -62,6 +63,7 @@ impl<'a> Group<'a> {
             schemes: schemes(scene)?,
             reference: None,
             reference_work: Work::default(),
+            reference_stalled: None,
             repeats,
         })
     }
@@ -87,9 +89,7 @@ impl<'a> Group<'a> {
         };
         let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
             .map_err(|failure| scenario.locate(failure))?;
-        if let Some(stalled) = solved.outcome.stalled {
-            return Err(scenario.locate(stalled));
-        }
+        self.reference_stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
         self.reference_work = solved.outcome.work;
         self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
         Ok(())
@@ -110,6 +110,11 @@ impl<'a> Group<'a> {
     /// What the reference took, once for all methods; nothing where none had to run.
     pub fn reference_work(&self) -> Work {
         self.reference_work
+    }
+
+    /// Why the reference ended early, if it did: nothing is compared with its end then, but with the steps it carried.
+    pub fn reference_stalled(&self) -> Option<&Failure> {
+        self.reference_stalled.as_ref()
     }
 
     /// Runs one method; `picture` keeps its surface displacement.

@@ -38,11 +38,14 @@ pub struct Reference {
     pub targets: Vec<Vector3>,
     /// Its load steps, where the procedure has some.
     pub steps: Vec<LoadStep>,
+    /// Whether it carried the whole load; if not, only its steps are compared with.
+    pub finished: bool,
     /// Evaluates the reference at any point, m.
     pub at: Evaluate,
 }
 
 /// What a scene wants of every run.
+#[derive(Clone, Copy)]
 pub struct Asks<'a> {
     /// Probe positions, m.
     pub probes: &'a [Point3],
@@ -113,7 +116,10 @@ pub fn run(
     };
     let u = solution.u.clone();
     let mut metrics = Vec::new();
-    measure(&mut metrics, method, setup, &prepared, &solution, field, asks)?;
+    // A path that ended early is compared with the reference step by step, not at its end.
+    let finished = solution.path.as_ref().is_none_or(|path| path.failure.is_none());
+    let at_end = Asks { reference: asks.reference.filter(|r| finished && r.finished), ..*asks };
+    measure(&mut metrics, method, setup, &prepared, &solution, field, &at_end)?;
     let (last, steps, stalled) = match solution.path {
         Some(path) => history(&mut metrics, method, &prepared, path, asks)?,
         None => (None, Vec::new(), None),
@@ -134,7 +140,7 @@ pub fn run(
         }
     }
     let transfers = match method {
-        Discretisation::Efg(_) => transfers(method, &prepared, &u, asks, &mut work)?,
+        Discretisation::Efg(_) => transfers(method, &prepared, &u, &at_end, &mut work)?,
         Discretisation::Fem(_) => Vec::new(),
     };
     let field = if asks.picture { Some(picture(&identity, method, &prepared, &u)?) } else { None };
@@ -258,11 +264,7 @@ fn measure(
     let points = if asks.targets.is_empty() { method.nodes() } else { asks.targets };
     let against = match (&setup.exact, asks.reference) {
         (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
-        // A path that ended early is compared with the reference step by step, not with its end.
-        (None, Some(reference)) if solution.path.as_ref().is_none_or(|p| p.failure.is_none()) => {
-            Some(reference.targets.clone())
-        }
-        (None, Some(_)) => None,
+        (None, Some(reference)) => Some(reference.targets.clone()),
         (None, None) => None,
     };
     if let Some(against) = against {
@@ -343,11 +345,11 @@ fn history(
         for (step, of_reference) in steps.iter_mut().zip(&reference.steps) {
             step.against = against(step, of_reference);
         }
-        if let (Some(end), None) = (steps.last(), &failure) {
+        if let (Some(end), None, true) = (steps.last(), &failure, reference.finished) {
             metrics.extend(end.against.iter().cloned());
         }
     }
-    Ok((Some(last), steps, failure.map(Failure::Static)))
+    Ok((Some(last), steps, failure.map(Failure::from)))
 }
 
 /// Errors of one step against the reference's at the same part of the load: of every tool's force, relative, and the
@@ -451,6 +453,6 @@ pub fn reference(method: Discretisation, solved: Solved, targets: &[Point3]) -> 
         Ok(method.at_points(&prepared.volume, points)?.0.rows().apply(&u))
     };
     let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
-    let (method, steps) = (outcome.identity.method, outcome.steps);
-    Ok(Reference { method, targets: points, steps, at: Box::new(at) })
+    let (method, steps, finished) = (outcome.identity.method, outcome.steps, outcome.stalled.is_none());
+    Ok(Reference { method, targets: points, steps, finished, at: Box::new(at) })
 }

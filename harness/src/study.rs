@@ -177,6 +177,13 @@ impl Plan {
                     Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
                 };
                 result.work += shared;
+                if let (Ok(Some(stalled)), None) =
+                    (group.as_ref().map(Group::reference_stalled), &result.failure)
+                {
+                    let reason = format!("reference stalled: {stalled}");
+                    let run = reports::Failure { case: case.clone(), method: task.method.id.clone(), reason };
+                    result.failure = Some((run, stalled.exit_code()));
+                }
                 result
             });
             if !known && let Err(bad) = result.store(store, &key) {

@@ -122,11 +122,8 @@ fn a_support_that_touches_nothing_is_2() {
 #[test]
 fn sound_scenes_ahead_of_the_solvers_are_3() {
     let dir = tempfile::tempdir().unwrap();
-    let tool = r#"tool = [{ name = "plate", shape = "plate", at = ["20 mm", "20 mm", "21 mm"], along = [0, 0, -1], drive = { closure = "2 mm" } }]"#;
     let explicit = r#"procedure = { kind = "explicit", duration = "1 s" }"#;
     for (name, text, says) in [
-        ("law", BLOCK.replace("\"linear\"", "\"neo-hookean\""), "the neo-hookean law"),
-        ("tool", format!("{BLOCK}\n{tool}\n"), "contact with 'plate'"),
         ("explicit", format!("{BLOCK}\n{explicit}\n"), "the explicit procedure"),
         ("free", without(BLOCK, "support"), "rigid motion is left free: translation along x"),
         ("sliding", BLOCK.replace("\"xyz\"", "\"z\""), "rotation about z"),

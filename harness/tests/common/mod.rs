@@ -16,6 +16,26 @@ load = [{ on = "z-max", pressure = "1 kPa" }]
 method = [{ id = "tet4", family = "fem", element = "tet4", size = { cells = [2, 2, 1] } }]
 "#;
 
+/// A block of 40 x 40 x 20 mm, free to slide, squeezed by 3 mm between two plates; the same state everywhere.
+pub const PRESSED: &str = r#"title = "A block between two plates"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
+support = [{ where = "x == 0 mm", fix = "x" }, { where = "y == 0 mm", fix = "y" }]
+procedure = { kind = "static", steps = 2 }
+tool = [
+    { name = "top", shape = "plate", at = ["20 mm", "20 mm", "20 mm"], along = [0, 0, -1], drive = { closure = "2 mm" }, penalty = "5 MPa/mm" },
+    { name = "base", shape = "plate", at = ["20 mm", "20 mm", "0 mm"], along = [0, 0, 1], drive = { closure = "1 mm" }, penalty = "5 MPa/mm" },
+]
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { cells = [2, 2, 1] } },
+    { id = "tet4-nodal", family = "fem", element = "tet4", dilation = "nodal-mean", size = { cells = [2, 2, 1] } },
+    { id = "tet10-p1", family = "fem", element = "tet10", dilation = "mixed", size = { cells = [2, 2, 1] } },
+    { id = "hex20-mixed", family = "fem", element = "hex20", dilation = "mixed", size = { cells = [1, 1, 1] } },
+    { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "cell-smoothed" }, essential = "penalty" },
+]
+output = { probes = [["20 mm", "20 mm", "20 mm"]] }
+"#;
+
 /// What a finished process left.
 pub struct Done {
     pub code: i32,

@@ -1,0 +1,258 @@
+//! The static procedure from scene files: forces of tools, histories, paths that end early, references step by step.
+
+mod common;
+
+use common::{PRESSED, assert_fails, inside, tissuebench, write};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn objects(stdout: &str) -> Vec<Value> {
+    stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn metric(object: &Value, name: &str) -> f64 {
+    object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))
+}
+
+/// Nominal stress (Pa) of a neo-Hookean bar of E = 20 kPa, nu = 0.45 at stretch `l`, its sides free: with
+/// `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` the side stretch `t` solves `mu (t - 1/t) + lambda ln(l t^2) / t = 0`, and
+/// `P = mu (l - 1/l) + lambda ln(l t^2) / l`.
+fn uniaxial(l: f64) -> f64 {
+    let (mu, lambda) = (20e3 / 2.9, 20e3 * 0.45 / (1.45 * 0.1));
+    let (mut low, mut high) = (0.5f64, 2.0f64);
+    for _ in 0..200 {
+        let t = 0.5 * (low + high);
+        let side = mu * (t - 1.0 / t) + lambda * (l * t * t).ln() / t;
+        if side > 0.0 { high = t } else { low = t }
+    }
+    mu * (l - 1.0 / l) + lambda * (l * low * low).ln() / l
+}
+
+#[test]
+fn plates_push_with_the_force_that_their_closure_takes() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = tissuebench(&["run", &write(&dir, "pressed.toml", PRESSED), "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let objects = objects(&done.stdout);
+    assert_eq!(objects.len(), 5);
+    for object in &objects {
+        let id = object["method"].as_str().unwrap();
+        assert_eq!(object["status"], "ok");
+        let tools = object["tools"].as_array().unwrap();
+        let names: Vec<&str> = tools.iter().map(|t| t["name"].as_str().unwrap()).collect();
+        assert_eq!(names, ["top", "base"]);
+        let closures: Vec<f64> = tools.iter().map(|t| t["closure"].as_f64().unwrap()).collect();
+        assert_eq!(closures, [2e-3, 1e-3]);
+        let force = |k: usize| -> Vec<f64> {
+            tools[k]["force"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+        };
+        // The tissue pushes the upper plate up and the lower one down, by the same force.
+        let (up, down) = (force(0), force(1));
+        assert!(up[2] > 0.0 && (up[2] + down[2]).abs() < 1e-7 * up[2], "{id}: {up:?} {down:?}");
+        assert!(up[0].abs() + up[1].abs() < 1e-9 * up[2], "{id}: {up:?}");
+        // Both penalties give way by the same penetration.
+        let height = 20e-3 - 3e-3 + 2.0 * metric(object, "penetration");
+        let exact = -uniaxial(height / 20e-3) * 1.6e-3;
+        // The cloud's sides are held by penalty at 1e4 E / h.
+        let tolerance = if id == "efg" { 1e-3 } else { 1e-7 };
+        let found = metric(object, "tool-force");
+        assert!((found / exact - 1.0).abs() < tolerance, "{id}: {found} {exact}");
+        assert!((found - up[2]).abs() < 1e-12 * found, "{id}");
+        // Two steps, the first at half of the way.
+        let steps = object["steps"].as_array().unwrap();
+        assert_eq!(steps.len(), 2, "{id}");
+        assert!((steps[0]["load"].as_f64().unwrap() - 0.5).abs() < 1e-15, "{id}");
+        assert!((steps[0]["tools"][0]["closure"].as_f64().unwrap() - 1e-3).abs() < 1e-15, "{id}");
+        let probe = steps[1]["probes"][0][2].as_f64().unwrap();
+        assert!((probe + 2e-3).abs() < 5e-6, "{id}: {probe}");
+        // Stress at the probe: true stress, the nominal one over the section's growth.
+        let stress = object["probes"][0]["stress"][2].as_f64().unwrap();
+        let pushed = uniaxial(height / 20e-3);
+        assert!(stress < 0.0 && stress > pushed, "{id}: {stress} {pushed}");
+    }
+}
+
+#[test]
+fn forces_and_pressures_drive_to_the_closure_that_carries_them() {
+    let dir = tempfile::tempdir().unwrap();
+    // 4 N on the upper plate; and a box larger than the block whose face of 60 x 60 mm has 4 N at 1111 Pa.
+    let force = PRESSED.replace("closure = \"2 mm\"", "force = \"4 N\"");
+    let jaw = "shape = \"rounded-box\", half = [\"30 mm\", \"30 mm\", \"5 mm\"], radius = \"1 mm\", \
+               at = [\"20 mm\", \"20 mm\", \"25 mm\"]";
+    let pressure = PRESSED
+        .replacen("shape = \"plate\", at = [\"20 mm\", \"20 mm\", \"20 mm\"]", jaw, 1)
+        .replace("closure = \"2 mm\"", "pressure = \"1111.1111111111111 Pa\"");
+    let mut closures = Vec::new();
+    for (name, text) in [("force.toml", force), ("pressure.toml", pressure)] {
+        assert_ne!(text, PRESSED);
+        let path = write(&dir, name, &text);
+        let done = tissuebench(&["run", &path, "--format", "json", "--method", "hex8"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let object = &objects(&done.stdout)[0];
+        let found = metric(object, "tool-force");
+        assert!((found - 4.0).abs() < 1e-7, "{name}: {found}");
+        closures.push(metric(object, "closure"));
+    }
+    assert!((closures[0] / closures[1] - 1.0).abs() < 1e-6 && closures[0] > 0.5e-3, "{closures:?}");
+}
+
+/// St. Venant-Kirchhoff never carries more than 0.19 E in compression: 0.3 E is out of its reach.
+const BEYOND: &str = r#"title = "More than the law carries"
+body = { shape = "box", size = ["10 mm", "10 mm", "10 mm"] }
+material = { law = "saint-venant-kirchhoff", young = "20 kPa", poisson = 0.0 }
+support = [{ where = "x == 0 mm", fix = "x" }, { where = "y == 0 mm", fix = "y" }, { where = "z == 0 mm", fix = "z" }]
+load = [{ on = "z-max", pressure = "6 kPa" }]
+procedure = { kind = "static", steps = 10 }
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { cells = [1, 1, 1] } },
+    { id = "tet4", family = "fem", element = "tet4", size = { cells = [1, 1, 1] } },
+]
+"#;
+
+#[test]
+fn a_path_that_ends_early_keeps_what_it_carried_and_exits_with_3() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(&dir, "beyond.toml", BEYOND);
+    let out = inside(&dir, "out");
+    let done = tissuebench(&["run", &scene, "--format", "json", "--method", "hex8", "--out", &out]);
+    assert_fails(&done, 3, "stalled: ");
+    assert!(done.stderr.contains(&format!("{scene}:8: key 'method[0]': stopped at 0.6")), "{}", done.stderr);
+    let object = &objects(&done.stdout)[0];
+    assert_eq!(object["status"], "stalled");
+    assert!(object["message"].as_str().unwrap().contains("stopped at"));
+    // The largest nominal stress is E / (3 sqrt 3) = 0.19245 E, 0.6415 of the load.
+    let carried = metric(object, "load-carried");
+    assert!(carried > 0.6 && carried <= 0.6416, "{carried}");
+    assert_eq!(object["steps"].as_array().unwrap().len(), 6);
+    assert!(metric(object, "cut-backs") >= 6.0);
+    let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
+    let of =
+        |phase: &str| records.lines().filter(|l| l.contains(phase) && l.contains("strain-energy")).count();
+    assert_eq!((of(",step-6,"), of(",step-7,")), (1, 0));
+    let report = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
+    assert!(report.contains("stalled: "), "the report says nothing of it");
+    // The other method's result stands beside it, and a study keeps both.
+    let done = tissuebench(&["run", &scene, "--format", "json"]);
+    assert_eq!((done.code, objects(&done.stdout).len()), (3, 2));
+}
+
+fn run_referenced(dir: &TempDir, text: &str) -> (common::Done, Vec<Value>) {
+    let done = tissuebench(&["run", &write(dir, "referenced.toml", text), "--format", "json"]);
+    let objects = objects(&done.stdout);
+    (done, objects)
+}
+
+#[test]
+fn errors_against_a_method_are_taken_at_equal_steps() {
+    let dir = tempfile::tempdir().unwrap();
+    // A bonded base in place of the lower plate: no longer the same state everywhere, so that methods differ.
+    let slides = "{ where = \"y == 0 mm\", fix = \"y\" }";
+    let bonded = PRESSED.replace(slides, "{ where = \"z == 0 mm\", fix = \"xyz\" }");
+    let bonded: String =
+        bonded.lines().filter(|l| !l.contains("\"base\"")).map(|l| format!("{l}\n")).collect();
+    let text = format!(
+        "{bonded}reference = {{ method = \"hex8\" }}\n[[check]]\nmetric = \"tool-force-error\"\nmethod = \"hex8\"\nat_most = 1e-15\n[[check]]\nmetric = \"tool-force\"\nmethod = \"hex8\"\nat_most = \"1 N\"\n"
+    );
+    let (done, objects) = run_referenced(&dir, &text);
+    // hex8 is its own reference; its force is above 1 N.
+    assert_fails(&done, 1, "FAILED: referenced hex8 tool-force: at most 1e0");
+    assert!(!done.stderr.contains("tool-force-error"), "{}", done.stderr);
+    assert_eq!(
+        (metric(&objects[0], "tool-force-error"), metric(&objects[0], "probe-difference")),
+        (0.0, 0.0)
+    );
+    for other in &objects[1..] {
+        let (force, probe) = (metric(other, "tool-force-error"), metric(other, "probe-difference"));
+        let expected = (metric(other, "tool-force") / metric(&objects[0], "tool-force") - 1.0).abs();
+        assert!((force - expected).abs() < 1e-12 && force > 1e-4 && force < 0.5, "{force} {expected}");
+        assert!(probe > 0.0 && probe < 1e-3, "{probe}");
+        assert!(metric(other, "rms") > 0.0);
+    }
+}
+
+#[test]
+fn a_reference_that_ends_early_is_compared_with_as_far_as_it_came() {
+    let dir = tempfile::tempdir().unwrap();
+    let (done, objects) = run_referenced(&dir, &format!("{BEYOND}reference = {{ method = \"hex8\" }}\n"));
+    assert_fails(&done, 3, "reference stalled: ");
+    for object in &objects {
+        assert_eq!(object["status"], "stalled");
+        assert!(object["metrics"].get("rms").is_none() && object["metrics"].get("max-z").is_some());
+    }
+}
+
+#[test]
+fn bad_static_scenes_name_file_line_and_key() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = "law = \"neo-hookean\", young = \"20 kPa\", poisson = 0.45";
+    for (name, from, to, code, line, says) in [
+        (
+            "no-penalty",
+            "closure = \"2 mm\" }, penalty = \"5 MPa/mm\"",
+            "closure = \"2 mm\" }",
+            2,
+            7,
+            "'tool[0].penalty': is missing",
+        ),
+        (
+            "no-stick",
+            "closure = \"1 mm\" }, ",
+            "closure = \"1 mm\" }, friction = 0.1, ",
+            2,
+            8,
+            "'tool[1].stick': is missing",
+        ),
+        (
+            "mixed-tet4",
+            "\"nodal-mean\"",
+            "\"mixed\"",
+            2,
+            12,
+            "'method[1].dilation': 'mixed' has no stable pressure field",
+        ),
+        (
+            "share",
+            law,
+            "law = \"neo-hookean\", young = \"20 kPa\", poisson = 0.45, share = 0.1",
+            2,
+            3,
+            "'material.share'",
+        ),
+        ("linear", "kind = \"static\"", "kind = \"linear\"", 2, 3, "'neo-hookean' is a law of large strain"),
+        (
+            "tool-linear",
+            "procedure = { kind = \"static\", steps = 2 }\n",
+            "",
+            2,
+            7,
+            "'top' touches the body, but the procedure is linear",
+        ),
+        (
+            "multipliers",
+            "essential = \"penalty\"",
+            "essential = \"multipliers\"",
+            3,
+            15,
+            "'method[4].essential': 'multipliers' a support by multipliers in a static procedure is not available",
+        ),
+        (
+            "nitsche",
+            "essential = \"penalty\"",
+            "essential = \"nitsche\"",
+            3,
+            15,
+            "'method[4].essential': 'nitsche' Nitsche's method in a static",
+        ),
+    ] {
+        let text = PRESSED.replacen(from, to, 1);
+        assert_ne!(text, PRESSED, "{name}");
+        let path = write(&dir, &format!("{name}.toml"), &text);
+        for command in ["run", "plan"] {
+            let done = tissuebench(&[command, &path]);
+            assert_fails(&done, code, says);
+            // Leaving out the line of the procedure moves those below it up.
+            let line = if name == "tool-linear" { line - 1 } else { line };
+            assert!(done.stderr.contains(&format!("{path}:{line}:")), "{name}: {}", done.stderr);
+        }
+    }
+}
