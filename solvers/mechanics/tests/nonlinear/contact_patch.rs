@@ -83,14 +83,12 @@ fn pressure_between_flat_plates_is_uniform() {
 
 #[test]
 fn friction_holds_the_sides_and_forces_balance() {
-    // Without the mixed method: its iterations take full steps, and where all points slide from the touch on they end
-    // in a cycle.
-    for method in METHODS.into_iter().filter(|m| m.1 != Projection::Mixed) {
+    for method in METHODS {
         let model = Model::block(method, [3, 2, 2]);
         let name = format!("{method:?}");
         let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.45).unwrap());
         let free = press(&model, &law, ContactLaw::frictionless(PENALTY).unwrap(), &name).0;
-        let rough = press(&model, &law, ContactLaw::coulomb(PENALTY, 0.3, PENALTY).unwrap(), &name).0;
+        let rough = press(&model, &law, ContactLaw::coulomb(PENALTY, 0.3, 0.1 * PENALTY).unwrap(), &name).0;
         let force = |path: &StaticPath, k: usize| path.steps.last().unwrap().tools[k].force;
         let (below, above) = (force(&rough, 0), force(&rough, 1));
         // The walls take x and y, nothing else takes z.
@@ -102,7 +100,8 @@ fn friction_holds_the_sides_and_forces_balance() {
             assert!(sideways > 0.05 * above.z && sideways <= 0.3 * above.z, "{name}: {force}");
         }
         // Held sides make the block stiffer, by less than sides that never slip.
-        let bonded = press(&model, &law, ContactLaw::coulomb(PENALTY, 100.0, PENALTY).unwrap(), &name).0;
+        let bonded =
+            press(&model, &law, ContactLaw::coulomb(PENALTY, 100.0, 0.1 * PENALTY).unwrap(), &name).0;
         let [free, rough, bonded] = [&free, &rough, &bonded].map(|p| force(p, 1).z);
         assert!(1.01 * free < rough && 1.01 * rough < bonded, "{name}: {free} {rough} {bonded}");
     }
