@@ -10,6 +10,17 @@
 //!
 //! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its residual,
 //! and results have the same bits at any number of threads.
+//!
+//! Beyond small strain a [`Solid`] is the same quadrature with a [`Law`] and a [`Dilation`] (standard, by groups, or
+//! mixed with a pressure of its own). Three procedures share its forces:
+//!
+//! ```text
+//! StaticProblem --solve_static--> StaticPath     Newton with load steps, tools, friction
+//! TimeProblem --solve_in_time--> TimePath        generalised-alpha, or creep and relaxation without inertia
+//! ExplicitBody --InternalForce--> Dynamics       central difference, dynamic relaxation
+//! ```
+//!
+//! A path that ends early keeps what it carried and says why.
 
 // `!(x > 0.0)` refuses a NaN, `x <= 0.0` would let it pass.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
