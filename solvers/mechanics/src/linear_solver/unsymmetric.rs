@@ -11,12 +11,6 @@ use crate::SolveError;
 /// Krylov vectors kept; the skew part has the rank of the sliding points at most, and a coefficient of friction of
 /// 0.15 needs about 10.
 const KRYLOV: usize = 40;
-/// Relative residual at which the iteration stops: Newton's method gains seven digits per step at most, with sliding
-/// friction as everywhere, and 1e-11 took twice as many solves.
-const GOAL: f64 = 1e-7;
-/// Relative residual that is still taken; above it LU does the step.
-const LIMIT: f64 = 1e-6;
-
 /// A factored symmetric matrix and a few unsymmetric entries `(row, column, value)` on top of it.
 ///
 /// Solved by GMRES (Saad & Schultz 1986) with the symmetric factor as the preconditioner; by sparse LU with partial
@@ -40,34 +34,34 @@ impl Unsymmetric {
         }
     }
 
-    /// Solves in place and returns the relative residual.
-    pub fn solve(&self, b: &mut [f64]) -> Result<f64, SolveError> {
+    /// Solves in place to a relative residual of `goal`, or ten times that, and returns it; by LU where that fails.
+    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<f64, SolveError> {
         let size = norm(b);
         if size == 0.0 {
             return Ok(0.0);
         }
         let mut x = vec![0.0; b.len()];
         let mut residual = 1.0;
-        // Restarted once: the second round works on what rounding left of the first.
+        // Restarted twice: a round works on what rounding, or the number of vectors, left of the one before.
         for _ in 0..3 {
             let mut rest = b.to_vec();
             self.subtract_product(&x, &mut rest);
             residual = norm(&rest) / size;
-            if residual <= GOAL || !residual.is_finite() {
+            if residual <= goal || !residual.is_finite() {
                 break;
             }
-            let step = self.gmres(&rest)?;
+            let step = self.gmres(&rest, goal / residual)?;
             x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         }
-        if residual <= LIMIT {
+        if residual <= 10.0 * goal {
             b.copy_from_slice(&x);
             return Ok(residual);
         }
         self.direct(b)
     }
 
-    /// One cycle: the x in the Krylov space of `A M^-1` that makes `|rest - A x|` least.
-    fn gmres(&self, rest: &[f64]) -> Result<Vec<f64>, SolveError> {
+    /// One cycle, until the residual is `goal` times that of the start: the x in the Krylov space of `A M^-1` that makes `|rest - A x|` least.
+    fn gmres(&self, rest: &[f64], goal: f64) -> Result<Vec<f64>, SolveError> {
         let size = norm(rest);
         let mut basis: Vec<Vec<f64>> = vec![rest.iter().map(|r| r / size).collect()];
         let mut preconditioned: Vec<Vec<f64>> = Vec::new();
@@ -99,7 +93,7 @@ impl Unsymmetric {
             columns.push(h);
             right.push(-s * right[k]);
             right[k] *= c;
-            if right[k + 1].abs() <= GOAL * 0.1 * size || !(next > 0.0) {
+            if right[k + 1].abs() <= 0.5 * goal * size || !(next > 0.0) {
                 break;
             }
             basis.push(w.iter().map(|w| w / next).collect());
