@@ -143,7 +143,7 @@ fn run(args: &RunArgs) -> u8 {
                     set.checks.push(check::judge(check, &case, &method.id, value));
                 }
                 if let Some(failure) = &outcome.stalled {
-                    eprintln!("stalled: {failure} (method '{}')", method.id);
+                    eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
                     set.failures.push(stalled(&outcome, failure));
                     code = code.max(failure.exit_code());
                 }
@@ -190,7 +190,7 @@ pub(crate) fn stalled(outcome: &Outcome, failure: &Failure) -> reports::Failure 
     reports::Failure {
         case: outcome.identity.case.clone(),
         method: outcome.identity.method.clone(),
-        reason: format!("stalled: {failure}"),
+        reason: format!("{}: {failure}", outcome.status),
     }
 }
 

@@ -23,6 +23,9 @@ pub enum Failure {
     /// A static procedure carried nothing.
     #[error(transparent)]
     Static(Box<mechanics::StaticError>),
+    /// Explicit dynamics could not start or go on.
+    #[error(transparent)]
+    Explicit(#[from] mechanics::ExplicitError),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -91,7 +94,11 @@ impl Failure {
             Failure::Scene(error) => error.kind,
             Failure::At(finding) => finding.kind,
             Failure::Input(_) => ErrorKind::Invalid,
-            Failure::Efg(_) | Failure::Solve(_) | Failure::Static(_) | Failure::Run(_) => ErrorKind::NotRun,
+            Failure::Efg(_)
+            | Failure::Solve(_)
+            | Failure::Static(_)
+            | Failure::Explicit(_)
+            | Failure::Run(_) => ErrorKind::NotRun,
         }
     }
 
@@ -100,6 +107,18 @@ impl Failure {
         match self.kind() {
             ErrorKind::Invalid => 2,
             ErrorKind::NotAvailable | ErrorKind::NotRun => 3,
+        }
+    }
+
+    /// The status of a run that this ended early, its numbers kept up to there.
+    pub fn early_status(&self) -> &'static str {
+        use mechanics::ExplicitError::{ContactAt, Inverted, InvertedAt, LightTool, NotFinite, StepTooLarge};
+        match self {
+            Failure::Explicit(Inverted(_) | InvertedAt { .. }) => "inverted",
+            Failure::Explicit(StepTooLarge { .. }) => "step-too-large",
+            Failure::Explicit(NotFinite { .. }) => "not-finite",
+            Failure::Explicit(ContactAt { .. } | LightTool { .. }) => "contact-lost",
+            _ => "stalled",
         }
     }
 

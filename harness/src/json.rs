@@ -11,8 +11,9 @@ use crate::work::Work;
 pub struct RunObject<'a> {
     scene: &'a str,
     method: &'a str,
-    /// `ok`; `stalled` for a static path that ended early, whose numbers are those of the load it carried; or what kind of
-    /// failure: `bad-input`, `not-available` or `could-not-run`.
+    /// `ok`; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
+    /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
+    /// or `could-not-run`.
     status: &'static str,
     /// Why it failed or ended early, with file, line and key; absent on success.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,6 +60,9 @@ struct StepObject<'a> {
     tools: Vec<ToolObject<'a>>,
     /// Displacement at the probes, m.
     probes: Vec<[f64; 3]>,
+    /// Time and energies in dynamics.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    metrics: BTreeMap<&'a str, Number>,
 }
 
 fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
@@ -86,7 +90,7 @@ impl<'a> RunObject<'a> {
         RunObject {
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
-            status: if outcome.stalled.is_some() { "stalled" } else { "ok" },
+            status: outcome.status,
             message: outcome.stalled.as_ref().map(ToString::to_string),
             nodes: outcome.size.nodes,
             elements: outcome.size.elements,
@@ -120,6 +124,11 @@ impl<'a> RunObject<'a> {
                     iterations: step.iterations,
                     tools: tools(&outcome.tools, step),
                     probes: step.probes.iter().map(|&u| u.into()).collect(),
+                    metrics: step
+                        .more
+                        .iter()
+                        .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
+                        .collect(),
                 })
                 .collect(),
             plan: &outcome.plan,

@@ -10,6 +10,7 @@ pub mod cli;
 pub mod command;
 pub mod discretise;
 pub mod error;
+pub mod explicit;
 mod grading;
 pub mod group;
 pub mod json;

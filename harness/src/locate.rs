@@ -2,7 +2,7 @@
 
 use cases::scene::{Cloud, ErrorKind, Family, Scene, SupportRule};
 use efg::EfgError;
-use mechanics::{SolveError, StaticError};
+use mechanics::{ExplicitError, SolveError, StaticError};
 
 use crate::Failure;
 use crate::error::{Finding, Key};
@@ -19,6 +19,7 @@ impl Scenario<'_> {
             Failure::Efg(error) => self.of_cloud(&error),
             Failure::Solve(error) => self.of_solve(&error),
             Failure::Static(error) => self.of_static(&error),
+            Failure::Explicit(error) => self.of_explicit(&error),
         };
         let key = self.key(&finding.key);
         let help = finding.help.as_deref();
@@ -85,6 +86,25 @@ impl Scenario<'_> {
             }
             _ => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
         }
+    }
+
+    fn of_explicit(&self, error: &ExplicitError) -> Finding {
+        let given = self.scene.procedure.explicit.step.is_some();
+        let (key, help) = match error {
+            ExplicitError::StepTooLarge { .. } if given => {
+                (Key::Scene("procedure.step".into()), "leave it out: the step then follows the critical one")
+            }
+            ExplicitError::StepTooLarge { .. } => {
+                (Key::Method(""), "procedure.safety = 0.7 leaves more room")
+            }
+            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool-mass"),
+            ExplicitError::ContactAt { .. } => (Key::Scene("tool".into()), ""),
+            ExplicitError::InvertedAt { .. } => {
+                (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")
+            }
+            _ => (Key::Method(""), ""),
+        };
+        finding(ErrorKind::NotRun, key, error.to_string(), help)
     }
 
     fn of_solve(&self, error: &SolveError) -> Finding {

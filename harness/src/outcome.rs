@@ -81,6 +81,17 @@ pub struct ToolStep {
     pub penetration: f64,
 }
 
+impl ToolStep {
+    /// Where every tool starts.
+    pub const UNTOUCHED: ToolStep = ToolStep {
+        closure: 0.0,
+        force: Vector3::new(0.0, 0.0, 0.0),
+        pushed: 0.0,
+        active: 0,
+        penetration: 0.0,
+    };
+}
+
 /// The end of a load step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadStep {
@@ -98,6 +109,8 @@ pub struct LoadStep {
     pub probes: Vec<Vector3>,
     /// Errors against the reference at the same step.
     pub against: Vec<Metric>,
+    /// What else the procedure tells: time and energies in dynamics.
+    pub more: Vec<Metric>,
 }
 
 /// One stage of a plan.
@@ -153,11 +166,14 @@ pub struct Outcome {
     pub work: Work,
     /// Names of the tools.
     pub tools: Vec<String>,
-    /// The last converged state of a static procedure.
+    /// The last state told: converged in a static procedure, recorded in dynamics.
     pub last: Option<LoadStep>,
-    /// The load steps of a static procedure, as far as it came.
+    /// The load steps of a static procedure or the recorded states of dynamics, as far as it came.
     pub steps: Vec<LoadStep>,
-    /// Why a static procedure ended early; its numbers are then those of the load it carried.
+    /// `ok`, or how a run ended early: `stalled` in a static procedure; `inverted`, `step-too-large`, `not-finite` or
+    /// `contact-lost` in dynamics.
+    pub status: &'static str,
+    /// Why it ended early; its numbers are then those of the load it carried.
     pub stalled: Option<Failure>,
 }
 
@@ -217,13 +233,15 @@ impl Outcome {
             push("load-carried", "1", step.load);
             push("strain-energy", "J", step.strain_energy);
             push("smallest-j", "1", step.smallest_j);
-            push("newton-iterations", "1", step.iterations as f64);
+            if step.iterations > 0 {
+                push("newton-iterations", "1", step.iterations as f64);
+            }
             for (index, tool) in step.tools.iter().enumerate() {
                 push(&of_tool("closure", index), "m", tool.closure);
                 push(&of_tool("tool-force", index), "N", tool.pushed);
                 push(&of_tool("contact-points", index), "1", tool.active as f64);
             }
-            for metric in &step.against {
+            for metric in step.more.iter().chain(&step.against) {
                 push(&metric.name, metric.unit, metric.value);
             }
         }

@@ -62,10 +62,26 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             format!("{} regions", setup.materials.len())
         },
     );
-    add("mass", false, "static".into());
+    let explicit = setup.explicit.as_ref();
+    add("mass", explicit.is_some(), if explicit.is_some() { "lumped".into() } else { "static".into() });
     let steps = setup.statics.map(|params| params.steps);
-    let stiffness = if steps.is_some() { "the tangent of every iteration" } else { "linear static" };
-    add("stiffness", true, stiffness.into());
+    let stiffness = match (explicit.is_some(), steps.is_some()) {
+        (true, _) => "explicit: forces alone",
+        (_, true) => "the tangent of every iteration",
+        (_, false) => "linear static",
+    };
+    add("stiffness", explicit.is_none(), stiffness.into());
+    add(
+        "time steps",
+        explicit.is_some(),
+        match explicit {
+            None => "static".into(),
+            Some(e) => match e.step {
+                Some(step) => format!("{} s in steps of {step:e} s", e.duration),
+                None => format!("{} s in steps of {} of the critical one", e.duration, e.safety),
+            },
+        },
+    );
     add(
         "supports by elimination",
         cloud.is_none() && !setup.held.is_empty(),
@@ -84,6 +100,10 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     };
     add("weak supports", weak.0, weak.1);
     match steps {
+        None if explicit.is_some() => {
+            add("factorisation", false, "explicit: the mass is diagonal".into());
+            add("Newton iterations", false, "explicit".into());
+        }
         None => {
             add("factorisation", true, "one, for all load levels".into());
             add("Newton iterations", false, "linear".into());

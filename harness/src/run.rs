@@ -9,6 +9,7 @@ use reports::SurfaceField;
 
 use crate::Failure;
 use crate::discretise::Discretisation;
+use crate::explicit::{self, Motion};
 use crate::norms::{self, difference, exact_at, norms};
 use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
 use crate::prepare::{Prepared, prepare};
@@ -82,6 +83,8 @@ struct Solution {
     info: Option<SolveInfo>,
     /// Of a static procedure.
     path: Option<Path>,
+    /// Of dynamics.
+    motion: Option<Motion>,
 }
 
 /// Runs one method.
@@ -106,6 +109,11 @@ pub fn run(
     let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
     let mut phases = timings.summaries();
     phases.push(("total", timings.total()));
+    if let (true, Some((_, solve))) = (work.time_steps > 0, phases.iter().find(|(name, _)| *name == "solve"))
+    {
+        let each = 1.0 / (work.time_steps as f64 * method.mesh().cell_count() as f64);
+        phases.push(("element-step", solve.times(each)));
+    }
 
     let size = Size {
         nodes: method.nodes().len() as u64,
@@ -117,13 +125,16 @@ pub fn run(
     let u = solution.u.clone();
     let mut metrics = Vec::new();
     // A path that ended early is compared with the reference step by step, not at its end.
-    let finished = solution.path.as_ref().is_none_or(|path| path.failure.is_none());
+    let finished = solution.path.as_ref().is_none_or(|path| path.failure.is_none())
+        && solution.motion.as_ref().is_none_or(|motion| motion.failure.is_none());
     let at_end = Asks { reference: asks.reference.filter(|r| finished && r.finished), ..*asks };
     measure(&mut metrics, method, setup, &prepared, &solution, field, &at_end)?;
-    let (last, steps, stalled) = match solution.path {
-        Some(path) => history(&mut metrics, method, &prepared, path, asks)?,
-        None => (None, Vec::new(), None),
+    let (last, steps, stalled) = match (solution.path, solution.motion) {
+        (Some(path), _) => history(&mut metrics, method, &prepared, path.into(), asks)?,
+        (None, Some(motion)) => history(&mut metrics, method, &prepared, motion.into(), asks)?,
+        (None, None) => (None, Vec::new(), None),
     };
+    let status = stalled.as_ref().map_or("ok", Failure::early_status);
     let tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     let probes = probes(method, setup, &prepared, &u, asks.probes)?;
     if let (Some(exact), Some(probe)) = (&setup.exact, probes.first()) {
@@ -158,6 +169,7 @@ pub fn run(
         tools,
         last,
         steps,
+        status,
         stalled,
     };
     Ok(Solved { outcome, prepared, u })
@@ -173,7 +185,13 @@ fn solve_once(
     if let Some(params) = &setup.statics {
         let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, &mut work))?;
         let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
-        let solution = Solution { u, dofs, residual, info: None, path: Some(path) };
+        let solution = Solution { u, dofs, residual, info: None, path: Some(path), motion: None };
+        return Ok((prepared, solution, work));
+    }
+    if let Some(params) = &setup.explicit {
+        let motion = timings.time("solve", || explicit::solve(setup, params, &prepared, &mut work))?;
+        let (u, dofs) = (motion.u.clone(), motion.dofs);
+        let solution = Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion) };
         return Ok((prepared, solution, work));
     }
     let solution = {
@@ -185,7 +203,7 @@ fn solve_once(
         work.factorisations += 1;
         let mechanics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
         work.solves += 1;
-        Solution { u, dofs: info.dofs, residual: info.residual, info: Some(info), path: None }
+        Solution { u, dofs: info.dofs, residual: info.residual, info: Some(info), path: None, motion: None }
     };
     Ok((prepared, solution, work))
 }
@@ -279,13 +297,16 @@ fn measure(
     }
     push(metrics, "max", field.iter().fold(0.0, |m: f64, u| m.max(u.norm())), "m");
     push(metrics, "targets-outside", outside as f64, "1");
-    let energy = match &solution.path {
-        Some(path) => path.last.strain_energy,
-        None => mechanics::strain_energy(&body, &solution.u)?,
+    let energy = match (&solution.path, &solution.motion) {
+        (Some(path), _) => path.last.strain_energy,
+        (_, Some(motion)) => motion.last.strain_energy,
+        (None, None) => mechanics::strain_energy(&body, &solution.u)?,
     };
     push(metrics, "strain-energy", energy, "J");
     push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
-    push(metrics, "residual", solution.residual, "1");
+    if solution.motion.is_none() {
+        push(metrics, "residual", solution.residual, "1");
+    }
     if let Some(info) = &solution.info {
         push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
     }
@@ -310,7 +331,33 @@ fn measure(
     Ok(())
 }
 
-/// What a static path left: its last state, its load steps with their errors against the reference's, and why it ended
+/// A procedure in steps, as it came out of its solver.
+struct Course {
+    steps: Vec<LoadStep>,
+    fields: Vec<Vec<Vector3>>,
+    last: LoadStep,
+    metrics: Vec<Metric>,
+    failure: Option<Failure>,
+}
+
+impl From<Path> for Course {
+    fn from(path: Path) -> Course {
+        let Path { steps, fields, last, iterations, cut_backs, failure, .. } = path;
+        let mut metrics = Vec::new();
+        push(&mut metrics, "newton-iterations", iterations as f64, "1");
+        push(&mut metrics, "cut-backs", cut_backs as f64, "1");
+        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
+    }
+}
+
+impl From<Motion> for Course {
+    fn from(motion: Motion) -> Course {
+        let Motion { steps, fields, last, metrics, failure, .. } = motion;
+        Course { steps, fields, last, metrics, failure: failure.map(Failure::Explicit) }
+    }
+}
+
+/// What a procedure in steps left: its last state, its load steps with their errors against the reference's, and why it ended
 /// early.
 type History = (Option<LoadStep>, Vec<LoadStep>, Option<Failure>);
 
@@ -318,15 +365,14 @@ fn history(
     metrics: &mut Vec<Metric>,
     method: &Discretisation,
     prepared: &Prepared,
-    path: Path,
+    course: Course,
     asks: &Asks,
 ) -> Result<History, Failure> {
-    let Path { mut steps, fields, last, iterations, cut_backs, failure, .. } = path;
+    let Course { mut steps, fields, last, metrics: of_procedure, failure } = course;
     push(metrics, "load-carried", last.load, "1");
     push(metrics, "smallest-j", last.smallest_j, "1");
     push(metrics, "load-steps", steps.len() as f64, "1");
-    push(metrics, "newton-iterations", iterations as f64, "1");
-    push(metrics, "cut-backs", cut_backs as f64, "1");
+    metrics.extend(of_procedure);
     for (index, tool) in last.tools.iter().enumerate() {
         push(metrics, &of_tool("closure", index), tool.closure, "m");
         push(metrics, &of_tool("tool-force", index), tool.pushed, "N");
@@ -349,7 +395,7 @@ fn history(
             metrics.extend(end.against.iter().cloned());
         }
     }
-    Ok((Some(last), steps, failure.map(Failure::from)))
+    Ok((Some(last), steps, failure))
 }
 
 /// Errors of one step against the reference's at the same part of the load: of every tool's force, relative, and the
@@ -395,7 +441,7 @@ fn probes(
     }
     let rows = method.gradients_at(&prepared.volume, points)?;
     // Stresses at probes are pointwise, of the first region's law unless the body has one only.
-    let stress = if setup.statics.is_none() {
+    let stress = if setup.statics.is_none() && setup.explicit.is_none() {
         mechanics::stress(&rows, u, &setup.materials, &[])?
     } else {
         rows.displacement_gradients(u).iter().map(|h| cauchy(&setup.laws[0], h)).collect()

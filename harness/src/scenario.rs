@@ -9,6 +9,7 @@ use mechanics::{Law, LinearElastic, NewtonParams, StaticParams};
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
 use crate::error::Key;
+use crate::explicit::ExplicitParams;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
@@ -130,6 +131,24 @@ impl Scenario<'_> {
             smallest: SMALLEST,
             newton: NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations },
             augmentations: newton.augmentations,
+        })
+    }
+
+    fn explicit(&self) -> Option<ExplicitParams> {
+        let procedure = self.scene.procedure;
+        let asked = procedure.explicit;
+        let duration = procedure.duration.filter(|_| procedure.kind == ProcedureKind::Explicit)?;
+        let materials =
+            std::iter::once(&self.scene.material).chain(self.scene.regions.iter().map(|r| &r.material));
+        Some(ExplicitParams {
+            duration,
+            states: procedure.steps,
+            damping: asked.damping,
+            safety: asked.safety,
+            step: asked.step,
+            tool_mass: asked.tool_mass,
+            density: materials.map(|m| m.density().unwrap_or(f64::NAN)).collect(),
+            over: self.scene.tools.iter().map(|t| t.over.unwrap_or(duration)).collect(),
         })
     }
 
@@ -334,8 +353,8 @@ impl Scenario<'_> {
                 Ok(Acting { key: format!("load[{index}]"), place: load.place.clone(), applied })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        let (tools, statics) = (tools(self.scene)?, self.statics());
-        Ok(Setup { laws, materials, held, loads, tools, statics, exact })
+        let (tools, statics, explicit) = (tools(self.scene)?, self.statics(), self.explicit());
+        Ok(Setup { laws, materials, held, loads, tools, statics, explicit, exact })
     }
 
     /// The scene's exact solution for this run's material; `None` where the scene names none.

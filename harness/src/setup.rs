@@ -4,6 +4,7 @@ use cases::exact::Exact;
 use geometry::{Point3, Vector3};
 use mechanics::{Law, LinearElastic, StaticParams};
 
+use crate::explicit::ExplicitParams;
 use crate::place::Place;
 use crate::tools::SetTool;
 
@@ -58,8 +59,10 @@ pub struct Setup {
     pub loads: Vec<Acting>,
     /// Rigid tools.
     pub tools: Vec<SetTool>,
-    /// How a static procedure is stepped; `None` for a linear one.
+    /// How a static procedure is stepped; `None` for another one.
     pub statics: Option<StaticParams>,
+    /// How explicit dynamics is stepped; `None` for another procedure.
+    pub explicit: Option<ExplicitParams>,
     /// The exact solution, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
 }

@@ -123,5 +123,6 @@ fn told(step: &Step, setup: &Setup) -> LoadStep {
         iterations: solves(step),
         probes: Vec::new(),
         against: Vec::new(),
+        more: Vec::new(),
     }
 }

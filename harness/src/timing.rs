@@ -53,6 +53,11 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Times a factor.
+    pub fn times(&self, factor: f64) -> Summary {
+        Summary { median: self.median * factor, spread: self.spread * factor, min: self.min * factor }
+    }
+
     /// Quantiles by linear interpolation between order statistics; zero for no samples.
     fn of(samples: &[f64]) -> Summary {
         let mut sorted = samples.to_vec();

@@ -33,6 +33,10 @@ pub struct Work {
     pub contact_evaluations: u64,
     /// Of these, skipped whole: no point near the tool.
     pub contact_skips: u64,
+    /// Nodes given a lumped mass.
+    pub mass_nodes: u64,
+    /// Time steps made.
+    pub time_steps: u64,
     /// Linear systems of Newton's method on the way to converged steps.
     pub newton_iterations: u64,
     /// Stiffness matrices assembled; in a static procedure those of converged steps.
@@ -55,6 +59,8 @@ impl Work {
             "shape functions" => self.volume_rows,
             "volumetric projection" => self.dilation_groups + self.pressure_parameters,
             "elasticity tensor per region" => self.point_laws,
+            "mass" => self.mass_nodes,
+            "time steps" => self.time_steps,
             "stiffness" => self.assemblies,
             "supports by elimination" => self.fixed_dofs,
             "weak supports" => self.flux_rows + self.multiplier_rows,
@@ -84,6 +90,8 @@ impl AddAssign for Work {
         self.friction_points += other.friction_points;
         self.contact_evaluations += other.contact_evaluations;
         self.contact_skips += other.contact_skips;
+        self.mass_nodes += other.mass_nodes;
+        self.time_steps += other.time_steps;
         self.newton_iterations += other.newton_iterations;
         self.assemblies += other.assemblies;
         self.factorisations += other.factorisations;

@@ -22,8 +22,9 @@ impl Scene {
             }
         }
         let kind = self.procedure.kind;
-        if !matches!(kind, ProcedureKind::Linear | ProcedureKind::Static) {
-            let help = "kind = \"linear\" and \"static\" are";
+        let explicit = kind == ProcedureKind::Explicit;
+        if kind == ProcedureKind::ImplicitDynamic {
+            let help = "kind = \"linear\", \"static\" and \"explicit\" are";
             add("procedure.kind", format!("the {} procedure", kind.name()), help);
         }
         for (i, method) in self.methods.iter().enumerate() {
@@ -34,7 +35,16 @@ impl Scene {
                         "procedure = { kind = \"static\" } has it, with the linear law in one step too";
                     add(&at("dilation"), "dilation = \"mixed\" in a linear procedure".into(), help);
                 }
+                Family::Fem(fem) if explicit && fem.dilation == Dilation::Mixed => {
+                    let help = "\"element-mean\" and \"nodal-mean\" are: their dilation needs no system of equations";
+                    add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
+                }
                 Family::Fem(_) => {}
+                Family::Efg(_) if explicit => {
+                    let help = "elements are: lumped parameters of smooth kernels have slow modes that no cloud has, and \
+                                parameters at supports are not displacements";
+                    add(&at("family"), "a cloud in explicit dynamics".into(), help);
+                }
                 Family::Efg(efg) => {
                     if efg.dilation == Dilation::Mixed {
                         let help = "\"element-mean\" and \"nodal-mean\" are";
@@ -48,6 +58,16 @@ impl Scene {
                     };
                     add(&at("essential"), what.into(), "essential = \"penalty\" is");
                 }
+            }
+        }
+        if explicit {
+            let prony = std::iter::once(("material".to_string(), &self.prony));
+            let regions = self.regions.iter().enumerate();
+            for (key, _) in prony
+                .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.prony)))
+                .filter(|(_, prony)| !prony.is_empty())
+            {
+                add(&format!("{key}.prony"), "relaxation in explicit dynamics".into(), "leave it out");
             }
         }
         if let Some(Reference::Record(_)) = &self.reference {

@@ -31,8 +31,12 @@ pub enum Needs {
     Levels,
     /// A transfer.
     Transfer,
+    /// A static procedure or dynamics.
+    Steps,
     /// A static procedure.
     Static,
+    /// Explicit dynamics.
+    Explicit,
     /// A tool.
     Tool,
     /// A tool, and a method as `[reference]`.
@@ -99,20 +103,23 @@ impl Metric {
             "error of the first tool's force over that of the reference method, at the end",
         ),
         metric("penetration", Dimension::Length, Needs::Tool, "deepest penetration of a tool"),
-        metric(
-            "load-carried",
-            Dimension::None,
-            Needs::Static,
-            "part of the loading that was carried, 0 to 1",
-        ),
+        metric("load-carried", Dimension::None, Needs::Steps, "part of the loading that was carried, 0 to 1"),
         metric(
             "smallest-j",
             Dimension::None,
-            Needs::Static,
+            Needs::Steps,
             "smallest volume ratio J of all quadrature points",
         ),
         metric("newton-iterations", Dimension::None, Needs::Static, "Newton iterations of all steps"),
         metric("cut-backs", Dimension::None, Needs::Static, "load steps that failed and were cut"),
+        metric("time-steps", Dimension::None, Needs::Explicit, "time steps made"),
+        metric("critical-step", Dimension::Time, Needs::Explicit, "smallest critical time step estimated"),
+        metric(
+            "energy-drift",
+            Dimension::None,
+            Needs::Explicit,
+            "largest error of the energy balance over its largest term",
+        ),
         metric("max-x", Dimension::Length, Needs::Run, "largest displacement along x, either way"),
         metric("max-y", Dimension::Length, Needs::Run, "largest displacement along y, either way"),
         metric("max-z", Dimension::Length, Needs::Run, "largest displacement along z, either way"),

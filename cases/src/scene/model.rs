@@ -192,6 +192,14 @@ impl Material {
         }
     }
 
+    /// Density in kilograms per cubic metre, where one is given.
+    pub fn density(&self) -> Option<f64> {
+        match self {
+            Material::MooneyRivlin { density, .. } | Material::Ogden { density, .. } => *density,
+            _ => self.elastic().and_then(|e| e.density),
+        }
+    }
+
     /// Young's modulus, Poisson's ratio and density, for the laws that have them.
     pub fn elastic(&self) -> Option<&Elastic> {
         match self {

@@ -30,17 +30,40 @@ impl ProcedureKind {
 }
 
 /// How the scene is stepped. In a static procedure loads, prescribed displacements and drives of tools grow in proportion
-/// over its steps; loads are dead loads, per undeformed area and volume and of fixed direction.
+/// over its steps, in dynamics over its duration (a tool may have a ramp of its own); loads are dead loads, per undeformed
+/// area and volume and of fixed direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
     /// Its kind; linear where the file has no `[procedure]`.
     pub kind: ProcedureKind,
-    /// Equal load steps at whose ends results are told, 1 unless given. A step that fails is halved on the way.
+    /// Equal load steps at whose ends results are told, 1 unless given: a static step that fails is halved on the way, and
+    /// dynamics takes as many time steps as it needs.
     pub steps: usize,
     /// End of the time axis in seconds (dynamics).
     pub duration: Option<f64>,
     /// How a static step is solved.
     pub newton: Newton,
+    /// How explicit dynamics is stepped.
+    pub explicit: Explicit,
+}
+
+/// How explicit dynamics is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explicit {
+    /// Mass-proportional damping of body and tools in one per second.
+    pub damping: f64,
+    /// Time step over the critical one.
+    pub safety: f64,
+    /// Time step in seconds; from the critical one if the file gives none.
+    pub step: Option<f64>,
+    /// Mass of a tool that a force drives, over the body's.
+    pub tool_mass: f64,
+}
+
+impl Explicit {
+    /// Where the file says nothing. A tool of a tenth of the body's mass hardly slows its motion and is heavy enough for the
+    /// steps that a soft body takes.
+    pub const STANDARD: Explicit = Explicit { damping: 0.0, safety: 0.9, step: None, tool_mass: 0.1 };
 }
 
 /// How a static step is solved.

@@ -30,6 +30,8 @@ pub enum Dimension {
     ContactSlope,
     /// One per metre.
     Curvature,
+    /// One per second.
+    Rate,
     /// Radians.
     Angle,
     /// Joules.
@@ -39,7 +41,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    const ALL: [Dimension; 12] = [
+    const ALL: [Dimension; 13] = [
         Dimension::Length,
         Dimension::Pressure,
         Dimension::Density,
@@ -49,6 +51,7 @@ impl Dimension {
         Dimension::BodyForce,
         Dimension::ContactSlope,
         Dimension::Curvature,
+        Dimension::Rate,
         Dimension::Angle,
         Dimension::Energy,
         Dimension::None,
@@ -65,6 +68,7 @@ impl Dimension {
             Dimension::Time => [0, 0, 1, 0],
             Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0],
             Dimension::Curvature => [-1, 0, 0, 0],
+            Dimension::Rate => [0, 0, -1, 0],
             Dimension::Angle => [0, 0, 0, 1],
             Dimension::Energy => [2, 1, -2, 0],
             Dimension::None => [0, 0, 0, 0],
@@ -83,6 +87,7 @@ impl Dimension {
             Dimension::BodyForce => "force per volume",
             Dimension::ContactSlope => "pressure per length",
             Dimension::Curvature => "curvature",
+            Dimension::Rate => "rate",
             Dimension::Angle => "angle",
             Dimension::Energy => "energy",
             Dimension::None => "number",
@@ -101,6 +106,7 @@ impl Dimension {
             Dimension::BodyForce => "N/m^3",
             Dimension::ContactSlope => "Pa/m",
             Dimension::Curvature => "1/m",
+            Dimension::Rate => "1/s",
             Dimension::Angle => "rad",
             Dimension::Energy => "J",
             Dimension::None => "1",
@@ -119,6 +125,7 @@ impl Dimension {
             Dimension::BodyForce => &["N/m^3", "kN/m^3", "N/mm^3"],
             Dimension::ContactSlope => &["MPa/mm", "kPa/mm", "Pa/m", "N/mm^3"],
             Dimension::Curvature => &["/m", "1/m", "/mm", "/cm"],
+            Dimension::Rate => &["/s", "1/s", "/ms"],
             Dimension::Angle => &["deg", "rad", "mrad"],
             Dimension::Energy => &["J", "mJ", "N mm"],
             Dimension::None => &[],
@@ -207,7 +214,7 @@ macro_rules! dims {
         }
     )*};
 }
-dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope);
+dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope, Rate);
 
 /// A quantity of dimension `D` in a file: text outside, SI inside.
 pub(crate) struct Q<D>(pub f64, PhantomData<D>);

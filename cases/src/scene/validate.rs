@@ -88,6 +88,12 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
             "needs a [reference] and output.probes in the scene"
         }
+        Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear) => {
+            "needs [procedure] kind = \"static\" or \"explicit\" in the scene"
+        }
+        Needs::Explicit if scene.procedure.kind != ProcedureKind::Explicit => {
+            "needs [procedure] kind = \"explicit\" in the scene"
+        }
         Needs::Static if scene.procedure.kind != ProcedureKind::Static => {
             "needs [procedure] kind = \"static\" in the scene"
         }

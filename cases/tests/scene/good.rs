@@ -185,10 +185,10 @@ fn what_waits_for_later_is_read_and_then_named() {
     let linear = |from: &str, to: &str| edited(from, to);
     for (text, to, key, said) in [
         (
-            linear("\"linear\"\nsteps", "\"explicit\"\nsteps"),
-            "explicit",
+            linear("\"linear\"\nsteps", "\"implicit-dynamic\"\nsteps"),
+            "implicit-dynamic",
             "procedure.kind",
-            "the explicit procedure is not available yet",
+            "the implicit-dynamic procedure is not available yet",
         ),
         (
             linear("\"tet4\"\ndilation = \"nodal-mean\"", "\"tet10\"\ndilation = \"mixed\""),

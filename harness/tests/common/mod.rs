@@ -36,6 +36,14 @@ method = [
 output = { probes = [["20 mm", "20 mm", "20 mm"]] }
 "#;
 
+/// [`PRESSED`] in explicit dynamics: elements with a pressure field or a cloud are left out.
+pub fn moving(pressed: &str) -> String {
+    let kept = pressed.lines().filter(|l| !l.contains("\"mixed\"") && !l.contains("\"efg\""));
+    let text: String = kept.map(|l| format!("{l}\n")).collect();
+    text.replace("poisson = 0.45", "poisson = 0.45, density = \"1000 kg/m^3\"")
+        .replace("kind = \"static\", steps = 2", "kind = \"explicit\", duration = \"20 ms\", steps = 4")
+}
+
 /// What a finished process left.
 pub struct Done {
     pub code: i32,

@@ -54,15 +54,16 @@ pub use contact::{
 pub use error::SolveError;
 pub use explicit::{
     Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
-    InvertedPoint, LanczosParams, LanePath, Lumping, Prescribed, RelaxationInfo, RelaxationParams,
-    StaticLoad, critical_step, locality_order, lumped_mass, relax,
+    InvertedPoint, LanczosParams, LanePath, Lumping, MovingTool, Prescribed, RelaxationInfo,
+    RelaxationParams, Springs, StaticLoad, ToolEnergies, ToolMotion, Tools, critical_step,
+    critical_step_touching, locality_order, lumped_mass, relax,
 };
 pub use implicit::{
     Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
     solve_in_time,
 };
 pub use linear_solver::SolverPath;
-pub use load::Load;
+pub use load::{Load, nodal_forces};
 pub use material::{
     Hencky, Law, LinearElastic, Material, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
     Ogden, Prony, PronyStep, SaintVenantKirchhoff, Tangent, deviator, relaxed_stress_and_tangent,

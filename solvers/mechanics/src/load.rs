@@ -30,7 +30,7 @@ pub enum Load<'a> {
 }
 
 /// Nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
-pub(crate) fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
+pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
     let nodes = volume.rows().node_count();
     let mut force = vec![Vector3::zeros(); nodes];
     for load in loads {

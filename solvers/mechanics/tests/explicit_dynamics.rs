@@ -81,6 +81,32 @@ fn critical_step_agrees_with_a_dense_eigenvalue() {
     }
 }
 
+/// With springs so stiff that the body hardly counts: the largest eigenvalue of `M^-1 sum_q w k N N^T`, dense.
+#[test]
+fn springs_on_a_surface_shorten_the_critical_step() {
+    let block = Block::new(CellKind::Tet4, [3, 2, 2]);
+    let (laws, surface) = (law(), block.surface(&["z-max", "x-min"]));
+    let mass = lumped_mass(&block.volume, &[RHO], &[], Lumping::RowSum).unwrap();
+    let mut force = InternalForce::new(body(&block.volume, &laws), LanePath::best()).unwrap();
+    let (n, modulus) = (mass.len(), 1e14);
+    let mut dense = nalgebra::DMatrix::<f64>::zeros(n, n);
+    for (q, w) in surface.weights().iter().enumerate() {
+        let (nodes, values) = surface.rows().row(q);
+        for (&i, a) in nodes.iter().zip(values) {
+            for (&j, b) in nodes.iter().zip(values) {
+                let m = (mass[i as usize] * mass[j as usize]).sqrt();
+                dense[(i as usize, j as usize)] += w * modulus * a * b / m;
+            }
+        }
+    }
+    let omega = dense.symmetric_eigenvalues().max().sqrt();
+    let springs = Some(Springs { surface: &surface, modulus });
+    let params = LanczosParams { steps: 60, safety: 1.0 };
+    let zero = vec![Vector3::zeros(); n];
+    let found = critical_step_touching(&mut force, &mass, &zero, |_| true, springs, params).unwrap();
+    assert!((found.omega_max / omega - 1.0).abs() < 1e-6, "{} {omega}", found.omega_max);
+}
+
 struct Free {
     block: Block,
     mass: Vec<f64>,

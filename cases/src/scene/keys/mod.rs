@@ -14,7 +14,7 @@ pub(crate) use output::*;
 
 use super::procedure::ProcedureKind;
 use super::region::Region;
-use super::units::{Density, Length, Pressure, Q, Time, Unit};
+use super::units::{Density, Length, Pressure, Q, Rate, Time, Unit};
 
 /// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
 #[derive(Deserialize, JsonSchema)]
@@ -147,7 +147,7 @@ pub(crate) enum Names {
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ProcedureKeys {
     pub kind: ProcedureKind,
     /// Load steps at whose ends results are told; 1 unless given
@@ -160,4 +160,12 @@ pub(crate) struct ProcedureKeys {
     pub augmentations: Option<u32>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
+    /// Mass-proportional damping of body and tools in explicit dynamics; none unless given
+    pub damping: Option<Q<Rate>>,
+    /// Time step over the critical one; 0.9 unless given
+    pub safety: Option<f64>,
+    /// Time step; safety times the critical one unless given
+    pub step: Option<Q<Time>>,
+    /// Mass of a tool driven by force over that of the body; 0.1 unless given
+    pub tool_mass: Option<f64>,
 }

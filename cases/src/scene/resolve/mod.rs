@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
-use super::procedure::{Newton, Procedure, ProcedureKind};
+use super::procedure::{Explicit, Newton, Procedure, ProcedureKind};
 use super::report::Report;
 use super::units::{Dim, Q};
 use condition::{load, place, support};
@@ -131,9 +131,10 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
 }
 
 fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
-    let newton = Newton::STANDARD;
+    let (newton, standard) = (Newton::STANDARD, Explicit::STANDARD);
     let Some(keys) = keys else {
-        return Procedure { kind: ProcedureKind::Linear, steps: 1, duration: None, newton };
+        let kind = ProcedureKind::Linear;
+        return Procedure { kind, steps: 1, duration: None, newton, explicit: standard };
     };
     let steps = keys.steps.unwrap_or(1);
     report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
@@ -146,15 +147,31 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
     report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
     let augmentations = keys.augmentations.map_or(newton.augmentations, |n| n as usize);
     let given = [
-        ("tolerance", keys.tolerance.is_some()),
-        ("iterations", keys.iterations.is_some()),
-        ("augmentations", keys.augmentations.is_some()),
+        ("tolerance", keys.tolerance.is_some(), ProcedureKind::Static),
+        ("iterations", keys.iterations.is_some(), ProcedureKind::Static),
+        ("augmentations", keys.augmentations.is_some(), ProcedureKind::Static),
+        ("damping", keys.damping.is_some(), ProcedureKind::Explicit),
+        ("safety", keys.safety.is_some(), ProcedureKind::Explicit),
+        ("step", keys.step.is_some(), ProcedureKind::Explicit),
+        ("tool-mass", keys.tool_mass.is_some(), ProcedureKind::Explicit),
     ];
-    for (name, _) in given.into_iter().filter(|(_, given)| *given && keys.kind != ProcedureKind::Static) {
+    for (name, _, kind) in given.into_iter().filter(|(_, given, kind)| *given && keys.kind != *kind) {
         let help = format!("a {} procedure takes none: leave it out", keys.kind.name());
-        let problem = Problem::new("goes with kind = \"static\" only").help(help);
+        let problem = Problem::new(format!("goes with kind = \"{}\" only", kind.name())).help(help);
         report.add(&format!("procedure.{name}"), problem);
     }
+    let explicit = Explicit {
+        damping: keys.damping.map_or(standard.damping, |q| q.0),
+        safety: keys.safety.unwrap_or(standard.safety),
+        step: keys.step.map(|q| positive(q.0, "procedure.step", report)),
+        tool_mass: keys.tool_mass.map_or(standard.tool_mass, |m| positive(m, "procedure.tool-mass", report)),
+    };
+    let sound = explicit.damping >= 0.0;
+    report.require(sound, "procedure.damping", "is negative", "give 0 /s or more, or leave it out");
+    let sound = explicit.safety > 0.0 && explicit.safety <= 1.0;
+    report.require(sound, "procedure.safety", "is not in (0, 1]", "0.9 is usual");
+    let both = keys.safety.is_some() && explicit.step.is_some();
+    report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
     let newton = Newton { tolerance, iterations, augmentations };
-    Procedure { kind: keys.kind, steps: steps as usize, duration, newton }
+    Procedure { kind: keys.kind, steps: steps as usize, duration, newton, explicit }
 }

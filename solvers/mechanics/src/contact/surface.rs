@@ -93,7 +93,7 @@ impl<'a> ContactSurface<'a> {
 
     /// Current position `X + sum_I N_I u_I` of a point.
     #[inline]
-    pub(super) fn position(&self, point: usize, u: &[Vector3]) -> Point3 {
+    pub(crate) fn position(&self, point: usize, u: &[Vector3]) -> Point3 {
         let (nodes, values) = self.rows.rows().row(point);
         let mut x = self.rows.points()[point];
         for (&node, value) in nodes.iter().zip(values) {

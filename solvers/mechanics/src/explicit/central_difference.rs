@@ -1,7 +1,7 @@
 //! Explicit time integration: central differences with velocities at half steps.
 
-use super::critical_step::{LanczosParams, critical_step};
-use super::{ExplicitError, InternalForce};
+use super::critical_step::{CriticalStep, LanczosParams, critical_step_touching};
+use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
 use crate::Vector3;
 
 /// What is asked of an integration.
@@ -43,14 +43,16 @@ pub struct Balance {
     pub kinetic: f64,
     /// Strain energy.
     pub strain: f64,
-    /// Work of the external forces since the start.
+    /// Work of the external forces since the start, without that of tools.
     pub external: f64,
     /// Work of the supports since the start.
     pub support: f64,
     /// Energy lost to damping since the start.
     pub damping: f64,
-    /// `kinetic + strain + damping - external - support`, less the same at the start, over the largest of these
-    /// terms so far.
+    /// Of the tools; zero without any.
+    pub tools: ToolEnergies,
+    /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping - external - support
+    /// - tools.work`, less the same at the start, over the largest of these terms so far.
     pub drift: f64,
 }
 
@@ -61,7 +63,12 @@ pub struct Dynamics<'a, 'b> {
     prescribed: &'b [Prescribed<'b>],
     params: DynamicsParams,
     held: Vec<bool>,
+    tools: Option<Tools<'b>>,
     step: usize,
+    /// Step and time of the last change of the time step.
+    since: (usize, f64),
+    /// Time step that led here, s: another one than the next right after a change.
+    before: f64,
     u: Vec<Vector3>,
     /// At `n - 1/2`.
     v: Vec<Vector3>,
@@ -111,7 +118,10 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             prescribed,
             params,
             held,
+            tools: None,
             step: 0,
+            since: (0, 0.0),
+            before: params.dt,
             u,
             v,
             internal: zeros.clone(),
@@ -128,6 +138,47 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         }
         dynamics.check_step()?;
         Ok(dynamics)
+    }
+
+    /// With tools that touch. Their penalties count in the critical step from here on.
+    pub fn with_tools(mut self, tools: Tools<'b>) -> Result<Dynamics<'a, 'b>, ExplicitError> {
+        self.tools = Some(tools);
+        self.check_step()?;
+        Ok(self)
+    }
+
+    /// The tools, as of the last step recorded or made.
+    pub fn tools(&self) -> Option<&Tools<'b>> {
+        self.tools.as_ref()
+    }
+
+    /// Goes on with another time step (s), if that is no larger than the critical one.
+    pub fn set_step(&mut self, dt: f64) -> Result<(), ExplicitError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(ExplicitError::BadParameter {
+                what: "time step",
+                value: dt,
+                allowed: "positive and finite",
+            });
+        }
+        self.since = (self.step, self.time());
+        if self.step == 0 {
+            self.before = dt;
+        }
+        self.params.dt = dt;
+        self.check_step()
+    }
+
+    /// Critical step at the present displacements.
+    pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
+        let held = &self.held;
+        let springs = self.tools.as_ref().and_then(Tools::springs);
+        let (step, time) = (self.step, self.time());
+        critical_step_touching(self.force, self.mass, &self.u, |k| !held[k], springs, self.params.critical)
+            .map_err(|error| match error {
+                ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
+                other => other,
+            })
     }
 
     /// Displacements, m.
@@ -147,7 +198,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     /// Time, s.
     pub fn time(&self) -> f64 {
-        self.step as f64 * self.params.dt
+        self.since.1 + (self.step - self.since.0) as f64 * self.params.dt
     }
 
     /// Reaction (N) at each prescribed degree of freedom at the last step made.
@@ -181,9 +232,12 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     /// Forces at `n`, then velocities at `n + 1/2`; returns the kinetic energy at `n`.
     ///
-    /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`.
+    /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`; `dt` is the mean of
+    /// the steps before and after.
     fn accelerate(&mut self, external: &mut External) -> Result<f64, ExplicitError> {
-        let (step, time, dt) = (self.step, self.time(), self.params.dt);
+        let (step, time) = (self.step, self.time());
+        let (before_dt, after_dt) = (self.before, self.params.dt);
+        let dt = 0.5 * (before_dt + after_dt);
         self.force.evaluate(&self.u, &mut self.internal).map_err(|at| ExplicitError::InvertedAt {
             step,
             time,
@@ -192,6 +246,10 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         std::mem::swap(&mut self.external, &mut self.previous_external);
         self.external.fill(Vector3::zeros());
         external(time, &self.u, &self.v, &mut self.external);
+        if let Some(tools) = &mut self.tools {
+            tools.step(step, time, [before_dt, after_dt], &self.u)?;
+        }
+        let touch = self.tools.as_ref().map_or(&[][..], Tools::forces);
 
         let c = 0.5 * self.params.damping * dt;
         let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
@@ -199,7 +257,11 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let (mut kinetic, mut moved, mut work) = (0.0, 0.0, 0.0);
         let (mut lost, mut next_lost) = (0.0, 0.0);
         for i in 0..self.u.len() {
-            let (m, f) = (self.mass[i], self.external[i] - self.internal[i]);
+            let m = self.mass[i];
+            let mut f = self.external[i] - self.internal[i];
+            if let Some(touch) = touch.get(i) {
+                f += touch;
+            }
             if first {
                 // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
                 self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / m);
@@ -207,7 +269,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             let mut before = self.v[i];
             let mut after = before * keep + f * (push / m);
             if !first {
-                work += 0.5 * dt * before.dot(&(self.external[i] + self.previous_external[i]));
+                work += 0.5 * before_dt * before.dot(&(self.external[i] + self.previous_external[i]));
             }
             for axis in 0..3 {
                 if self.held[3 * i + axis] {
@@ -226,13 +288,14 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             let (i, axis) = (p.node as usize, p.axis as usize);
             let m = self.mass[i];
             let now = self.u[i][axis];
-            let after = ((p.motion)(time + dt) - now) / dt;
-            let before = if first { after } else { (now - (p.motion)(time - dt)) / dt };
+            let after = ((p.motion)(time + after_dt) - now) / after_dt;
+            let before = if first { after } else { (now - (p.motion)(time - before_dt)) / before_dt };
             let mean = 0.5 * (before + after);
-            let next = self.internal[i][axis] - self.external[i][axis]
+            let touch = touch.get(i).map_or(0.0, |f| f[axis]);
+            let next = self.internal[i][axis] - self.external[i][axis] - touch
                 + m * ((after - before) / dt + self.params.damping * mean);
             if !first {
-                self.work[1] += 0.5 * dt * before * (*reaction + next);
+                self.work[1] += 0.5 * before_dt * before * (*reaction + next);
             }
             *reaction = next;
             lost += m * before * mean;
@@ -270,6 +333,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     fn advance(&mut self) {
         let dt = self.params.dt;
         self.u.iter_mut().zip(&self.v).for_each(|(u, v)| *u += v * dt);
+        self.before = dt;
         self.step += 1;
         let time = self.time();
         for p in self.prescribed {
@@ -281,25 +345,23 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let (step, time) = (self.step, self.time());
         let strain = self.force.energy(&self.u).map_err(|at| ExplicitError::InvertedAt { step, time, at })?;
         let [external, support, damping] = self.work;
-        let total = kinetic + strain + damping - external - support;
+        let tools = self.tools.as_ref().map(Tools::energies).unwrap_or_default();
+        let gained =
+            kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping;
+        let total = gained - external - support - tools.work;
         let start = *self.start.get_or_insert(total);
-        self.scale =
-            [kinetic, strain, damping, external, support].iter().fold(self.scale, |a, b| a.max(b.abs()));
+        let terms = [kinetic, strain, damping, external, support, tools.work, tools.stored, tools.friction];
+        self.scale = terms.iter().fold(self.scale, |a, b| a.max(b.abs()));
         let drift = if self.scale > 0.0 { (total - start) / self.scale } else { 0.0 };
-        Ok(Balance { step, time, kinetic, strain, external, support, damping, drift })
+        Ok(Balance { step, time, kinetic, strain, external, support, damping, tools, drift })
     }
 
     fn check_step(&mut self) -> Result<(), ExplicitError> {
-        let held = &self.held;
-        let (step, time, dt) = (self.step, self.step as f64 * self.params.dt, self.params.dt);
-        let found = critical_step(self.force, self.mass, &self.u, |k| !held[k], self.params.critical)
-            .map_err(|error| match error {
-                ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
-                other => other,
-            })?;
+        let (step, time, dt) = (self.step, self.time(), self.params.dt);
+        let critical = self.critical_step()?.dt;
         // `!(dt <= critical)`: a NaN must not pass.
-        if !(dt <= found.dt) {
-            return Err(ExplicitError::StepTooLarge { step, time, dt, critical: found.dt });
+        if !(dt <= critical) {
+            return Err(ExplicitError::StepTooLarge { step, time, dt, critical });
         }
         Ok(())
     }

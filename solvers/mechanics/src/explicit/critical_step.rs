@@ -1,5 +1,7 @@
 //! The critical time step, from the largest eigenvalue of `M^-1 K` by Lanczos.
 
+use shape::SurfaceRows;
+
 use super::{ExplicitError, InternalForce};
 use crate::Vector3;
 
@@ -23,6 +25,31 @@ pub struct CriticalStep {
     pub steps: usize,
 }
 
+/// Springs to the ground all over a surface, the same in every direction: `sum_q w k N_I N_J 1`. Where tools may touch by
+/// penalty this is no less than their tangent, whichever points touch, so a step that is stable with it stays so in contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Springs<'a> {
+    /// Where.
+    pub surface: &'a SurfaceRows,
+    /// Stiffness per undeformed area, Pa/m.
+    pub modulus: f64,
+}
+
+impl Springs<'_> {
+    fn add(&self, v: &[f64], w: &mut [f64]) {
+        let rows = self.surface.rows();
+        for (q, weight) in self.surface.weights().iter().enumerate() {
+            let (nodes, values) = rows.row(q);
+            for axis in 0..3 {
+                let at: f64 = nodes.iter().zip(values).map(|(&i, n)| n * v[3 * i as usize + axis]).sum();
+                for (&i, n) in nodes.iter().zip(values) {
+                    w[3 * i as usize + axis] += weight * self.modulus * n * at;
+                }
+            }
+        }
+    }
+}
+
 /// Critical step of central differences at the displacements `u` (m) with lumped `mass` (kg). Where `free` is false a
 /// degree of freedom (3 node + axis) is held.
 ///
@@ -34,6 +61,18 @@ pub fn critical_step(
     mass: &[f64],
     u: &[Vector3],
     free: impl Fn(usize) -> bool,
+    params: LanczosParams,
+) -> Result<CriticalStep, ExplicitError> {
+    critical_step_touching(force, mass, u, free, None, params)
+}
+
+/// As [`critical_step`], of the body with springs on its surface.
+pub fn critical_step_touching(
+    force: &mut InternalForce,
+    mass: &[f64],
+    u: &[Vector3],
+    free: impl Fn(usize) -> bool,
+    springs: Option<Springs>,
     params: LanczosParams,
 ) -> Result<CriticalStep, ExplicitError> {
     let LanczosParams { steps, safety } = params;
@@ -61,6 +100,9 @@ pub fn critical_step(
         let v = &basis[k];
         let scaled: Vec<f64> = v.iter().zip(&root).map(|(v, m)| v / m).collect();
         let mut w = product.stiffness(&scaled)?;
+        if let Some(springs) = &springs {
+            springs.add(&scaled, &mut w);
+        }
         for i in 0..n {
             w[i] = if held[i] { 0.0 } else { w[i] / root[i] };
         }

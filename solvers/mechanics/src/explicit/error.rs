@@ -1,5 +1,7 @@
 //! What can go wrong in explicit dynamics.
 
+use crate::contact::ContactError;
+
 /// A quadrature point that is inside out, or whose displacements are not numbers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("quadrature point {point} has det F = {det_f}; it must be positive")]
@@ -96,6 +98,35 @@ pub enum ExplicitError {
         /// Time step, s.
         dt: f64,
         /// Critical time step, s.
+        critical: f64,
+    },
+    /// Contact without meaning in a state on the way.
+    #[error("step {step} (t = {time:e} s): {cause}")]
+    ContactAt {
+        /// Step.
+        step: usize,
+        /// Time, s.
+        time: f64,
+        /// Why.
+        cause: ContactError,
+    },
+    /// A tool so light that it would jump off what it touches within a step.
+    #[error(
+        "step {step} (t = {time:e} s): tool {tool} of {mass:e} kg swings on its contact with a critical step of \
+         {critical:e} s; it must be at least twice the time step {dt:e} s: give it more mass"
+    )]
+    LightTool {
+        /// Step.
+        step: usize,
+        /// Time, s.
+        time: f64,
+        /// Its index.
+        tool: usize,
+        /// Its mass, kg.
+        mass: f64,
+        /// Time step, s.
+        dt: f64,
+        /// `2 sqrt(m / (k_n A))` with the area in contact, s.
         critical: f64,
     },
     /// A relaxation that has not come to rest.

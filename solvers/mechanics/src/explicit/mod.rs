@@ -19,12 +19,14 @@ mod quad;
 mod relaxation;
 mod rows;
 mod tet4;
+mod tools;
 
 pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
-pub use critical_step::{CriticalStep, LanczosParams, critical_step};
+pub use critical_step::{CriticalStep, LanczosParams, Springs, critical_step, critical_step_touching};
 pub use error::{ExplicitError, InvertedPoint};
 pub use force::{ExplicitBody, InternalForce};
 pub use mass::{Lumping, lumped_mass};
 pub use order::locality_order;
 pub use path::LanePath;
 pub use relaxation::{RelaxationInfo, RelaxationParams, StaticLoad, relax};
+pub use tools::{MovingTool, ToolEnergies, ToolMotion, Tools};

@@ -1,0 +1,180 @@
+//! Explicit dynamics from scene files: recorded states and their energies, the static limit, and runs that end early.
+
+mod common;
+
+use common::{BLOCK, Done, PRESSED, assert_fails, inside, moving, tissuebench, write};
+use serde_json::Value;
+
+fn objects(stdout: &str) -> Vec<Value> {
+    stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn metric(object: &Value, name: &str) -> f64 {
+    object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))
+}
+
+fn run(text: &str) -> (Done, Vec<Value>) {
+    let dir = tempfile::tempdir().unwrap();
+    let done = tissuebench(&["run", &write(&dir, "moving.toml", text), "--format", "json"]);
+    let objects = objects(&done.stdout);
+    (done, objects)
+}
+
+#[test]
+fn states_are_recorded_with_energies_that_balance() {
+    let dir = tempfile::tempdir().unwrap();
+    let rubbed = moving(PRESSED).replace("/mm\" }", "/mm\", friction = 0.1, stick = \"1 MPa/mm\" }");
+    let out = inside(&dir, "out");
+    let scene = write(&dir, "moving.toml", &rubbed);
+    let done = tissuebench(&["run", &scene, "--format", "json", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let objects = objects(&done.stdout);
+    assert_eq!(objects.len(), 2);
+    for object in &objects {
+        assert_eq!(object["status"], "ok");
+        let states = object["steps"].as_array().unwrap();
+        assert_eq!(states.len(), 4);
+        for (k, state) in states.iter().enumerate() {
+            let of = |name: &str| state["metrics"][name]["value"].as_f64().unwrap();
+            assert!((of("time") - 5e-3 * (k + 1) as f64).abs() < 1e-15);
+            let closure = |tool: usize| state["tools"][tool]["closure"].as_f64().unwrap();
+            let part = 0.25 * (k + 1) as f64;
+            assert!((closure(0) - 2e-3 * part).abs() < 1e-9 && (closure(1) - 1e-3 * part).abs() < 1e-9);
+            let kept = of("kinetic-energy")
+                + state["strain_energy"].as_f64().unwrap()
+                + of("contact-energy")
+                + of("friction-dissipation")
+                + of("damping-dissipation");
+            let given = of("external-work");
+            assert!(given > 1e-6 && (kept / given - 1.0).abs() < 1e-2, "{k}: {kept} {given}");
+            assert!(of("energy-drift").abs() < 1e-2 && of("friction-dissipation") >= 0.0);
+        }
+        assert!(metric(object, "energy-drift") < 1e-2 && metric(object, "energy-drift") > 0.0);
+        // 3 mm of 20 mm: the mean stretch along z is 0.85; sides give way at nu = 0.45.
+        assert!(metric(object, "smallest-j") > 0.8 && metric(object, "smallest-j") < 1.0);
+        let steps = metric(object, "time-steps");
+        assert_eq!(steps, object["work"]["time_steps"].as_f64().unwrap());
+        // The last state has a step of its own.
+        assert!((steps - 1.0) * 0.9 * metric(object, "critical-step") >= 20e-3 * 0.9, "{steps}");
+        assert!((metric(object, "mass") / 0.032 - 1.0).abs() < 1e-12);
+        assert_eq!((metric(object, "tool-mass"), metric(object, "load-carried")), (0.0, 1.0));
+        let each = object["phases"]["element-step"].as_f64().unwrap();
+        assert!(each > 1e-10 && each < object["phases"]["solve"].as_f64().unwrap());
+    }
+    let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
+    let count = |name: &str| records.lines().filter(|l| l.contains(",step-4,") && l.contains(name)).count();
+    for name in ["kinetic-energy", "strain-energy", "smallest-j", "external-work", "time,s"] {
+        assert_eq!(count(name), 2, "{name}");
+    }
+    assert_eq!(count("newton-iterations"), 0);
+}
+
+/// Slow, damped and with friction left out, dynamics ends where the static procedure does.
+#[test]
+fn a_slow_damped_motion_ends_where_a_static_path_does() {
+    let slow = |drive: &str| {
+        moving(PRESSED)
+            .replace("duration = \"20 ms\"", "duration = \"0.6 s\", damping = \"60 /s\", tool-mass = 1.0")
+            .replace("drive = { closure = \"2 mm\" }", &format!("drive = {{ {drive}, over = \"0.3 s\" }}"))
+            .replace("drive = { closure = \"1 mm\" }", "drive = { closure = \"1 mm\", over = \"0.3 s\" }")
+    };
+    let still = PRESSED.lines().filter(|l| !l.contains("\"mixed\"") && !l.contains("\"efg\""));
+    let (done, at_rest) = run(&still.map(|l| format!("{l}\n")).collect::<String>());
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let force = metric(&at_rest[0], "tool-force");
+    for drive in ["closure = \"2 mm\"".to_string(), format!("force = \"{force} N\"")] {
+        let (done, moved) = run(&slow(&drive));
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        for (a, b) in moved.iter().zip(&at_rest) {
+            assert_eq!(a["method"], b["method"]);
+            for name in ["tool-force", "closure", "max-z", "strain-energy"] {
+                let (found, expected) = (metric(a, name), metric(b, name));
+                assert!((found / expected - 1.0).abs() < 2e-3, "{drive} {name}: {found} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn loads_and_led_supports_grow_over_the_duration() {
+    let text = BLOCK.replace("poisson = 0.3", "poisson = 0.3, density = \"1000 kg/m^3\"").replace(
+        "where = \"z == 0 mm\", fix = \"xyz\"",
+        "where = \"z == 0 mm\", move = { x = \"0 mm\", y = \"0 mm\", z = \"1 mm\" }",
+    );
+    let moved = format!(
+        "{text}procedure = {{ kind = \"explicit\", duration = \"2 s\", damping = \"20 /s\", steps = 2 }}\n"
+    );
+    let ((done, dynamic), (_, linear)) = (run(&moved), run(&text));
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    for name in ["max-x", "max-z", "strain-energy"] {
+        let (found, expected) = (metric(&dynamic[0], name), metric(&linear[0], name));
+        assert!((found / expected - 1.0).abs() < 1e-2, "{name}: {found} {expected}");
+    }
+}
+
+#[test]
+fn a_step_too_large_and_an_inversion_are_named_and_exit_with_3() {
+    let large = moving(PRESSED).replace("steps = 4", "steps = 4, step = \"5 ms\"");
+    let (done, told) = run(&large);
+    assert_fails(&done, 3, "key 'procedure.step': ");
+    assert!(done.stderr.contains("exceeds the critical"), "{}", done.stderr);
+    for object in &told {
+        assert_eq!(object["status"], "step-too-large");
+        assert_eq!((metric(object, "load-carried"), metric(object, "time-steps")), (0.0, 0.0));
+    }
+
+    // Nothing else holds the top: 60 kPa on 20 kPa in 20 ms.
+    let text = BLOCK
+        .replace("law = \"linear\"", "law = \"neo-hookean\", density = \"1000 kg/m^3\"")
+        .replace("1 kPa", "200 kPa")
+        .replace("[2, 2, 1]", "[4, 4, 2]");
+    let text = format!("{text}procedure = {{ kind = \"explicit\", duration = \"50 ms\", steps = 50 }}\n");
+    let (done, told) = run(&text);
+    assert_fails(&done, 3, "inverted: ");
+    let object = &told[0];
+    assert_eq!(object["status"], "inverted");
+    let message = object["message"].as_str().unwrap();
+    assert!(
+        message.contains("quadrature point") && message.contains("t = ") && message.contains("det F = -"),
+        "{message}"
+    );
+    let states = object["steps"].as_array().unwrap().len();
+    assert!(states > 0 && states < 50, "{states}");
+    assert!((metric(object, "load-carried") - states as f64 / 50.0).abs() < 1e-12);
+    assert!(metric(object, "smallest-j") > 0.0 && metric(object, "max-z") > 0.0);
+}
+
+#[test]
+fn bad_explicit_scenes_name_the_key() {
+    let good = moving(PRESSED);
+    let dir = tempfile::tempdir().unwrap();
+    for (from, to, code, says) in [
+        (", density = \"1000 kg/m^3\"", "", 2, "'material.density': is missing"),
+        ("duration = \"20 ms\", ", "", 2, "'procedure.duration': is missing"),
+        ("steps = 4", "steps = 4, safety = 1.5", 2, "'procedure.safety'"),
+        ("steps = 4", "steps = 4, safety = 0.5, step = \"1 us\"", 2, "give step or safety"),
+        ("steps = 4", "steps = 4, damping = 5", 2, "needs a unit: /s"),
+        ("steps = 4", "steps = 4, damping = \"-5 /s\"", 2, "'procedure.damping'"),
+        ("steps = 4", "steps = 4, tool-mass = 0", 2, "'procedure.tool-mass'"),
+        ("steps = 4", "steps = 4, tolerance = 1e-9", 2, "goes with kind = \"static\" only"),
+        (
+            "\"explicit\", duration = \"20 ms\"",
+            "\"static\", damping = \"5 /s\"",
+            2,
+            "goes with kind = \"explicit\" only",
+        ),
+        (
+            "element = \"tet4\", dilation = \"nodal-mean\"",
+            "element = \"tet10\", dilation = \"mixed\"",
+            3,
+            "dilation = \"mixed\" in explicit dynamics is not available",
+        ),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let path = write(&dir, "bad.toml", &good.replace(from, to));
+        assert_fails(&tissuebench(&["run", &path]), code, says);
+    }
+    let efg = PRESSED.lines().find(|l| l.contains("\"efg\"")).unwrap();
+    let path = write(&dir, "cloud.toml", &good.replace("method = [", &format!("method = [\n{efg}")));
+    assert_fails(&tissuebench(&["run", &path]), 3, "a cloud in explicit dynamics is not available");
+}
