@@ -346,14 +346,14 @@ impl From<Path> for Course {
         let mut metrics = Vec::new();
         push(&mut metrics, "newton-iterations", iterations as f64, "1");
         push(&mut metrics, "cut-backs", cut_backs as f64, "1");
-        Course { steps, fields, last, metrics, failure: failure.map(Failure::Static) }
+        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
     }
 }
 
 impl From<Motion> for Course {
     fn from(motion: Motion) -> Course {
         let Motion { steps, fields, last, metrics, failure, .. } = motion;
-        Course { steps, fields, last, metrics, failure: failure.map(Failure::Explicit) }
+        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
     }
 }
 

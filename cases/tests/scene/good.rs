@@ -21,7 +21,13 @@ fn a_scene_arrives_in_si() {
     assert_eq!(scene.output.probes, [[0.0, 0.0, 0.005]]);
     assert_eq!(
         scene.procedure,
-        Procedure { kind: ProcedureKind::Linear, steps: 10, duration: None, newton: Newton::STANDARD }
+        Procedure {
+            kind: ProcedureKind::Linear,
+            steps: 10,
+            duration: None,
+            newton: Newton::STANDARD,
+            explicit: Explicit::STANDARD,
+        }
     );
     assert_eq!(scene.checks[0].bound, Bound::Within { at_least: None, at_most: Some(1e-4) });
     assert_eq!(scene.checks[0].methods, ["tet4", "efg-83"]);
@@ -267,7 +273,11 @@ fn a_static_scene_runs_with_everything_it_knows() {
         still().replace("steps = 10", "steps = 5\ntolerance = 1e-6\niterations = 12\naugmentations = 2");
     let newton = Newton { tolerance: 1e-6, iterations: 12, augmentations: 2 };
     let procedure = parse(&steps, "s.toml").expect("sound").procedure;
-    assert_eq!(procedure, Procedure { kind: ProcedureKind::Static, steps: 5, duration: None, newton });
+    let explicit = Explicit::STANDARD;
+    assert_eq!(
+        procedure,
+        Procedure { kind: ProcedureKind::Static, steps: 5, duration: None, newton, explicit }
+    );
 }
 
 #[test]
