@@ -1,6 +1,7 @@
 //! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
 //! 4 nothing ran, 5 incomplete.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
@@ -119,6 +120,10 @@ fn run(args: &RunArgs) -> u8 {
     }
     for index in chosen {
         let method = &scene.methods[index];
+        if std::io::stderr().is_terminal() {
+            // A static run may take minutes.
+            eprintln!("{} ...", method.id);
+        }
         match group.run(&group.scenario(method.clone(), 0), args.out.is_some()) {
             Ok(outcome) => {
                 if args.format == Format::Json {

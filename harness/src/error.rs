@@ -21,10 +21,10 @@ pub enum Failure {
     #[error(transparent)]
     Solve(#[from] mechanics::SolveError),
     /// A static procedure carried nothing.
-    #[error("{0}")]
+    #[error(transparent)]
     Static(Box<mechanics::StaticError>),
     /// Explicit dynamics could not start or go on.
-    #[error("{0}")]
+    #[error(transparent)]
     Explicit(Box<mechanics::ExplicitError>),
     /// The method could not run or did not converge.
     #[error("{0}")]

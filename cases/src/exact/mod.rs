@@ -3,10 +3,17 @@
 //! Every solution gives displacement, displacement gradient, stress and body force at a point, and is built either
 //! by its own constructor or by name with a list of parameters ([`exact_by_name`]). Stresses follow from the
 //! gradients by Hooke's law written out here, so that a solver's material never judges itself.
+//!
+//! Beside them stand large strains ([`Homogeneous`], [`FiniteBending`], of the laws in [`Hyperelastic`]) and contact
+//! ([`Hertz`]).
 
 mod affine;
 mod cantilever;
 mod elastic;
+mod finite_bending;
+mod hertz;
+mod homogeneous;
+mod hyperelastic;
 mod params;
 mod polylog;
 mod pure_bending;
@@ -19,6 +26,10 @@ mod uniaxial_compression;
 pub use affine::Affine;
 pub use cantilever::CantileverPlaneStrain;
 pub use elastic::Elastic;
+pub use finite_bending::FiniteBending;
+pub use hertz::Hertz;
+pub use homogeneous::Homogeneous;
+pub use hyperelastic::Hyperelastic;
 pub use params::{ExactError, Parameter, Params};
 pub use pure_bending::PureBending;
 pub use quadratic_patch::QuadraticPatch;

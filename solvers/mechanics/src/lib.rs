@@ -20,6 +20,7 @@ mod contact;
 mod dilation;
 mod error;
 mod explicit;
+mod implicit;
 mod linear_solver;
 mod load;
 mod material;
@@ -45,6 +46,10 @@ pub use explicit::{
     InvertedPoint, LanczosParams, LanePath, Lumping, MovingTool, Prescribed, RelaxationInfo,
     RelaxationParams, Springs, StaticLoad, ToolEnergies, ToolMotion, Tools, critical_step,
     critical_step_touching, locality_order, lumped_mass, relax,
+};
+pub use implicit::{
+    Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
+    solve_in_time,
 };
 pub use linear_solver::SolverPath;
 pub use load::{Load, nodal_forces};

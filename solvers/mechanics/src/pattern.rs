@@ -11,6 +11,7 @@ pub(crate) struct Connectivity<'a> {
 }
 
 /// For each node the entries that name it: the transpose of a table.
+#[derive(Clone, Debug)]
 pub(crate) struct Incidence {
     offsets: Vec<usize>,
     /// (row, entry) pairs; entry is an index into the table's flat arrays.

@@ -145,6 +145,9 @@ impl Factored<'_> {
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
             u[dof / 3][dof % 3] = b[at];
         }
+        if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
+            self.refine(forms, load, factor, &mut u)?;
+        }
         let mut multipliers = vec![0.0; p.rows.len()];
         for (k, &(index, scale)) in self.active.iter().enumerate() {
             multipliers[index] = scale * b[free + k];
@@ -157,6 +160,29 @@ impl Factored<'_> {
             path: self.factorization.path(),
         };
         Ok(Solution { u, multipliers, info })
+    }
+
+    /// Two steps of refinement with the residual of the forms themselves.
+    fn refine(
+        &self,
+        forms: &crate::problem::Pointwise,
+        load: &[Vector3],
+        factor: f64,
+        u: &mut [Vector3],
+    ) -> Result<(), SolveError> {
+        for _ in 0..2 {
+            let mut residual: Vec<Vector3> = load.iter().map(|f| f * factor).collect();
+            forms.subtract(u, factor, &mut residual);
+            let mut b = vec![0.0; self.factorization.dim()];
+            for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+                b[at] = residual[dof / 3][dof % 3];
+            }
+            self.factorization.solve(&mut b)?;
+            for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+                u[dof / 3][dof % 3] += b[at];
+            }
+        }
+        Ok(())
     }
 
     /// Forces (N) that the eliminated supports exert on the nodes at nodal parameters `u` under `factor` times the

@@ -93,6 +93,31 @@ impl GradTable {
         Connectivity { offsets: &self.offsets, nodes: &self.nodes }
     }
 
+    /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
+    pub fn subtract_force(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
+        let stress: Vec<Matrix3> = (0..self.weights.len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|q| {
+                let (lambda, mu) = self.moduli[self.law[q] as usize];
+                let range = self.offsets[q]..self.offsets[q + 1];
+                let base = u[self.nodes[range.start] as usize];
+                let mut H = Matrix3::zeros();
+                for (&node, g) in self.nodes[range.clone()].iter().zip(&self.grads[range]) {
+                    // Gradients of a partition of unity sum to zero: only differences of displacements count.
+                    H += (u[node as usize] - base) * Vector3::new(g[0], g[1], g[2]).transpose();
+                }
+                ((H + H.transpose()) * mu + Matrix3::identity() * (lambda * H.trace())) * self.weights[q]
+            })
+            .collect();
+        force.par_iter_mut().with_min_len(32).enumerate().for_each(|(i, force)| {
+            for &(q, k) in incidence.of(i) {
+                let g = self.grads[k as usize];
+                *force -= stress[q as usize] * Vector3::new(g[0], g[1], g[2]);
+            }
+        });
+    }
+
     /// Incidence in which each node meets its points sorted by law.
     pub fn incidence(&self, node_count: usize) -> Incidence {
         let mut order: Vec<usize> = (0..self.weights.len()).collect();

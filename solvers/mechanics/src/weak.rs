@@ -213,4 +213,38 @@ impl WeakTable {
             }
         });
     }
+
+    /// Takes both forms at `u` and `factor` times the prescribed displacement `g` from `residual`:
+    /// `integral of (beta (u_a - g_a) v_a - t_a(u) v_a - (u_a - g_a) t_a(v))`.
+    pub fn subtract_residual(
+        &self,
+        incidence: &Incidence,
+        u: &[Vector3],
+        factor: f64,
+        residual: &mut [Vector3],
+    ) {
+        let at_points: Vec<(Vector3, Vector3)> = (0..self.weights.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|q| {
+                let range = self.offsets[q]..self.offsets[q + 1];
+                let base = u[self.nodes[range.start] as usize];
+                let (mut gap, mut traction) = (self.held * base - self.target[q] * factor, Vector3::zeros());
+                for k in range {
+                    let difference = u[self.nodes[k] as usize] - base;
+                    gap += self.held * difference * self.phi[k];
+                    traction += self.traction[k] * difference;
+                }
+                (gap, traction)
+            })
+            .collect();
+        residual.par_iter_mut().with_min_len(32).enumerate().for_each(|(i, residual)| {
+            for &(q, k) in incidence.of(i) {
+                let (q, k) = (q as usize, k as usize);
+                let (gap, traction) = &at_points[q];
+                let stiff = (gap * self.beta[q] - traction) * self.phi[k];
+                *residual -= (stiff - self.traction[k].tr_mul(gap)) * self.weights[q];
+            }
+        });
+    }
 }

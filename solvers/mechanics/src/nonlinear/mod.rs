@@ -1,7 +1,9 @@
 //! Bodies under large displacements: internal energy with projected volume change, and statics by Newton's method.
 
 mod error;
+mod in_time;
 mod newton;
+mod relaxing;
 mod solid;
 mod sorted;
 mod split;
@@ -9,6 +11,11 @@ mod statics;
 mod system;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use in_time::{Ended, InertiaTerms, Scales, TimeTerms};
+pub(crate) use newton::{Descent, Newton, State};
+pub(crate) use relaxing::Memory;
+pub(crate) use system::SurfaceTable;
 
 pub use error::{Inverted, StaticError, Worst};
 pub use newton::{Iteration, NewtonParams};

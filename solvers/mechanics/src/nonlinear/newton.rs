@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::error::{StaticError, Worst};
+use super::in_time::{Ended, Scales, TimeTerms};
 use super::solid::Internal;
 use super::statics::{Drive, StaticProblem, Step, ToolState};
 use super::system::{SurfaceTable, System};
@@ -74,6 +75,8 @@ struct Balance {
     /// Negative derivative of the energy by the pressures, m^3.
     pressure: Vec<f64>,
     contacts: Vec<Option<Contacts>>,
+    /// The forces and deviators by themselves, in real time.
+    ended: Option<Ended>,
     /// Larger of internal and external forces, N.
     scale: f64,
 }
@@ -88,6 +91,10 @@ pub(crate) struct Newton<'a> {
     symbolic: Option<Option<Arc<Symbolic>>>,
     counts: ContactCounts,
     volume: f64,
+    terms: Option<TimeTerms>,
+    ended: Option<Ended>,
+    /// Largest forces so far in real time, N: what swings passes through states without any.
+    peak: f64,
     /// Where a tangent that is not definite leads.
     descent: Descent,
     /// Whether the last tangent was not definite.
@@ -101,6 +108,11 @@ pub(crate) enum Descent {
     Nearest,
     /// A stable one, down the energy.
     Down,
+}
+
+/// `x . r`.
+fn work(x: &[f64], r: &[f64]) -> f64 {
+    x.iter().zip(r).map(|(x, r)| x * r).sum()
 }
 
 /// A factored tangent.
@@ -121,6 +133,15 @@ impl Factored {
 
 impl<'a> Newton<'a> {
     pub fn new(problem: &'a StaticProblem<'a>, params: &'a NewtonParams) -> Result<Newton<'a>, StaticError> {
+        Newton::with_mass(problem, params, None)
+    }
+
+    /// With a mass table, for steps in real time that have inertia.
+    pub fn with_mass(
+        problem: &'a StaticProblem<'a>,
+        params: &'a NewtonParams,
+        mass: Option<&SurfaceTable>,
+    ) -> Result<Newton<'a>, StaticError> {
         for (what, value) in [("tolerance", params.tolerance), ("iterations", params.iterations as f64)] {
             if !(value > 0.0) {
                 return Err(StaticError::Parameter { what, value, need: "it must be positive" });
@@ -135,6 +156,7 @@ impl<'a> Newton<'a> {
         if let (Some(contact), false) = (problem.contact, problem.tools.is_empty()) {
             surfaces.push(SurfaceTable::new(contact.rows()));
         }
+        surfaces.extend(mass.cloned());
         let held: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
         let system = System::new(problem.solid, &held, surfaces);
         let volume = problem.solid.volume.weights().iter().sum();
@@ -147,6 +169,9 @@ impl<'a> Newton<'a> {
             symbolic: None,
             counts: ContactCounts::default(),
             volume,
+            terms: None,
+            ended: None,
+            peak: 0.0,
             descent: Descent::Nearest,
             indefinite: false,
         })
@@ -154,6 +179,32 @@ impl<'a> Newton<'a> {
 
     pub fn counts(&self) -> ContactCounts {
         self.counts
+    }
+
+    /// What the next step has besides the forces of statics.
+    pub fn set_terms(&mut self, terms: TimeTerms) {
+        self.terms = Some(terms);
+    }
+
+    /// Forces at the end of the last step in real time.
+    pub fn ended(&mut self) -> Ended {
+        self.ended.take().expect("a step in real time has ended")
+    }
+
+    /// Prescribed value at the end of the ramp by degree of freedom.
+    pub fn prescribed(&self) -> &[Option<f64>] {
+        &self.prescribed
+    }
+
+    /// Forces in a state, without inertia, and the strain energy, J.
+    pub fn forces_at(&mut self, state: &State) -> Result<(Ended, f64), StaticError> {
+        let balance = self.balance(state, state.time)?;
+        Ok((balance.ended.expect("terms of real time are set"), balance.internal.energy))
+    }
+
+    /// The parts of loads, supports and drives at `time`.
+    fn scales(&self, time: f64) -> Scales {
+        self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
     }
 
     /// From `start` to equilibrium at `time`; `before` is the state before `start`, for extrapolation.
@@ -168,12 +219,16 @@ impl<'a> Newton<'a> {
         self.descent = descent;
         let mut state = State { time, ..start.clone() };
         let mut moved = false;
-        if let Some(before) = before {
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            state.u.clone_from(&inertia.guess);
+            self.prescribe(&mut state.u, time);
+            moved = true;
+        } else if let Some(before) = before {
             moved = self.extrapolate(&mut state, start, before, time);
         }
         for (closure, driven) in state.closures.iter_mut().zip(self.problem.tools) {
             if let Drive::Closure(full) = driven.drive {
-                *closure = full * time;
+                *closure = full * self.scales(time).tools;
             }
         }
         let mut iterations = Vec::new();
@@ -202,6 +257,10 @@ impl<'a> Newton<'a> {
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
             }
         }
+        if let Some(ended) = &balance.ended {
+            self.peak = self.peak.max(ended.size());
+        }
+        self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))
             .map(|(contacts, &closure)| match contacts {
                 Some(c) => ToolState {
@@ -275,12 +334,13 @@ impl<'a> Newton<'a> {
             self.indefinite = false;
             let (step, closures) = self.direction(state, &balance, time, held_move.as_deref())?;
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
-            let slope: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
+            let lacking = self.lacking(&balance, time);
+            let slope = work(&step, &unknowns) + work(&closures, &lacking);
             if first_energy == 0.0 {
                 first_energy = slope.abs();
             }
             let (next, length) =
-                self.search(state, &step, &closures, held_move.as_deref(), slope, &balance.out, time)?;
+                self.search(state, &step, &closures, held_move.as_deref(), slope, &balance, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
             log.push(Iteration { residual, energy, length, definite: !self.indefinite });
             balance = next;
@@ -289,13 +349,14 @@ impl<'a> Newton<'a> {
 
     /// What held degrees of freedom still lack of their values at `time`.
     fn held_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
+        let scale = self.scales(time).supports;
         let mut lacking = false;
         let moves: Vec<Vector3> = (state.u.iter().enumerate())
             .map(|(i, u)| {
                 Vector3::from_fn(|a, _| match self.prescribed[3 * i + a] {
-                    Some(value) if u[a] != value * time => {
+                    Some(value) if u[a] != value * scale => {
                         lacking = true;
-                        value * time - u[a]
+                        value * scale - u[a]
                     }
                     _ => 0.0,
                 })
@@ -306,9 +367,10 @@ impl<'a> Newton<'a> {
 
     /// Sets held degrees of freedom to their values at `time`.
     fn prescribe(&self, u: &mut [Vector3], time: f64) {
+        let scale = self.scales(time).supports;
         for (dof, value) in self.prescribed.iter().enumerate() {
             if let Some(value) = value {
-                u[dof / 3][dof % 3] = value * time;
+                u[dof / 3][dof % 3] = value * scale;
             }
         }
     }
@@ -318,16 +380,30 @@ impl<'a> Newton<'a> {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let tools = self.scales(time).tools;
         let scale = if balance.scale > 0.0 { balance.scale } else { 1.0 };
         let mut residual = norm(forces) / scale;
         residual = residual.max(norm(volumes) / self.volume);
-        for (driven, contacts) in self.problem.tools.iter().zip(&balance.contacts) {
+        for (driven, lacking) in self.problem.tools.iter().zip(self.lacking(balance, time)) {
             if let Drive::Force(full) = driven.drive {
-                let pushed = contacts.as_ref().map_or(0.0, |c| -c.force().dot(&driven.tool.along()));
-                residual = residual.max((full * time - pushed).abs() / (full * time).abs());
+                residual = residual.max(lacking.abs() / (full * tools).abs());
             }
         }
         residual
+    }
+
+    /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
+    /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
+    fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
+        let scale = self.scales(time).tools;
+        (self.problem.tools.iter().zip(&balance.contacts))
+            .map(|(driven, contacts)| match driven.drive {
+                Drive::Force(full) => {
+                    full * scale + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
+                }
+                Drive::Closure(_) => 0.0,
+            })
+            .collect()
     }
 
     fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
@@ -347,14 +423,23 @@ impl<'a> Newton<'a> {
 
     /// Forces in a state.
     fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
-        let internal = self.problem.solid.internal(self.system.pairs.as_ref(), &state.u, &state.pressure)?;
+        let Scales { loads, supports, .. } = self.scales(time);
+        let pairs = self.system.pairs.as_ref();
+        let mut internal = self.problem.solid.internal(pairs, &state.u, &state.pressure)?;
+        let mut deviator = Vec::new();
+        if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
+            let solid = &self.problem.solid;
+            deviator = relaxing.relax(solid, pairs, &state.u, &state.pressure, &mut internal)?;
+        }
         let inner = self.system.internal_force(&internal);
-        let mut out: Vec<Vector3> = self.load.iter().map(|f| f * time).collect();
+        let mut out: Vec<Vector3> = self.load.iter().map(|f| f * loads).collect();
         for (held, table) in self.problem.held.iter().zip(&self.system.surfaces) {
             let at = table.displacement(&state.u);
             let traction: Vec<Vector3> = (at.iter().zip(&held.values))
                 .map(|(u, g)| {
-                    Vector3::from_fn(|a, _| if held.axes[a] { held.beta * (g[a] * time - u[a]) } else { 0.0 })
+                    Vector3::from_fn(
+                        |a, _| if held.axes[a] { held.beta * (g[a] * supports - u[a]) } else { 0.0 },
+                    )
                 })
                 .collect();
             table.add_force(&traction, &mut out);
@@ -375,12 +460,18 @@ impl<'a> Newton<'a> {
             contacts.push(found);
         }
         let norm = |f: &[Vector3]| f.iter().map(|v| v.norm_squared()).sum::<f64>().sqrt();
-        let scale = norm(&inner).max(norm(&out));
+        let mut scale = norm(&inner).max(norm(&out)).max(self.peak);
+        let ended =
+            self.terms.as_ref().map(|_| Ended { external: out.clone(), internal: inner.clone(), deviator });
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            let mass = self.system.surfaces.last().expect("inertia has a mass table");
+            scale = scale.max(inertia.add_force(mass, &self.prescribed, &state.u, &mut out));
+        }
         for (out, inner) in out.iter_mut().zip(&inner) {
             *out -= inner;
         }
         let pressure = self.system.pressure_gradient(&internal).iter().map(|g| -g).collect();
-        Ok(Balance { internal, out, pressure, contacts, scale })
+        Ok(Balance { internal, out, pressure, contacts, ended, scale })
     }
 
     /// `-w dt/dx` of every surface point, by surface: held ones first, then contact.
@@ -391,7 +482,8 @@ impl<'a> Newton<'a> {
                 h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(held * *w))).collect()
             })
             .collect();
-        if let Some(table) = self.system.surfaces.get(blocks.len()) {
+        if self.problem.contact.is_some() && !self.problem.tools.is_empty() {
+            let table = &self.system.surfaces[blocks.len()];
             let mut of_points = vec![Matrix3::zeros(); table.weights.len()];
             for contacts in balance.contacts.iter().flatten() {
                 for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
@@ -399,6 +491,10 @@ impl<'a> Newton<'a> {
                 }
             }
             blocks.push(of_points);
+        }
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            let mass = &self.system.surfaces[blocks.len()];
+            blocks.push(inertia.blocks(mass));
         }
         blocks
     }
@@ -411,7 +507,12 @@ impl<'a> Newton<'a> {
         time: f64,
         held_move: Option<&[Vector3]>,
     ) -> Result<(Vec<f64>, Vec<f64>), StaticError> {
-        let hessian = self.problem.solid.hessian(self.system.pairs.as_ref(), &state.u, &state.pressure)?;
+        let pairs = self.system.pairs.as_ref();
+        let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
+        if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
+            let solid = &self.problem.solid;
+            relaxing.relax_tangent(solid, pairs, &state.u, &state.pressure, &mut hessian)?;
+        }
         let blocks = self.surface_blocks(balance);
         let matrix = self.system.assemble(&hessian, &blocks);
         let skew = self.system.skew(&blocks);
@@ -420,6 +521,11 @@ impl<'a> Newton<'a> {
         if let Some(moves) = held_move {
             for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
                 *r -= k;
+            }
+            // The accelerations of held degrees of freedom are given: they don't follow the move.
+            if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+                let mass = self.system.surfaces.last().expect("inertia has a mass table");
+                inertia.give_back(mass, moves, &mut right);
             }
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
@@ -504,6 +610,7 @@ impl<'a> Newton<'a> {
         let mut driven = Vec::new();
         for (k, tool) in self.problem.tools.iter().enumerate() {
             let Drive::Force(full) = tool.drive else { continue };
+            let full = full * self.scales(time).tools;
             let along = tool.tool.along();
             let mut columns = [vec![Vector3::zeros(); nodes], vec![Vector3::zeros(); nodes]];
             let (mut own, mut pushed) = (0.0, 0.0);
@@ -521,12 +628,12 @@ impl<'a> Newton<'a> {
                 }
             }
             if !(own > 0.0) {
-                moves[k] = self.approach(k, state, full * time)?;
+                moves[k] = self.approach(k, state, full)?;
                 continue;
             }
             let mut x = self.system.gather(&columns[0], &none);
             self.solve(factored, &mut x)?;
-            driven.push((k, x, self.system.gather(&columns[1], &none), own, full * time - pushed));
+            driven.push((k, x, self.system.gather(&columns[1], &none), own, full - pushed));
         }
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let m = driven.len();
@@ -565,12 +672,17 @@ impl<'a> Newton<'a> {
         closures: &[f64],
         held_move: Option<&[Vector3]>,
         slope: f64,
-        out: &[Vector3],
+        last: &Balance,
         time: f64,
     ) -> Result<(Balance, f64), StaticError> {
         let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let before = norm(&self.system.gather(out, &state.pressure.iter().map(|_| 0.0).collect::<Vec<_>>()));
+        let none = vec![0.0; state.pressure.len()];
+        let before = norm(&self.system.gather(&last.out, &none)).hypot(norm(&self.lacking(last, time)));
+        // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
+        let approaches = (self.problem.tools.iter().zip(&last.contacts)).any(|(driven, contacts)| {
+            matches!(driven.drive, Drive::Force(_)) && contacts.as_ref().is_none_or(|c| c.points().is_empty())
+        });
         let mut length = 1.0;
         for trial in 0.. {
             state.u.clone_from(&start.0);
@@ -590,13 +702,15 @@ impl<'a> Newton<'a> {
             };
             let saddle = !state.pressure.is_empty();
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
-            let now: f64 = step.iter().zip(&unknowns).map(|(s, r)| s * r).sum();
+            let lacking = self.lacking(&balance, time);
+            let now = work(step, &unknowns) + work(closures, &lacking);
             // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            let smaller = norm(&unknowns) <= (1.0 - 0.1 * length) * before;
+            let smaller = norm(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
             if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
                 || smaller
                 || held_move.is_some()
                 || saddle
+                || approaches
                 || trial >= 6
             {
                 return Ok((balance, length));

@@ -105,7 +105,7 @@ impl Pairs {
         Pairs { offsets, of_point, place, group_offsets }
     }
 
-    fn of(&self, q: usize) -> &[(u32, f64)] {
+    pub fn of(&self, q: usize) -> &[(u32, f64)] {
         &self.of_point[self.offsets[q]..self.offsets[q + 1]]
     }
 
@@ -116,9 +116,9 @@ impl Pairs {
 }
 
 /// Displacement gradient and `J - 1` of each point.
-struct Kinematics {
-    H: Vec<Matrix3>,
-    J1: Vec<f64>,
+pub(super) struct Kinematics {
+    pub H: Vec<Matrix3>,
+    pub J1: Vec<f64>,
     smallest: (usize, f64),
 }
 
@@ -148,7 +148,7 @@ impl Solid<'_> {
         }
     }
 
-    fn kinematics(&self, u: &[Vector3]) -> Result<Kinematics, Inverted> {
+    pub(super) fn kinematics(&self, u: &[Vector3]) -> Result<Kinematics, Inverted> {
         let (H, J1): (Vec<Matrix3>, Vec<f64>) = (0..self.volume.weights().len())
             .into_par_iter()
             .with_min_len(256)
@@ -177,7 +177,7 @@ impl Solid<'_> {
     }
 
     /// `J_a - 1` of each group.
-    fn group_dilations(&self, groups: &DilationGroups, J1: &[f64]) -> Result<Vec<f64>, Inverted> {
+    pub(super) fn group_dilations(&self, groups: &DilationGroups, J1: &[f64]) -> Result<Vec<f64>, Inverted> {
         let weights = self.volume.weights();
         (0..groups.len())
             .into_par_iter()
@@ -224,7 +224,7 @@ impl Solid<'_> {
     }
 
     /// `theta - 1` at a point of the mixed method.
-    fn mixed_dilation(&self, q: usize, H: &Matrix3, J1: f64, p: f64) -> Result<f64, StaticError> {
+    pub(super) fn mixed_dilation(&self, q: usize, H: &Matrix3, J1: f64, p: f64) -> Result<f64, StaticError> {
         let law = self.law(q);
         dilation_at_pressure(law, H, J1, p, J1)
             // Far from J the guess p = kappa (theta - 1) may be the better one.
@@ -236,7 +236,7 @@ impl Solid<'_> {
     }
 
     /// Pressure of the mixed method at each point, Pa.
-    fn pressures(&self, rows: &Rows, p: &[f64]) -> Vec<f64> {
+    pub(super) fn pressures(&self, rows: &Rows, p: &[f64]) -> Vec<f64> {
         (0..rows.len())
             .map(|q| {
                 let (nodes, values) = rows.row(q);

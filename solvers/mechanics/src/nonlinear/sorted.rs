@@ -6,6 +6,7 @@ use std::ops::AddAssign;
 use crate::pattern::{Connectivity, Incidence};
 
 /// Compressed rows with one datum per (row, node).
+#[derive(Clone, Debug)]
 pub(crate) struct Sorted<T> {
     pub offsets: Vec<usize>,
     pub nodes: Vec<u32>,

@@ -167,8 +167,8 @@ pub(crate) fn dilation_at_pressure(law: &Law, H: &Matrix3, J1: f64, p: f64, gues
         if !step.is_finite() {
             return None;
         }
-        // No step may take away more than half of the volume.
-        theta1 += step.max(-0.5 * (1.0 + theta1));
+        // No step may take away more than half of the volume; at small strain any dilation has a pressure.
+        theta1 += if law.is_small_strain() { step } else { step.max(-0.5 * (1.0 + theta1)) };
         if step.abs() <= 1e-14 * (1.0 + theta1.abs()) {
             return Some(theta1);
         }

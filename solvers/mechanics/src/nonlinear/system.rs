@@ -14,7 +14,8 @@ use crate::{Matrix3, Vector3};
 /// Place of a held degree of freedom among the unknowns.
 pub(crate) const HELD: usize = usize::MAX;
 
-/// Values on a surface with its weights, ready for assembly.
+/// Values on a surface (or of any quadrature whose values alone count) with its weights, ready for assembly.
+#[derive(Clone, Debug)]
 pub(crate) struct SurfaceTable {
     pub rows: Sorted<f64>,
     pub weights: Vec<f64>,
@@ -23,13 +24,30 @@ pub(crate) struct SurfaceTable {
 
 impl SurfaceTable {
     pub fn new(surface: &shape::SurfaceRows) -> SurfaceTable {
-        let rows = surface.rows();
+        SurfaceTable::weighted(surface.rows(), surface.weights().to_vec())
+    }
+
+    /// Any values with weights of their own.
+    pub fn weighted(rows: &shape::Rows, weights: Vec<f64>) -> SurfaceTable {
         let sorted = Sorted::new((0..rows.len()).map(|q| {
             let (nodes, values) = rows.row(q);
             nodes.iter().copied().zip(values.iter().copied())
         }));
         let of_node = sorted.incidence(rows.node_count());
-        SurfaceTable { rows: sorted, weights: surface.weights().to_vec(), of_node }
+        SurfaceTable { rows: sorted, weights, of_node }
+    }
+
+    /// One point in each node.
+    pub fn nodal(weights: Vec<f64>) -> SurfaceTable {
+        let rows = Sorted::new((0..weights.len() as u32).map(|i| std::iter::once((i, 1.0))));
+        let of_node = rows.incidence(weights.len());
+        SurfaceTable { rows, weights, of_node }
+    }
+
+    /// `sum_q w N_I^2` of every node.
+    pub fn diagonal(&self, nodes: usize) -> Vec<f64> {
+        let entry = |&(q, k): &(u32, u32)| self.weights[q as usize] * self.rows.data[k as usize].powi(2);
+        (0..nodes).map(|i| self.of_node.of(i).iter().map(entry).sum()).collect()
     }
 
     /// Displacement at the surface points, m.

@@ -1,0 +1,105 @@
+//! Finite bending: a block bent into a sector of a cylinder, in plane strain.
+//!
+//! ```text
+//! Source      Rivlin (1949), flexure; Ogden, Non-linear Elastic Deformations (1984), ch. 5.2. Here compressible: one
+//!             ordinary differential equation.
+//!
+//!    Y ^                      .--.
+//!      |---.                .'    '.
+//!      |   |      ->       /  .--.  '  angle k Y,  radius r(X),  z = Z
+//!      |___|___> X            |__|
+//!    -h/2  h/2
+//!
+//! Field       x = r(X) cos(k Y) - r(0), y = r(X) sin(k Y); stretches r', k r, 1.
+//! Equations   dP_r / dX = k P_t(r', k r, 1), P_r = 0 on both faces X = -h/2, h/2.
+//! Conditions  faces X = -h/2, h/2 free; planes Y = 0 and Z slip; the exact displacement at another Y.
+//! Must hold   displacements converge; the fibre of stretch 1 is not the middle one.
+//! ```
+
+use super::{ExactError, Hyperelastic, Point3, Vector3};
+
+/// Intervals across the thickness: fourth-order Runge-Kutta is below 1e-10 of the radius.
+const INTERVALS: usize = 100;
+
+/// A block of one thickness bent to one curvature.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FiniteBending {
+    curvature: f64,
+    thickness: f64,
+    /// `r` (m) and `r'` at the ends of the intervals.
+    radius: Vec<(f64, f64)>,
+}
+
+impl FiniteBending {
+    /// Thickness `h` (m) and angle per length `k` (1/m), `0 < k h <= 1`.
+    pub fn new(law: &Hyperelastic, thickness: f64, curvature: f64) -> Result<FiniteBending, ExactError> {
+        let bend = thickness * curvature;
+        if !(thickness > 0.0 && thickness.is_finite() && bend > 0.0 && bend <= 1.0) {
+            let need = format!("above zero and at most {} 1/m, one over the thickness", 1.0 / thickness);
+            return Err(ExactError::BadParameter {
+                solution: "finite-bending",
+                name: "curvature",
+                value: curvature,
+                need,
+            });
+        }
+        // The inner face shortens to a radius below 1 / k; too small a one leaves the outer face pressed outwards.
+        let (mut low, mut high) = (1.0 / curvature - thickness, 1.0 / curvature);
+        let shoot = |start: f64| shoot(law, thickness, curvature, start);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if shoot(middle).1 < 0.0 { low = middle } else { high = middle }
+        }
+        Ok(FiniteBending { curvature, thickness, radius: shoot(0.5 * (low + high)).0 })
+    }
+
+    /// Deformed radius of the fibre at `X`, m: the cubic through both ends of its interval.
+    pub fn radius(&self, x: f64) -> f64 {
+        let step = self.thickness / INTERVALS as f64;
+        let at = (x / self.thickness + 0.5) * INTERVALS as f64;
+        let k = (at.max(0.0) as usize).min(INTERVALS - 1);
+        let ((a, da), (b, db), t) = (self.radius[k], self.radius[k + 1], at - k as f64);
+        let s = 1.0 - t;
+        s * s * ((1.0 + 2.0 * t) * a + t * step * da) + t * t * ((1.0 + 2.0 * s) * b - s * step * db)
+    }
+
+    /// Displacement, m; `X` within the thickness.
+    pub fn displacement(&self, x: &Point3) -> Vector3 {
+        let (r, angle) = (self.radius(x.x), self.curvature * x.y);
+        Vector3::new(r * angle.cos() - self.radius(0.0) - x.x, r * angle.sin() - x.y, 0.0)
+    }
+}
+
+/// From the inner face with `r = start` and `P_r = 0`: `(r, r')` across and `P_r` at the outer face, Pa.
+fn shoot(law: &Hyperelastic, thickness: f64, curvature: f64, start: f64) -> (Vec<(f64, f64)>, f64) {
+    let step = thickness / INTERVALS as f64;
+    // (r', dP_r/dX) of a state (r, P_r).
+    let slope = |(r, pressed): (f64, f64)| {
+        let hoop = curvature * r;
+        let radial = radial_stretch(law, hoop, pressed);
+        (radial, curvature * law.principal_stress([radial, hoop, 1.0])[1])
+    };
+    let shifted = |(r, p): (f64, f64), (dr, dp): (f64, f64), by: f64| (r + by * dr, p + by * dp);
+    let mut state = (start, 0.0);
+    let mut path = vec![(start, slope(state).0)];
+    for _ in 0..INTERVALS {
+        let k1 = slope(state);
+        let k2 = slope(shifted(state, k1, 0.5 * step));
+        let k3 = slope(shifted(state, k2, 0.5 * step));
+        let k4 = slope(shifted(state, k3, step));
+        let mean = |f: &dyn Fn((f64, f64)) -> f64| (f(k1) + 2.0 * (f(k2) + f(k3)) + f(k4)) / 6.0;
+        state = shifted(state, (mean(&|k| k.0), mean(&|k| k.1)), step);
+        path.push((state.0, slope(state).0));
+    }
+    (path, state.1)
+}
+
+/// The stretch between 1/8 and 8 at which the radial stress is `pressed`, by bisection.
+fn radial_stretch(law: &Hyperelastic, hoop: f64, pressed: f64) -> f64 {
+    let (mut low, mut high) = (0.125, 8.0);
+    for _ in 0..56 {
+        let middle = 0.5 * (low + high);
+        if law.principal_stress([middle, hoop, 1.0])[0] < pressed { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

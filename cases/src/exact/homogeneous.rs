@@ -1,0 +1,69 @@
+//! Homogeneous states at finite strain: free-slip compression, confined compression, simple shear.
+//!
+//! ```text
+//! Source      Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4.
+//!
+//!    free slip                confined              simple shear
+//!   === plate ===          |=== plate ===|              .-------.
+//!     |       |            |             |             /       /  -> g h
+//!     |       | h l        |             | h l        /       /  h
+//!   ===       ===          |=============|           '-------'
+//!   F = diag(m, m, l)      F = diag(1, 1, l)        F = I + g e_x e_y^T
+//!   P_xx(m, m, l) = 0
+//!
+//! Conditions  plates without friction; sides free or on frictionless walls; for shear the displacement or the
+//!             tractions P N of all faces (unequal normal ones belong to it: Poynting's effect).
+//! Must hold   every consistent method returns F and P to rounding on any mesh; the plate's force is P_zz times the
+//!             undeformed area.
+//! ```
+
+use super::{Hyperelastic, Matrix3, Vector3};
+
+/// One deformation gradient everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Homogeneous {
+    /// `F` (3, 3), dimensionless.
+    pub deformation: Matrix3,
+    /// First Piola-Kirchhoff stress `P` (3, 3), Pa.
+    pub stress: Matrix3,
+}
+
+impl Homogeneous {
+    /// Axial stretch `l > 0` along z between frictionless plates, sides free. The lateral stretch `m` makes the sides'
+    /// stress vanish; it is bracketed between 1/16 and 16 and bisected to the last digit. `None` where none does: Saint
+    /// Venant-Kirchhoff bars are without width from `l^2 = 1 + 1 / nu` on.
+    pub fn free_slip(law: &Hyperelastic, stretch: f64) -> Option<Homogeneous> {
+        let side = |m: f64| law.principal_stress([m, m, stretch])[0];
+        let (mut low, mut high) = (0.0625, 16.0);
+        if !(side(low) < 0.0 && side(high) > 0.0) {
+            return None;
+        }
+        while {
+            let middle = 0.5 * (low + high);
+            middle > low && middle < high
+        } {
+            let middle = 0.5 * (low + high);
+            if side(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let stress = Vector3::new(0.0, 0.0, law.principal_stress([low, low, stretch])[2]);
+        Some(Homogeneous {
+            deformation: Matrix3::from_diagonal(&Vector3::new(low, low, stretch)),
+            stress: Matrix3::from_diagonal(&stress),
+        })
+    }
+
+    /// Axial stretch `l > 0` along z between walls that hold x and y.
+    pub fn confined(law: &Hyperelastic, stretch: f64) -> Homogeneous {
+        Homogeneous {
+            deformation: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, stretch)),
+            stress: Matrix3::from_diagonal(&law.principal_stress([1.0, 1.0, stretch]).into()),
+        }
+    }
+
+    /// Shear `g` of planes of constant y along x.
+    pub fn simple_shear(law: &Hyperelastic, shear: f64) -> Homogeneous {
+        let mut deformation = Matrix3::identity();
+        deformation[(0, 1)] = shear;
+        Homogeneous { deformation, stress: law.stress(&deformation) }
+    }
+}

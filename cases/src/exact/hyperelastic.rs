@@ -1,0 +1,92 @@
+//! Isotropic hyperelastic laws by their principal stretches, written out once more for the exact solutions.
+//!
+//! ```text
+//! P_a = dW / dl_a           principal first Piola-Kirchhoff stresses of the stretches l_1, l_2, l_3;  J = l_1 l_2 l_3
+//! P   = sum_a P_a n_a N_a^T   with the spatial and the material principal directions, F = sum_a l_a n_a N_a^T
+//! ```
+//!
+//! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors; here there are only three
+//! numbers, so a solver's material never judges itself.
+
+use super::{Elastic, Matrix3, Vector3};
+
+/// A stored energy `W(l_1, l_2, l_3)`, Pa, with the constants in the form the law is known by.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Hyperelastic {
+    /// `lambda/2 (tr E)^2 + mu E : E`, `E_a = (l_a^2 - 1) / 2`.
+    SaintVenantKirchhoff(Elastic),
+    /// `mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2`.
+    NeoHookean(Elastic),
+    /// `mu sum (ln l_a)^2 + lambda/2 (ln J)^2`.
+    Hencky(Elastic),
+    /// `C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2`; with `C01 = 0` the isochoric neo-Hookean.
+    MooneyRivlin {
+        /// `C10`, Pa.
+        c10: f64,
+        /// `C01`, Pa.
+        c01: f64,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+    /// `sum_p mu_p / alpha_p (sum_a (J^(-1/3) l_a)^alpha_p - 3) + kappa/2 (J - 1)^2`.
+    Ogden {
+        /// `(mu_p, alpha_p)`, Pa and dimensionless.
+        terms: Vec<(f64, f64)>,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+}
+
+impl Hyperelastic {
+    /// Principal nominal stresses `P_a = dW / dl_a` (Pa) of three positive stretches.
+    pub fn principal_stress(&self, stretch: [f64; 3]) -> [f64; 3] {
+        let jacobian = stretch[0] * stretch[1] * stretch[2];
+        // From the Kirchhoff stresses, tau_a = l_a P_a.
+        let nominal = |tau: &dyn Fn(f64) -> f64| stretch.map(|l| tau(l) / l);
+        match self {
+            Hyperelastic::SaintVenantKirchhoff(e) => {
+                let green = stretch.map(|l| 0.5 * (l * l - 1.0));
+                let trace: f64 = green.iter().sum();
+                std::array::from_fn(|a| stretch[a] * (e.lambda() * trace + 2.0 * e.mu() * green[a]))
+            }
+            Hyperelastic::NeoHookean(e) => nominal(&|l| e.mu() * (l * l - 1.0) + e.lambda() * jacobian.ln()),
+            Hyperelastic::Hencky(e) => nominal(&|l| 2.0 * e.mu() * l.ln() + e.lambda() * jacobian.ln()),
+            Hyperelastic::MooneyRivlin { c10, c01, bulk } => {
+                let square = stretch.map(|l| l * l);
+                let first: f64 = square.iter().sum();
+                let second = square[0] * square[1] + square[1] * square[2] + square[2] * square[0];
+                let (f, s) = (2.0 * c10 * jacobian.powf(-2.0 / 3.0), 2.0 * c01 * jacobian.powf(-4.0 / 3.0));
+                let volume = bulk * (jacobian - 1.0) * jacobian;
+                nominal(&|l| {
+                    let l2 = l * l;
+                    f * (l2 - first / 3.0) + s * (first * l2 - l2 * l2 - 2.0 * second / 3.0) + volume
+                })
+            }
+            Hyperelastic::Ogden { terms, bulk } => {
+                let volume = bulk * (jacobian - 1.0) * jacobian;
+                let cube = jacobian.cbrt();
+                nominal(&|l| {
+                    let shape: f64 = (terms.iter())
+                        .map(|&(mu, alpha)| {
+                            let mean = stretch.iter().map(|m| (m / cube).powf(alpha)).sum::<f64>() / 3.0;
+                            mu * ((l / cube).powf(alpha) - mean)
+                        })
+                        .sum();
+                    shape + volume
+                })
+            }
+        }
+    }
+
+    /// First Piola-Kirchhoff stress `P` (3, 3), Pa, of a deformation gradient with `det F > 0`, by the eigenvectors
+    /// of `F^T F` (good to about 1e-14; where two stretches are equal any pair of directions will do).
+    pub fn stress(&self, gradient: &Matrix3) -> Matrix3 {
+        let right = (gradient.transpose() * gradient).symmetric_eigen();
+        let stretch: [f64; 3] = std::array::from_fn(|a| right.eigenvalues[a].sqrt());
+        let principal = self.principal_stress(stretch);
+        (0..3).fold(Matrix3::zeros(), |sum, a| {
+            let material: Vector3 = right.eigenvectors.column(a).into();
+            sum + (gradient * material / stretch[a]) * material.transpose() * principal[a]
+        })
+    }
+}

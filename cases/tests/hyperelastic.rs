@@ -1,0 +1,154 @@
+//! Laws by principal stretches and homogeneous states: what holds for every isotropic law.
+
+use cases::exact::{Elastic, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3};
+
+const YOUNG: f64 = 20e3;
+
+fn laws(poisson: f64) -> [Hyperelastic; 5] {
+    let elastic = Elastic::new(YOUNG, poisson).unwrap();
+    let (mu, bulk) = (elastic.mu(), elastic.bulk());
+    [
+        Hyperelastic::SaintVenantKirchhoff(elastic),
+        Hyperelastic::NeoHookean(elastic),
+        Hyperelastic::Hencky(elastic),
+        Hyperelastic::MooneyRivlin { c10: 0.3 * mu, c01: 0.2 * mu, bulk },
+        Hyperelastic::Ogden { terms: vec![(0.4 * mu, 3.0), (-0.4 * mu, -2.0)], bulk },
+    ]
+}
+
+#[test]
+fn principal_stresses_derive_from_an_energy() {
+    // dP_a/dl_b = dP_b/dl_a, by central differences of step 1e-5: 1e-10 of truncation, 1e-11 of rounding.
+    let (at, h) = ([1.4, 0.7, 1.1], 1e-5);
+    for law in laws(0.4) {
+        let slope = |a: usize, b: usize| {
+            let shifted = |s: f64| {
+                let mut l = at;
+                l[b] += s;
+                law.principal_stress(l)[a]
+            };
+            (shifted(h) - shifted(-h)) / (2.0 * h)
+        };
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            let gap = (slope(a, b) - slope(b, a)).abs();
+            assert!(gap < 1e-8 * slope(a, b).abs().max(YOUNG), "{law:?}: {gap:e}");
+        }
+    }
+}
+
+#[test]
+fn small_strains_follow_hooke() {
+    let elastic = Elastic::new(YOUNG, 0.4).unwrap();
+    let strain = Vector3::new(1e-6, -2e-6, 0.5e-6);
+    let hooke = elastic.stress(&Matrix3::from_diagonal(&strain));
+    for law in laws(0.4) {
+        let found = law.principal_stress([0, 1, 2].map(|a| 1.0 + strain[a]));
+        for a in 0..3 {
+            assert!(
+                (found[a] - hooke[(a, a)]).abs() < 1e-5 * hooke.norm(),
+                "{law:?}: {} {}",
+                found[a],
+                hooke
+            );
+        }
+    }
+}
+
+#[test]
+fn simple_shear_keeps_rivlins_relation() {
+    // sigma_xx - sigma_yy = g sigma_xy for every isotropic elastic law (Rivlin 1948); J = 1.
+    for law in laws(0.4) {
+        for shear in [0.01, 0.5, 1.5] {
+            let state = Homogeneous::simple_shear(&law, shear);
+            let cauchy = state.stress * state.deformation.transpose();
+            assert!((cauchy - cauchy.transpose()).norm() < 1e-13 * cauchy.norm(), "{law:?}: {cauchy}");
+            let gap = cauchy[(0, 0)] - cauchy[(1, 1)] - shear * cauchy[(0, 1)];
+            assert!(gap.abs() < 1e-12 * cauchy.norm(), "{law:?} at {shear}: {gap:e}");
+        }
+    }
+}
+
+#[test]
+fn free_slip_has_free_sides_and_the_known_lateral_stretches() {
+    let poisson = 0.4;
+    for law in laws(poisson) {
+        for stretch in [0.5, 0.9, 1.0, 1.5] {
+            let state = Homogeneous::free_slip(&law, stretch).unwrap();
+            let m = state.deformation[(0, 0)];
+            let side = law.principal_stress([m, m, stretch])[0];
+            assert!(side.abs() < 1e-13 * YOUNG / (1.0 - 2.0 * poisson), "{law:?} at {stretch}: {side:e}");
+            // Bars under uniaxial stress: l_t = l^(-nu), and E_t = -nu E.
+            let known = match law {
+                Hyperelastic::Hencky(_) => stretch.powf(-poisson),
+                Hyperelastic::SaintVenantKirchhoff(_) => (1.0 - poisson * (stretch * stretch - 1.0)).sqrt(),
+                _ => continue,
+            };
+            assert!((m - known).abs() < 1e-14, "{law:?} at {stretch}: {m} for {known}");
+        }
+    }
+}
+
+#[test]
+fn a_bar_pulled_to_nothing_is_refused() {
+    let [saint_venant, ..] = laws(0.4);
+    // 1 + 1 / nu = 3.5
+    assert!(Homogeneous::free_slip(&saint_venant, 1.86).is_some_and(|s| s.deformation[(0, 0)] < 0.13));
+    assert_eq!(Homogeneous::free_slip(&saint_venant, 1.88), None);
+}
+
+#[test]
+fn hertz_balances_its_far_field() {
+    let (elastic, radius, depth) = (Elastic::new(YOUNG, 0.3).unwrap(), 0.01, 1e-5);
+    let hertz = Hertz::new(elastic, radius, depth).unwrap();
+    // F = (2/3) p0 pi a^2 (Johnson, eq. 4.23): the pressure's resultant.
+    let resultant = 2.0 / 3.0 * hertz.peak_pressure() * std::f64::consts::PI * hertz.contact_radius().powi(2);
+    assert!((resultant / hertz.force() - 1.0).abs() < 1e-14);
+    // Tractions of the far field on a half sphere of radius L, by differences of step 1e-4 L and midpoint sums.
+    let (length, n) = (0.02, 400);
+    let (h, mut force) = (1e-4 * length, 0.0);
+    for k in 0..n {
+        let angle = 0.5 * std::f64::consts::PI * (k as f64 + 0.5) / n as f64;
+        let normal = Vector3::new(angle.sin(), 0.0, -angle.cos());
+        let x = Point3::from(normal * length);
+        let slope = |axis: usize| {
+            let step = Vector3::from_fn(|a, _| if a == axis { h } else { 0.0 });
+            (hertz.far_displacement(&(x + step)) - hertz.far_displacement(&(x - step))) / (2.0 * h)
+        };
+        let stress = elastic.stress(&Matrix3::from_columns(&[slope(0), slope(1), slope(2)]));
+        let ring = 2.0 * std::f64::consts::PI * length * length * angle.sin() * 0.5 * std::f64::consts::PI
+            / n as f64;
+        force += (stress * normal).z * ring;
+    }
+    assert!((force / hertz.force() - 1.0).abs() < 1e-5, "{force} for {}", hertz.force());
+    assert!(Hertz::new(elastic, 0.0, depth).is_err() && Hertz::new(elastic, radius, f64::NAN).is_err());
+}
+
+#[test]
+fn bent_blocks_balance_their_moments_and_keep_the_volume_when_nearly_incompressible() {
+    let (thickness, curvature) = (0.01, 50.0);
+    let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.49999).unwrap());
+    let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
+    let [inner, middle, outer] = [-0.5, 0.0, 0.5].map(|s| bent.radius(s * thickness));
+    // Rivlin: r^2 is linear in X, k (r_o^2 - r_i^2) = 2 h, and the faces are free when r_i r_o = 1 / k^2.
+    let volume = curvature * (outer * outer - inner * inner) / (2.0 * thickness);
+    assert!((volume - 1.0).abs() < 1e-4, "{volume}");
+    assert!((middle * middle / (0.5 * (inner * inner + outer * outer)) - 1.0).abs() < 1e-5, "{middle}");
+    assert!((inner * outer * curvature * curvature - 1.0).abs() < 1e-4, "{inner} {outer}");
+    // No resultant force: P_t sums up to zero over the thickness, because both faces are free (Simpson).
+    let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.3).unwrap());
+    let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
+    let stress = |s: f64| {
+        let (x, h) = (s * thickness, 1e-5 * thickness);
+        let radial = (bent.radius(x + h) - bent.radius(x - h)) / (2.0 * h);
+        law.principal_stress([radial, curvature * bent.radius(x), 1.0])[1]
+    };
+    let n = 50;
+    let sum: f64 = (0..n)
+        .map(|k| {
+            [(0.0, 1.0), (0.5, 4.0), (1.0, 1.0)].map(|(t, w)| w * stress((k as f64 + t) / n as f64 - 0.5))
+        })
+        .map(|s| s.iter().sum::<f64>() / (6.0 * n as f64))
+        .sum();
+    assert!(sum.abs() < 1e-6 * YOUNG && stress(0.5) > 0.1 * YOUNG, "{sum} {}", stress(0.5));
+    assert!(FiniteBending::new(&law, thickness, 101.0).is_err());
+}

@@ -1,0 +1,97 @@
+//! How loads, supports and tools grow with time.
+
+/// Part of a full value at a time, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ramp {
+    /// All of it from the start.
+    AtOnce,
+    /// In proportion to time over so many seconds, then held. Supports driven so start and stop with a jump of their
+    /// velocity, which a body with inertia answers by a wave.
+    Linear {
+        /// Duration, s.
+        over: f64,
+    },
+    /// `10 s^3 - 15 s^4 + 6 s^5`, `s = t / over`, then held: velocity and acceleration are continuous.
+    Smooth {
+        /// Duration, s.
+        over: f64,
+    },
+}
+
+/// One ramp each for what a problem is driven by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramps {
+    /// Loads.
+    pub loads: Ramp,
+    /// Prescribed displacements, of nodes and of surfaces held by penalty.
+    pub supports: Ramp,
+    /// Closures and forces of tools.
+    pub tools: Ramp,
+}
+
+impl Ramps {
+    /// The same for all.
+    pub fn all(ramp: Ramp) -> Ramps {
+        Ramps { loads: ramp, supports: ramp, tools: ramp }
+    }
+}
+
+impl Ramp {
+    /// Part that acts at the time `t >= 0` (s).
+    pub fn value(self, t: f64) -> f64 {
+        self.derivatives(t)[0]
+    }
+
+    /// Duration, s.
+    pub(crate) fn over(self) -> Option<f64> {
+        match self {
+            Ramp::AtOnce => None,
+            Ramp::Linear { over } | Ramp::Smooth { over } => Some(over),
+        }
+    }
+
+    /// Value, first derivative (1/s) and second one (1/s^2); at a kink those of the time after it.
+    pub(crate) fn derivatives(self, t: f64) -> [f64; 3] {
+        match self {
+            Ramp::Linear { over } if t < over => [t / over, 1.0 / over, 0.0],
+            Ramp::Smooth { over } if t < over => {
+                let s = t / over;
+                [
+                    s * s * s * (10.0 + s * (6.0 * s - 15.0)),
+                    30.0 * (s * (1.0 - s)).powi(2) / over,
+                    60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (over * over),
+                ]
+            }
+            _ => [1.0, 0.0, 0.0],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_those_of_the_value() {
+        let h = 1e-5;
+        for ramp in [Ramp::AtOnce, Ramp::Linear { over: 2.0 }, Ramp::Smooth { over: 2.0 }] {
+            for t in [0.3, 0.9, 1.7, 2.5] {
+                let [value, first, second] = ramp.derivatives(t);
+                let (up, down) = (ramp.derivatives(t + h), ramp.derivatives(t - h));
+                assert_eq!(value, ramp.value(t));
+                assert!(((up[0] - down[0]) / (2.0 * h) - first).abs() < 1e-8, "{ramp:?} {t}");
+                assert!(((up[1] - down[1]) / (2.0 * h) - second).abs() < 1e-8, "{ramp:?} {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_smooth_ramp_has_no_kink() {
+        let ramp = Ramp::Smooth { over: 2.0 };
+        assert_eq!(ramp.derivatives(0.0), [0.0; 3]);
+        assert_eq!(ramp.derivatives(2.0), [1.0, 0.0, 0.0]);
+        let [value, first, second] = ramp.derivatives(2.0 - 1e-6);
+        assert!((value - 1.0).abs() < 1e-15 && first < 1e-11 && second.abs() < 2e-5);
+        assert!((ramp.value(1.0) - 0.5).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,14 @@
+//! Statics at large displacements and with contact, against exact solutions.
+
+mod bending;
+mod common;
+
+mod contact_patch;
+mod driven;
+mod finite_patch;
+mod friction;
+mod hertz;
+mod homogeneous;
+mod locking;
+mod manufactured;
+mod quadratic;
