@@ -185,12 +185,16 @@ impl Discretisation {
         }
     }
 
-    /// Values on the whole outer boundary, where tools may touch.
+    /// Values on the whole outer boundary, where tools may touch. Smoothed gradients want their own face points there: a
+    /// block of smoothed cells between two plates came out 3 % too wide with three contact points on faces of one.
     pub fn contact_surface(&self, volume: &Volume) -> Result<SurfaceRows, Failure> {
         let facets = self.mesh().boundary();
         match (self, &volume.approximation) {
             (Discretisation::Efg(efg), Some(approximation)) => {
-                let points = CONTACT_RULE.points(FaceKind::Tri3);
+                let points = match efg.integration {
+                    Integration::CellSmoothed { face_points, .. } => face_points,
+                    _ => CONTACT_RULE.points(FaceKind::Tri3),
+                };
                 Ok(efg::surface_rows(approximation, &efg.background, &facets, points)?.0)
             }
             _ => Ok(fem::surface_rows(self.mesh(), &facets, &CONTACT_RULE)?),
