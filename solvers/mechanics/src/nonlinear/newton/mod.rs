@@ -1,17 +1,21 @@
 //! One load step: Newton's method with line search on the balance of internal, external and contact forces.
 
+mod drive;
+mod search;
+mod tangent;
+
 use std::sync::Arc;
 
-use super::error::{StaticError, Worst};
-use super::in_time::{Ended, Scales, TimeTerms};
-use super::solid::Internal;
-use super::statics::{Drive, StaticProblem, Step, ToolState};
-use super::system::{SurfaceTable, System};
+use crate::Vector3;
 use crate::contact::{ContactCounts, ContactHistory as History, Contacts};
-use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, Kind, Symbolic, Unsymmetric};
+use crate::linear_solver::Symbolic;
 use crate::load::nodal_forces;
+use crate::nonlinear::error::{StaticError, Worst};
+use crate::nonlinear::in_time::{Ended, Scales, TimeTerms};
+use crate::nonlinear::solid::Internal;
+use crate::nonlinear::statics::{Drive, StaticProblem, Step, ToolState};
+use crate::nonlinear::system::{SurfaceTable, System};
 use crate::support::prescribed;
-use crate::{Matrix3, SolveError, Vector3};
 
 /// How Newton's method runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,22 +119,6 @@ pub(crate) enum Descent {
 /// `x . r`.
 fn work(x: &[f64], r: &[f64]) -> f64 {
     x.iter().zip(r).map(|(x, r)| x * r).sum()
-}
-
-/// A factored tangent.
-enum Factored {
-    Symmetric(Factorization),
-    Unsymmetric(Unsymmetric),
-}
-
-impl Factored {
-    fn solve(&self, b: &mut [f64], goal: f64) -> Result<(), SolveError> {
-        match self {
-            Factored::Symmetric(f) => f.solve(b),
-            Factored::Unsymmetric(f) => f.solve(b, goal),
-        }
-        .map(|_| ())
-    }
 }
 
 impl<'a> Newton<'a> {
@@ -398,20 +386,6 @@ impl<'a> Newton<'a> {
         residual
     }
 
-    /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
-    /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
-    fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
-        let scale = self.scales(time).tools;
-        (self.problem.tools.iter().zip(&balance.contacts))
-            .map(|(driven, contacts)| match driven.drive {
-                Drive::Force(full) => {
-                    full * scale + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
-                }
-                Drive::Closure(_) => 0.0,
-            })
-            .collect()
-    }
-
     fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
         let force = |i: usize| {
             (0..3)
@@ -478,253 +452,5 @@ impl<'a> Newton<'a> {
         }
         let pressure = self.system.pressure_gradient(&internal).iter().map(|g| -g).collect();
         Ok(Balance { internal, out, pressure, contacts, ended, scale })
-    }
-
-    /// `-w dt/dx` of every surface point, by surface: held ones first, then contact.
-    fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
-        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.held.iter())
-            .map(|h| {
-                let held = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
-                h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(held * *w))).collect()
-            })
-            .collect();
-        if self.problem.contact.is_some() && !self.problem.tools.is_empty() {
-            let table = &self.system.surfaces[blocks.len()];
-            let mut of_points = vec![Matrix3::zeros(); table.weights.len()];
-            for contacts in balance.contacts.iter().flatten() {
-                for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
-                    of_points[q as usize] -= dt * table.weights[q as usize];
-                }
-            }
-            blocks.push(of_points);
-        }
-        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
-            let mass = &self.system.surfaces[blocks.len()];
-            blocks.push(inertia.blocks(mass));
-        }
-        blocks
-    }
-
-    /// The Newton step: free unknowns, and closures of the tools driven by force.
-    fn direction(
-        &mut self,
-        state: &State,
-        balance: &Balance,
-        time: f64,
-        held_move: Option<&[Vector3]>,
-    ) -> Result<(Vec<f64>, Vec<f64>), StaticError> {
-        let pairs = self.system.pairs.as_ref();
-        let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
-        if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
-            let solid = &self.problem.solid;
-            relaxing.relax_tangent(solid, pairs, &state.u, &state.pressure, &mut hessian)?;
-        }
-        let blocks = self.surface_blocks(balance);
-        let matrix = self.system.assemble(&hessian, &blocks);
-        let skew = self.system.skew(&blocks);
-        let mut right = balance.out.clone();
-        let mut right_pressure = balance.pressure.clone();
-        if let Some(moves) = held_move {
-            for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
-                *r -= k;
-            }
-            // The accelerations of held degrees of freedom are given: they don't follow the move.
-            if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
-                let mass = self.system.surfaces.last().expect("inertia has a mass table");
-                inertia.give_back(mass, moves, &mut right);
-            }
-            self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
-        }
-        let mut step = self.system.gather(&right, &right_pressure);
-        let factored = self.factor(matrix, skew)?;
-        self.solve(&factored, &mut step)?;
-        let closures = self.drive(&factored, state, balance, time, &mut step)?;
-        Ok((step, closures))
-    }
-
-    /// Solves with the matrix as it was assembled, pressures scaled.
-    fn solve(&self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
-        let scale = self.system.pressure_scale;
-        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
-        factored.solve(b, self.forcing)?;
-        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
-        Ok(())
-    }
-
-    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
-    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
-    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
-    fn factor(
-        &mut self,
-        matrix: linear_solver::Symmetric,
-        skew: Vec<(usize, usize, f64)>,
-    ) -> Result<Factored, StaticError> {
-        if self.symbolic.is_none() {
-            self.symbolic = Some(linear_solver::analyse(&matrix, DENSE_LIMIT)?);
-        }
-        let symbolic = self.symbolic.as_ref().expect("just analysed").as_ref();
-        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
-        let with_skew = |factor| match skew.is_empty() {
-            true => Factored::Symmetric(factor),
-            false => Factored::Unsymmetric(Unsymmetric::new(factor, skew.clone())),
-        };
-        let shifts: &[f64] = match self.descent {
-            Descent::Nearest => &[0.0],
-            Descent::Down => &[0.0, 1e-3, 1e-2, 0.1, 1.0],
-        };
-        for &shift in shifts {
-            let mut shifted = matrix.clone();
-            shifted.shift(shift);
-            match linear_solver::factor_as(symbolic, shifted, kind) {
-                Ok(factor) if self.descent == Descent::Nearest || factor.negative_pivots() == pressures => {
-                    self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
-                    return Ok(with_skew(factor));
-                }
-                Ok(_) | Err(FactorError::NotDefinite) => {}
-                Err(FactorError::Other(SolveError::NearlySingular { .. } | SolveError::ZeroPivot)) => {}
-                Err(FactorError::Other(error)) => return Err(error.into()),
-            }
-        }
-        if self.descent == Descent::Nearest && kind == Kind::Definite {
-            self.indefinite = true;
-            return match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
-                Ok(factor) => Ok(with_skew(factor)),
-                Err(FactorError::Other(error)) => Err(error.into()),
-                Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
-            };
-        }
-        Err(SolveError::NotPositiveDefinite.into())
-    }
-
-    /// Closures of the tools driven by force, by elimination: with `a = sum w N S along` (S = -dt/dx) the step is
-    /// `du = x + X dd`, `K X = a`, and `dd` balances the tool: `(D - a' . X) dd = F - Q + a' . x`,
-    /// `D = sum w along . S along`. One tool at a time: the columns of all tools make a small dense system.
-    fn drive(
-        &self,
-        factored: &Factored,
-        state: &State,
-        balance: &Balance,
-        time: f64,
-        step: &mut [f64],
-    ) -> Result<Vec<f64>, StaticError> {
-        let mut moves = vec![0.0; self.problem.tools.len()];
-        let Some(surface) = self.problem.contact else { return Ok(moves) };
-        let rows = surface.rows();
-        let nodes = self.problem.nodes.len();
-        let none = vec![0.0; state.pressure.len()];
-        // (tool, X, a', D, what its force lacks)
-        let mut driven = Vec::new();
-        for (k, tool) in self.problem.tools.iter().enumerate() {
-            let Drive::Force(full) = tool.drive else { continue };
-            let full = full * self.scales(time).tools;
-            let along = tool.tool.along();
-            let mut columns = [vec![Vector3::zeros(); nodes], vec![Vector3::zeros(); nodes]];
-            let (mut own, mut pushed) = (0.0, 0.0);
-            if let Some(contacts) = &balance.contacts[k] {
-                pushed = -contacts.force().dot(&along);
-                for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
-                    let w = rows.weights()[q as usize];
-                    let (right, left) = (dt * along * -w, dt.tr_mul(&along) * -w);
-                    own += right.dot(&along);
-                    let (at, values) = rows.rows().row(q as usize);
-                    for (&node, value) in at.iter().zip(values) {
-                        columns[0][node as usize] += right * *value;
-                        columns[1][node as usize] += left * *value;
-                    }
-                }
-            }
-            if !(own > 0.0) {
-                moves[k] = self.approach(k, state, full)?;
-                continue;
-            }
-            let mut x = self.system.gather(&columns[0], &none);
-            self.solve(factored, &mut x)?;
-            driven.push((k, x, self.system.gather(&columns[1], &none), own, full - pushed));
-        }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let m = driven.len();
-        if m > 0 {
-            let matrix = nalgebra::DMatrix::from_fn(m, m, |i, j| {
-                f64::from(u8::from(i == j)) * driven[i].3 - dot(&driven[i].2, &driven[j].1)
-            });
-            let right = nalgebra::DVector::from_fn(m, |i, _| driven[i].4 + dot(&driven[i].2, step));
-            let solution = matrix.lu().solve(&right).ok_or(SolveError::NotPositiveDefinite)?;
-            for (i, (k, x, _, _, _)) in driven.iter().enumerate() {
-                moves[*k] = solution[i];
-                for (s, x) in step.iter_mut().zip(x) {
-                    *s += x * solution[i];
-                }
-            }
-        }
-        Ok(moves)
-    }
-
-    /// Closure that brings a tool which does not touch into contact, with the penetration that a hundredth of the
-    /// surface would need for `force`.
-    fn approach(&self, tool: usize, state: &State, force: f64) -> Result<f64, StaticError> {
-        let Some(surface) = self.problem.contact else { return Ok(0.0) };
-        let driven = self.problem.tools[tool].tool;
-        let gap = surface.gap(driven, state.closures[tool], &state.u);
-        let area: f64 = surface.rows().weights().iter().sum();
-        Ok(gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area))
-    }
-
-    /// Takes the step, or the part of it that brings the residual's work along the step down: a step past the minimum
-    /// is cut by the secant, one that inverts a point is halved.
-    fn search(
-        &mut self,
-        state: &mut State,
-        step: &[f64],
-        closures: &[f64],
-        held_move: Option<&[Vector3]>,
-        slope: f64,
-        last: &Balance,
-        time: f64,
-    ) -> Result<(Balance, f64), StaticError> {
-        let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
-        let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let none = vec![0.0; state.pressure.len()];
-        let before = norm(&self.system.gather(&last.out, &none)).hypot(norm(&self.lacking(last, time)));
-        // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
-        let approaches = (self.problem.tools.iter().zip(&last.contacts)).any(|(driven, contacts)| {
-            matches!(driven.drive, Drive::Force(_)) && contacts.as_ref().is_none_or(|c| c.points().is_empty())
-        });
-        let mut length = 1.0;
-        for trial in 0.. {
-            state.u.clone_from(&start.0);
-            state.pressure.clone_from(&start.1);
-            state.closures.clone_from(&start.2);
-            // Held degrees of freedom go all the way, whatever part of the step the free ones take.
-            self.prescribe(&mut state.u, time);
-            self.system.scatter_add(step, length, &mut state.u, &mut state.pressure);
-            state.closures.iter_mut().zip(closures).for_each(|(c, d)| *c += length * d);
-            let balance = match self.balance(state, time) {
-                Ok(balance) => balance,
-                Err(error) if trial >= 10 || held_move.is_some() => return Err(error),
-                Err(_) => {
-                    length *= 0.5;
-                    continue;
-                }
-            };
-            let saddle = !state.pressure.is_empty();
-            let unknowns = self.system.gather(&balance.out, &balance.pressure);
-            let lacking = self.lacking(&balance, time);
-            let now = work(step, &unknowns) + work(closures, &lacking);
-            // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            let smaller = norm(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
-            if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
-                || smaller
-                || held_move.is_some()
-                || saddle
-                || approaches
-                || trial >= 6
-            {
-                return Ok((balance, length));
-            }
-            // Secant between slope at 0 and now at `length`, kept between a tenth and a half of it.
-            let secant = length * slope / (slope - now);
-            length = if secant.is_finite() { secant.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
-        }
-        unreachable!("the loop returns or fails by its eleventh trial")
     }
 }

@@ -1,0 +1,140 @@
+//! The tangent of an iteration: assembled, factored, and the step it gives.
+
+use super::{Balance, Descent, Newton, State};
+use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, Kind, Unsymmetric};
+use crate::nonlinear::StaticError;
+use crate::{Matrix3, SolveError, Vector3};
+
+/// A factored tangent.
+pub(super) enum Factored {
+    Symmetric(Factorization),
+    Unsymmetric(Unsymmetric),
+}
+
+impl Factored {
+    fn solve(&self, b: &mut [f64], goal: f64) -> Result<(), SolveError> {
+        match self {
+            Factored::Symmetric(f) => f.solve(b),
+            Factored::Unsymmetric(f) => f.solve(b, goal),
+        }
+        .map(|_| ())
+    }
+}
+
+impl Newton<'_> {
+    /// `-w dt/dx` of every surface point, by surface: held ones first, then contact.
+    fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
+        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.held.iter())
+            .map(|h| {
+                let held = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
+                h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(held * *w))).collect()
+            })
+            .collect();
+        if self.problem.contact.is_some() && !self.problem.tools.is_empty() {
+            let table = &self.system.surfaces[blocks.len()];
+            let mut of_points = vec![Matrix3::zeros(); table.weights.len()];
+            for contacts in balance.contacts.iter().flatten() {
+                for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
+                    of_points[q as usize] -= dt * table.weights[q as usize];
+                }
+            }
+            blocks.push(of_points);
+        }
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            let mass = &self.system.surfaces[blocks.len()];
+            blocks.push(inertia.blocks(mass));
+        }
+        blocks
+    }
+
+    /// The Newton step: free unknowns, and closures of the tools driven by force.
+    pub(super) fn direction(
+        &mut self,
+        state: &State,
+        balance: &Balance,
+        time: f64,
+        held_move: Option<&[Vector3]>,
+    ) -> Result<(Vec<f64>, Vec<f64>), StaticError> {
+        let pairs = self.system.pairs.as_ref();
+        let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
+        if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
+            let solid = &self.problem.solid;
+            relaxing.relax_tangent(solid, pairs, &state.u, &state.pressure, &mut hessian)?;
+        }
+        let blocks = self.surface_blocks(balance);
+        let matrix = self.system.assemble(&hessian, &blocks);
+        let skew = self.system.skew(&blocks);
+        let mut right = balance.out.clone();
+        let mut right_pressure = balance.pressure.clone();
+        if let Some(moves) = held_move {
+            for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
+                *r -= k;
+            }
+            // The accelerations of held degrees of freedom are given: they don't follow the move.
+            if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+                let mass = self.system.surfaces.last().expect("inertia has a mass table");
+                inertia.give_back(mass, moves, &mut right);
+            }
+            self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
+        }
+        let mut step = self.system.gather(&right, &right_pressure);
+        let factored = self.factor(matrix, skew)?;
+        self.solve(&factored, &mut step)?;
+        let closures = self.drive(&factored, state, balance, time, &mut step)?;
+        Ok((step, closures))
+    }
+
+    /// Solves with the matrix as it was assembled, pressures scaled.
+    pub(super) fn solve(&self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
+        let scale = self.system.pressure_scale;
+        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        factored.solve(b, self.forcing)?;
+        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        Ok(())
+    }
+
+    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
+    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
+    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
+    fn factor(
+        &mut self,
+        matrix: linear_solver::Symmetric,
+        skew: Vec<(usize, usize, f64)>,
+    ) -> Result<Factored, StaticError> {
+        if self.symbolic.is_none() {
+            self.symbolic = Some(linear_solver::analyse(&matrix, DENSE_LIMIT)?);
+        }
+        let symbolic = self.symbolic.as_ref().expect("just analysed").as_ref();
+        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let with_skew = |factor| match skew.is_empty() {
+            true => Factored::Symmetric(factor),
+            false => Factored::Unsymmetric(Unsymmetric::new(factor, skew.clone())),
+        };
+        let shifts: &[f64] = match self.descent {
+            Descent::Nearest => &[0.0],
+            Descent::Down => &[0.0, 1e-3, 1e-2, 0.1, 1.0],
+        };
+        for &shift in shifts {
+            let mut shifted = matrix.clone();
+            shifted.shift(shift);
+            match linear_solver::factor_as(symbolic, shifted, kind) {
+                Ok(factor) if self.descent == Descent::Nearest || factor.negative_pivots() == pressures => {
+                    self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
+                    return Ok(with_skew(factor));
+                }
+                Ok(_) | Err(FactorError::NotDefinite) => {}
+                Err(FactorError::Other(SolveError::NearlySingular { .. } | SolveError::ZeroPivot)) => {}
+                Err(FactorError::Other(error)) => return Err(error.into()),
+            }
+        }
+        if self.descent == Descent::Nearest && kind == Kind::Definite {
+            self.indefinite = true;
+            return match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
+                Ok(factor) => Ok(with_skew(factor)),
+                Err(FactorError::Other(error)) => Err(error.into()),
+                Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
+            };
+        }
+        Err(SolveError::NotPositiveDefinite.into())
+    }
+}
