@@ -93,6 +93,7 @@ fn cargo(args: &[&str], more: &[String]) -> Result<u8> {
         .args(args)
         .args(more)
         .env("RUSTDOCFLAGS", "-D warnings")
+        .env("CARGO_INCREMENTAL", "0")
         .current_dir(root())
         .status()
         .with_context(|| format!("could not start cargo {}", args.join(" ")))?;
