@@ -2,8 +2,8 @@
 
 use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
-    self, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, kidney_mesh, raise_order,
-    sphere_shell_mesh,
+    self, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh, kidney_mesh,
+    raise_order, sphere_shell_mesh,
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, Kidney, Shape, SphereShell};
@@ -22,15 +22,15 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
     Ok(mesh)
 }
 
-/// The body in closed form; `None` for a mesh file and for the octant of a shell.
+/// The body in closed form; `None` for a mesh file and for parts cut off at planes of symmetry.
 pub fn shape(body: &Body) -> Option<Box<dyn Shape + Send + Sync>> {
     match *body {
         Body::Box { min, max } => Some(Box::new(Cuboid { min: min.into(), max: max.into() })),
         Body::Cylinder { radius, height } => Some(Box::new(Cylinder { radius, height })),
         Body::Ball { radius } => Some(Box::new(Ball { radius })),
         Body::SphereShell { inner, outer, octant: false } => Some(Box::new(SphereShell { inner, outer })),
-        Body::SphereShell { octant: true, .. } | Body::File(_) => None,
-        Body::Kidney => Some(Box::new(Kidney)),
+        Body::SphereShell { octant: true, .. } | Body::Kidney { half: true } | Body::File(_) => None,
+        Body::Kidney { half: false } => Some(Box::new(Kidney)),
     }
 }
 
@@ -59,7 +59,8 @@ fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -
                 let extent = if octant { ShellExtent::Octant } else { ShellExtent::Whole };
                 sphere_shell_mesh(kind, inner, outer, [n, n], 1.0, extent)
             }
-            Body::Kidney => kidney_mesh(kind, n),
+            Body::Kidney { half: false } => kidney_mesh(kind, n),
+            Body::Kidney { half: true } => half_kidney_mesh(kind, n),
             Body::File(ref file) => {
                 let problem = format!("is of a family of meshes, but the body is {}", file.path.display());
                 let help = "give the method a mesh too: size = { file = \"...\" }";
@@ -144,9 +145,9 @@ fn base(body: &Body) -> usize {
         Body::Box { .. }
         | Body::Cylinder { .. }
         | Body::Ball { .. }
-        | Body::Kidney
+        | Body::Kidney { half: false }
         | Body::SphereShell { .. } => 2,
-        Body::File(_) => 1,
+        Body::Kidney { half: true } | Body::File(_) => 1,
     }
 }
 
@@ -156,7 +157,7 @@ fn narrowest(body: &Body) -> f64 {
         Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
         Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
         Body::SphereShell { inner, outer, .. } => outer - inner,
-        Body::Kidney => Kidney::C,
+        Body::Kidney { .. } => Kidney::C,
         Body::File(_) => 0.0,
     }
 }

@@ -43,6 +43,8 @@ pub enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Run every method of a scene and store what they agree on, as a reference for other scenes
+    Reference(ReferenceArgs),
     /// List cases, elements, kernels, transfer schemes and exact solutions
     List,
     /// Print the JSON schema of scene files
@@ -69,6 +71,22 @@ pub struct RunArgs {
     /// Also write records, tables and figures to this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// Arguments of `reference`.
+#[derive(Args)]
+pub struct ReferenceArgs {
+    /// The scene file; the last method's values are stored, all methods span the uncertainty
+    pub scene: PathBuf,
+    /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
+    #[arg(long, value_name = "MESH")]
+    pub points: Option<PathBuf>,
+    /// Length unit of that file
+    #[arg(long, default_value = "mm", value_parser = length_unit)]
+    pub unit: f64,
+    /// The file to write (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `verify`.

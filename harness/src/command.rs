@@ -7,12 +7,13 @@ use std::path::Path;
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use reports::{RunSet, Status};
 
-use crate::cli::{Cli, Command, Format, RunArgs, VerifyArgs};
+use crate::cli::{Cli, Command, Format, ReferenceArgs, RunArgs, VerifyArgs};
 use crate::group::{Group, case_name};
 use crate::json::RunObject;
 use crate::outcome::{Outcome, Unfinished};
 use crate::run::Repeats;
-use crate::study::Plan;
+use crate::stored::Stored;
+use crate::study::{self, Plan};
 use crate::{Failure, check, list, mesh_files, provenance};
 
 /// Repeats of a single run's timings.
@@ -34,6 +35,10 @@ pub fn main(cli: Cli) -> u8 {
             let out = out.unwrap_or_else(|| results.join("report"));
             report(&results, &out)
         }
+        Command::Reference(args) => match reference(&args) {
+            Ok(()) => 0,
+            Err(code) => code,
+        },
         Command::List => {
             list::print();
             0
@@ -171,6 +176,7 @@ fn run(args: &RunArgs) -> u8 {
         eprintln!("{}", list::verdict(check));
         code = code.max(1);
     }
+    set.records.extend(study::reference_records(&scene));
     if let Some(out) = &args.out {
         let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
         set.provenance = provenance::provenance(&[(case, text)], 0);
@@ -226,6 +232,25 @@ fn plan(path: &Path, methods: &[String]) -> u8 {
         }
     }
     code
+}
+
+/// Runs every method of a scene and writes what they agree on.
+fn reference(args: &ReferenceArgs) -> Result<(), u8> {
+    let (scene, _) = open(&args.scene, &[])?;
+    let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+    let points = match &args.points {
+        Some(path) => {
+            let mesh = geometry::msh::read(path, args.unit)
+                .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", path.display()))))?;
+            mesh.points().to_vec()
+        }
+        None => Vec::new(),
+    };
+    let stored = Stored::make(&scene, &text, &points).map_err(|failure| fail(&failure))?;
+    print!("{}", list::reference(&stored));
+    let json = serde_json::to_string(&stored).expect("finite numbers and text");
+    std::fs::write(&args.out, json + "\n")
+        .map_err(|bad| fail(&Failure::Run(format!("{} can't be written: {bad}", args.out.display()))))
 }
 
 fn verify(args: &VerifyArgs) -> u8 {

@@ -11,6 +11,7 @@ use crate::outcome::{Outcome, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
 use crate::run::{self, Asks, Repeats, run};
 use crate::scenario::Scenario;
+use crate::stored::Stored;
 use crate::work::Work;
 use crate::{Failure, body, reach};
 
@@ -41,10 +42,9 @@ impl<'a> Group<'a> {
         match &scene.reference {
             Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
             Some(Reference::Record(path)) => {
-                let problem = format!("is a stored record ({}), which is not available yet", path.display());
-                let help = "exact solutions and methods are";
-                let kind = ErrorKind::NotAvailable;
-                return Err(Failure::of_scene(scene, kind, "reference.record", &problem, help));
+                let stored = Stored::load(scene, path)?;
+                group.targets = stored.targets();
+                group.reference = Some(stored.reference());
             }
             Some(Reference::Exact { .. }) | None => {}
         }
@@ -66,6 +66,17 @@ impl<'a> Group<'a> {
             reference_stalled: None,
             repeats,
         })
+    }
+
+    /// One method's solution as a reference, whole or not at all; `targets` are where its displacement is told, m.
+    pub fn solve_for(scene: &'a Scene, id: &str, targets: Vec<Point3>) -> Result<run::Reference, Failure> {
+        let mut group = Group::unreferenced(scene, Repeats { most: 1, seconds: 0.0 })?;
+        group.targets = targets;
+        group.run_reference(id, None)?;
+        match group.reference_stalled {
+            Some(failure) => Err(failure),
+            None => Ok(group.reference.expect("it has run")),
+        }
     }
 
     fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<(), Failure> {
@@ -149,7 +160,8 @@ impl<'a> Group<'a> {
 
     fn wants(&self) -> Wants {
         // Known before the reference has run, so that a plan says what the run will do.
-        let nodes_of_reference = matches!(self.scene.reference, Some(Reference::Method { .. }));
+        let nodes_of_reference =
+            matches!(self.scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
         let targets = nodes_of_reference || !self.targets.is_empty();
         Wants { targets, schemes: targets && !self.schemes.is_empty() }
     }

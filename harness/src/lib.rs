@@ -30,6 +30,7 @@ pub mod run;
 pub mod scenario;
 pub mod setup;
 pub mod statics;
+pub mod stored;
 pub mod study;
 pub mod task;
 pub mod timing;

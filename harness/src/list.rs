@@ -7,6 +7,7 @@ use cases::scene::{Element, KernelName, Metric, SchemeName};
 use reports::{Check, Status};
 
 use crate::outcome::{Outcome, Stage};
+use crate::stored::Stored;
 use crate::timing::PHASES;
 
 /// Prints what scenes may name.
@@ -49,6 +50,27 @@ pub fn stages(method: &str, stages: &[Stage]) -> String {
     for stage in stages {
         let word = if stage.ran { "run " } else { "skip" };
         writeln!(text, "  {word}  {:28} {}", stage.stage, stage.why).expect("a string");
+    }
+    text
+}
+
+/// The forces of a stored reference and how far its solutions differ.
+pub fn reference(stored: &Stored) -> String {
+    let mut text = String::new();
+    for step in &stored.steps {
+        for tool in &step.tools {
+            let off = [tool.low, tool.high].map(|f| 100.0 * (f / tool.force - 1.0));
+            writeln!(
+                text,
+                "{:7.3} mm  {:9.5} N  {:+.2} % {:+.2} %  probes within {:.4} mm",
+                1e3 * tool.closure,
+                tool.force,
+                off[0],
+                off[1],
+                1e3 * step.probe_band
+            )
+            .expect("a string");
+        }
     }
     text
 }

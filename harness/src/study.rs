@@ -12,6 +12,7 @@ use reports::{Check as Verdict, Record, RunSet};
 use crate::cli::VerifyArgs;
 use crate::group::{Group, case_name, resize};
 use crate::run::Repeats;
+use crate::stored::Stored;
 use crate::task::{self, TaskResult};
 use crate::work::Work;
 use crate::{Failure, check};
@@ -210,6 +211,9 @@ impl Plan {
             let task = &self.tasks[index];
             set.checks.extend(self.verdicts(task, result));
         }
+        for (_, _, scene) in &self.scenes {
+            set.records.extend(reference_records(scene));
+        }
         set.checks.extend(self.family_verdicts(&results));
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
@@ -273,12 +277,19 @@ impl Plan {
     }
 }
 
+/// The rows of a stored reference; one that can't be read has failed every method that asked for it.
+pub fn reference_records(scene: &Scene) -> Vec<Record> {
+    let Some(scene::Reference::Record(path)) = &scene.reference else { return Vec::new() };
+    let poisson = scene.material.elastic().map_or(0.0, |e| e.poisson);
+    Stored::load(scene, path).map(|s| s.records(&case_name(scene), poisson)).unwrap_or_default()
+}
+
 /// Lists the runs of one table: methods, times levels (or node counts), times kernels, times Poisson's ratios.
 fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
     // A picture of an organ says something; one of a box does not, nor does one for each kernel.
-    let organ = matches!(scene.body, scene::Body::Kidney | scene::Body::File(_));
+    let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
     let picture = organ && run.kernels.is_empty() && run.nodes.is_empty();
     for &poisson in &ratios {
         for method in &scene.methods {
@@ -380,6 +391,9 @@ fn files(scene: &Scene) -> Vec<PathBuf> {
     }
     if let Some(scene::Reference::Method { size: Some(size), .. }) = &scene.reference {
         found.extend(of_size(size));
+    }
+    if let Some(scene::Reference::Record(path)) = &scene.reference {
+        found.push(path.clone());
     }
     found.sort();
     found.dedup();

@@ -48,10 +48,11 @@ pub fn transfers(
             let mut metrics = Vec::new();
             if let Some(reference) = asks.reference {
                 push_difference(&mut metrics, &field, &reference.targets);
-                let restricted = (reference.at)(nodes)?;
-                let carried = rows.rows().apply(&restricted);
-                let only = difference(&carried, &reference.targets);
-                push(&mut metrics, "transfer-only-rms", only.rms_magnitude, "m");
+                if let Some(at) = &reference.at {
+                    let carried = rows.rows().apply(&at(nodes)?);
+                    let only = difference(&carried, &reference.targets);
+                    push(&mut metrics, "transfer-only-rms", only.rms_magnitude, "m");
+                }
             }
             let change = difference(&field, &own);
             push(&mut metrics, "transfer-rms", change.rms_magnitude, "m");

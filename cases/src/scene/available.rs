@@ -3,7 +3,6 @@
 use super::error::{ErrorKind, Problem, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::model::Scene;
-use super::output::Reference;
 use super::procedure::ProcedureKind;
 use super::tool::ToolShape;
 
@@ -69,9 +68,6 @@ impl Scene {
             {
                 add(&format!("{key}.prony"), "relaxation in explicit dynamics".into(), "leave it out");
             }
-        }
-        if let Some(Reference::Record(_)) = &self.reference {
-            add("reference.record", "a stored record as reference".into(), "exact solutions and methods are");
         }
         errors
     }

@@ -99,7 +99,10 @@ pub enum Body {
         octant: bool,
     },
     /// The kidney, by its map from the ball.
-    Kidney,
+    Kidney {
+        /// Only z >= 0, in cells drawn together around the z axis.
+        half: bool,
+    },
     /// The mesh of a file.
     File(MeshFile),
 }
@@ -112,7 +115,7 @@ impl Body {
             Body::Cylinder { .. } => "cylinder",
             Body::Ball { .. } => "ball",
             Body::SphereShell { .. } => "sphere-shell",
-            Body::Kidney => "kidney",
+            Body::Kidney { .. } => "kidney",
             Body::File(_) => "file",
         }
     }
@@ -122,7 +125,8 @@ impl Body {
         match self {
             Body::Box { .. } => Some(&["x-min", "x-max", "y-min", "y-max", "z-min", "z-max", "surface"]),
             Body::Cylinder { .. } => Some(&["bottom", "top", "side", "surface"]),
-            Body::Ball { .. } | Body::Kidney => Some(&["surface"]),
+            Body::Ball { .. } | Body::Kidney { half: false } => Some(&["surface"]),
+            Body::Kidney { half: true } => Some(&["surface", "symmetry"]),
             Body::SphereShell { octant: false, .. } => Some(&["inner", "outer", "surface"]),
             Body::SphereShell { octant: true, .. } => {
                 Some(&["inner", "outer", "x-min", "y-min", "z-min", "surface"])

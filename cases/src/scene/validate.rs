@@ -62,11 +62,12 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
 
 /// Transfers go to points that there are.
 fn targets(scene: &Scene, report: &mut Report) {
+    let solved = is_solved(scene);
     for (i, transfer) in scene.output.transfers.iter().enumerate() {
         let (problem, help) = match transfer.to {
-            Target::ReferenceNodes if !matches!(scene.reference, Some(Reference::Method { .. })) => (
+            Target::ReferenceNodes if !solved => (
                 "has no nodes to go to",
-                "add [reference] method = \"...\", or transfer to { file = \"...\" }",
+                "add [reference] method = \"...\" or record = \"...\", or transfer to { file = \"...\" }",
             ),
             Target::Probes if scene.output.probes.is_empty() => {
                 ("has no probes to go to", "add output.probes")
@@ -79,10 +80,15 @@ fn targets(scene: &Scene, report: &mut Report) {
     }
 }
 
+/// Whether the reference is a solution, run or stored.
+fn is_solved(scene: &Scene) -> bool {
+    matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)))
+}
+
 /// What a check, in the scene or in a study of it, demands of the scene; `key` is the path of the check.
 pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&check.methods, scene, &format!("{key}.method"), report);
-    let of_method = matches!(scene.reference, Some(Reference::Method { .. }));
+    let solved = is_solved(scene);
     let lacks = match check.metric.needs {
         Needs::Reference | Needs::Levels if scene.reference.is_none() => "needs a [reference] in the scene",
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
@@ -98,11 +104,11 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
             "needs [procedure] kind = \"static\" in the scene"
         }
         Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
-        Needs::ToolReference if scene.tools.is_empty() || !of_method => {
-            "needs a [[tool]] and [reference] method = \"...\" in the scene"
+        Needs::ToolReference if scene.tools.is_empty() || !solved => {
+            "needs a [[tool]] and [reference] method or record in the scene"
         }
-        Needs::ProbesReference if scene.output.probes.is_empty() || !of_method => {
-            "needs output.probes and [reference] method = \"...\" in the scene"
+        Needs::ProbesReference if scene.output.probes.is_empty() || !solved => {
+            "needs output.probes and [reference] method or record in the scene"
         }
         Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",
         _ => return,

@@ -11,7 +11,7 @@ mod cylinder;
 mod lattice;
 mod shell;
 
-pub use ball::{ball_mesh, kidney_mesh};
+pub use ball::{ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};
 pub use convert::{raise_order, to_tets};
 pub use cylinder::cylinder_mesh;

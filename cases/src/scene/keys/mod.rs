@@ -61,8 +61,11 @@ pub(crate) enum BodyKeys {
         #[serde(default)]
         octant: bool,
     },
-    /// The bean of 40 x 75 x 30 mm, by its map from the ball
-    Kidney {},
+    /// The bean of 40 x 75 x 30 mm, by its map from the ball; the half z >= 0 alone if wanted
+    Kidney {
+        #[serde(default)]
+        half: bool,
+    },
     /// The mesh in a Gmsh file whose numbers are in `unit`
     File { path: String, unit: Unit<Length> },
 }

@@ -125,7 +125,7 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
             report.require(outer > inner, "body.outer", "is not above inner", "the wall needs a thickness");
             Body::SphereShell { inner, outer, octant }
         }
-        BodyKeys::Kidney {} => Body::Kidney,
+        BodyKeys::Kidney { half } => Body::Kidney { half },
         BodyKeys::File { path, unit } => Body::File(mesh_file(&path, unit.0, "body.path", report)),
     })
 }

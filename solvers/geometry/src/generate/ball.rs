@@ -31,34 +31,94 @@ pub fn kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
     Ok(mesh)
 }
 
+/// The half z >= 0 of the kidney, cells drawn together under the surface and under the edges of a jaw of 10 x 20 mm
+/// on the z axis: `4 n` and `6 n` cells across the inner block along x and y, `n` from z = 0 to its top, and `(3 n) / 2`
+/// layers around it. Facet groups: "surface", and "symmetry" at z = 0.
+pub fn half_kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
+    check_cells("the number of cells across the jaw", n)?;
+    let [x, y, z] = [4, 6, 2].map(|m| n.saturating_mul(m));
+    let blocks = Blocks { cells: [x, y, z], layers: x * 3 / 8, jaw: true };
+    let mesh = parameter_ball(kind, blocks)?.moved(|p| Kidney.map(&onto_ball(p)))?;
+    quality::check(&mesh)?;
+    Ok(mesh)
+}
+
+/// How the parameter cube is cut.
+#[derive(Clone, Copy)]
+struct Blocks {
+    /// Cells of the inner block along x, y and z.
+    cells: [usize; 3],
+    /// Layers around it.
+    layers: usize,
+    /// Whether only the half above z = 0 is wanted, graded towards a jaw on it; `cells[2]` is even then.
+    jaw: bool,
+}
+
 fn unit_ball(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
     check_cells("the number of cells across the ball", n)?;
-    let layers = n.div_ceil(2);
-    check_total([n, n, n + 6 * layers])?;
+    let mesh = parameter_ball(kind, Blocks { cells: [n; 3], layers: n.div_ceil(2), jaw: false })?;
+    Ok(mesh.moved(onto_ball)?)
+}
+
+/// The parameter cube [-1, 1]^3, or its upper half, as hexahedra, cut into the cells asked for.
+fn parameter_ball(kind: CellKind, blocks: Blocks) -> Result<Mesh, GenerateError> {
+    let Blocks { cells: [nx, ny, nz], layers, jaw } = blocks;
+    check_total([nx, ny, nz + 6 * layers])?;
     let mut mesh = lattice::Lattice::default();
-    let place = |key| parameters(key, n, layers);
-    for (i, j, k) in lattice::triples([n, n, n]) {
-        mesh.hexahedron(lattice::CORNERS.map(|(a, b, c)| [i + a, j + b, k + c, 0].map(|v| v as u32)), place);
+    let below = if jaw { nz / 2 } else { 0 };
+    let mut add = |corners: [lattice::Key; 8]| {
+        if corners.iter().all(|c| c[2] as usize >= below) {
+            mesh.hexahedron(corners, |key| parameters(key, blocks));
+        }
+    };
+    for (i, j, k) in lattice::triples([nx, ny, nz]) {
+        add(lattice::CORNERS.map(|(a, b, c)| [i + a, j + b, k + c, 0].map(|v| v as u32)));
     }
     for side in 0..6 {
-        for (i, j, layer) in lattice::triples([n, n, layers]) {
+        let [across, along] = lattice::side_cells(side, [nx, ny, nz]);
+        for (i, j, layer) in lattice::triples([across, along, layers]) {
             let key = |(a, b, c)| {
-                let [x, y, z] = lattice::on_cube_side(side, n, i + a, j + b);
+                let [x, y, z] = lattice::on_cube_side(side, [nx, ny, nz], i + a, j + b);
                 [x, y, z, layer + c].map(|v| v as u32)
             };
-            mesh.hexahedron(lattice::CORNERS.map(key), place);
+            add(lattice::CORNERS.map(key));
         }
     }
     // On the surface one parameter is +-1 exactly; mid-edge nodes between two of them keep it.
     let surface = |q: &Point3| q.coords.amax() == 1.0;
-    let mesh = into_kind(mesh.finish(&[("surface", &surface)])?, kind);
-    Ok(mesh.moved(onto_ball)?)
+    let symmetry = |q: &Point3| q.z == 0.0;
+    let groups: [lattice::Group; 2] = [("surface", &surface), ("symmetry", &symmetry)];
+    Ok(into_kind(mesh.finish(&groups[..1 + jaw as usize])?, kind))
 }
 
 /// Key (i, j, k, layer) to the parameter cube: layer 0 is the inner cube, the last layer the surface.
-fn parameters(key: lattice::Key, n: usize, layers: usize) -> Point3 {
-    let scale = INNER + (1.0 - INNER) * key[3] as f64 / layers as f64;
-    Point3::from(Vector3::from_fn(|d, _| scale * (2.0 * key[d] as f64 / n as f64 - 1.0)))
+fn parameters(key: lattice::Key, blocks: Blocks) -> Point3 {
+    let out = key[3] as f64 / blocks.layers as f64;
+    let across = |d: usize| 2.0 * key[d] as f64 / blocks.cells[d] as f64 - 1.0;
+    let (out, [x, y]) = match blocks.jaw {
+        true => (towards_surface(out), [across(0), across(1)].map(towards_edge)),
+        false => (out, [across(0), across(1)]),
+    };
+    Point3::from((INNER + (1.0 - INNER) * out) * Vector3::new(x, y, across(2)))
+}
+
+/// Where the jaw's edges stand in the parameters: they leave the flat at 3.5 and 8.5 mm and end at 5 and 10 mm, which
+/// are the parameters 0.26 and 0.29 to 0.37 and 0.35.
+const EDGE: f64 = 0.33;
+
+/// Draws [-1, 1] together around +-[`EDGE`], to 0.52 of equal cells there (Roberts 1971, as in Tannehill, Anderson &
+/// Pletcher 1997, section 5.6).
+fn towards_edge(u: f64) -> f64 {
+    const STRENGTH: f64 = 4.0;
+    let at = 0.5 / STRENGTH * ((1.0 + STRENGTH.exp_m1() * EDGE) / (1.0 + (-STRENGTH).exp_m1() * EDGE)).ln();
+    let share = EDGE * (1.0 + (STRENGTH * (u.abs() - at)).sinh() / (STRENGTH * at).sinh());
+    if u.abs() == 1.0 { u } else { share.copysign(u) }
+}
+
+/// Draws [0, 1] together towards 1, to 0.55 of equal cells there.
+fn towards_surface(t: f64) -> f64 {
+    const STRENGTH: f64 = 2.0;
+    1.0 - (STRENGTH * (1.0 - t)).sinh() / STRENGTH.sinh()
 }
 
 /// The parameter cube onto the unit ball: continuous, smooth within each of the seven blocks.

@@ -55,16 +55,28 @@ pub(super) fn triples(counts: [usize; 3]) -> impl Iterator<Item = (usize, usize,
     (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j, k))))
 }
 
-/// Lattice position (0 to n in each coordinate) of place (i, j) on a side of the cube, sides x-, x+, y-, y+, z-, z+;
+/// Lattice position (0 to `n` in each coordinate) of place (i, j) on a side of the cube, sides x-, x+, y-, y+, z-, z+;
 /// (i, j, outwards) is right-handed on each.
-pub(super) fn on_cube_side(side: usize, n: usize, i: usize, j: usize) -> [usize; 3] {
+pub(super) fn on_cube_side(side: usize, n: [usize; 3], i: usize, j: usize) -> [usize; 3] {
     match side {
         0 => [0, j, i],
-        1 => [n, i, j],
+        1 => [n[0], i, j],
         2 => [i, 0, j],
-        3 => [j, n, i],
+        3 => [j, n[1], i],
         4 => [j, i, 0],
-        _ => [i, j, n],
+        _ => [i, j, n[2]],
+    }
+}
+
+/// Number of places along i and j on a side of the cube.
+pub(super) fn side_cells(side: usize, n: [usize; 3]) -> [usize; 2] {
+    match side {
+        0 => [n[2], n[1]],
+        1 => [n[1], n[2]],
+        2 => [n[0], n[2]],
+        3 => [n[2], n[0]],
+        4 => [n[1], n[0]],
+        _ => [n[0], n[1]],
     }
 }
 

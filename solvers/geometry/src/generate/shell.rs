@@ -50,7 +50,7 @@ pub fn sphere_shell_mesh(
     for &side in sides {
         for (i, j, layer) in lattice::triples([around, around, through]) {
             let key = |(a, b, c)| {
-                let [x, y, z] = lattice::on_cube_side(side, n, start + i + a, start + j + b);
+                let [x, y, z] = lattice::on_cube_side(side, [n; 3], start + i + a, start + j + b);
                 [x, y, z, layer + c].map(|v| v as u32)
             };
             mesh.hexahedron(lattice::CORNERS.map(key), place);
