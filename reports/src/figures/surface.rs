@@ -166,7 +166,8 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
         .iter()
         .map(|f| f.tools.iter().map(|t| silhouette::outline(t, &view[0], &view[1])).collect())
         .collect();
-    let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f, &view)).collect();
+    let finest = FINEST.min(FINEST_OF_ALL / fields.len());
+    let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f, finest, &view)).collect();
     let corners = seen.iter().flatten().flat_map(|t| t.corners);
     let pose = Pose::new(fields.len(), corners.chain(outlines.iter().flatten().flatten().copied()));
     let bottom = pose.bottom();
@@ -272,12 +273,13 @@ fn grown(at: [(f64, f64); 3]) -> [(f64, f64); 3] {
 /// Slabs of depth that are drawn one after the other, the farthest first.
 const SLABS: f64 = 16.0;
 
-/// How many triangles a picture may be cut into for the sake of smooth colours.
+/// How many triangles a body, and all bodies of a figure (33 bytes a triangle in the file), may be cut into for the sake of smooth colours.
 const FINEST: usize = 4000;
+const FINEST_OF_ALL: usize = 11_000;
 
 /// Cuts every triangle into four, its values linear between the corners, as often as the count stays moderate.
-fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
-    while !triangles.is_empty() && triangles.len() * 4 <= FINEST {
+fn refined(mut triangles: Vec<Corners>, finest: usize) -> Vec<Corners> {
+    while !triangles.is_empty() && triangles.len() * 4 <= finest {
         let half = |a: &[f64; 4], b: &[f64; 4]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
         triangles = triangles
             .iter()
@@ -294,14 +296,14 @@ fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
 type Corners = [[f64; 4]; 3];
 
 /// Triangles that face the viewer, farthest first.
-fn project(field: &SurfaceField, [right, up, towards]: &View) -> Vec<Pictured> {
+fn project(field: &SurfaceField, finest: usize, [right, up, towards]: &View) -> Vec<Pictured> {
     let deformed = |triangle: &[u32; 3]| -> Corners {
         triangle.map(|t| {
             let (x, u) = (field.points[t as usize], field.displacement[t as usize]);
             [x[0] + u[0], x[1] + u[1], x[2] + u[2], magnitude(&u)]
         })
     };
-    let flat = |c: &Corners| c.map(|x| [dot(&x, &right), dot(&x, &up)]);
+    let flat = |c: &Corners| c.map(|x| [dot(&x, right), dot(&x, up)]);
     let faces = |c: &Corners| {
         let [a, b, c] = flat(c);
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
@@ -311,7 +313,7 @@ fn project(field: &SurfaceField, [right, up, towards]: &View) -> Vec<Pictured> {
         let depth: f64 = c.iter().map(|x| dot(x, towards)).sum();
         (depth, Pictured { corners: flat(&c), value: c.iter().map(|x| x[3]).sum::<f64>() / 3.0 })
     };
-    let mut seen: Vec<(f64, Pictured)> = refined(visible).into_iter().map(picture).collect();
+    let mut seen: Vec<(f64, Pictured)> = refined(visible, finest).into_iter().map(picture).collect();
     let (near, far) = seen.iter().fold((f64::MIN, f64::MAX), |(n, f), s| (n.max(s.0), f.min(s.0)));
     // Inside a slab faces to the front don't hide each other, and sorted by value neighbours on paper share a colour in the file.
     let slab = |depth: f64| ((depth - far) / (near - far).max(1e-12) * SLABS).floor();
