@@ -215,7 +215,7 @@ impl Outcome {
         records
     }
 
-    /// The history, under the phases `step-0` (where every tool starts) to `step-N`. The first tool's numbers are
+    /// The history, under the phases `step-0` (the start) to `step-N`. The first tool's numbers are
     /// `closure` and `tool-force`, the second's `closure-2` and `tool-force-2`.
     fn step_records(&self) -> Vec<Record> {
         let mut rows = Vec::new();
@@ -223,6 +223,13 @@ impl Outcome {
             for index in 0..self.tools.len() {
                 rows.push(self.record(&of_tool("closure", index), "m", "step-0", "value", 0.0));
                 rows.push(self.record(&of_tool("tool-force", index), "N", "step-0", "value", 0.0));
+            }
+        }
+        // Dynamics starts from rest and undeformed: no time, no energy.
+        if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
+            rows.push(self.record("strain-energy", "J", "step-0", "value", 0.0));
+            for metric in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
+                rows.push(self.record(&metric.name, metric.unit, "step-0", "value", 0.0));
             }
         }
         for (number, step) in self.steps.iter().enumerate() {

@@ -4,14 +4,15 @@ use std::time::Instant;
 
 use geometry::{Point3, Vector3};
 use interp::Scheme;
-use mechanics::{Body, Law, Material as _, Matrix3, SolveInfo, assemble};
-use reports::SurfaceField;
+use mechanics::{Body, Law, SolveInfo, assemble};
 
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::explicit::{self, Motion};
+use crate::mean_pressure::cauchy;
 use crate::norms::{self, difference, exact_at, norms};
 use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
+use crate::picture::{State, picture};
 use crate::prepare::{Prepared, prepare};
 use crate::setup::Setup;
 use crate::statics::{self, Path};
@@ -125,6 +126,7 @@ pub fn run(
         spacing: prepared.spacing,
     };
     let u = solution.u.clone();
+    let pressure = solution.path.as_mut().map(|path| std::mem::take(&mut path.pressure)).unwrap_or_default();
     let mut metrics = Vec::new();
     // A path that ended early is compared with the reference step by step, not at its end.
     let finished = solution.path.as_ref().is_none_or(|path| path.failure.is_none())
@@ -156,7 +158,8 @@ pub fn run(
         Discretisation::Efg(_) => transfers(method, &prepared, &u, &at_end, &mut work)?,
         Discretisation::Fem(_) => Vec::new(),
     };
-    let field = if asks.picture { Some(picture(&identity, method, &prepared, &u)?) } else { None };
+    let state = State { u: &u, pressure: &pressure, last: last.as_ref() };
+    let field = if asks.picture { Some(picture(&identity, method, setup, &prepared, state)?) } else { None };
     let outcome = Outcome {
         identity,
         size,
@@ -453,48 +456,6 @@ fn probes(
     };
     let field = rows.rows().apply(u);
     Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())
-}
-
-/// Cauchy stress `P F^T / J` (Pa) at a displacement gradient; `P` itself at small strain.
-fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
-    let p = law.stress(h);
-    if law.is_small_strain() {
-        return p;
-    }
-    let f = Matrix3::identity() + h;
-    p * f.transpose() / f.determinant()
-}
-
-/// Displacement of the boundary's corner nodes.
-fn picture(
-    identity: &Identity,
-    method: &Discretisation,
-    prepared: &Prepared,
-    u: &[Vector3],
-) -> Result<SurfaceField, Failure> {
-    let mesh = method.mesh();
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
-    for facet in mesh.boundary() {
-        let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-        let corners: Vec<u32> = mesh.facet_nodes(facet).take(count).collect();
-        triangles.extend((1..count - 1).map(|k| [corners[0], corners[k], corners[k + 1]]));
-    }
-    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
-    used.sort_unstable();
-    used.dedup();
-    for corner in triangles.iter_mut().flatten() {
-        *corner = used.binary_search(corner).expect("listed above") as u32;
-    }
-    let points: Vec<Point3> = used.iter().map(|&n| mesh.points()[n as usize]).collect();
-    let displacement = method.at_points(&prepared.volume, &points)?.0.rows().apply(u);
-    Ok(SurfaceField {
-        case: identity.case.clone(),
-        method: identity.method.clone(),
-        title: format!("{} ({} nodes)", identity.method, method.nodes().len()),
-        points: points.iter().map(|p| p.coords.into()).collect(),
-        triangles,
-        displacement: displacement.iter().map(|&d| d.into()).collect(),
-    })
 }
 
 /// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.

@@ -20,6 +20,8 @@ pub struct Path {
     pub u: Vec<Vector3>,
     /// Unknowns, pressures included.
     pub dofs: usize,
+    /// Parameters of the method's own pressure field there, Pa, tension positive; empty without one.
+    pub pressure: Vec<f64>,
     /// What was told: the ends of the scene's load steps as far as they were reached.
     pub steps: Vec<LoadStep>,
     /// Nodal parameters at each of them, m.
@@ -96,6 +98,7 @@ pub fn solve(
         iterations,
         cut_backs: path.cut_back as u64,
         u: path.u,
+        pressure: path.pressure,
         steps,
         fields,
         failure: path.failure,

@@ -13,6 +13,8 @@ pub struct SetTool {
     pub name: String,
     /// The tool.
     pub tool: Tool,
+    /// Takes the axes of the tool's frame to the world's (3, 3).
+    pub turned: Matrix3,
     /// Its drive, reached at the end of the loading.
     pub drive: Drive,
 }
@@ -40,7 +42,7 @@ fn set(tool: &scene::Tool, index: usize) -> Result<SetTool, Failure> {
             Failure::unavailable(at(".shape"), "is the distance to a mesh, which is not available yet", "")
         }
     })?;
-    Ok(SetTool { name: tool.name.clone(), tool: solver, drive })
+    Ok(SetTool { name: tool.name.clone(), tool: solver, turned: turned(tool), drive })
 }
 
 /// `None` for a shape that is ahead of the solver.
@@ -61,8 +63,12 @@ fn solver_tool(tool: &scene::Tool) -> Result<Tool, Option<ContactError>> {
         }
         scene::ToolShape::File(_) => return Err(None),
     };
-    let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
     let along = Vector3::from(tool.along);
     let law = law.map_err(Some)?;
-    Tool::new(shape, Point3::from(tool.at), turned, along, law).map_err(Some)
+    Tool::new(shape, Point3::from(tool.at), turned(tool), along, law).map_err(Some)
+}
+
+/// Takes the axes of the tool's frame to the world's (3, 3).
+fn turned(tool: &scene::Tool) -> Matrix3 {
+    tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)))
 }

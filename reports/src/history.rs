@@ -31,6 +31,16 @@ pub(crate) fn band(run: &Run, x: &str, y: &str) -> Vec<(f64, f64, f64)> {
     low.filter_map(|(step, low)| Some((*along.get(&step)?, low, *high.get(&step)?))).collect()
 }
 
+/// The run that the others of a case are compared with: the recorded reference, or else the method whose tool force has no
+/// error against it at any step, as it is the reference itself.
+pub(crate) fn reference<'r, 'a>(case: &'r [Run<'a>]) -> Option<&'r Run<'a>> {
+    let itself = |r: &&Run| {
+        let errors = by_step(r, "tool-force-error", "value");
+        !errors.is_empty() && errors.values().all(|e| *e == 0.0)
+    };
+    case.iter().find(|r| r.is.family == "reference").or_else(|| case.iter().find(itself))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,5 +90,19 @@ mod tests {
         assert_eq!(band(&runs[0], "closure", "tool-force"), [(2.0, 19.0, 22.0)]);
         assert_eq!((runs[0].value("strain-energy"), runs[0].value("closure")), (Some(7.0), None));
         assert!(!runs[0].contradicts("strain-energy"));
+    }
+
+    #[test]
+    fn a_recorded_reference_comes_before_the_method_that_has_no_error() {
+        let mut itself = at("step-1", "tool-force-error", "value", 0.0);
+        (itself.family, itself.method) = ("fem".into(), "tet10".into());
+        let mut other = Record { method: "tet4".into(), value: 0.4, ..itself.clone() };
+        other.phase = "step-2".into();
+        let mut records = vec![itself.clone(), Record { value: 0.0, ..other.clone() }, other];
+        records[1].phase = "step-1".into();
+        assert_eq!(reference(&runs(&records)).map(|r| r.is.method.as_str()), Some("tet10"));
+        assert!(reference(&runs(&records[1..])).is_none());
+        records.push(at("step-1", "tool-force", "value", 1.0));
+        assert_eq!(reference(&runs(&records)).map(|r| r.is.method.as_str()), Some("measured"));
     }
 }

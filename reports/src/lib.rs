@@ -20,6 +20,9 @@ mod text;
 
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
-pub use record::{Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Status, SurfaceField};
+pub use record::{
+    Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Section, SectionCell, Status,
+    SurfaceField, ToolHull,
+};
 pub use render::{Rendered, render};
 pub use store::{read_run, write_run};

@@ -10,9 +10,9 @@
 //! - a transfer scheme is `family = "interp"`, `variant` its name, `method` the scheme's id and `nodes` the number of source
 //!   nodes; `parameters` names the source with `from=METHOD` or the field with `field=linear`;
 //! - what is told step by step has one row per step and quantity, with `phase = "step-N"` (N counts from 0): `closure` (m) or
-//!   `step-time` (s) says where the step is, `tool-force` (N), `energy-external`, `energy-strain`, `energy-kinetic` and
-//!   `energy-dissipated` (J) what was found there, `statistic = "value"`; a reference (`family = "reference"`, `method` its
-//!   source) adds `low` and `high` rows for its uncertainty;
+//!   `time` (s) says where the step is, `tool-force` (N), `external-work`, `strain-energy`, `kinetic-energy`,
+//!   `contact-energy`, `friction-dissipation` and `damping-dissipation` (J) what was found there, `statistic = "value"`; a
+//!   reference (`family = "reference"`, `method` its source) adds `low` and `high` rows for its uncertainty;
 //! - the same approach at several sizes is one series: it differs in `level`, `nodes` and `spacing` only (a method id that
 //!   ends in its node count, as in `efg-83`, is read without that ending).
 
@@ -21,6 +21,7 @@ use std::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
+use crate::history::step;
 
 /// One number of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,7 +85,8 @@ impl Record {
     /// Whether the value depends on the machine and the moment (times and memory): such rows are left out when two runs
     /// are compared bit by bit.
     pub fn is_measured(&self) -> bool {
-        self.quantity == "time" || self.quantity == "memory"
+        // Of a step, time is the model's own.
+        self.quantity == "time" && step(self).is_none() || self.quantity == "memory"
     }
 
     /// The value of one key in `parameters`.
@@ -216,6 +218,41 @@ pub struct SurfaceField {
     pub triangles: Vec<[u32; 3]>,
     /// Displacement at each point, metres.
     pub displacement: Vec<[f64; 3]>,
+    /// The tools of a scene where they stand in this state.
+    #[serde(default)]
+    pub tools: Vec<ToolHull>,
+    /// A section between the tools.
+    #[serde(default)]
+    pub section: Option<Section>,
+}
+
+/// A tool as points whose convex hull it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToolHull {
+    /// Name in the scene.
+    pub name: String,
+    /// The points, metres.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// A plane cut through the undeformed body, shown deformed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Section {
+    /// Unit vector in the plane that is to the right on paper: the way of the first tool.
+    pub right: [f64; 3],
+    /// Unit vector in the plane that is upwards on paper.
+    pub up: [f64; 3],
+    /// The cells it cuts.
+    pub cells: Vec<SectionCell>,
+}
+
+/// A plane's cut through one cell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SectionCell {
+    /// Deformed corners in the order around the cut, metres.
+    pub corners: Vec<[f64; 3]>,
+    /// Mean pressure over the whole cell, Pa, positive in compression.
+    pub pressure: f64,
 }
 
 impl SurfaceField {
@@ -235,6 +272,11 @@ impl SurfaceField {
         }
         if self.points.iter().chain(&self.displacement).flatten().any(|v| !v.is_finite()) {
             return Err(wrong("a coordinate or a displacement isn't finite".into()));
+        }
+        let cells = || self.section.iter().flat_map(|s| &s.cells);
+        let more = self.tools.iter().flat_map(|t| &t.points).chain(cells().flat_map(|c| &c.corners));
+        if more.flatten().any(|v| !v.is_finite()) || cells().any(|c| !c.pressure.is_finite()) {
+            return Err(wrong("a tool or a section holds a number that isn't finite".into()));
         }
         Ok(())
     }

@@ -6,7 +6,7 @@
 //! | `provenance.json` | where the numbers come from, with the hash of every scene; also the Parquet key `provenance` |
 //! | `checks.csv`, `checks.json` | every bound and how it came out |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers |
-//! | `fields/CASE--METHOD.json` | surface displacements |
+//! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |
 //!
 //! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
 

@@ -55,6 +55,11 @@ pub(crate) fn spread(value: f64, median: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A Poisson's ratio: one that was computed from moduli has no seventeen digits to a reader.
+pub(crate) fn ratio(poisson: f64) -> String {
+    format!("{:.6}", poisson).trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
 /// A time in the unit that reads best, from nanoseconds to hours.
 pub(crate) fn duration(seconds: f64) -> String {
     let (scale, unit) = match seconds {
@@ -116,6 +121,10 @@ mod tests {
         assert_eq!(spread(2e-4, 0.0315), "0.0002");
         assert_eq!(spread(0.05, 1.23), "0.05");
         assert_eq!(spread(2e-9, 3e-8), "2×10⁻⁹");
+        assert_eq!(
+            (ratio(0.49500000000000005), ratio(0.4999), ratio(0.0)),
+            ("0.495".into(), "0.4999".into(), "0".into())
+        );
         assert_eq!(duration(7200.0), "2.00 h");
         assert_eq!(duration(0.0123), "12.3 ms");
         assert_eq!(percent(0.0123), "1.23 %");

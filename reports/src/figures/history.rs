@@ -12,11 +12,13 @@ use crate::select::{Run, groups, labels, series};
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
 /// Markers on one line: more would hide it.
 const MARKS: usize = 12;
-const ENERGIES: [(&str, &str); 4] = [
-    ("energy-external", "work of the loads"),
-    ("energy-strain", "strain"),
-    ("energy-kinetic", "kinetic"),
-    ("energy-dissipated", "dissipated"),
+const ENERGIES: [(&str, &str); 6] = [
+    ("external-work", "work of loads and tools"),
+    ("strain-energy", "strain"),
+    ("kinetic-energy", "kinetic"),
+    ("contact-energy", "contact springs"),
+    ("friction-dissipation", "lost in friction"),
+    ("damping-dissipation", "lost in damping"),
 ];
 
 /// A line as `(label, dashed, points, band)`.
@@ -58,10 +60,12 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
         let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
         for (s, name) in all.iter().zip(names) {
             let lines = ENERGIES.iter().map(|(quantity, label)| {
-                let points = curve(s.finest(), "step-time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
+                let points = curve(s.finest(), "time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
                 (label.to_string(), false, points.collect(), Vec::new())
             });
-            panels.push((format!("{}, {name}", s.is().case), lines.filter(drawn).collect::<Vec<Line>>()));
+            // What stays nothing has no line: it would only lie on the axis.
+            let lines = lines.filter(drawn).filter(|l: &Line| l.2.iter().any(|p| p.1 != 0.0));
+            panels.push((format!("{}, {name}", s.is().case), lines.collect::<Vec<Line>>()));
         }
     }
     figures(

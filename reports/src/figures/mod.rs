@@ -4,12 +4,15 @@ mod axes;
 mod bars;
 mod canvas;
 mod cloud;
+mod colour;
 mod compact;
 mod convergence;
 mod efficiency;
 mod grid;
 mod history;
 mod locking;
+mod section;
+mod silhouette;
 mod style;
 mod surface;
 mod transfer;
@@ -19,6 +22,7 @@ pub(crate) use locking::sweeps;
 
 use crate::record::RunSet;
 use crate::select::{Run, groups, is_patch};
+use crate::text::ratio;
 
 /// Panels on one figure.
 const PAGE: usize = 6;
@@ -46,6 +50,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     figures.extend(history::forces(&solved));
     figures.extend(history::energies(&solved));
     figures.extend(surface::figures(&set.fields, &solved));
+    figures.extend(section::figures(&set.fields, &solved));
     figures.extend(bars::rms(&solved));
     figures.extend(transfer::figures(runs));
     figures.extend(cloud::conditioning(runs));
@@ -66,7 +71,7 @@ fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
         let tissue = representative(case, 0.495);
         for group in [compressible, tissue] {
             let poisson = group[0].is.poisson;
-            let title = if several { format!("{name}, ν = {poisson}") } else { name.clone() };
+            let title = if several { format!("{name}, ν = {}", ratio(poisson)) } else { name.clone() };
             if out.iter().all(|(t, _)| *t != title) {
                 out.push((title, group));
             }

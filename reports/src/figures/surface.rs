@@ -1,31 +1,20 @@
 //! Bodies seen from outside, deformed and coloured by displacement.
 
-use super::axes::{Axis, TEXT};
-use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY};
-use super::grid::WIDTH;
+use super::axes::TEXT;
+use super::canvas::{Anchor, BLACK_INK, Canvas, GREY};
+use super::colour::Scale;
+use super::grid::{WIDTH, wrapped};
+use super::silhouette;
 use super::{Figure, Pictured};
 use crate::record::SurfaceField;
 use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
 
-/// Viridis at eleven even steps (van der Walt and Smith, 2015).
-const VIRIDIS: [Colour; 11] = [
-    [68, 1, 84],
-    [72, 36, 117],
-    [65, 68, 135],
-    [53, 95, 141],
-    [42, 120, 142],
-    [33, 145, 140],
-    [34, 168, 132],
-    [68, 191, 112],
-    [122, 209, 81],
-    [189, 223, 38],
-    [253, 231, 37],
-];
-
-/// Bodies in one figure.
+/// Bodies in one figure, and in a row of one.
 const SHOWN: usize = 4;
+/// Bodies between tools in one figure: what they do there is what such a case is about.
+const GRASPED: usize = 8;
 
 /// One figure per case: fields side by side under one colour scale, true deformation.
 pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
@@ -38,11 +27,29 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
             let mut own: Vec<&SurfaceField> =
                 fields.iter().filter(|f| f.case == case && !f.triangles.is_empty()).collect();
             own.sort_by_key(|f| (f.method.starts_with("efg"), &f.method));
-            (case, chosen(own, runs))
+            (
+                case,
+                if own.iter().any(|f| !f.tools.is_empty()) { grasped(own, runs) } else { chosen(own, runs) },
+            )
         })
         .filter(|(_, own)| !own.is_empty())
-        .map(|(case, own)| figure(case, &own))
+        .map(|(case, own)| figure(case, &own, runs))
         .collect()
+}
+
+/// All of them in the order of the report, as long as they are few.
+pub(super) fn grasped<'f>(mut fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceField> {
+    fields.sort_by_key(|f| runs.iter().position(|r| r.is.case == f.case && r.is.method == f.method));
+    if fields.len() <= GRASPED { fields } else { chosen(fields, runs) }
+}
+
+/// What a method that ended early had carried, in words; nothing of one that came to the end.
+pub(super) fn carried(field: &SurfaceField, runs: &[Run]) -> String {
+    let own = |r: &&Run| r.is.case == field.case && r.is.method == field.method;
+    match runs.iter().filter(own).find_map(|r| r.value("load-carried")) {
+        Some(load) if load < 0.9995 => format!("ended at {} % of the load", significant(100.0 * load, 2)),
+        _ => String::new(),
+    }
 }
 
 /// Elements beside clouds, as far from the reference as any, then as near: what is between them can't be told from either by eye.
@@ -75,73 +82,171 @@ fn magnitude(u: &[f64; 3]) -> f64 {
     (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()
 }
 
-fn figure(case: &str, fields: &[&SurfaceField]) -> Figure {
-    let largest = fields.iter().flat_map(|f| f.displacement.iter()).map(magnitude).fold(0.0, f64::max);
-    let columns = fields.len().min(SHOWN);
-    let rows = fields.len().div_ceil(columns);
-    let (bar, gap) = (54.0, 6.0);
-    let width = (WIDTH - bar - gap * (columns as f64 + 1.0)) / columns as f64;
-    let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f)).collect();
-    let corners = || seen.iter().flatten().flat_map(|t| t.corners.iter());
-    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
-    for c in corners() {
-        for axis in 0..2 {
-            low[axis] = low[axis].min(c[axis]);
-            high[axis] = high[axis].max(c[axis]);
+/// Where bodies of one size stand on a page, side by side, and the colour bar beside them.
+pub(super) struct Pose {
+    columns: usize,
+    rows: usize,
+    width: f64,
+    low: [f64; 2],
+    size: [f64; 2],
+    scale: f64,
+}
+
+/// Room for a colour bar with its numbers, and between bodies, points.
+const BAR: f64 = 54.0;
+const GAP: f64 = 6.0;
+/// Room for the title above a body, and with the margin below it.
+const HEAD: f64 = 58.0;
+const ROOM: f64 = 66.0;
+
+impl Pose {
+    /// For so many bodies that reach as far as these points, metres.
+    pub(super) fn new(count: usize, points: impl Iterator<Item = [f64; 2]>) -> Pose {
+        let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+        for c in points {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(c[axis]);
+                high[axis] = high[axis].max(c[axis]);
+            }
         }
+        let columns = count.clamp(1, SHOWN);
+        let width = (WIDTH - BAR - GAP * (columns as f64 + 1.0)) / columns as f64;
+        let size = [(high[0] - low[0]).max(1e-12), (high[1] - low[1]).max(1e-12)];
+        let scale = ((width - 10.0) / size[0]).min(300.0 / size[1]);
+        Pose { columns, rows: count.div_ceil(columns), width, low, size, scale }
     }
-    let size = [(high[0] - low[0]).max(1e-12), (high[1] - low[1]).max(1e-12)];
-    let scale = ((width - 10.0) / size[0]).min(300.0 / size[1]);
-    let height = size[1] * scale + 54.0;
-    let mut canvas = Canvas::new(WIDTH, height * rows as f64 + 34.0);
-    for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
-        let left = gap + (i % columns) as f64 * (width + gap);
-        let top = (i / columns) as f64 * height;
-        let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
-        let (name, rest) = field.title.split_once(" (").unwrap_or((&field.title, ""));
-        let text = format!("max |u| {} mm", significant(own * 1e3, 3));
-        let middle = left + width / 2.0;
+
+    fn height(&self) -> f64 {
+        self.size[1] * self.scale + ROOM
+    }
+
+    /// Below the last row.
+    pub(super) fn bottom(&self) -> f64 {
+        self.height() * self.rows as f64
+    }
+
+    fn corner(&self, index: usize) -> (f64, f64) {
+        let column = (index % self.columns) as f64;
+        (GAP + column * (self.width + GAP), (index / self.columns) as f64 * self.height())
+    }
+
+    /// Where a point of a body goes on paper.
+    pub(super) fn place(&self, index: usize, at: &[f64; 2]) -> (f64, f64) {
+        let (left, top) = self.corner(index);
+        let foot = top + HEAD + self.size[1] * self.scale;
+        let start = left + (self.width - self.size[0] * self.scale) / 2.0;
+        (start + (at[0] - self.low[0]) * self.scale, foot - (at[1] - self.low[1]) * self.scale)
+    }
+
+    /// Name, size in brackets and two more lines above a body.
+    pub(super) fn title(&self, canvas: &mut Canvas, index: usize, title: &str, first: &str, second: &str) {
+        let (left, top) = self.corner(index);
+        let middle = left + self.width / 2.0;
+        let (name, rest) = title.split_once(" (").unwrap_or((title, ""));
         canvas.bold((middle, top + 12.0), name, TEXT, Anchor::Middle);
-        canvas.text((middle, top + 24.0), rest.trim_end_matches(')'), TEXT, GREY, Anchor::Middle);
-        canvas.text((middle, top + 36.0), &text, TEXT, GREY, Anchor::Middle);
-        let origin = (middle - size[0] * scale / 2.0, top + 46.0 + size[1] * scale);
-        let place = |c: &[f64; 2]| (origin.0 + (c[0] - low[0]) * scale, origin.1 - (c[1] - low[1]) * scale);
-        for t in triangles {
-            let at = t.corners.map(|c| place(&c));
-            let fraction = if largest > 0.0 { t.value / largest } else { 0.0 };
-            canvas.fill(&grown(at), viridis((fraction * SHADES).round() / SHADES));
+        for (line, text) in [rest.trim_end_matches(')'), first, second].into_iter().enumerate() {
+            if !text.is_empty() {
+                canvas.text((middle, top + 24.0 + 12.0 * line as f64), text, TEXT, GREY, Anchor::Middle);
+            }
         }
     }
-    let bottom = height * rows as f64;
-    axes(&mut canvas, (30.0, bottom + 6.0));
-    canvas.text(
-        (74.0, bottom + 12.0),
-        "True deformation, orthographic view; one colour scale.",
-        TEXT,
-        GREY,
-        Anchor::Start,
-    );
-    colour_bar(&mut canvas, (WIDTH - bar + 8.0, 46.0), (height - 66.0).clamp(80.0, 300.0), largest);
+
+    /// Top left corner and height of a colour bar.
+    pub(super) fn bar(&self) -> ((f64, f64), f64) {
+        ((WIDTH - BAR + 8.0, HEAD), (self.size[1] * self.scale - 20.0).clamp(80.0, 300.0))
+    }
+}
+
+fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
+    let largest = fields.iter().flat_map(|f| f.displacement.iter()).map(magnitude).fold(0.0, f64::max) * 1e3;
+    let scale = Scale::Rising(largest);
+    let tools = fields.iter().any(|f| !f.tools.is_empty());
+    let view = if tools { beside(fields) } else { view() };
+    let outlines: Vec<Vec<Vec<[f64; 2]>>> = fields
+        .iter()
+        .map(|f| f.tools.iter().map(|t| silhouette::outline(t, &view[0], &view[1])).collect())
+        .collect();
+    let finest = FINEST.min(FINEST_OF_ALL / fields.len());
+    let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f, finest, &view)).collect();
+    let corners = seen.iter().flatten().flat_map(|t| t.corners);
+    let pose = Pose::new(fields.len(), corners.chain(outlines.iter().flatten().flatten().copied()));
+    let bottom = pose.bottom();
+    let mut canvas = Canvas::new(WIDTH, bottom + 34.0);
+    for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
+        let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
+        let text = format!("max |u| {} mm", significant(own * 1e3, 3));
+        pose.title(&mut canvas, i, &field.title, &text, &carried(field, runs));
+        let outlines: Vec<Vec<(f64, f64)>> =
+            outlines[i].iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
+        outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
+        for t in triangles {
+            canvas.fill(&grown(t.corners.map(|c| pose.place(i, &c))), scale.colour(t.value * 1e3));
+        }
+        outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
+    }
+    axes(&mut canvas, (36.0, bottom + 6.0), &view);
+    let note = match tools {
+        true => {
+            "True deformation, orthographic view; one colour scale; outlines: the tools where they stand, also where the body hides them."
+        }
+        false => "True deformation, orthographic view; one colour scale.",
+    };
+    for (i, line) in wrapped(note, WIDTH - 84.0).iter().enumerate() {
+        canvas.text((74.0, bottom + 10.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
+    }
+    let (at, height) = pose.bar();
+    scale.bar(&mut canvas, at, height, "|u| [mm]");
+    let caption = match tools {
+        true => {
+            "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale, between the tools where they stand at the \
+                 end of each method's path"
+        }
+        false => {
+            "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale: of either family the run \
+                  farthest from the reference, then the nearest"
+        }
+    };
     Figure {
         name: format!("surface-{}", slug(case)),
         title: format!("Surface displacement, {case}"),
-        caption: "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale: of either family the run \
-                  farthest from the reference, then the nearest".into(),
+        caption: caption.into(),
         canvas,
     }
 }
 
-/// Right, up and towards the viewer: the long axis upright, seen from the front and a little from the right and above.
-fn view() -> [[f64; 3]; 3] {
-    let (turn, tilt) = (35f64.to_radians(), 18f64.to_radians());
-    let towards = [turn.sin() * tilt.cos(), tilt.sin(), turn.cos() * tilt.cos()];
-    let right = [turn.cos(), 0.0, -turn.sin()];
-    let up = [
-        towards[1] * right[2] - towards[2] * right[1],
-        towards[2] * right[0] - towards[0] * right[2],
-        towards[0] * right[1] - towards[1] * right[0],
-    ];
-    [right, up, towards]
+/// Right, up and towards the viewer.
+type View = [[f64; 3]; 3];
+
+/// The long axis upright, seen from the front and a little from the right and above.
+fn view() -> View {
+    turned([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 35.0, 18.0)
+}
+
+/// Almost square to the section between the tools: they stand on either side of the body, not before it.
+fn beside(fields: &[&SurfaceField]) -> View {
+    let [right, up] = match fields.iter().find_map(|f| f.section.as_ref()) {
+        Some(section) => [section.right, section.up],
+        None => [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+    };
+    turned([right, up, cross(right, up)], -12.0, 10.0)
+}
+
+/// A view turned to the right about its upright axis and then tilted upwards, degrees.
+fn turned([right, up, towards]: View, turn: f64, tilt: f64) -> View {
+    let (turn, tilt) = (turn.to_radians(), tilt.to_radians());
+    let mixed = |a: [f64; 3], c: f64, b: [f64; 3], s: f64| -> [f64; 3] {
+        std::array::from_fn(|i| a[i] * c + b[i] * s)
+    };
+    let level = mixed(towards, turn.cos(), right, turn.sin());
+    [
+        mixed(right, turn.cos(), towards, -turn.sin()),
+        mixed(up, tilt.cos(), level, -tilt.sin()),
+        mixed(level, tilt.cos(), up, tilt.sin()),
+    ]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn dot(a: &[f64; 4], b: &[f64; 3]) -> f64 {
@@ -165,18 +270,16 @@ fn grown(at: [(f64, f64); 3]) -> [(f64, f64); 3] {
     })
 }
 
-/// Shades told apart on a body: more than an eye can, few enough for neighbours to share one.
-const SHADES: f64 = 48.0;
-
 /// Slabs of depth that are drawn one after the other, the farthest first.
 const SLABS: f64 = 16.0;
 
-/// How many triangles a picture may be cut into for the sake of smooth colours.
+/// How many triangles a body, and all bodies of a figure (33 bytes a triangle in the file), may be cut into for the sake of smooth colours.
 const FINEST: usize = 4000;
+const FINEST_OF_ALL: usize = 11_000;
 
 /// Cuts every triangle into four, its values linear between the corners, as often as the count stays moderate.
-fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
-    while !triangles.is_empty() && triangles.len() * 4 <= FINEST {
+fn refined(mut triangles: Vec<Corners>, finest: usize) -> Vec<Corners> {
+    while !triangles.is_empty() && triangles.len() * 4 <= finest {
         let half = |a: &[f64; 4], b: &[f64; 4]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
         triangles = triangles
             .iter()
@@ -193,25 +296,24 @@ fn refined(mut triangles: Vec<Corners>) -> Vec<Corners> {
 type Corners = [[f64; 4]; 3];
 
 /// Triangles that face the viewer, farthest first.
-fn project(field: &SurfaceField) -> Vec<Pictured> {
-    let [right, up, towards] = view();
+fn project(field: &SurfaceField, finest: usize, [right, up, towards]: &View) -> Vec<Pictured> {
     let deformed = |triangle: &[u32; 3]| -> Corners {
         triangle.map(|t| {
             let (x, u) = (field.points[t as usize], field.displacement[t as usize]);
             [x[0] + u[0], x[1] + u[1], x[2] + u[2], magnitude(&u)]
         })
     };
-    let flat = |c: &Corners| c.map(|x| [dot(&x, &right), dot(&x, &up)]);
+    let flat = |c: &Corners| c.map(|x| [dot(&x, right), dot(&x, up)]);
     let faces = |c: &Corners| {
         let [a, b, c] = flat(c);
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
     };
     let visible: Vec<Corners> = field.triangles.iter().map(deformed).filter(faces).collect();
     let picture = |c: Corners| {
-        let depth: f64 = c.iter().map(|x| dot(x, &towards)).sum();
+        let depth: f64 = c.iter().map(|x| dot(x, towards)).sum();
         (depth, Pictured { corners: flat(&c), value: c.iter().map(|x| x[3]).sum::<f64>() / 3.0 })
     };
-    let mut seen: Vec<(f64, Pictured)> = refined(visible).into_iter().map(picture).collect();
+    let mut seen: Vec<(f64, Pictured)> = refined(visible, finest).into_iter().map(picture).collect();
     let (near, far) = seen.iter().fold((f64::MIN, f64::MAX), |(n, f), s| (n.max(s.0), f.min(s.0)));
     // Inside a slab faces to the front don't hide each other, and sorted by value neighbours on paper share a colour in the file.
     let slab = |depth: f64| ((depth - far) / (near - far).max(1e-12) * SLABS).floor();
@@ -219,42 +321,13 @@ fn project(field: &SurfaceField) -> Vec<Pictured> {
     seen.into_iter().map(|(_, t)| t).collect()
 }
 
-fn viridis(fraction: f64) -> Colour {
-    let at = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let (low, rest) = (at.floor() as usize, at.fract());
-    let high = (low + 1).min(VIRIDIS.len() - 1);
-    std::array::from_fn(|i| {
-        (f64::from(VIRIDIS[low][i]) * (1.0 - rest) + f64::from(VIRIDIS[high][i]) * rest).round() as u8
-    })
-}
-
-fn colour_bar(canvas: &mut Canvas, at: (f64, f64), height: f64, largest: f64) {
-    let steps = 64;
-    for i in 0..steps {
-        let (from, to) = (i as f64 / steps as f64, (i + 1) as f64 / steps as f64);
-        let (top, bottom) = (at.1 + height * (1.0 - to) - 0.2, at.1 + height * (1.0 - from));
-        canvas.fill(
-            &[(at.0, top), (at.0 + 12.0, top), (at.0 + 12.0, bottom), (at.0, bottom)],
-            viridis((from + to) / 2.0),
-        );
-    }
-    for (value, text) in Axis::linear("", [0.0, largest * 1e3].into_iter(), true).ticks() {
-        let fraction = value / (largest * 1e3).max(1e-12);
-        if fraction <= 1.0 + 1e-9 {
-            let y = at.1 + height * (1.0 - fraction);
-            canvas.line(&[(at.0 + 12.0, y), (at.0 + 15.0, y)], BLACK_INK, 0.6);
-            canvas.text((at.0 + 18.0, y), text, TEXT, BLACK_INK, Anchor::Start);
-        }
-    }
-    canvas.text((at.0, at.1 - 14.0), "|u| [mm]", TEXT, BLACK_INK, Anchor::Start);
-}
-
 /// The three axes as the viewer sees them.
-fn axes(canvas: &mut Canvas, at: (f64, f64)) {
-    let [right, up, _] = view();
+fn axes(canvas: &mut Canvas, at: (f64, f64), [right, up, _]: &View) {
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let (dx, dy) = (right[axis] * 18.0, -up[axis] * 18.0);
         canvas.line(&[at, (at.0 + dx, at.1 + dy)], BLACK_INK, 1.0);
-        canvas.text((at.0 + dx * 1.45, at.1 + dy * 1.45), name, TEXT, BLACK_INK, Anchor::Middle);
+        // Behind the arrow's head, also of an arrow that is short in this view.
+        let beyond = 1.0 + 8.0 / dx.hypot(dy).max(1.0);
+        canvas.text((at.0 + dx * beyond, at.1 + dy * beyond), name, TEXT, BLACK_INK, Anchor::Middle);
     }
 }

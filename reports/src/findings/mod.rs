@@ -37,7 +37,7 @@ fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
         for group in &by_ratio {
             let is = group[0].is;
             let name = if by_ratio.len() > 1 {
-                format!("{} at ν = {}", is.case, is.poisson)
+                format!("{} at ν = {}", is.case, crate::text::ratio(is.poisson))
             } else {
                 is.case.clone()
             };

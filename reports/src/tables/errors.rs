@@ -4,6 +4,7 @@ use super::{labelled, millimetres};
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
+use crate::text::ratio;
 
 /// Relative L2, energy and pressure errors.
 pub(super) fn relative(runs: &[Run]) -> Table {
@@ -77,7 +78,7 @@ fn rows(
         if values.iter().all(Option::is_none) {
             continue;
         }
-        let poisson = run.is.poisson.to_string();
+        let poisson = ratio(run.is.poisson);
         let mut cells = vec![
             Cell::Text(&run.is.case),
             Cell::Text(&poisson),

@@ -1,5 +1,6 @@
 //! Which tables there are, and what they are made of.
 
+mod closure;
 mod conditioning;
 mod errors;
 mod kidney;
@@ -26,6 +27,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
         transfer::schemes(runs),
         conditioning::conditioning(runs),
         kidney::beside_the_paper(runs),
+        closure::force_closure(runs),
         outcome::checks(set),
         outcome::failures(set),
         outcome::plan(set),

@@ -4,6 +4,7 @@ use crate::order;
 use crate::select::{Run, Series, groups, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
+use crate::text::ratio;
 
 const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
 
@@ -31,7 +32,7 @@ pub(super) fn observed(runs: &[Run]) -> Table {
     for (label, series) in labelled(runs) {
         for quantity in ERRORS {
             let Some(order) = order::observed(&series.points(quantity)) else { continue };
-            let poisson = series.is().poisson.to_string();
+            let poisson = ratio(series.is().poisson);
             table.row(&[
                 Cell::Text(&series.is().case),
                 Cell::Text(&poisson),
@@ -88,7 +89,7 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
                 continue;
             }
             let Some(gci) = order::grid_convergence(&points) else { continue };
-            let poisson = series.is().poisson.to_string();
+            let poisson = ratio(series.is().poisson);
             let unit = if quantity.starts_with("max") {
                 "mm"
             } else {

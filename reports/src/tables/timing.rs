@@ -4,6 +4,7 @@ use super::{labelled, millimetres as milliseconds};
 use crate::select::Run;
 use crate::table::Column::{Number, Spread, Words};
 use crate::table::{Cell, Table};
+use crate::text::ratio;
 
 const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
 
@@ -35,7 +36,7 @@ pub(super) fn phases(runs: &[Run]) -> Table {
         if times.iter().all(|(median, _)| median.is_none()) {
             continue;
         }
-        let poisson = run.is.poisson.to_string();
+        let poisson = ratio(run.is.poisson);
         let mut cells = vec![
             Cell::Text(&run.is.case),
             Cell::Text(&poisson),

@@ -1,6 +1,9 @@
 //! A made-up study that fills every table and every figure: power laws with fixed wiggles, never a random number.
 
-use reports::{Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Status, SurfaceField};
+use reports::{
+    Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Section, SectionCell, Status,
+    SurfaceField, ToolHull,
+};
 
 fn base(case: &str, method: &str, family: &str, variant: &str, parameters: &str) -> Record {
     Record {
@@ -269,11 +272,16 @@ fn grasp(set: &mut RunSet) {
                 continue;
             }
             let strain = stiffness * (60.0 * closure.powi(2) + 3e3 * closure.powi(3));
-            set.records.push(at("value", "step-time", "s", 0.05 * f64::from(step)));
-            for (quantity, share) in
-                [("strain", 1.0), ("kinetic", 0.02), ("dissipated", 0.1), ("external", 1.12)]
-            {
-                set.records.push(at("value", &format!("energy-{quantity}"), "J", share * strain));
+            set.records.push(at("value", "time", "s", 0.05 * f64::from(step)));
+            for (quantity, share) in [
+                ("strain-energy", 1.0),
+                ("kinetic-energy", 0.02),
+                ("contact-energy", 0.03),
+                ("friction-dissipation", 0.1),
+                ("damping-dissipation", 0.0),
+                ("external-work", 1.15),
+            ] {
+                set.records.push(at("value", quantity, "J", share * strain));
             }
         }
     }
@@ -310,6 +318,38 @@ fn bean(method: &str, title: &str, n: u32, amplitude: f64) -> SurfaceField {
         points,
         triangles,
         displacement,
+        tools: Vec::new(),
+        section: None,
+    }
+}
+
+/// The bean between two jaws, and its middle plane cut into squares of alternating pressure.
+fn grasped(method: &str, wild: f64) -> SurfaceField {
+    let jaw = |side: f64| ToolHull {
+        name: "jaw".into(),
+        points: (0..8)
+            .map(|k| {
+                let at = |bit: u32, half: f64| if k >> bit & 1 == 0 { -half } else { half };
+                [at(0, 5e-3), at(1, 10e-3), side * 18e-3 + at(2, 4e-3)]
+            })
+            .collect(),
+    };
+    let mut cells = Vec::new();
+    for i in -12..12 {
+        for j in -5..5 {
+            let (y, z) = (3e-3 * f64::from(i), 3e-3 * f64::from(j));
+            let corner = |a: f64, b: f64| [0.0, y + 3e-3 * a, z + 3e-3 * b];
+            let sign = if (i + j) % 2 == 0 { 1.0 } else { -1.0 };
+            let pressure = 4e3 * (-(y / 15e-3).powi(2)).exp() + sign * wild;
+            let corners = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
+            cells.push(SectionCell { corners, pressure });
+        }
+    }
+    SurfaceField {
+        case: "kidney-grasped".into(),
+        tools: vec![jaw(1.0), jaw(-1.0)],
+        section: Some(Section { right: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], cells }),
+        ..bean(method, &format!("{method} (99 nodes)"), 12, 6e-3)
     }
 }
 
@@ -404,7 +444,11 @@ pub fn study() -> RunSet {
             why: why.into(),
         });
     }
-    set.fields =
-        vec![bean("efg-83", "EFG, 83 nodes", 24, 7e-3), bean("tet4", "FE tet4, 1331 nodes", 24, 9e-3)];
+    set.fields = vec![
+        grasped("efg", 0.0),
+        grasped("tet4", 3e4),
+        bean("efg-83", "EFG, 83 nodes", 24, 7e-3),
+        bean("tet4", "FE tet4, 1331 nodes", 24, 9e-3),
+    ];
     set
 }

@@ -1,0 +1,73 @@
+//! Mean pressure `p = -tr(sigma) / 3` (Pa) as the method itself has it: of the law, of the projected dilation, or of a
+//! pressure field of its own. A plain derivative of the displacement would show a pressure the projected methods never used.
+
+use mechanics::{Law, Material as _, Matrix3, volume_change};
+use shape::DilationGroups;
+
+use crate::discretise::Volume;
+
+/// Cauchy stress `P F^T / J` (Pa) at a displacement gradient; `P` itself at small strain.
+pub fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
+    let p = law.stress(h);
+    if law.is_small_strain() {
+        return p;
+    }
+    let f = Matrix3::identity() + h;
+    p * f.transpose() / f.determinant()
+}
+
+/// At every quadrature point of a volume, Pa, positive in compression. `gradients` (3, 3) are those of the displacement there,
+/// `parameters` (Pa, tension positive) those of the method's pressure field, where it has one.
+pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameters: &[f64]) -> Vec<f64> {
+    let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| r as usize)];
+    if let Some(rows) = &volume.pressure {
+        let at = |q| {
+            let (nodes, values) = rows.row(q);
+            -nodes.iter().zip(values).map(|(&m, v)| v * parameters[m as usize]).sum::<f64>()
+        };
+        return (0..gradients.len()).map(at).collect();
+    }
+    match &volume.groups {
+        None => gradients.iter().enumerate().map(|(q, h)| -cauchy(law(q), h).trace() / 3.0).collect(),
+        Some(groups) => projected(groups, law, volume.rows.weights(), gradients),
+    }
+}
+
+/// `p_q = sum_a share_aq p_a`, `p_a` the mean over group a of the law's pressure at the group's dilation.
+fn projected<'l>(
+    groups: &DilationGroups,
+    law: impl Fn(usize) -> &'l Law,
+    weights: &[f64],
+    gradients: &[Matrix3],
+) -> Vec<f64> {
+    let mut pressure = vec![0.0; gradients.len()];
+    for a in 0..groups.len() {
+        let (points, shares) = groups.group(a);
+        let mean = |value: &dyn Fn(usize) -> f64| {
+            let each = points.iter().zip(shares).map(|(&q, s)| (q as usize, s * weights[q as usize]));
+            let (sum, measure) = each.fold((0.0, 0.0), |(s, m), (q, dv)| (s + dv * value(q), m + dv));
+            sum / measure
+        };
+        let theta = mean(&|q| dilation(law(q), &gradients[q]));
+        let of_group = mean(&|q| -cauchy(law(q), &dilated(law(q), &gradients[q], theta)).trace() / 3.0);
+        for (&q, share) in points.iter().zip(shares) {
+            pressure[q as usize] += share * of_group;
+        }
+    }
+    pressure
+}
+
+/// `J - 1`; `tr H` at small strain.
+fn dilation(law: &Law, h: &Matrix3) -> f64 {
+    if law.is_small_strain() { h.trace() } else { volume_change(h) }
+}
+
+/// The displacement gradient of `F_bar = ((1 + theta) / J)^(1/3) F`; of the strain with the trace `theta` at small strain.
+fn dilated(law: &Law, h: &Matrix3, theta: f64) -> Matrix3 {
+    let j = dilation(law, h);
+    if law.is_small_strain() {
+        return h + Matrix3::identity() * ((theta - j) / 3.0);
+    }
+    let grown = ((theta.ln_1p() - j.ln_1p()) / 3.0).exp_m1();
+    h + (Matrix3::identity() + h) * grown
+}

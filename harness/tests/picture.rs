@@ -1,0 +1,57 @@
+//! What runs leave for the pictures: tools where they stand, and the pressure of a section as each method has it.
+
+mod common;
+
+use common::{PRESSED, inside, tissuebench, write};
+use serde_json::Value;
+
+fn floats(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+/// A block between plates is stretched alike everywhere, its sides free: true stress `F l / (A J)` along z and none across, so
+/// that `p = F l / (3 A J)` in every cell of every method, whatever its dilation is.
+#[test]
+fn a_section_between_plates_has_the_pressure_of_the_force() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = inside(&dir, "out");
+    let done =
+        tissuebench(&["run", &write(&dir, "pressed.toml", PRESSED), "--format", "json", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let mut seen = 0;
+    for line in done.stdout.lines() {
+        let run: Value = serde_json::from_str(line).unwrap();
+        let id = run["method"].as_str().unwrap();
+        let text = std::fs::read_to_string(format!("{out}/fields/pressed--{id}.json")).unwrap();
+        let field: Value = serde_json::from_str(&text).unwrap();
+        let number = |name: &str| run["metrics"][name]["value"].as_f64().unwrap();
+        // The plates close by 2 and 1 mm, less what they sink in.
+        let height = 20e-3 - 3e-3 + 2.0 * number("penetration");
+        // The force per undeformed area of 40 x 40 mm, times l / J.
+        let expected = number("tool-force") / 1.6e-3 * (height / 20e-3) / number("smallest-j") / 3.0;
+        // The cloud's sides are held by penalty at 1e4 E / h.
+        let tolerance = if id == "efg" { 2e-3 } else { 1e-6 };
+        let cells = field["section"]["cells"].as_array().unwrap();
+        assert!(!cells.is_empty(), "{id}");
+        let mut span = (f64::MAX, f64::MIN);
+        for cell in cells {
+            let p = cell["pressure"].as_f64().unwrap();
+            assert!((p / expected - 1.0).abs() < tolerance, "{id}: {p} {expected}");
+            for corner in cell["corners"].as_array().unwrap() {
+                let z = floats(corner)[2];
+                span = (span.0.min(z), span.1.max(z));
+            }
+        }
+        // The whole deformed height is cut.
+        assert!((span.1 - span.0 - height).abs() < 1e-3 * height, "{id}: {span:?} {height}");
+        // The faces of both plates, where they stand at the end.
+        let face = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            let points = field["tools"][k]["points"].as_array().unwrap();
+            points.iter().map(|p| floats(p)[2]).fold(start, pick)
+        };
+        let (upper, lower) = (face(0, f64::min, f64::MAX), face(1, f64::max, f64::MIN));
+        assert!((upper - lower - 17e-3).abs() < 1e-12, "{id}: {upper} {lower}");
+        seen += 1;
+    }
+    assert_eq!(seen, 5);
+}

@@ -1,0 +1,140 @@
+//! A section between the tools, deformed, every cell in the colour of its own pressure: nothing is smoothed, so that the
+//! checkerboards of a locked or unstable method are seen.
+
+use super::Figure;
+use super::axes::TEXT;
+use super::canvas::{Anchor, Canvas, GREY};
+use super::colour::Scale;
+use super::grid::{WIDTH, wrapped};
+use super::silhouette;
+use super::surface::{Pose, carried, grasped};
+use crate::record::{Section, SurfaceField};
+use crate::select::Run;
+use crate::store::slug;
+use crate::text::significant;
+
+/// Part of a section's cells whose pressure lies within the colours, in the middle one of the methods.
+const SHOWN: f64 = 0.98;
+
+/// One figure per case with sections.
+pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
+    let mut cases: Vec<&str> = fields.iter().map(|f| f.case.as_str()).collect();
+    cases.sort();
+    cases.dedup();
+    let of = |case: &str| -> Vec<&SurfaceField> {
+        let cut =
+            |f: &&SurfaceField| f.case == case && f.section.as_ref().is_some_and(|s| !s.cells.is_empty());
+        grasped(fields.iter().filter(cut).collect(), runs)
+    };
+    cases
+        .into_iter()
+        .map(|case| (case, of(case)))
+        .filter(|(_, own)| !own.is_empty())
+        .map(|(case, own)| figure(case, &own, runs))
+        .collect()
+}
+
+/// The largest pressure that has a colour of its own, Pa: of each method the one that 98 % of its cells stay below, of these
+/// the middle one. A method whose pressures alternate without bound would leave the others without colours.
+fn limit(fields: &[&SurfaceField]) -> f64 {
+    let mut each: Vec<f64> = fields.iter().filter_map(|f| f.section.as_ref()).map(percentile).collect();
+    each.sort_by(f64::total_cmp);
+    each.get((each.len().max(1) - 1) / 2).copied().unwrap_or(0.0)
+}
+
+fn percentile(section: &Section) -> f64 {
+    let mut all: Vec<f64> = section.cells.iter().map(|c| c.pressure.abs()).collect();
+    all.sort_by(f64::total_cmp);
+    let at = (SHOWN * all.len() as f64).ceil() as usize;
+    all.get(at.saturating_sub(1)).copied().unwrap_or(0.0)
+}
+
+fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
+    let limit = limit(fields);
+    let scale = Scale::Signed(limit * 1e-3);
+    let sections: Vec<(&SurfaceField, &Section)> =
+        fields.iter().filter_map(|f| f.section.as_ref().map(|s| (*f, s))).collect();
+    let frame = sections[0].1;
+    let on = |p: &[f64; 3]| {
+        let along = |axis: &[f64; 3]| (0..3).map(|i| p[i] * axis[i]).sum::<f64>();
+        [along(&frame.right), along(&frame.up)]
+    };
+    let tools = |f: &SurfaceField| -> Vec<Vec<[f64; 2]>> {
+        f.tools.iter().map(|t| silhouette::outline(t, &frame.right, &frame.up)).collect()
+    };
+    let corners = sections.iter().flat_map(|(_, s)| s.cells.iter().flat_map(|c| c.corners.iter().map(on)));
+    let outlines = sections.iter().flat_map(|(f, _)| tools(f)).flatten();
+    let pose = Pose::new(sections.len(), corners.chain(outlines));
+    let note = format!(
+        "Orthographic view on the plane of the tools' way and the body's length; tools grey. Cells have straight edges. Pressure is the mean over each \
+         cell, positive in compression, not smoothed. Colours end at {} kPa: of each method the pressure that 98 % of the cells \
+         stay below, of these the middle one.",
+        significant(limit * 1e-3, 3)
+    );
+    let notes = wrapped(&note, WIDTH - 20.0);
+    let mut canvas = Canvas::new(WIDTH, pose.bottom() + 8.0 + 12.0 * notes.len() as f64);
+    for (i, (field, section)) in sections.iter().enumerate() {
+        let (least, most) = section
+            .cells
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c.pressure), high.max(c.pressure)));
+        let range = format!("{} to {} kPa", significant(least * 1e-3, 2), significant(most * 1e-3, 2));
+        pose.title(&mut canvas, i, &field.title, &range, &carried(field, runs));
+        let outlines: Vec<Vec<(f64, f64)>> =
+            tools(field).iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
+        outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
+        let mut cells: Vec<_> = section.cells.iter().collect();
+        // Cells of a section don't cover each other: those of one colour may share a path in the file.
+        cells.sort_by(|a, b| a.pressure.total_cmp(&b.pressure));
+        for cell in cells {
+            let at: Vec<(f64, f64)> = cell.corners.iter().map(|c| pose.place(i, &on(c))).collect();
+            canvas.fill(&at, scale.colour(cell.pressure * 1e-3));
+        }
+        outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
+    }
+    for (i, line) in notes.iter().enumerate() {
+        canvas.text((12.0, pose.bottom() + 4.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
+    }
+    let (at, height) = pose.bar();
+    scale.bar(&mut canvas, at, height, "p [kPa]");
+    Figure {
+        name: format!("pressure-{}", slug(case)),
+        title: format!("Pressure between the tools, {case}"),
+        caption: "Section through the deformed body in the plane of the tools' way, every cell coloured by its mean pressure as the method itself has it \
+                  (of the projected dilation or the pressure field, where it has one), under one colour scale"
+            .into(),
+        canvas,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::SectionCell;
+
+    #[test]
+    fn one_wild_method_does_not_take_the_colours_of_the_others() {
+        let of = |scale: f64| SurfaceField {
+            case: "grasp".into(),
+            method: "any".into(),
+            title: String::new(),
+            points: Vec::new(),
+            triangles: Vec::new(),
+            displacement: Vec::new(),
+            tools: Vec::new(),
+            section: Some(Section {
+                right: [0.0, 0.0, 1.0],
+                up: [0.0, 1.0, 0.0],
+                cells: (1..=100)
+                    .map(|k| SectionCell {
+                        corners: Vec::new(),
+                        pressure: scale * f64::from(k) * if k % 2 == 0 { -1.0 } else { 1.0 },
+                    })
+                    .collect(),
+            }),
+        };
+        let (calm, usual, wild) = (of(0.9), of(1.0), of(1e6));
+        assert_eq!(limit(&[&wild, &calm, &usual]), 98.0);
+        assert_eq!(limit(&[&wild, &usual]), 98.0);
+    }
+}

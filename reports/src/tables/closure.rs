@@ -1,0 +1,89 @@
+//! Tool force against closure, step by step, beside the reference and its uncertainty.
+
+use crate::history::{band, curve, reference};
+use crate::select::{Run, groups, labels, series};
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+/// The finest run of every method at every step, in the order of the steps.
+pub(super) fn force_closure(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "force-closure",
+        "Tool force against closure",
+        "Force on the first tool at every step, the finest run of each method, beside the reference at the same closure (between two of its steps on \
+         a straight line), the ends of the reference's uncertainty where it has one, and the deviation from the reference. Where no reference is \
+         recorded, the method that has no error against it stands for it",
+        &[
+            ("case", Words),
+            ("step", Number),
+            ("method", Words),
+            ("nodes", Number),
+            ("closure [mm]", Number),
+            ("force [N]", Number),
+            ("reference [N]", Number),
+            ("low [N]", Number),
+            ("high [N]", Number),
+            ("deviation [%]", Number),
+            ("in the band", Words),
+        ],
+    );
+    for case in groups(runs, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
+        let all: Vec<_> = series(case).into_iter().filter(|s| s.is().family != "reference").collect();
+        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        let known = reference(case);
+        let force = known.map(|r| curve(r, "closure", "tool-force")).unwrap_or_default();
+        let around = known.map(|r| band(r, "closure", "tool-force")).unwrap_or_default();
+        let low: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.1)).collect();
+        let high: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.2)).collect();
+        let curves: Vec<_> = all.iter().map(|s| curve(s.finest(), "closure", "tool-force")).collect();
+        // Step 0 is where every tool starts: no force yet.
+        for step in 1..curves.iter().map(Vec::len).max().unwrap_or(0) {
+            for ((s, name), points) in all.iter().zip(&names).zip(&curves) {
+                let Some(&(closure, found)) = points.get(step) else { continue };
+                let [expected, low, high] = [&force, &low, &high].map(|line| between(line, closure));
+                let deviation = expected.filter(|e| *e != 0.0).map(|e| 100.0 * (found / e - 1.0));
+                let inside = low.zip(high).map(|(low, high)| (low..=high).contains(&found));
+                table.row(&[
+                    Cell::Text(&s.is().case),
+                    Cell::Count(step as u64),
+                    Cell::Text(name),
+                    Cell::Count(s.finest().is.nodes),
+                    Cell::Digits(Some(closure * 1e3), 3),
+                    Cell::Digits(Some(found), 4),
+                    Cell::Digits(expected, 4),
+                    Cell::Digits(low, 4),
+                    Cell::Digits(high, 4),
+                    Cell::Digits(deviation, 3),
+                    Cell::Text(inside.map_or("—", |inside| if inside { "yes" } else { "no" })),
+                ]);
+            }
+        }
+    }
+    table
+}
+
+/// A line of points at `x`, straight between them; nothing beyond its ends.
+fn between(line: &[(f64, f64)], x: f64) -> Option<f64> {
+    // Two methods told to close by the same way end a rounding error apart.
+    let near = |a: f64| (a - x).abs() <= 1e-9 * x.abs();
+    if let Some(met) = line.iter().find(|p| near(p.0)) {
+        return Some(met.1);
+    }
+    let ends = line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&x))?;
+    Some(ends[0].1 + (x - ends[0].0) / (ends[1].0 - ends[0].0) * (ends[1].1 - ends[0].1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::between;
+
+    #[test]
+    fn a_line_is_straight_between_its_points_and_ends_with_them() {
+        let line = [(0.0, 0.0), (1.0, 2.0), (2.0, 6.0)];
+        assert_eq!([0.5, 1.0, 1.5].map(|x| between(&line, x)), [Some(1.0), Some(2.0), Some(4.0)]);
+        assert_eq!(
+            (between(&line, 2.0 + 1e-12), between(&line, 2.1), between(&[], 1.0)),
+            (Some(6.0), None, None)
+        );
+    }
+}
