@@ -65,6 +65,8 @@ pub struct Fem {
     pub mesh: Mesh,
     /// Volumetric projection.
     pub dilation: Dilation,
+    /// Quadrature.
+    pub rule: VolumeRule,
 }
 
 /// Element-free Galerkin on a cloud.
@@ -153,17 +155,17 @@ impl Discretisation {
     pub fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
         let volume = match self {
             Discretisation::Fem(fem) => {
-                let rows = fem::volume_rows(&fem.mesh, &VolumeRule::STANDARD)?;
+                let rows = fem::volume_rows(&fem.mesh, &fem.rule)?;
                 let groups = match fem.dilation {
                     Dilation::Standard | Dilation::Mixed => None,
-                    Dilation::Element => Some(fem::element_dilation(&fem.mesh, &VolumeRule::STANDARD)?),
+                    Dilation::Element => Some(fem::element_dilation(&fem.mesh, &fem.rule)?),
                     Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
                 };
                 let pressure = match fem.dilation {
-                    Dilation::Mixed => Some(fem::pressure_rows(&fem.mesh, &VolumeRule::STANDARD)?),
+                    Dilation::Mixed => Some(fem::pressure_rows(&fem.mesh, &fem.rule)?),
                     _ => None,
                 };
-                let region = of_regions(&fem.mesh, |mesh| fem::regions(mesh, &VolumeRule::STANDARD));
+                let region = of_regions(&fem.mesh, |mesh| fem::regions(mesh, &fem.rule));
                 Volume { rows, region, groups, pressure, approximation: None, mls: None, volume_error: None }
             }
             Discretisation::Efg(efg) => efg.volume(work)?,

@@ -52,6 +52,9 @@ impl Scenario<'_> {
         let (family, variant, seed) = match &self.method.family {
             Family::Fem(fem) => {
                 pairs.push(("dilation", fem.dilation.name().into()));
+                if fem.reduced {
+                    pairs.push(("points", "2x2x2".into()));
+                }
                 ("fem", fem.element.name().to_string(), fem.jitter.map_or(0, |j| j.seed))
             }
             Family::Efg(efg) => {
@@ -162,9 +165,12 @@ impl Scenario<'_> {
         match &self.method.family {
             Family::Fem(fem) => {
                 let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
+                let standard = fem::VolumeRule::STANDARD;
+                let rule = if fem.reduced { standard.with(CellKind::Hex20, 2)? } else { standard };
                 Ok(Discretisation::Fem(Fem {
                     mesh: self.with_regions(mesh)?,
                     dilation: dilation(fem.dilation),
+                    rule,
                 }))
             }
             Family::Efg(efg) => self.cloud(efg).map(Discretisation::Efg),

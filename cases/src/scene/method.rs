@@ -32,6 +32,8 @@ pub struct Fem {
     pub element: Element,
     /// Treatment of the volume change.
     pub dilation: Dilation,
+    /// Hex20 with 2 x 2 x 2 points for 3 x 3 x 3: does not lock where there is bending and compression at once.
+    pub reduced: bool,
     /// How fine.
     pub size: Size,
     /// Random displacement of inner nodes.

@@ -48,6 +48,9 @@ pub(crate) struct FemKeys {
     pub id: String,
     pub element: Element,
     pub dilation: Option<Dilation>,
+    /// Hex20 with 2 x 2 x 2 instead of 3 x 3 x 3 points
+    #[serde(default)]
+    pub reduced: bool,
     pub size: SizeKeys,
     pub jitter: Option<JitterKeys>,
 }

@@ -13,11 +13,15 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
     match keys {
         MethodKeys::Fem(fem) => {
             let size = size(fem.size, &format!("{key}.size"), report);
+            let reduced = fem.reduced;
+            let key_of = format!("{key}.reduced");
+            let help = "leave it out, or take element = \"hex20\"";
+            report.require(!reduced || fem.element == Element::Hex20, &key_of, "is for hex20 only", help);
             let jitter = jitter(fem.jitter, &key, report);
             let dilation = fem.dilation.unwrap_or(Dilation::Standard);
             Some(Method {
                 id: fem.id,
-                family: Family::Fem(Fem { element: fem.element, dilation, size: size?, jitter }),
+                family: Family::Fem(Fem { element: fem.element, dilation, reduced, size: size?, jitter }),
             })
         }
         MethodKeys::Efg(efg) => efg_method(*efg, &key, report),
