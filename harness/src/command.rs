@@ -147,6 +147,9 @@ fn run(args: &RunArgs) -> u8 {
                     let value = check::value(check.metric.name, &records);
                     set.checks.push(check::judge(check, &case, &method.id, value));
                 }
+                if let Some(reason) = &outcome.relaxed {
+                    eprintln!("relaxed: {reason} (method '{}')", method.id);
+                }
                 if let Some(failure) = &outcome.stalled {
                     eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
                     set.failures.push(stalled(&outcome, failure));

@@ -153,16 +153,6 @@ fn on_pool(
                 None => Ok(motion),
             }
         });
-    let at_start = LoadStep {
-        load: 0.0,
-        tools: setup.tools.iter().map(|_| ToolStep::UNTOUCHED).collect(),
-        strain_energy: 0.0,
-        smallest_j: 1.0,
-        iterations: 0,
-        probes: Vec::new(),
-        against: Vec::new(),
-        more: Vec::new(),
-    };
     let (mut steps, mut fields, mut made) = (Vec::new(), Vec::new(), 0);
     let (mut critical, mut drift) = (first.dt, 0.0);
     let failure = match motion {
@@ -181,7 +171,7 @@ fn on_pool(
         }
     };
     work.time_steps += made;
-    let last = steps.last().cloned().unwrap_or(at_start);
+    let last = steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(setup.tools.len()));
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
     let metric = |name: &str, value, unit| Metric { name: name.into(), value, unit };
     let metrics = vec![
@@ -204,7 +194,7 @@ fn on_pool(
 }
 
 /// Degrees of freedom held, with their displacement (m) at the end. A node on two supports has one value or none.
-fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
+pub(crate) fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
     let mut led = BTreeMap::new();
     for fixed in prepared.fixed() {
         let first = *led.entry((fixed.node, fixed.axis)).or_insert(fixed.value);
@@ -214,6 +204,12 @@ fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
         }
     }
     Ok(led)
+}
+
+/// Smallest volume ratio of all quadrature points.
+pub(crate) fn smallest_j(prepared: &Prepared, u: &[Vector3]) -> f64 {
+    let gradients = prepared.volume.rows.at().displacement_gradients(u);
+    gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).fold(f64::INFINITY, f64::min)
 }
 
 /// An interval in equal steps no longer than `longest`: their length and number.
@@ -277,16 +273,7 @@ impl Run<'_, '_> {
 
     fn told(&self, balance: &Balance, u: &[Vector3], time: f64) -> LoadStep {
         let states = self.motion.tools().into_iter().flat_map(Tools::motions);
-        let tools = states.zip(&self.setup.tools).map(|(motion, set)| ToolStep {
-            closure: motion.state.closure,
-            force: motion.state.force,
-            pushed: -motion.state.force.dot(&set.tool.along()),
-            active: motion.state.active as u64,
-            penetration: motion.state.penetration,
-        });
-        let gradients = self.prepared.volume.rows.at().displacement_gradients(u);
-        let smallest =
-            gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).fold(f64::INFINITY, f64::min);
+        let tools = states.zip(&self.setup.tools).map(|(motion, set)| ToolStep::of(&motion.state, &set.tool));
         let t = &balance.tools;
         let more = [
             ("time", time, "s"),
@@ -301,7 +288,7 @@ impl Run<'_, '_> {
             load: time / self.params.duration,
             tools: tools.collect(),
             strain_energy: balance.strain,
-            smallest_j: smallest,
+            smallest_j: smallest_j(self.prepared, u),
             iterations: 0,
             probes: Vec::new(),
             against: Vec::new(),

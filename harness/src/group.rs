@@ -24,6 +24,7 @@ pub struct Group<'a> {
     targets: Vec<Point3>,
     schemes: Vec<(String, Scheme)>,
     reference: Option<run::Reference>,
+    beside: Option<run::Reference>,
     reference_work: Work,
     reference_stalled: Option<Failure>,
     repeats: Repeats,
@@ -48,6 +49,9 @@ impl<'a> Group<'a> {
             }
             Some(Reference::Exact { .. }) | None => {}
         }
+        if let Some(id) = &scene.output.beside {
+            group.beside = Some(group.compared(id, None)?.0);
+        }
         Ok(group)
     }
 
@@ -62,6 +66,7 @@ impl<'a> Group<'a> {
             probes,
             schemes: schemes(scene)?,
             reference: None,
+            beside: None,
             reference_work: Work::default(),
             reference_stalled: None,
             repeats,
@@ -80,6 +85,17 @@ impl<'a> Group<'a> {
     }
 
     fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<(), Failure> {
+        let (reference, stalled) = self.compared(id, size)?;
+        (self.reference, self.reference_stalled) = (Some(reference), stalled);
+        Ok(())
+    }
+
+    /// Runs a method that others are compared with; also why it ended early, if it did.
+    fn compared(
+        &mut self,
+        id: &str,
+        size: Option<&Size>,
+    ) -> Result<(run::Reference, Option<Failure>), Failure> {
         let mut method = self.scene.method(id).expect("validated").clone();
         if let Some(size) = size {
             resize(&mut method, size);
@@ -97,13 +113,13 @@ impl<'a> Group<'a> {
             picture: false,
             repeats: Repeats { most: 1, seconds: 0.0 },
             reference: None,
+            beside: None,
         };
         let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
             .map_err(|failure| scenario.locate(failure))?;
-        self.reference_stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
-        self.reference_work = solved.outcome.work;
-        self.reference = Some(run::reference(discretisation, solved, &self.targets)?);
-        Ok(())
+        let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
+        self.reference_work += solved.outcome.work;
+        Ok((run::reference(discretisation, solved, &self.targets)?, stalled))
     }
 
     /// One of the scene's methods, as a run of this group.
@@ -141,10 +157,13 @@ impl<'a> Group<'a> {
             picture,
             repeats: self.repeats,
             reference: self.reference.as_ref(),
+            beside: self.beside.as_ref(),
         };
         match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {
             Ok(mut solved) => {
-                solved.outcome.stalled = solved.outcome.stalled.map(|failure| scenario.locate(failure));
+                let locate = |failure| scenario.locate(failure);
+                solved.outcome.stalled = solved.outcome.stalled.map(locate);
+                solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
                 Ok(solved.outcome)
             }
             Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan: stages, size }),

@@ -11,7 +11,7 @@ use crate::work::Work;
 pub struct RunObject<'a> {
     scene: &'a str,
     method: &'a str,
-    /// `ok`; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
+    /// `ok`; `relaxed` where dynamic relaxation went on from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
     /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
     /// or `could-not-run`.
     status: &'static str,
@@ -91,7 +91,7 @@ impl<'a> RunObject<'a> {
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
             status: outcome.status,
-            message: outcome.stalled.as_ref().map(ToString::to_string),
+            message: outcome.stalled.as_ref().or(outcome.relaxed.as_ref()).map(ToString::to_string),
             nodes: outcome.size.nodes,
             elements: outcome.size.elements,
             dofs: outcome.size.dofs,

@@ -28,6 +28,7 @@ pub mod plan;
 pub mod prepare;
 pub mod provenance;
 pub mod reach;
+mod relaxation;
 pub mod run;
 pub mod scenario;
 pub mod setup;

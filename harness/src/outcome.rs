@@ -1,6 +1,7 @@
 //! What one run leaves: who it was, its numbers, its times, its fields.
 
 use geometry::{Matrix3, Point3, Vector3};
+use mechanics::{Tool, ToolState};
 use reports::{PlanEntry, Record, SurfaceField};
 use serde::Serialize;
 
@@ -82,6 +83,17 @@ pub struct ToolStep {
 }
 
 impl ToolStep {
+    /// Of the solver's state of a tool.
+    pub(crate) fn of(state: &ToolState, tool: &Tool) -> ToolStep {
+        ToolStep {
+            closure: state.closure,
+            force: state.force,
+            pushed: -state.force.dot(&tool.along()),
+            active: state.active as u64,
+            penetration: state.penetration,
+        }
+    }
+
     /// Where every tool starts.
     pub const UNTOUCHED: ToolStep = ToolStep {
         closure: 0.0,
@@ -111,6 +123,22 @@ pub struct LoadStep {
     pub against: Vec<Metric>,
     /// What else the procedure tells: time and energies in dynamics.
     pub more: Vec<Metric>,
+}
+
+impl LoadStep {
+    /// Before anything acts.
+    pub(crate) fn at_start(tools: usize) -> LoadStep {
+        LoadStep {
+            load: 0.0,
+            tools: vec![ToolStep::UNTOUCHED; tools],
+            strain_energy: 0.0,
+            smallest_j: 1.0,
+            iterations: 0,
+            probes: Vec::new(),
+            against: Vec::new(),
+            more: Vec::new(),
+        }
+    }
 }
 
 /// One stage of a plan.
@@ -170,9 +198,11 @@ pub struct Outcome {
     pub last: Option<LoadStep>,
     /// The load steps of a static procedure or the recorded states of dynamics, as far as it came.
     pub steps: Vec<LoadStep>,
-    /// `ok`, or how a run ended early: `stalled` in a static procedure; `inverted`, `step-too-large`, `not-finite` or
+    /// `ok`; `relaxed` where dynamic relaxation carried what Newton's method could not; or how a run ended early: `stalled` in a static procedure; `inverted`, `step-too-large`, `not-finite` or
     /// `contact-lost` in dynamics.
     pub status: &'static str,
+    /// Why Newton's method ended early where relaxation went on to the whole load.
+    pub relaxed: Option<Failure>,
     /// Why it ended early; its numbers are then those of the load it carried.
     pub stalled: Option<Failure>,
 }

@@ -2,6 +2,7 @@
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Integration};
 use crate::outcome::Stage;
+use crate::relaxation;
 use crate::setup::Setup;
 
 /// Whether the method's displacement is wanted elsewhere than at its own nodes.
@@ -119,6 +120,8 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             add("Newton iterations", true, why);
         }
     }
+    let (relaxes, why) = relaxation::possible(method, setup);
+    add(relaxation::STAGE, relaxes, why.into());
     let tools: Vec<&str> = setup.tools.iter().map(|t| t.name.as_str()).collect();
     let rubbing = setup.tools.iter().any(|t| t.tool.law().friction() > 0.0);
     let (search, friction) = match (tools.is_empty(), rubbing) {

@@ -14,6 +14,7 @@ use crate::norms::{self, difference, exact_at, norms};
 use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
 use crate::picture::{State, picture};
 use crate::prepare::{Prepared, prepare};
+use crate::relaxation;
 use crate::setup::Setup;
 use crate::statics::{self, Path};
 use crate::timing::Timings;
@@ -63,6 +64,8 @@ pub struct Asks<'a> {
     pub repeats: Repeats,
     /// The reference, where one is known.
     pub reference: Option<&'a Reference>,
+    /// The method that every run is compared with beside the reference, if the scene names one.
+    pub beside: Option<&'a Reference>,
 }
 
 /// A finished run with its nodal parameters.
@@ -129,16 +132,29 @@ pub fn run(
     let pressure = solution.path.as_mut().map(|path| std::mem::take(&mut path.pressure)).unwrap_or_default();
     let mut metrics = Vec::new();
     // A path that ended early is compared with the reference step by step, not at its end.
-    let finished = solution.path.as_ref().is_none_or(|path| path.failure.is_none())
+    let finished = solution.path.as_ref().is_none_or(Path::whole)
         && solution.motion.as_ref().is_none_or(|motion| motion.failure.is_none());
-    let at_end = Asks { reference: asks.reference.filter(|r| finished && r.finished), ..*asks };
+    let at_end = Asks {
+        reference: asks.reference.filter(|r| finished && r.finished),
+        beside: asks.beside.filter(|r| finished && r.finished),
+        ..*asks
+    };
     measure(&mut metrics, method, setup, &prepared, &solution, field, &at_end)?;
+    let relaxed_from = (solution.path.as_ref())
+        .filter(|path| path.whole())
+        .and_then(|path| path.failure.clone().map(Failure::from));
     let (last, steps, stalled) = match (solution.path, solution.motion) {
         (Some(path), _) => history(&mut metrics, method, &prepared, path.into(), asks)?,
         (None, Some(motion)) => history(&mut metrics, method, &prepared, motion.into(), asks)?,
         (None, None) => (None, Vec::new(), None),
     };
-    let status = stalled.as_ref().map_or("ok", Failure::early_status);
+    let status = match (&stalled, &relaxed_from) {
+        (Some(failure), _) => failure.early_status(),
+        (None, Some(_)) => "relaxed",
+        (None, None) => "ok",
+    };
+    let mut plan = plan;
+    relaxation::conclude(&mut plan, &work);
     let tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     let probes = probes(method, setup, &prepared, &u, asks.probes)?;
     if let (Some(exact), Some(probe)) = (&setup.exact, probes.first()) {
@@ -176,6 +192,7 @@ pub fn run(
         steps,
         status,
         stalled,
+        relaxed: relaxed_from,
     };
     Ok(Solved { outcome, prepared, u })
 }
@@ -291,11 +308,15 @@ fn measure(
         (None, None) => None,
     };
     if let Some(against) = against {
-        push_difference(metrics, &field, &against);
+        push_difference(metrics, "rms", &field, &against);
+        push(metrics, "max-error", difference(&field, &against).max, "m");
         let largest = against.iter().fold(0.0, |m: f64, u| m.max(u.norm()));
         if largest > 0.0 {
             push(metrics, "relative-max", difference(&field, &against).max / largest, "1");
         }
+    }
+    if let Some(beside) = asks.beside {
+        push_difference(metrics, "beside-rms", &field, &beside.targets);
     }
     for (axis, name) in ["max-x", "max-y", "max-z"].into_iter().enumerate() {
         push(metrics, name, field.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())), "m");
@@ -347,11 +368,25 @@ struct Course {
 
 impl From<Path> for Course {
     fn from(path: Path) -> Course {
-        let Path { steps, fields, last, iterations, cut_backs, failure, .. } = path;
+        let Path { steps, fields, last, iterations, cut_backs, limit, failure, relaxed, .. } = path;
         let mut metrics = Vec::new();
+        if let Some(limit) = &limit {
+            push(&mut metrics, "limit-load", limit.load, "1");
+            for (index, tool) in limit.tools.iter().enumerate() {
+                push(&mut metrics, &of_tool("limit-closure", index), tool.closure, "m");
+                push(&mut metrics, &of_tool("limit-tool-force", index), tool.pushed, "N");
+            }
+        }
         push(&mut metrics, "newton-iterations", iterations as f64, "1");
         push(&mut metrics, "cut-backs", cut_backs as f64, "1");
-        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
+        let failure = match relaxed {
+            None => failure.map(Failure::from),
+            Some(relaxed) => {
+                push(&mut metrics, "relaxation-steps", relaxed.made as f64, "1");
+                relaxed.failure.map(Failure::from)
+            }
+        };
+        Course { steps, fields, last, metrics, failure }
     }
 }
 
@@ -427,14 +462,13 @@ fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
     metrics
 }
 
-/// RMS per direction and of the magnitude, and the largest difference.
-pub(crate) fn push_difference(metrics: &mut Vec<Metric>, field: &[Vector3], against: &[Vector3]) {
+/// RMS of a difference per direction (`NAME-x` and so on) and of the magnitude (`NAME`).
+pub(crate) fn push_difference(metrics: &mut Vec<Metric>, name: &str, field: &[Vector3], against: &[Vector3]) {
     let d = difference(field, against);
-    for (axis, name) in ["rms-x", "rms-y", "rms-z"].into_iter().enumerate() {
-        push(metrics, name, d.rms[axis], "m");
+    for (axis, value) in ["x", "y", "z"].into_iter().zip(d.rms) {
+        push(metrics, &format!("{name}-{axis}"), value, "m");
     }
-    push(metrics, "rms", d.rms_magnitude, "m");
-    push(metrics, "max-error", d.max, "m");
+    push(metrics, name, d.rms_magnitude, "m");
 }
 
 fn probes(

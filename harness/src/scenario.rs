@@ -2,7 +2,7 @@
 
 use cases::exact::{Exact, Params, exact_by_name};
 use cases::scene::{
-    self, ErrorKind, Family, LoadKind, Prescribed, ProcedureKind, Reference, Scene, VectorField,
+    self, ErrorKind, Family, LoadKind, OnStall, Prescribed, ProcedureKind, Reference, Scene, VectorField,
 };
 use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::{Law, LinearElastic, NewtonParams, StaticParams};
@@ -361,7 +361,8 @@ impl Scenario<'_> {
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (tools, statics, explicit) = (tools(self.scene)?, self.statics(), self.explicit());
-        Ok(Setup { laws, materials, held, loads, tools, statics, explicit, exact })
+        let relax = self.scene.procedure.on_stall == OnStall::Relax;
+        Ok(Setup { laws, materials, held, loads, tools, statics, relax, explicit, exact })
     }
 
     /// The scene's exact solution for this run's material; `None` where the scene names none.

@@ -61,6 +61,8 @@ pub struct Setup {
     pub tools: Vec<SetTool>,
     /// How a static procedure is stepped; `None` for another one.
     pub statics: Option<StaticParams>,
+    /// Whether a static path that stalls goes on by dynamic relaxation.
+    pub relax: bool,
     /// How explicit dynamics is stepped; `None` for another procedure.
     pub explicit: Option<ExplicitParams>,
     /// The exact solution, if the scene names one.

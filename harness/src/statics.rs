@@ -11,6 +11,7 @@ use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::outcome::{LoadStep, ToolStep};
 use crate::prepare::Prepared;
+use crate::relaxation::{self, Relaxed, Start};
 use crate::setup::Setup;
 use crate::work::Work;
 
@@ -34,8 +35,23 @@ pub struct Path {
     pub iterations: u64,
     /// Steps that failed and were cut back.
     pub cut_backs: u64,
-    /// Why it ended early, if it did.
+    /// The last step that Newton's method converged to, where it found no equilibrium further on.
+    pub limit: Option<LoadStep>,
+    /// Why Newton's method ended early, if it did.
     pub failure: Option<StaticError>,
+    /// How dynamic relaxation went on from there, if it was asked for and can.
+    pub relaxed: Option<Relaxed>,
+}
+
+impl Path {
+    /// Whether the whole load was carried, by relaxation where Newton's method ended early.
+    pub fn whole(&self) -> bool {
+        match (&self.failure, &self.relaxed) {
+            (None, _) => true,
+            (Some(_), Some(relaxed)) => relaxed.failure.is_none(),
+            (Some(_), None) => false,
+        }
+    }
 }
 
 /// Solves. A path that carried nothing is an error, one that ended early is not.
@@ -80,28 +96,50 @@ pub fn solve(
     work.solves += iterations;
     work.contact_evaluations += path.counts.evaluations;
     work.contact_skips += path.counts.skipped;
-    let Some(last) = path.steps.last() else {
+    let relaxes = relaxation::possible(method, setup).0;
+    let last = match (path.steps.last(), &path.failure) {
+        (Some(last), _) => told(last, setup),
+        // A matrix that has no solution is about the problem, and has none at rest either.
+        (None, Some(StaticError::Stalled { cause, .. }))
+            if relaxes && !matches!(**cause, StaticError::Solve(_)) =>
+        {
+            LoadStep::at_start(setup.tools.len())
+        }
         // Nothing was carried: what stopped it is about the problem, not about how far it went.
-        return Err(match path.failure {
-            Some(StaticError::Stalled { cause, .. }) if matches!(*cause, StaticError::Solve(_)) => {
-                (*cause).into()
-            }
-            Some(failure) => failure.into(),
-            None => Failure::Run("the static solution has no step".into()),
-        });
+        (None, Some(StaticError::Stalled { cause, .. })) if matches!(**cause, StaticError::Solve(_)) => {
+            return Err((**cause).clone().into());
+        }
+        (None, Some(failure)) => return Err(failure.clone().into()),
+        (None, None) => return Err(Failure::Run("the static solution has no step".into())),
     };
+    let residual = path.steps.last().and_then(|s| s.iterations.last()).map_or(0.0, |i| i.residual);
+    let limit = path.failure.as_ref().map(|_| last.clone());
+    let (mut end, mut u, mut relaxed) = (last, path.u, None);
+    if let (Some(limit), true) = (&limit, relaxes) {
+        let closures = limit.tools.iter().map(|tool| tool.closure).collect();
+        let start = Start { load: limit.load, u: u.clone(), closures, history: path.history };
+        let done = relaxation::go_on(setup, params.steps, prepared, start, work)?;
+        steps.extend(done.steps.iter().cloned());
+        fields.extend(done.fields.iter().cloned());
+        if let (Some(step), Some(field)) = (done.steps.last(), done.fields.last()) {
+            (end, u) = (step.clone(), field.clone());
+        }
+        relaxed = Some(done);
+    }
     let held: BTreeSet<(u32, u8)> = prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
     Ok(Path {
         dofs: 3 * method.nodes().len() - held.len() + path.pressure.len(),
-        last: told(last, setup),
-        residual: last.iterations.last().map_or(0.0, |i| i.residual),
+        last: end,
+        residual,
         iterations,
         cut_backs: path.cut_back as u64,
-        u: path.u,
+        u,
         pressure: path.pressure,
         steps,
         fields,
+        limit,
         failure: path.failure,
+        relaxed,
     })
 }
 
@@ -111,13 +149,7 @@ fn solves(step: &Step) -> u64 {
 }
 
 fn told(step: &Step, setup: &Setup) -> LoadStep {
-    let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep {
-        closure: state.closure,
-        force: state.force,
-        pushed: -state.force.dot(&set.tool.along()),
-        active: state.active as u64,
-        penetration: state.penetration,
-    });
+    let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
     LoadStep {
         load: step.time,
         tools: tools.collect(),

@@ -47,11 +47,19 @@ pub fn transfers(
             let field = rows.rows().apply(&at_nodes);
             let mut metrics = Vec::new();
             if let Some(reference) = asks.reference {
-                push_difference(&mut metrics, &field, &reference.targets);
+                push_difference(&mut metrics, "rms", &field, &reference.targets);
+                push(&mut metrics, "max-error", difference(&field, &reference.targets).max, "m");
                 if let Some(at) = &reference.at {
                     let carried = rows.rows().apply(&at(nodes)?);
-                    let only = difference(&carried, &reference.targets);
-                    push(&mut metrics, "transfer-only-rms", only.rms_magnitude, "m");
+                    push_difference(&mut metrics, "transfer-only-rms", &carried, &reference.targets);
+                }
+            }
+            if let Some(beside) = asks.beside {
+                push_difference(&mut metrics, "beside-rms", &field, &beside.targets);
+                // The other method's own field, taken at this cloud's nodes and carried back: nothing but the transfer.
+                if let Some(at) = &beside.at {
+                    let carried = rows.rows().apply(&at(nodes)?);
+                    push_difference(&mut metrics, "beside-transfer-rms", &carried, &beside.targets);
                 }
             }
             let change = difference(&field, &own);
@@ -67,7 +75,11 @@ pub fn transfers(
             let (_, timing) = timed(asks, build, |(rows, _)| rows.rows(), u)?;
             let mut metrics = Vec::new();
             if let Some(reference) = asks.reference {
-                push_difference(&mut metrics, &own, &reference.targets);
+                push_difference(&mut metrics, "rms", &own, &reference.targets);
+                push(&mut metrics, "max-error", difference(&own, &reference.targets).max, "m");
+            }
+            if let Some(beside) = asks.beside {
+                push_difference(&mut metrics, "beside-rms", &own, &beside.targets);
             }
             Ok(transfer(OWN_ROWS, "", metrics, timing, asks))
         }))

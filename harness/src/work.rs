@@ -37,6 +37,8 @@ pub struct Work {
     pub mass_nodes: u64,
     /// Time steps made.
     pub time_steps: u64,
+    /// Steps of dynamic relaxation made.
+    pub relaxation_steps: u64,
     /// Linear systems of Newton's method on the way to converged steps.
     pub newton_iterations: u64,
     /// Stiffness matrices assembled; in a static procedure those of converged steps.
@@ -61,6 +63,7 @@ impl Work {
             "elasticity tensor per region" => self.point_laws,
             "mass" => self.mass_nodes,
             "time steps" => self.time_steps,
+            "dynamic relaxation" => self.relaxation_steps,
             "stiffness" => self.assemblies,
             "supports by elimination" => self.fixed_dofs,
             "weak supports" => self.flux_rows + self.multiplier_rows,
@@ -92,6 +95,7 @@ impl AddAssign for Work {
         self.contact_skips += other.contact_skips;
         self.mass_nodes += other.mass_nodes;
         self.time_steps += other.time_steps;
+        self.relaxation_steps += other.relaxation_steps;
         self.newton_iterations += other.newton_iterations;
         self.assemblies += other.assemblies;
         self.factorisations += other.factorisations;

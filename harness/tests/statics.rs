@@ -256,3 +256,38 @@ fn bad_static_scenes_name_file_line_and_key() {
         }
     }
 }
+
+#[test]
+fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
+    let dir = tempfile::tempdir().unwrap();
+    let force = PRESSED.replace("closure = \"2 mm\"", "force = \"4 N\"");
+    for (name, text) in [("led.toml", PRESSED), ("forced.toml", force.as_str())] {
+        // One iteration never shows that it has converged.
+        let stuck = text.replace("steps = 2 }", "steps = 2, iterations = 1, on-stall = \"relax\" }");
+        let (free, stuck) = (write(&dir, name, text), write(&dir, &format!("stuck-{name}"), &stuck));
+        for method in ["hex8", "tet4-nodal"] {
+            let run = |path: &str| tissuebench(&["run", path, "--format", "json", "--method", method]);
+            let (newton, relaxed) = (run(&free), run(&stuck));
+            assert_eq!((newton.code, relaxed.code), (0, 0), "{}", relaxed.stderr);
+            assert!(relaxed.stderr.contains("relaxed: "), "{}", relaxed.stderr);
+            let (newton, relaxed) = (&objects(&newton.stdout)[0], &objects(&relaxed.stdout)[0]);
+            assert_eq!((&newton["status"], &relaxed["status"]), (&"ok".into(), &"relaxed".into()));
+            assert_eq!(metric(relaxed, "limit-load"), 0.0);
+            for quantity in ["closure", "tool-force", "tool-force-2", "max-z", "strain-energy"] {
+                let (a, b) = (metric(newton, quantity), metric(relaxed, quantity));
+                assert!((a / b - 1.0).abs() < 1e-3, "{name} {method} {quantity}: {a} {b}");
+            }
+            assert_eq!(relaxed["steps"].as_array().unwrap().len(), 2);
+            let made = metric(relaxed, "relaxation-steps");
+            assert_eq!(relaxed["work"]["relaxation_steps"].as_f64(), Some(made));
+            let stage = |object: &Value| {
+                let stages = object["plan"].as_array().unwrap().clone();
+                stages.into_iter().find(|s| s["stage"] == "dynamic relaxation").unwrap()["ran"].clone()
+            };
+            assert_eq!((stage(newton), stage(relaxed)), (false.into(), true.into()));
+        }
+        // A cloud can't: its path ends where it stalls, and the plan says why.
+        let plan = tissuebench(&["plan", &stuck, "--method", "efg"]);
+        assert!(plan.stdout.contains("not for clouds, whose path ends where it stalls"), "{}", plan.stdout);
+    }
+}

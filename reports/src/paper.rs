@@ -55,6 +55,11 @@ pub(crate) const PUBLISHED: [Published; 17] = [
     published("transfer", "efg", 0.07, 1, "interpolating to the FE nodes", TEXT),
 ];
 
+/// Whether a case is a reading of the published one: the kidney under other loads is not.
+pub(crate) fn is_paper(case: &str) -> bool {
+    case.contains("kidney") && case.contains("paper")
+}
+
 /// Nodes of the published finite-element mesh.
 pub(crate) const FE_NODES: u64 = 1330;
 /// Nodes of the published EFG cloud.

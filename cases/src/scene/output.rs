@@ -16,6 +16,8 @@ pub struct Output {
     pub probes: Vec<[f64; 3]>,
     /// Transfers of the nodal displacements to other points.
     pub transfers: Vec<Transfer>,
+    /// Id of a method that every run is compared with at the targets, beside the reference.
+    pub beside: Option<String>,
 }
 
 /// A transfer of nodal displacements to other points.

@@ -29,6 +29,18 @@ impl ProcedureKind {
     }
 }
 
+/// What follows where a static path finds no equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OnStall {
+    /// The path ends there.
+    #[default]
+    Stop,
+    /// Dynamic relaxation to the ends of the load steps that are left: from a limit point tissue slips or snaps to where it
+    /// rests again.
+    Relax,
+}
+
 /// How the scene is stepped. In a static procedure loads, prescribed displacements and drives of tools grow in proportion
 /// over its steps, in dynamics over its duration (a tool may have a ramp of its own); loads are dead loads, per undeformed
 /// area and volume and of fixed direction.
@@ -43,6 +55,8 @@ pub struct Procedure {
     pub duration: Option<f64>,
     /// How a static step is solved.
     pub newton: Newton,
+    /// What follows where a static path finds no equilibrium.
+    pub on_stall: OnStall,
     /// How explicit dynamics is stepped.
     pub explicit: Explicit,
 }

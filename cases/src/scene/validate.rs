@@ -41,6 +41,14 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             report.add(&format!("{key}.metric"), problem);
         }
     }
+    if let Some(id) = &scene.output.beside {
+        known_methods(std::slice::from_ref(id), scene, "output.beside", report);
+        if scene.output.transfers.is_empty() && !matches!(scene.reference, Some(Reference::Method { .. })) {
+            let problem = Problem::new("has no points to be compared at");
+            report
+                .add("output.beside", problem.help("add output.transfer = { to = { file = \"...\" }, ... }"));
+        }
+    }
     match &scene.reference {
         Some(Reference::Method { id, .. }) => {
             known_methods(std::slice::from_ref(id), scene, "reference.method", report);

@@ -4,7 +4,7 @@ use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
 use super::{Figure, representative};
-use crate::paper::PUBLISHED;
+use crate::paper::{PUBLISHED, is_paper};
 use crate::select::{Run, groups, is_patch, kernels, labels, series};
 use crate::store::slug;
 use crate::text::significant;
@@ -48,7 +48,8 @@ fn figure(group: &[Run]) -> Option<Figure> {
     if rows.iter().all(|r| r.1.iter().flatten().all(|v| *v < NOTHING)) {
         return None;
     }
-    let kidney = is.case.contains("kidney");
+    // Of the published case alone: other kidneys bear other loads.
+    let kidney = is_paper(&is.case);
     if kidney {
         let published =
             |q: &str| PUBLISHED.iter().find(|p| p.family == "efg" && p.quantity == q).map(|p| p.value * 1e3);

@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use crate::paper::{PUBLISHED, is_paper};
 use crate::select::{Run, groups};
-use crate::tables::kidney_pairs;
-use crate::text::{duration, significant};
+use crate::tables::{KidneyPair as Pair, KidneySplit as Split, kidney_pairs, kidney_splits};
+use crate::text::{duration, percent, significant};
 
 /// Speed-ups and RMS differences beside the publication.
 pub(super) fn kidney(runs: &[Run]) -> Vec<String> {
     let pairs = kidney_pairs(runs);
     let mut out = Vec::new();
     for family in ["fem", "efg"] {
-        let mut by_method: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        let mut by_method: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
         for pair in pairs.iter().filter(|p| p.paper.family == family) {
             if let (Some(speed), Some(ours)) = (pair.speed_up(), pair.ours) {
-                by_method.entry(&pair.run.is.method).or_default().push(format!(
+                by_method.entry((&pair.run.is.case, &pair.run.is.method)).or_default().push(format!(
                     "{} takes {} here, {} in the publication, {} times as long",
                     pair.paper.what,
                     duration(ours),
@@ -23,50 +24,154 @@ pub(super) fn kidney(runs: &[Run]) -> Vec<String> {
                 ));
             }
         }
-        for (method, parts) in by_method {
-            out.push(format!("{method}: {}.", parts.join("; ")));
+        for ((case, method), parts) in by_method {
+            out.push(format!("{case}, {method}: {}.", parts.join("; ")));
         }
     }
-    let mut seen: Vec<&str> = Vec::new();
-    for pair in &pairs {
-        let run = pair.run;
-        let method = run.is.method.as_str();
-        let (Some(x), Some(y), Some(z)) = (run.value("rms-x"), run.value("rms-y"), run.value("rms-z")) else {
+    out.extend(maxima(&pairs));
+    out.extend(kidney_splits(runs).iter().filter_map(parts));
+    out.extend(limits(runs));
+    out.extend(ramps(runs));
+    if !out.is_empty() {
+        out.push("Geometry, supports and the jaws' place are fitted to the publication's pictures, not identified: only times and orders of magnitude compare with it.".into());
+    }
+    out
+}
+
+fn mm(value: f64) -> String {
+    significant(value * 1e3, 3)
+}
+
+fn directions(run: &Run, quantity: &str) -> Option<[f64; 3]> {
+    let [x, y, z] = ["x", "y", "z"].map(|axis| run.value(&format!("{quantity}-{axis}")));
+    Some([x?, y?, z?])
+}
+
+/// Largest displacements at the whole load, with what part of the published ones they are.
+fn maxima(pairs: &[Pair]) -> Vec<String> {
+    let mut out = Vec::new();
+    for pair in pairs.iter().filter(|p| p.paper.quantity == "max-x" && whole(p.run)) {
+        let of = |axis: &str| {
+            let quantity = format!("max-{axis}");
+            pairs.iter().find(|p| {
+                p.paper.quantity == quantity
+                    && p.paper.family == pair.paper.family
+                    && std::ptr::eq(p.run, pair.run)
+            })
+        };
+        let (Some([x, y, z]), Some(y_theirs), Some(z_theirs)) =
+            (directions(pair.run, "max"), of("y"), of("z"))
+        else {
             continue;
         };
-        if seen.contains(&method) {
+        let theirs = [pair.paper.value, y_theirs.paper.value, z_theirs.paper.value];
+        let [a, b, c] = [x / theirs[0], y / theirs[1], z / theirs[2]].map(percent);
+        out.push(format!(
+            "{}, {}: largest displacements {}, {} and {} mm in x, y and z, published {}, {} and {} mm: {a}, {b} and {c} of it.",
+            pair.run.is.case,
+            pair.run.is.method,
+            mm(x),
+            mm(y),
+            mm(z),
+            mm(theirs[0]),
+            mm(theirs[1]),
+            mm(theirs[2]),
+        ));
+    }
+    out
+}
+
+/// Whether a run carried the whole load.
+fn whole(run: &Run) -> bool {
+    run.value("load-carried").is_none_or(|load| load > 1.0 - 1e-9)
+}
+
+/// What the RMS difference of cloud and elements is made of.
+fn parts(split: &Split) -> Option<String> {
+    let numbers = split.parts().map(|(_, [x, y, z, all])| Some([x?, y?, z?, all?]));
+    let [total, own, transfer, cloud, elements] = numbers;
+    let (total, own, transfer, cloud, elements) = (total?, own?, transfer?, cloud?, elements?);
+    let three = |v: [f64; 4]| format!("{}, {} and {} mm", mm(v[0]), mm(v[1]), mm(v[2]));
+    let largest = [
+        ("the transfer", transfer),
+        ("the cloud's discretisation", cloud),
+        ("the error of the elements", elements),
+    ]
+    .into_iter()
+    .max_by(|a, b| a.1[3].total_cmp(&b.1[3]))?;
+    let published = |q: &str| PUBLISHED.iter().find(|p| p.quantity == q).map(|p| p.value);
+    let theirs = [published("rms-x")?, published("rms-y")?, published("rms-z")?, 0.0];
+    let (low, high) = (published("rms-least")?, published("rms-most")?);
+    let (name, fe) = (&split.cloud.is.method, &split.elements.is.method);
+    let reference = split.reference.unwrap_or("the case's reference");
+    Some(format!(
+        "{}: {name}, carried over by inverse distance, differs from {fe} by an RMS of {} in x, y and z; published are {} in the text and {} to {} mm \
+         in the abstract. Without the transfer it is {}. By themselves the transfer makes {}, the cloud's discretisation {} (from {reference}) and \
+         the error of {fe} {}: the largest part is {}, {} mm in magnitude, beside {} mm of the whole.",
+        split.cloud.is.case,
+        three(total),
+        three(theirs),
+        mm(low),
+        mm(high),
+        three(own),
+        three(transfer),
+        three(cloud),
+        three(elements),
+        largest.0,
+        mm(largest.1[3]),
+        mm(total[3]),
+    ))
+}
+
+/// Where a static path had no equilibrium to go on to, and how it went on.
+fn limits(runs: &[Run]) -> Vec<String> {
+    let mut out = Vec::new();
+    for run in runs.iter().filter(|r| is_paper(&r.is.case)) {
+        let (Some(load), Some(force), Some(closure)) =
+            (run.value("limit-load"), run.value("limit-tool-force"), run.value("limit-closure"))
+        else {
             continue;
-        }
-        seen.push(method);
-        let mm = |v: f64| significant(v * 1e3, 2);
-        let published: Vec<&_> = pairs
-            .iter()
-            .filter(|p| {
-                let direction = ["rms-x", "rms-y", "rms-z"].contains(&p.paper.quantity);
-                p.run.is.method == method && direction
-            })
-            .collect();
-        let theirs = match published.as_slice() {
-            [a, b, c] => {
-                format!(
-                    "; the publication gives {}, {} and {} mm between its EFG and its FE",
-                    mm(a.paper.value),
-                    mm(b.paper.value),
-                    mm(c.paper.value)
-                )
+        };
+        let on = match (run.value("relaxation-steps"), run.value("load-carried")) {
+            (Some(steps), Some(reached)) if reached > load => {
+                format!("; dynamic relaxation goes on to {} in {steps:.0} steps", percent(reached))
             }
             _ => String::new(),
         };
         out.push(format!(
-            "{method}, {} nodes: RMS difference from the reference {}, {} and {} mm in x, y and z{theirs}.",
-            run.is.nodes,
-            mm(x),
-            mm(y),
-            mm(z)
+            "{}, {}: Newton's method finds no equilibrium beyond {} of the load, {} N at a closure of {} mm{on}.",
+            run.is.case,
+            run.is.method,
+            percent(load),
+            significant(force, 3),
+            mm(closure)
         ));
     }
-    if !out.is_empty() {
-        out.push("Ours is linear elastic on a fitted geometry, so only times and orders of magnitude compare with the publication.".into());
+    out
+}
+
+/// The same method at the same force, quasi-static and at the end of a ramp.
+fn ramps(runs: &[Run]) -> Vec<String> {
+    let paper = || runs.iter().filter(|r| is_paper(&r.is.case) && r.is.family == "fem" && whole(r));
+    let mut out = Vec::new();
+    for ramp in paper().filter(|r| r.value("time-steps").is_some()) {
+        let same = |r: &&Run| r.is.method == ramp.is.method && r.value("newton-iterations").is_some();
+        let (Some(still), Some(seconds)) = (paper().find(same), ramp.value("time-reached")) else { continue };
+        let (Some(moved), Some(rest)) = (directions(ramp, "max"), directions(still, "max")) else { continue };
+        let change = (0..3).map(|a| (moved[a] / rest[a] - 1.0).abs()).fold(0.0, f64::max);
+        out.push(format!(
+            "{}: at the end of a ramp of {} the largest displacements are {}, {} and {} mm in x, y and z, on the quasi-static path {}, {} and {} mm: \
+             at most {} apart.",
+            ramp.is.method,
+            duration(seconds),
+            mm(moved[0]),
+            mm(moved[1]),
+            mm(moved[2]),
+            mm(rest[0]),
+            mm(rest[1]),
+            mm(rest[2]),
+            percent(change)
+        ));
     }
     out
 }

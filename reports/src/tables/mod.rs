@@ -9,7 +9,9 @@ mod outcome;
 mod timing;
 mod transfer;
 
-pub(crate) use kidney::pairs as kidney_pairs;
+pub(crate) use kidney::{
+    Pair as KidneyPair, Split as KidneySplit, pairs as kidney_pairs, splits as kidney_splits,
+};
 
 use crate::record::RunSet;
 use crate::select::{Run, groups, labels};
@@ -27,6 +29,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
         transfer::schemes(runs),
         conditioning::conditioning(runs),
         kidney::beside_the_paper(runs),
+        kidney::rms_parts(runs),
         closure::force_closure(runs),
         outcome::checks(set),
         outcome::failures(set),

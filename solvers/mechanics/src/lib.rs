@@ -54,9 +54,9 @@ pub use contact::{
 pub use error::SolveError;
 pub use explicit::{
     Balance, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce,
-    InvertedPoint, LanczosParams, LanePath, Lumping, MovingTool, Prescribed, RelaxationInfo,
-    RelaxationParams, Springs, StaticLoad, ToolEnergies, ToolMotion, Tools, critical_step,
-    critical_step_touching, locality_order, lumped_mass, relax,
+    InvertedPoint, LanczosParams, LanePath, Lumping, MovingTool, Prescribed, Pressing, PressingTool,
+    RelaxationInfo, RelaxationParams, Springs, StaticLoad, ToolEnergies, ToolMotion, Tools, critical_step,
+    critical_step_touching, locality_order, lumped_mass, relax, relax_under,
 };
 pub use implicit::{
     Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,

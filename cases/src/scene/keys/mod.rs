@@ -12,7 +12,7 @@ pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
 
-use super::procedure::ProcedureKind;
+use super::procedure::{OnStall, ProcedureKind};
 use super::region::Region;
 use super::units::{Density, Length, Pressure, Q, Rate, Time, Unit};
 
@@ -161,6 +161,9 @@ pub(crate) struct ProcedureKeys {
     pub iterations: Option<u32>,
     /// Uzawa iterations of contact per static step; 0 (a plain penalty) unless given
     pub augmentations: Option<u32>,
+    /// What follows where a static path finds no equilibrium: "stop" unless given, or "relax", which goes on by dynamic
+    /// relaxation (finite elements without a pressure field; a cloud stops)
+    pub on_stall: Option<OnStall>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
     /// Mass-proportional damping of body and tools in explicit dynamics; none unless given

@@ -15,6 +15,9 @@ pub(crate) struct OutputKeys {
     /// Points to report
     pub probes: Option<Vec<[Q<Length>; 3]>>,
     pub transfer: Option<TransfersKeys>,
+    /// A method of this scene that every run is compared with at the targets too, beside the reference: a published one whose
+    /// own error is part of a published difference
+    pub beside: Option<String>,
 }
 
 /// One transfer or several

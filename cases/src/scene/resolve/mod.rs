@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
-use super::procedure::{Explicit, Newton, Procedure, ProcedureKind};
+use super::procedure::{Explicit, Newton, OnStall, Procedure, ProcedureKind};
 use super::report::Report;
 use super::units::{Dim, Q};
 use condition::{load, place, support};
@@ -134,7 +134,8 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
     let (newton, standard) = (Newton::STANDARD, Explicit::STANDARD);
     let Some(keys) = keys else {
         let kind = ProcedureKind::Linear;
-        return Procedure { kind, steps: 1, duration: None, newton, explicit: standard };
+        let on_stall = OnStall::default();
+        return Procedure { kind, steps: 1, duration: None, newton, on_stall, explicit: standard };
     };
     let steps = keys.steps.unwrap_or(1);
     report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
@@ -150,6 +151,7 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
         ("tolerance", keys.tolerance.is_some(), ProcedureKind::Static),
         ("iterations", keys.iterations.is_some(), ProcedureKind::Static),
         ("augmentations", keys.augmentations.is_some(), ProcedureKind::Static),
+        ("on-stall", keys.on_stall.is_some(), ProcedureKind::Static),
         ("damping", keys.damping.is_some(), ProcedureKind::Explicit),
         ("safety", keys.safety.is_some(), ProcedureKind::Explicit),
         ("step", keys.step.is_some(), ProcedureKind::Explicit),
@@ -173,5 +175,6 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
     let both = keys.safety.is_some() && explicit.step.is_some();
     report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
     let newton = Newton { tolerance, iterations, augmentations };
-    Procedure { kind: keys.kind, steps: steps as usize, duration, newton, explicit }
+    let on_stall = keys.on_stall.unwrap_or_default();
+    Procedure { kind: keys.kind, steps: steps as usize, duration, newton, on_stall, explicit }
 }

@@ -15,7 +15,7 @@ use super::method::size;
 use super::{MILLIMETRE, mesh_file, names, positive, raw};
 
 pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
-    let Some(keys) = keys else { return Output { probes: Vec::new(), transfers: Vec::new() } };
+    let Some(keys) = keys else { return Output { probes: Vec::new(), transfers: Vec::new(), beside: None } };
     if let Some(probes) = &keys.probes {
         let help = "name a point, or leave the key out";
         report.require(!probes.is_empty(), "output.probes", "is empty", help);
@@ -28,7 +28,8 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
             each.map(|(i, t)| transfer(t, &format!("output.transfer[{i}]"), report)).collect()
         }
     };
-    Output { transfers, probes: keys.probes.unwrap_or_default().into_iter().map(raw).collect() }
+    let probes = keys.probes.unwrap_or_default().into_iter().map(raw).collect();
+    Output { transfers, probes, beside: keys.beside }
 }
 
 fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {

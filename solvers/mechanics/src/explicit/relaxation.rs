@@ -1,8 +1,8 @@
 //! Adaptive dynamic relaxation: the static solution as the end of a damped motion.
 
 use super::central_difference::held;
-use super::critical_step::{LanczosParams, critical_step};
-use super::{ExplicitError, InternalForce};
+use super::critical_step::{LanczosParams, critical_step_touching};
+use super::{ExplicitError, InternalForce, Pressing};
 use crate::material::Material;
 use crate::{FixedDof, Vector3};
 
@@ -44,18 +44,32 @@ const CONFIRM: usize = 10;
 /// External forces at displacements: adds nodal forces (N) to the second argument, which starts from zero.
 pub type StaticLoad<'a> = dyn FnMut(&[Vector3], &mut [Vector3]) + 'a;
 
-/// Static displacements (m) under `load` with `fixed` degrees of freedom, from `start`; `mass` may be any positive one.
-///
-/// With `k = 2 / (omega_min dt)`, `R = (k - 1) / (k + 1)` and `s = (1 + R) dt / 2`:
-/// `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f_int)`; `omega_min^2` by the Rayleigh quotient
-/// `du . df_int / du . M du` of the last step. Stops when `max |du| rho / (1 - rho)`, `rho = R + 0.2 (1 - R)`, stays
-/// below the tolerance: what a geometric series of steps has left. Source: Joldes, Wittek & Miller, Comput. Methods
-/// Appl. Mech. Engrg. 200 (2011).
+/// [`relax_under`] without tools.
 pub fn relax(
     force: &mut InternalForce,
     mass: &[f64],
     fixed: &[FixedDof],
     load: &mut StaticLoad,
+    start: Vec<Vector3>,
+    params: RelaxationParams,
+) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
+    relax_under(force, mass, fixed, load, None, start, params)
+}
+
+/// Static displacements (m) under `load` and tools that press, with `fixed` degrees of freedom, from `start`; `mass` may be any
+/// positive one.
+///
+/// With `k = 2 / (omega_min dt)`, `R = (k - 1) / (k + 1)` and `s = (1 + R) dt / 2`:
+/// `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f_int)`; `omega_min^2` by the Rayleigh quotient
+/// `du . df / du . M du` of the last step, `f` the internal less the contact forces. Stops when `max |du| rho / (1 - rho)`, `rho = R + 0.2 (1 - R)`, stays
+/// below the tolerance: what a geometric series of steps has left. Source: Joldes, Wittek & Miller, Comput. Methods
+/// Appl. Mech. Engrg. 200 (2011).
+pub fn relax_under(
+    force: &mut InternalForce,
+    mass: &[f64],
+    fixed: &[FixedDof],
+    load: &mut StaticLoad,
+    mut pressing: Option<&mut Pressing>,
     start: Vec<Vector3>,
     params: RelaxationParams,
 ) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
@@ -74,8 +88,9 @@ pub fn relax(
     for f in fixed {
         u[f.node as usize][f.axis as usize] = f.value;
     }
+    let springs = pressing.as_ref().and_then(|p| p.springs());
     let limit = |force: &mut InternalForce, u: &[Vector3]| {
-        critical_step(force, mass, u, |k| !held[k], params.critical).map(|found| found.dt)
+        critical_step_touching(force, mass, u, |k| !held[k], springs, params.critical).map(|found| found.dt)
     };
     let mut dt = limit(force, &u)?;
     let expected = shear_frequency(force, mass);
@@ -90,6 +105,7 @@ pub fn relax(
     let zeros = vec![Vector3::zeros(); n];
     let (mut du, mut internal, mut previous, mut external) =
         (zeros.clone(), zeros.clone(), zeros.clone(), zeros);
+    let mut touch: Vec<Vector3> = Vec::new();
     let mut confirmed = 0;
     for step in 0..params.steps {
         let at = |error| ExplicitError::InvertedAt { step, time: step as f64 * dt, at: error };
@@ -97,6 +113,13 @@ pub fn relax(
         force.evaluate(&u, &mut internal).map_err(at)?;
         external.fill(Vector3::zeros());
         load(&u, &mut external);
+        if let Some(pressing) = &mut pressing {
+            touch.clear();
+            touch.resize(n, Vector3::zeros());
+            let time = step as f64 * dt;
+            pressing.touch(&u, &mut touch).map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+            internal.iter_mut().zip(&touch).for_each(|(f, t)| *f -= t);
+        }
         if params.recheck > 0 && step > 0 && step.is_multiple_of(params.recheck) {
             dt = limit(force, &u)?;
         }
@@ -105,6 +128,11 @@ pub fn relax(
         for i in 0..n {
             stiff += du[i].dot(&(internal[i] - previous[i]));
             inert += mass[i] * du[i].norm_squared();
+        }
+        if let Some(pressing) = &pressing {
+            let (of_tools, mass) = pressing.quotient(dt);
+            stiff += of_tools;
+            inert += mass;
         }
         // Softening makes the quotient negative for a while; the last good one stays.
         if stiff > 0.0 && inert > 0.0 {
@@ -134,6 +162,11 @@ pub fn relax(
                 du[i][axis] = move_by;
                 u[i][axis] += move_by;
             }
+        }
+        if let Some(pressing) = &mut pressing {
+            let (moved, lacking) = pressing.advance(dt, r, s);
+            largest_step = largest_step.max(moved);
+            residual = residual.max(lacking);
         }
         let rho = r + 0.2 * (1.0 - r);
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };

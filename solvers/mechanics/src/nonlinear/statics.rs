@@ -5,7 +5,7 @@ use shape::SurfaceRows;
 use super::error::StaticError;
 use super::newton::{Descent, Iteration, Newton, NewtonParams, State};
 use super::solid::Solid;
-use crate::contact::{ContactCounts, ContactSurface, Tool};
+use crate::contact::{ContactCounts, ContactHistory, ContactSurface, Tool};
 use crate::{FixedDof, Load, Point3, Vector3};
 
 /// A surface held by a penalty: for bases whose parameters are not displacements.
@@ -113,6 +113,8 @@ pub struct StaticPath {
     pub u: Vec<Vector3>,
     /// Pressure parameters (mixed method), Pa.
     pub pressure: Vec<f64>,
+    /// What the contact of each tool remembers after the last converged step.
+    pub history: Vec<ContactHistory>,
     /// Steps that failed and were cut back.
     pub cut_back: usize,
     /// What the contact search did and skipped.
@@ -144,6 +146,7 @@ pub fn solve_static(
         steps: Vec::new(),
         u: Vec::new(),
         pressure: Vec::new(),
+        history: Vec::new(),
         cut_back: 0,
         counts: ContactCounts::default(),
         failure: None,
@@ -187,5 +190,6 @@ pub fn solve_static(
     path.counts = newton.counts();
     path.u = state.u;
     path.pressure = state.pressure;
+    path.history = state.history;
     Ok(path)
 }

@@ -1,0 +1,60 @@
+//! A method that others are compared with beside the reference.
+
+mod common;
+
+use cases::scene::{self, Scene};
+use common::BLOCK;
+use harness::group::Group;
+use harness::outcome::{Metric, Outcome};
+use harness::run::Repeats;
+
+const CLOUD: &str = r#", { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
+output = { transfer = { to = "reference-nodes", scheme = "inverse-distance" }, beside = "tet4" }
+"#;
+
+fn outcomes(reference: &str) -> Vec<Outcome> {
+    let text = format!("{}{CLOUD}reference = {reference}\n", BLOCK.trim_end().trim_end_matches(']'));
+    let scene: Scene = scene::parse(&text, "beside.toml").unwrap();
+    let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), false);
+    scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
+}
+
+fn value(metrics: &[Metric], name: &str) -> f64 {
+    metrics.iter().find(|m| m.name == name).unwrap_or_else(|| panic!("{name}")).value
+}
+
+#[test]
+fn beside_the_reference_itself_both_differences_are_one() {
+    let runs = outcomes(r#"{ method = "tet4" }"#);
+    for run in &runs {
+        for name in ["rms-x", "rms-y", "rms-z", "rms"] {
+            let (one, other) = (value(&run.metrics, name), value(&run.metrics, &format!("beside-{name}")));
+            assert_eq!(one, other, "{} {name}", run.identity.method);
+            assert_eq!(one == 0.0, run.identity.method == "tet4", "{} {name}", run.identity.method);
+        }
+    }
+    let efg = runs.iter().find(|r| r.identity.method == "efg").unwrap();
+    let carried = &efg.transfers[0].metrics;
+    for axis in ["-x", "-y", "-z", ""] {
+        let of = |name: &str| value(carried, &format!("{name}{axis}"));
+        assert_eq!(of("rms"), of("beside-rms"));
+        assert_eq!(of("transfer-only-rms"), of("beside-transfer-rms"));
+        assert!(of("beside-transfer-rms") > 0.0);
+    }
+}
+
+#[test]
+fn a_finer_reference_leaves_the_difference_to_the_other_method() {
+    let (one, two) = (
+        outcomes(r#"{ method = "tet4" }"#),
+        outcomes(r#"{ method = "tet4", size = { cells = [6, 6, 4] } }"#),
+    );
+    // Where the comparison is made differs with the reference's nodes; at its own nodes tet4 is still itself.
+    let efg = |runs: &[Outcome]| runs.iter().find(|r| r.identity.method == "efg").unwrap().clone();
+    let (one, two) = (efg(&one), efg(&two));
+    assert_ne!(value(&one.metrics, "rms"), value(&two.metrics, "rms"));
+    let (rms, beside) = (value(&two.metrics, "rms"), value(&two.metrics, "beside-rms"));
+    let apart = value(&two.transfers[0].metrics, "beside-rms");
+    assert!(rms > 0.0 && beside > 0.0 && rms != beside && apart != beside, "{rms} {beside} {apart}");
+}
