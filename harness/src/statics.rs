@@ -91,9 +91,9 @@ pub fn solve(
     })?;
     let iterations = path.steps.iter().map(solves).sum();
     work.newton_iterations += iterations;
-    work.assemblies += iterations;
-    work.factorisations += iterations;
-    work.solves += iterations;
+    work.assemblies += path.work.assemblies;
+    work.factorisations += path.work.factorisations;
+    work.solves += path.work.solves;
     work.contact_evaluations += path.counts.evaluations;
     work.contact_skips += path.counts.skipped;
     let relaxes = relaxation::possible(method, setup).0;

@@ -41,9 +41,9 @@ pub struct Work {
     pub relaxation_steps: u64,
     /// Linear systems of Newton's method on the way to converged steps.
     pub newton_iterations: u64,
-    /// Stiffness matrices assembled; in a static procedure those of converged steps.
+    /// Stiffness matrices assembled; in a static procedure those of failed steps too.
     pub assemblies: u64,
-    /// Matrices factored; in a static procedure those of converged steps.
+    /// Matrices factored; in a static procedure those of failed steps too.
     pub factorisations: u64,
     /// Right-hand sides solved for.
     pub solves: u64,

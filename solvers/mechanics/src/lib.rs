@@ -71,7 +71,7 @@ pub use material::{
 };
 pub use nonlinear::{
     Dilation, Drive, DrivenTool, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError,
-    StaticParams, StaticPath, StaticProblem, Step, ToolState, Worst, solve_static,
+    StaticParams, StaticPath, StaticProblem, StaticWork, Step, ToolState, Worst, solve_static,
 };
 pub use pattern::BlockPattern;
 pub use problem::{Assembled, LinearProblem, assemble};

@@ -21,5 +21,6 @@ pub use error::{Inverted, StaticError, Worst};
 pub use newton::{Iteration, NewtonParams};
 pub use solid::{Dilation, Solid};
 pub use statics::{
-    Drive, DrivenTool, HeldSurface, StaticParams, StaticPath, StaticProblem, Step, ToolState, solve_static,
+    Drive, DrivenTool, HeldSurface, StaticParams, StaticPath, StaticProblem, StaticWork, Step, ToolState,
+    solve_static,
 };

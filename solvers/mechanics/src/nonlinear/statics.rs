@@ -104,6 +104,20 @@ pub struct Step {
     pub smallest: f64,
 }
 
+/// Work of a static solution: everything that was done, with steps that failed and trials that were thrown away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StaticWork {
+    /// Tangents assembled: one per iteration.
+    pub assemblies: u64,
+    /// Numeric factorisations, more than assemblies where a tangent is not definite.
+    pub factorisations: u64,
+    /// Linear systems solved: one per iteration, one per tool driven by force that touches, and with a pressure field
+    /// one per trial whose residual did not fall.
+    pub solves: u64,
+    /// Evaluations of the forces, one per trial state.
+    pub forces: u64,
+}
+
 /// What a static solution gave: everything up to its end, and why it ended if that was early.
 #[derive(Clone, Debug)]
 pub struct StaticPath {
@@ -119,6 +133,8 @@ pub struct StaticPath {
     pub cut_back: usize,
     /// What the contact search did and skipped.
     pub counts: ContactCounts,
+    /// Work in all.
+    pub work: StaticWork,
     /// Why it ended early, if it did.
     pub failure: Option<StaticError>,
 }
@@ -149,6 +165,7 @@ pub fn solve_static(
         history: Vec::new(),
         cut_back: 0,
         counts: ContactCounts::default(),
+        work: StaticWork::default(),
         failure: None,
     };
     let (mut next, mut step) = (1, longest);
@@ -160,9 +177,10 @@ pub fn solve_static(
         let time = if reaches { target } else { state.time + step };
         // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
         // a point, the last state is.
-        let reached = newton
-            .step(&state, before.as_ref(), time, params.augmentations, Descent::Nearest)
-            .or_else(|_| newton.step(&state, before.as_ref(), time, params.augmentations, Descent::Down));
+        let mut to = |descent| newton.step(&state, before.as_ref(), time, params.augmentations, descent);
+        let reached = to(Descent::Nearest)
+            .or_else(|error| if state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
+            .or_else(|_| to(Descent::Down));
         match reached {
             Ok((reached, mut done)) => {
                 done.wanted = reaches;
@@ -188,6 +206,7 @@ pub fn solve_static(
         }
     }
     path.counts = newton.counts();
+    path.work = newton.work();
     path.u = state.u;
     path.pressure = state.pressure;
     path.history = state.history;

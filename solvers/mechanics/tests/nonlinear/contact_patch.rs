@@ -12,6 +12,8 @@
 //! ```
 
 use fem::SurfaceRule;
+use geometry::CellKind;
+use geometry::generate::box_mesh;
 use mechanics::*;
 
 use crate::common::*;
@@ -78,6 +80,31 @@ fn pressure_between_flat_plates_is_uniform() {
                 assert!((state.penetration * PENALTY / pressures[0] - 1.0).abs() < 1e-9, "{name}");
             }
         }
+    }
+}
+
+/// Full steps alone cycle between sticking and sliding points here and never leave the start.
+#[test]
+fn the_mixed_method_starts_under_stiff_friction() {
+    let model = Model::new(
+        box_mesh(CellKind::Tet10, Point3::origin(), SIZE, [2, 2, 1], [1.0; 3], None).unwrap(),
+        Projection::Mixed,
+    );
+    let rough = ContactLaw::coulomb(5e9, 0.3, 1e9).unwrap();
+    for poisson in [0.45, 0.495] {
+        let law = Law::NeoHookean(NeoHookean::new(YOUNG, poisson).unwrap());
+        let path = press(&model, &law, rough, &format!("nu {poisson}")).0;
+        let [below, above] = path.steps.last().unwrap().tools[..] else { panic!("nu {poisson}") };
+        let gap = (below.force.z + above.force.z).abs() / above.force.z;
+        assert!(gap < 1e-9, "nu {poisson}: {} {}", below.force, above.force);
+        // A solve for every assembly and for every trial that was judged by it, an evaluation for every state.
+        let moved = path.steps.iter().flat_map(|s| &s.iterations).filter(|i| i.length > 0.0).count() as u64;
+        let cut = path.steps.iter().flat_map(|s| &s.iterations).any(|i| i.length > 0.0 && i.length < 1.0);
+        let work = path.work;
+        assert!(cut && work.factorisations >= work.assemblies, "{work:?}");
+        assert!(work.solves > work.assemblies && work.forces > work.assemblies, "{work:?}");
+        // Full steps were tried first and failed: that is work too.
+        assert!(work.assemblies > moved, "{work:?} for {moved}");
     }
 }
 

@@ -24,7 +24,7 @@ impl Newton<'_> {
     /// `du = x + X dd`, `K X = a`, and `dd` balances the tool: `(D - a' . X) dd = F - Q + a' . x`,
     /// `D = sum w along . S along`. One tool at a time: the columns of all tools make a small dense system.
     pub(super) fn drive(
-        &self,
+        &mut self,
         factored: &Factored,
         state: &State,
         balance: &Balance,

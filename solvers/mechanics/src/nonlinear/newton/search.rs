@@ -1,30 +1,43 @@
 //! The line search.
 
-use super::{Balance, Newton, State, work};
+use super::tangent::Direction;
+use super::{Balance, Descent, Newton, State, work};
 use crate::Vector3;
 use crate::nonlinear::{Drive, StaticError};
 
 impl Newton<'_> {
     /// Takes the step, or the part of it that brings the residual's work along the step down: a step past the minimum
-    /// is cut by the secant, one that inverts a point is halved.
+    /// is cut by the secant, one that inverts a point is halved. With a pressure field
+    /// [`Descent::Guarded`] cuts the step where the factor it came from makes a step of the new residual that is no
+    /// shorter; else full steps go.
     pub(super) fn search(
         &mut self,
         state: &mut State,
-        step: &[f64],
-        closures: &[f64],
+        direction: &Direction,
         held_move: Option<&[Vector3]>,
         slope: f64,
         last: &Balance,
         time: f64,
     ) -> Result<(Balance, f64), StaticError> {
+        let Direction { step, closures, factored } = direction;
         let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let none = vec![0.0; state.pressure.len()];
-        let before = norm(&self.system.gather(&last.out, &none)).hypot(norm(&self.lacking(last, time)));
+        // Volumes count by the scale of the matrix that was solved, which makes forces of them.
+        let (free, scale) = (self.system.free, self.system.pressure_scale);
+        let size = |r: &[f64]| norm(&r[..free]).hypot(scale * norm(&r[free..]));
+        // A step is displacements, and pressures over the scale.
+        let way = |x: &[f64]| norm(&x[..free]).hypot(norm(&x[free..]) / scale);
+        let before =
+            size(&self.system.gather(&last.out, &last.pressure)).hypot(norm(&self.lacking(last, time)));
         // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
         let approaches = (self.problem.tools.iter().zip(&last.contacts)).any(|(driven, contacts)| {
             matches!(driven.drive, Drive::Force(_)) && contacts.as_ref().is_none_or(|c| c.points().is_empty())
         });
+        let saddle = !state.pressure.is_empty();
+        // The closures of tools driven by force are not part of a factor: with them the saddle's full step goes.
+        let natural = saddle
+            && self.descent == Descent::Guarded
+            && !self.problem.tools.iter().any(|t| matches!(t.drive, Drive::Force(_)));
         let mut length = 1.0;
         for trial in 0.. {
             state.u.clone_from(&start.0);
@@ -42,12 +55,25 @@ impl Newton<'_> {
                     continue;
                 }
             };
-            let saddle = !state.pressure.is_empty();
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
             let lacking = self.lacking(&balance, time);
             let now = work(step, &unknowns) + work(closures, &lacking);
-            // The pressure's saddle has no descent direction; there, and while held values move, the full step goes.
-            let smaller = norm(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
+            let smaller = size(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
+            if natural && !smaller && held_move.is_none() && trial < 6 {
+                // No energy falls along a step of the pressure's saddle. What the same factor makes of the new
+                // residual is the step that is left: it must be shorter, whatever the scales of force and volume are
+                // (the natural monotonicity test, Deuflhard 2004, ch. 3.3).
+                let mut left = unknowns.clone();
+                self.solve(factored, &mut left)?;
+                if !(way(&left) <= (1.0 - 0.25 * length) * way(step)) {
+                    let bend: Vec<f64> = left.iter().zip(step).map(|(l, s)| l - (1.0 - length) * s).collect();
+                    let best = 0.5 * length.powi(2) * way(step) / way(&bend);
+                    length =
+                        if best.is_finite() { best.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
+                    continue;
+                }
+                return Ok((balance, length));
+            }
             if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
                 || smaller
                 || held_move.is_some()

@@ -11,6 +11,15 @@ pub(super) enum Factored {
     Unsymmetric(Unsymmetric),
 }
 
+/// The Newton step with the factor that gave it.
+pub(super) struct Direction {
+    /// Of the free unknowns.
+    pub step: Vec<f64>,
+    /// Of the closures of tools driven by force.
+    pub closures: Vec<f64>,
+    pub factored: Factored,
+}
+
 impl Factored {
     fn solve(&self, b: &mut [f64], goal: f64) -> Result<(), SolveError> {
         match self {
@@ -54,7 +63,7 @@ impl Newton<'_> {
         balance: &Balance,
         time: f64,
         held_move: Option<&[Vector3]>,
-    ) -> Result<(Vec<f64>, Vec<f64>), StaticError> {
+    ) -> Result<Direction, StaticError> {
         let pairs = self.system.pairs.as_ref();
         let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
@@ -63,6 +72,7 @@ impl Newton<'_> {
         }
         let blocks = self.surface_blocks(balance);
         let matrix = self.system.assemble(&hessian, &blocks);
+        self.work.assemblies += 1;
         let skew = self.system.skew(&blocks);
         let mut right = balance.out.clone();
         let mut right_pressure = balance.pressure.clone();
@@ -81,11 +91,12 @@ impl Newton<'_> {
         let factored = self.factor(matrix, skew)?;
         self.solve(&factored, &mut step)?;
         let closures = self.drive(&factored, state, balance, time, &mut step)?;
-        Ok((step, closures))
+        Ok(Direction { step, closures, factored })
     }
 
     /// Solves with the matrix as it was assembled, pressures scaled.
-    pub(super) fn solve(&self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
+    pub(super) fn solve(&mut self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
+        self.work.solves += 1;
         let scale = self.system.pressure_scale;
         b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
         factored.solve(b, self.forcing)?;
@@ -111,14 +122,15 @@ impl Newton<'_> {
             false => Factored::Unsymmetric(Unsymmetric::new(factor, skew.clone())),
         };
         let shifts: &[f64] = match self.descent {
-            Descent::Nearest => &[0.0],
+            Descent::Nearest | Descent::Guarded => &[0.0],
             Descent::Down => &[0.0, 1e-3, 1e-2, 0.1, 1.0],
         };
         for &shift in shifts {
             let mut shifted = matrix.clone();
             shifted.shift(shift);
+            self.work.factorisations += 1;
             match linear_solver::factor_as(symbolic, shifted, kind) {
-                Ok(factor) if self.descent == Descent::Nearest || factor.negative_pivots() == pressures => {
+                Ok(factor) if self.descent != Descent::Down || factor.negative_pivots() == pressures => {
                     self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
                     return Ok(with_skew(factor));
                 }
@@ -127,8 +139,9 @@ impl Newton<'_> {
                 Err(FactorError::Other(error)) => return Err(error.into()),
             }
         }
-        if self.descent == Descent::Nearest && kind == Kind::Definite {
+        if self.descent != Descent::Down && kind == Kind::Definite {
             self.indefinite = true;
+            self.work.factorisations += 1;
             return match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
                 Ok(factor) => Ok(with_skew(factor)),
                 Err(FactorError::Other(error)) => Err(error.into()),
