@@ -27,6 +27,7 @@ fn a_scene_arrives_in_si() {
             duration: None,
             newton: Newton::STANDARD,
             explicit: Explicit::STANDARD,
+            on_stall: OnStall::Stop,
         }
     );
     assert_eq!(scene.checks[0].bound, Bound::Within { at_least: None, at_most: Some(1e-4) });
@@ -276,7 +277,14 @@ fn a_static_scene_runs_with_everything_it_knows() {
     let explicit = Explicit::STANDARD;
     assert_eq!(
         procedure,
-        Procedure { kind: ProcedureKind::Static, steps: 5, duration: None, newton, explicit }
+        Procedure {
+            kind: ProcedureKind::Static,
+            steps: 5,
+            duration: None,
+            newton,
+            explicit,
+            on_stall: OnStall::Stop
+        }
     );
 }
 
