@@ -143,7 +143,8 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
             assert!(work.contact_evaluations >= tools * work.newton_iterations, "{work:?}");
             assert_eq!(work.contact_skips, if skips { work.contact_evaluations } else { 0 }, "{work:?}");
             assert!(work.friction_points == 0 && work.contact_points > 0, "{work:?}");
-            assert!(work.newton_iterations > 0 && work.newton_iterations == work.factorisations, "{work:?}");
+            // A trial that failed costs factorisations too.
+            assert!(work.newton_iterations > 0 && work.factorisations >= work.newton_iterations, "{work:?}");
         }
     }
 }
