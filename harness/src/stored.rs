@@ -199,7 +199,7 @@ impl Stored {
     pub fn records(&self, case: &str, poisson: f64) -> Vec<Record> {
         let row = |quantity: String, unit: &str, phase: &str, statistic: &str, value: f64| Record {
             case: case.into(),
-            method: self.source.method.clone(),
+            method: "reference".into(),
             family: "reference".into(),
             variant: self.source.method.clone(),
             parameters: String::new(),

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cases::scene::{self, Check, Scene, Size, Study};
 use indicatif::{ProgressBar, ProgressStyle};
-use reports::{Check as Verdict, Record, RunSet};
+use reports::{Check as Verdict, Record, RunSet, SurfaceField};
 
 use crate::cli::VerifyArgs;
 use crate::group::{Group, case_name, resize};
@@ -203,7 +203,16 @@ impl Plan {
             work += result.work;
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
-            set.fields.extend(result.fields.iter().cloned());
+            for field in &result.fields {
+                // Of a method at several sizes the finest is shown.
+                let same =
+                    |other: &&mut SurfaceField| other.case == field.case && other.method == field.method;
+                match set.fields.iter_mut().find(same) {
+                    Some(other) if other.points.len() >= field.points.len() => {}
+                    Some(other) => *other = field.clone(),
+                    None => set.fields.push(field.clone()),
+                }
+            }
             if let Some((failure, code)) = &result.failure {
                 set.failures.push(failure.clone());
                 failed.push(*code);
