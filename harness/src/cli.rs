@@ -80,7 +80,7 @@ pub struct ReferenceArgs {
     pub scene: PathBuf,
     /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
     #[arg(long, value_name = "MESH")]
-    pub points: Option<PathBuf>,
+    pub points: PathBuf,
     /// Length unit of that file
     #[arg(long, default_value = "mm", value_parser = length_unit)]
     pub unit: f64,

@@ -241,15 +241,9 @@ fn plan(path: &Path, methods: &[String]) -> u8 {
 fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, _) = open(&args.scene, &[])?;
     let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
-    let points = match &args.points {
-        Some(path) => {
-            let mesh = geometry::msh::read(path, args.unit)
-                .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", path.display()))))?;
-            mesh.points().to_vec()
-        }
-        None => Vec::new(),
-    };
-    let stored = Stored::make(&scene, &text, &points).map_err(|failure| fail(&failure))?;
+    let mesh = geometry::msh::read(&args.points, args.unit)
+        .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
+    let stored = Stored::make(&scene, &text, mesh.points()).map_err(|failure| fail(&failure))?;
     print!("{}", list::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");
     std::fs::write(&args.out, json + "\n")

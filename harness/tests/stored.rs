@@ -1,0 +1,111 @@
+//! References stored by one command and compared with by scenes.
+
+mod common;
+
+use common::{PRESSED, assert_fails, inside, tissuebench, write};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// One tetrahedron inside the block, in mm; its corners are where displacements are told.
+fn points(dir: &TempDir, corners: [[f64; 3]; 4]) -> String {
+    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n");
+    for (n, [x, y, z]) in corners.iter().enumerate() {
+        text += &format!("{} {x} {y} {z}\n", n + 1);
+    }
+    text += "$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
+    write(dir, "points.msh", &text)
+}
+
+/// [`PRESSED`] on a bonded base, so that methods differ, with two of its methods.
+fn bonded() -> String {
+    let slides = "{ where = \"y == 0 mm\", fix = \"y\" }";
+    PRESSED
+        .replace(slides, "{ where = \"z == 0 mm\", fix = \"xyz\" }")
+        .lines()
+        .filter(|l| !["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\""].iter().any(|w| l.contains(w)))
+        .map(|l| format!("{l}\n"))
+        .collect()
+}
+
+fn stored(dir: &TempDir) -> String {
+    let out = inside(dir, "reference.json");
+    let corners = [[5.0, 5.0, 5.0], [30.0, 5.0, 5.0], [5.0, 30.0, 5.0], [5.0, 5.0, 15.0]];
+    let made = tissuebench(&[
+        "reference",
+        &write(dir, "made.toml", &bonded()),
+        "--points",
+        &points(dir, corners),
+        "--out",
+        &out,
+    ]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    assert_eq!(made.stdout.lines().count(), 2, "{}", made.stdout);
+    out
+}
+
+#[test]
+fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
+    let dir = tempfile::tempdir().unwrap();
+    stored(&dir);
+    let text = format!("{}reference = {{ record = \"reference.json\" }}\n", bonded());
+    let out = inside(&dir, "out");
+    let done = tissuebench(&["run", &write(&dir, "s.toml", &text), "--format", "json", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let objects: Vec<Value> = done.stdout.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    let metric = |k: usize, name: &str| objects[k]["metrics"][name]["value"].as_f64().unwrap();
+    assert_eq!((&objects[0]["method"], &objects[1]["method"]), (&"hex8".into(), &"hex20-mixed".into()));
+    for name in ["tool-force-error", "probe-difference", "rms", "max-error"] {
+        assert_eq!(metric(1, name), 0.0, "{name}");
+        assert!(metric(0, name) > 1e-6, "{name}");
+    }
+    let [first, last] = [metric(0, "tool-force"), metric(1, "tool-force")];
+    assert!((metric(0, "tool-force-error") - (first / last - 1.0).abs()).abs() < 1e-12);
+    // The record: forces of both steps, the band from one method's to the other's.
+    let file: Value =
+        serde_json::from_str(&std::fs::read_to_string(inside(&dir, "reference.json")).unwrap()).unwrap();
+    let tool = &file["steps"][1]["tools"][0];
+    let value = |name: &str| tool[name].as_f64().unwrap();
+    assert_eq!((value("low"), value("force"), value("high")), (first.min(last), last, first.max(last)));
+    let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
+    let rows = records.lines().filter(|l| l.contains("reference,hex20-mixed") && l.contains("tool-force,N"));
+    assert_eq!(rows.count(), 6, "two steps with value, low and high");
+}
+
+#[test]
+fn the_missing_half_is_the_mirror_image() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = r#"title = "Half a kidney in a fluid"
+body = { shape = "kidney", half = true }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ where = "y >= 30 mm", fix = "xyz" }, { on = "symmetry", fix = "z" }]
+load = [{ on = "surface", pressure = "1 kPa" }]
+method = [{ id = "hex8", family = "fem", element = "hex8", size = { level = 1 } }]
+"#;
+    let out = inside(&dir, "half.json");
+    let corners = [[0.0, 0.0, 6.0], [0.0, 0.0, -6.0], [4.0, 0.0, 0.0], [0.0, 5.0, 3.0]];
+    let scene = write(&dir, "half.toml", scene);
+    let made = tissuebench(&["reference", &scene, "--points", &points(&dir, corners), "--out", &out]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(out).unwrap()).unwrap();
+    let u = |n: usize, axis: usize| file["displacement"][n][axis].as_f64().unwrap();
+    assert!(u(0, 2) < -1e-5, "pressed inwards: {}", u(0, 2));
+    assert_eq!([u(1, 0), u(1, 1), u(1, 2)], [u(0, 0), u(0, 1), -u(0, 2)]);
+}
+
+#[test]
+fn bad_records_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(stored(&dir)).unwrap();
+    let scene = write(&dir, "s.toml", &format!("{}reference = {{ record = \"r.json\" }}\n", bonded()));
+    let fails = |says: &str| {
+        let done = tissuebench(&["run", &scene]);
+        assert_fails(&done, 2, "s.toml:");
+        assert_fails(&done, 2, "key 'reference.record'");
+        assert_fails(&done, 2, says);
+    };
+    fails("r.json: can't be read");
+    write(&dir, "r.json", "{}");
+    fails("r.json: is no reference: missing field");
+    write(&dir, "r.json", &good.replace("\"probes\":[[0.02,", "\"probes\":[[0.03,"));
+    fails("r.json: was made for other probes");
+}
