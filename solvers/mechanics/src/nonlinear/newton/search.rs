@@ -5,9 +5,13 @@ use super::{Balance, Descent, Newton, State, work};
 use crate::Vector3;
 use crate::nonlinear::{Drive, StaticError};
 
+/// Most times a step down the energy is taken.
+const FARTHEST: f64 = 64.0;
+
 impl Newton<'_> {
     /// Takes the step, or the part of it that brings the residual's work along the step down: a step past the minimum
-    /// is cut by the secant, one that inverts a point is halved. With a pressure field
+    /// is cut by the secant, one that inverts a point is halved. A step of [`Descent::Down`] past a limit point, where
+    /// that work grows on the way, is doubled as long as more than half of it is left. With a pressure field
     /// [`Descent::Guarded`] cuts the step where the factor it came from makes a step of the new residual that is no
     /// shorter; else full steps go.
     pub(super) fn search(
@@ -38,6 +42,9 @@ impl Newton<'_> {
         let natural = saddle
             && self.descent == Descent::Guarded
             && !self.problem.tools.iter().any(|t| matches!(t.drive, Drive::Force(_)));
+        // The energy curves down along such a step, so no full step leads to its minimum.
+        let downhill = self.descent == Descent::Down && self.indefinite && slope > 0.0 && !saddle;
+        let mut reached: Option<(State, Balance, f64)> = None;
         let mut length = 1.0;
         for trial in 0.. {
             state.u.clone_from(&start.0);
@@ -49,6 +56,7 @@ impl Newton<'_> {
             state.closures.iter_mut().zip(closures).for_each(|(c, d)| *c += length * d);
             let balance = match self.balance(state, time) {
                 Ok(balance) => balance,
+                Err(_) if reached.is_some() => break,
                 Err(error) if trial >= 10 || held_move.is_some() => return Err(error),
                 Err(_) => {
                     length *= 0.5;
@@ -74,6 +82,17 @@ impl Newton<'_> {
                 }
                 return Ok((balance, length));
             }
+            if downhill && now > 0.0 && held_move.is_none() {
+                if now > 0.5 * slope && (1.0..FARTHEST).contains(&length) {
+                    reached = Some((state.clone(), balance, length));
+                    length *= 2.0;
+                    continue;
+                }
+                return Ok((balance, length));
+            }
+            if reached.is_some() {
+                break;
+            }
             if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
                 || smaller
                 || held_move.is_some()
@@ -87,6 +106,8 @@ impl Newton<'_> {
             let secant = length * slope / (slope - now);
             length = if secant.is_finite() { secant.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
         }
-        unreachable!("the loop returns or fails by its eleventh trial")
+        let (farthest, balance, length) = reached.expect("the loop ends early only with a step that goes down");
+        *state = farthest;
+        Ok((balance, length))
     }
 }

@@ -123,7 +123,7 @@ impl Newton<'_> {
         };
         let shifts: &[f64] = match self.descent {
             Descent::Nearest | Descent::Guarded => &[0.0],
-            Descent::Down => &[0.0, 1e-3, 1e-2, 0.1, 1.0],
+            Descent::Down => &[0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0],
         };
         for &shift in shifts {
             let mut shifted = matrix.clone();
