@@ -12,3 +12,4 @@ mod homogeneous;
 mod locking;
 mod manufactured;
 mod quadratic;
+mod snap;

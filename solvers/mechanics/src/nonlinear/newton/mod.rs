@@ -3,6 +3,8 @@
 mod drive;
 mod search;
 mod tangent;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 

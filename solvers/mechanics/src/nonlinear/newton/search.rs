@@ -106,7 +106,8 @@ impl Newton<'_> {
             let secant = length * slope / (slope - now);
             length = if secant.is_finite() { secant.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
         }
-        let (farthest, balance, length) = reached.expect("the loop ends early only with a step that goes down");
+        let (farthest, balance, length) =
+            reached.expect("the loop ends early only with a step that goes down");
         *state = farthest;
         Ok((balance, length))
     }
