@@ -11,7 +11,7 @@ use crate::figures;
 use crate::findings;
 use crate::record::{Provenance, RunSet, Status};
 use crate::select;
-use crate::store::{make_dir, read_run, write_text};
+use crate::store::{make_dir, read_run, remove_files, write_text};
 use crate::table::{Column, Table};
 use crate::tables;
 
@@ -38,6 +38,11 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;
+    // Beside a page of ours the two folders are ours too.
+    if out.join("report.html").is_file() {
+        remove_files(&table_dir, &["csv", "md", "tex"])?;
+        remove_files(&figure_dir, &["svg", "png"])?;
+    }
     let mut files = Vec::new();
     let mut write = |path: PathBuf, bytes: &[u8]| -> Result<(), ReportError> {
         write_text(&path, bytes)?;

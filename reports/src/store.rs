@@ -60,9 +60,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_text(&dir.join("checks.csv"), &csv)?;
     let fields = dir.join("fields");
     make_dir(&fields)?;
-    for old in json_files(&fields)? {
-        fs::remove_file(&old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
-    }
+    remove_files(&fields, &["json"])?;
     let mut taken = Vec::new();
     for field in &run.fields {
         let name = format!("{}--{}.json", slug(&field.case), slug(&field.method));
@@ -83,7 +81,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
 /// Reads a run back from its folder; surface fields in the order of their file names.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     let fields_dir = dir.join("fields");
-    let fields = if fields_dir.is_dir() { json_files(&fields_dir)? } else { Vec::new() };
+    let fields = if fields_dir.is_dir() { files_ending(&fields_dir, &["json"])? } else { Vec::new() };
     let run = RunSet {
         provenance: read_json(&dir.join("provenance.json"))?,
         records: frame::read(&dir.join("records.parquet"))?,
@@ -111,12 +109,20 @@ pub(crate) fn slug(name: &str) -> String {
     name.chars().map(safe).collect()
 }
 
-fn json_files(dir: &Path) -> Result<Vec<std::path::PathBuf>, ReportError> {
+/// Removes what an earlier run left, so that no file of it passes for one of this run.
+pub(crate) fn remove_files(dir: &Path, endings: &[&str]) -> Result<(), ReportError> {
+    for old in files_ending(dir, endings)? {
+        fs::remove_file(&old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
+    }
+    Ok(())
+}
+
+fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<std::path::PathBuf>, ReportError> {
     let io = |source| ReportError::Io { path: dir.into(), source };
     let mut paths = Vec::new();
     for entry in fs::read_dir(dir).map_err(io)? {
         let path = entry.map_err(io)?.path();
-        if path.extension().is_some_and(|e| e == "json") {
+        if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
             paths.push(path);
         }
     }

@@ -49,6 +49,32 @@ fn values_carry_no_thread_count_but_times_do() {
 }
 
 #[test]
+fn a_second_page_leaves_no_table_or_figure_of_the_first() {
+    let dir = tempfile::tempdir().unwrap();
+    let (figures, mut set) = (dir.path().join("figures"), common::study());
+    write_run(dir.path(), &set).unwrap();
+    // Before there is a page, nothing in the folder is known to be ours.
+    fs::create_dir(&figures).unwrap();
+    fs::write(figures.join("mine.svg"), "").unwrap();
+    render(dir.path(), dir.path()).unwrap();
+    let failed = dir.path().join("tables/failed-runs.md");
+    assert!(failed.is_file() && figures.join("mine.svg").is_file());
+    set.failures.clear();
+    write_run(dir.path(), &set).unwrap();
+    let rendered = render(dir.path(), dir.path()).unwrap();
+    assert!(!failed.exists());
+    let mut kept: Vec<_> = ["tables", "figures"]
+        .iter()
+        .flat_map(|folder| fs::read_dir(dir.path().join(folder)).unwrap().map(|entry| entry.unwrap().path()))
+        .chain([rendered.page])
+        .collect();
+    let mut written = rendered.files;
+    kept.sort();
+    written.sort();
+    assert_eq!(kept, written);
+}
+
+#[test]
 fn the_same_records_give_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let mut set = common::study();
