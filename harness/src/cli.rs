@@ -78,6 +78,12 @@ pub struct RunArgs {
 pub struct ReferenceArgs {
     /// The scene file; the last method's values are stored, all methods span the uncertainty
     pub scene: PathBuf,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
+    #[arg(long, value_name = "FILE")]
+    pub beside: Vec<PathBuf>,
     /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
     #[arg(long, value_name = "MESH")]
     pub points: PathBuf,

@@ -239,11 +239,22 @@ fn plan(path: &Path, methods: &[String]) -> u8 {
 
 /// Runs every method of a scene and writes what they agree on.
 fn reference(args: &ReferenceArgs) -> Result<(), u8> {
-    let (scene, _) = open(&args.scene, &[])?;
+    let (scene, _) = open(&args.scene, &args.methods)?;
     let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
     let mesh = geometry::msh::read(&args.points, args.unit)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
-    let stored = Stored::make(&scene, &text, mesh.points()).map_err(|failure| fail(&failure))?;
+    // Refused before hours are spent on the methods.
+    let mut beside = Vec::new();
+    for path in &args.beside {
+        let other = Stored::read(path).map_err(|problem| fail(&Failure::Input(problem)))?;
+        other
+            .belongs(&text, mesh.points())
+            .map_err(|problem| fail(&Failure::Input(format!("{}: {problem}", path.display()))))?;
+        beside.push(other);
+    }
+    let mut stored =
+        Stored::make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?;
+    beside.iter().for_each(|other| stored.widen(other));
     print!("{}", list::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");
     std::fs::write(&args.out, json + "\n")

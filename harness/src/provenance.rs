@@ -4,15 +4,15 @@ use std::process::Command;
 
 use reports::{Provenance, SceneHash};
 
+/// BLAKE3 of a scene's text, in hexadecimal digits.
+pub fn hash(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
 /// Reads what this process can know of its own making. `scenes` are (case name, file text).
 pub fn provenance(scenes: &[(String, String)], seed: u64) -> Provenance {
-    let mut hashes: Vec<SceneHash> = scenes
-        .iter()
-        .map(|(case, text)| SceneHash {
-            case: case.clone(),
-            blake3: blake3::hash(text.as_bytes()).to_hex().to_string(),
-        })
-        .collect();
+    let mut hashes: Vec<SceneHash> =
+        scenes.iter().map(|(case, text)| SceneHash { case: case.clone(), blake3: hash(text) }).collect();
     hashes.sort_by(|a, b| a.case.cmp(&b.case));
     hashes.dedup();
     Provenance {

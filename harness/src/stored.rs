@@ -81,62 +81,96 @@ pub struct StoredTool {
 }
 
 impl Stored {
-    /// Runs every method of the scene. The last one's values are told, all of them span the bands. `points` below z = 0
-    /// are told by their mirror images if the scene has only the half above.
-    pub fn make(scene: &Scene, text: &str, points: &[Point3]) -> Result<Stored, Failure> {
+    /// Runs the named methods of the scene, or all of them. The last one's values are told, all of them span the bands.
+    /// `points` below z = 0 are told by their mirror images if the scene has only the half above.
+    pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Result<Stored, Failure> {
+        let mut told: Option<Stored> = None;
+        for method in scene.methods.iter().filter(|m| only.is_empty() || only.contains(&m.id)) {
+            let mut finer = Stored::by(scene, text, points, &method.id)?;
+            eprintln!("{}: {} nodes", finer.source.method, finer.source.nodes);
+            told.iter().for_each(|coarser| finer.widen(coarser));
+            told = Some(finer);
+        }
+        told.ok_or_else(|| Failure::Run(format!("{} has no method to make a reference with", scene.file())))
+    }
+
+    /// The solution by one method, without bands.
+    fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stored, Failure> {
         let half = matches!(scene.body, Body::Kidney { half: true });
         let below = |x: &Point3| half && x.z < 0.0;
         let mirrored = |v: Vector3| Vector3::new(v.x, v.y, -v.z);
         let images: Vec<Point3> =
             points.iter().map(|x| if below(x) { Point3::from(mirrored(x.coords)) } else { *x }).collect();
-        let mut all = Vec::new();
-        for method in &scene.methods {
-            let reference = Group::solve_for(scene, &method.id, images.clone())?;
-            eprintln!("{}: {} nodes", reference.method, reference.nodes);
-            all.push(reference);
-        }
-        let Some((told, others)) = all.split_last() else {
-            return Err(Failure::Run(format!("{} has no method to make a reference with", scene.file())));
+        let solution = Group::solve_for(scene, method, images)?;
+        let tool =
+            |t: &ToolStep| StoredTool { closure: t.closure, force: t.pushed, low: t.pushed, high: t.pushed };
+        let step = |step: &LoadStep| StoredStep {
+            load: step.load,
+            tools: step.tools.iter().map(tool).collect(),
+            probes: step.probes.iter().map(|&u| u.into()).collect(),
+            probe_band: 0.0,
         };
-        let steps = told.steps.iter().enumerate().map(|(n, step)| {
-            let same: Vec<&LoadStep> = others.iter().filter_map(|o| o.steps.get(n)).collect();
-            let tools = step.tools.iter().enumerate().map(|(k, tool)| {
-                let forces = || same.iter().map(|s| s.tools[k].pushed).chain([tool.pushed]);
-                StoredTool {
-                    closure: tool.closure,
-                    force: tool.pushed,
-                    low: forces().fold(f64::INFINITY, f64::min),
-                    high: forces().fold(f64::NEG_INFINITY, f64::max),
-                }
-            });
-            let distances =
-                same.iter().flat_map(|s| s.probes.iter().zip(&step.probes).map(|(u, v)| (u - v).norm()));
-            StoredStep {
-                load: step.load,
-                tools: tools.collect(),
-                probes: step.probes.iter().map(|&u| u.into()).collect(),
-                probe_band: distances.fold(0.0, f64::max),
-            }
-        });
-        let apart = |other: &Reference| crate::norms::difference(&other.targets, &told.targets).rms_magnitude;
-        let displacement = points.iter().zip(&told.targets);
-        let source = |r: &Reference| Source { method: r.method.clone(), nodes: r.nodes };
+        let displacement = points.iter().zip(&solution.targets);
         let provenance = provenance::provenance(&[(case_name(scene), text.into())], 0);
         Ok(Stored {
             case: case_name(scene),
             scene: provenance.scenes[0].blake3.clone(),
             program: format!("tissuebench {} ({})", provenance.version, provenance.commit),
             made_on: format!("{}; {}", provenance.rustc, provenance.features),
-            source: source(told),
-            beside: others.iter().map(source).collect(),
+            source: Source { method: solution.method.clone(), nodes: solution.nodes },
+            beside: Vec::new(),
             probes: scene.output.probes.clone(),
-            steps: steps.collect(),
+            steps: solution.steps.iter().map(step).collect(),
             points: points.iter().map(|x| x.coords.into()).collect(),
             displacement: displacement
                 .map(|(x, &u)| if below(x) { mirrored(u).into() } else { u.into() })
                 .collect(),
-            displacement_band: others.iter().map(apart).fold(0.0, f64::max),
+            displacement_band: 0.0,
         })
+    }
+
+    /// Says what differs if this is not of the same scene and points.
+    pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
+        let Source { method, nodes } = &self.source;
+        let of = |what| Err(format!("{method} on {nodes} nodes is of {what}"));
+        if self.scene != provenance::hash(text) {
+            return of("another scene, or another text of it");
+        }
+        let same = self.points.iter().copied().eq(points.iter().map(|x| <[f64; 3]>::from(x.coords)));
+        if same { Ok(()) } else { of("other points") }
+    }
+
+    /// Widens the bands so far that they reach over those of another solution of the same scene at the same points.
+    pub fn widen(&mut self, other: &Stored) {
+        for (step, beside) in self.steps.iter_mut().zip(&other.steps) {
+            for (tool, beside) in step.tools.iter_mut().zip(&beside.tools) {
+                tool.low = tool.low.min(beside.low);
+                tool.high = tool.high.max(beside.high);
+            }
+            for (u, v) in step.probes.iter().zip(&beside.probes) {
+                let apart = (Vector3::from(*u) - Vector3::from(*v)).norm();
+                step.probe_band = step.probe_band.max(apart + beside.probe_band);
+            }
+        }
+        let [here, there] = [&self.displacement, &other.displacement]
+            .map(|all| all.iter().map(|&u| u.into()).collect::<Vec<_>>());
+        let apart = crate::norms::difference(&there, &here).rms_magnitude;
+        self.displacement_band = self.displacement_band.max(apart + other.displacement_band);
+        self.beside.extend(other.beside.iter().chain([&other.source]).cloned());
+    }
+
+    /// Reads a file; says what is wrong with it.
+    pub fn read(path: &Path) -> Result<Stored, String> {
+        let file = path.display();
+        let text = std::fs::read_to_string(path).map_err(|bad| format!("{file}: can't be read: {bad}"))?;
+        let stored: Stored =
+            serde_json::from_str(&text).map_err(|bad| format!("{file}: is no reference: {bad}"))?;
+        let (points, told) = (stored.points.len(), stored.displacement.len());
+        if points == told {
+            Ok(stored)
+        } else {
+            Err(format!("{file}: {points} points but {told} displacements"))
+        }
     }
 
     /// Reads the record that a scene compares with and holds it against the scene's probes.
@@ -145,17 +179,7 @@ impl Stored {
             Failure::of_scene(scene, ErrorKind::Invalid, "reference.record", &problem, help)
         };
         let remake = "make it with tissuebench reference SCENE";
-        let text = std::fs::read_to_string(path)
-            .map_err(|bad| wrong(format!("{}: can't be read: {bad}", path.display()), remake))?;
-        let stored: Stored = serde_json::from_str(&text)
-            .map_err(|bad| wrong(format!("{}: is no reference: {bad}", path.display()), remake))?;
-        if stored.points.len() != stored.displacement.len() {
-            let (points, told) = (stored.points.len(), stored.displacement.len());
-            return Err(wrong(
-                format!("{}: {points} points but {told} displacements", path.display()),
-                remake,
-            ));
-        }
+        let stored = Stored::read(path).map_err(|problem| wrong(problem, remake))?;
         let probes = &scene.output.probes;
         let far = |(a, b): (&[f64; 3], &[f64; 3])| (Point3::from(*a) - Point3::from(*b)).norm() > 1e-9;
         if stored.probes.len() != probes.len() || stored.probes.iter().zip(probes).any(far) {
