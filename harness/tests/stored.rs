@@ -72,6 +72,39 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
 }
 
 #[test]
+fn parts_made_one_by_one_join_to_the_same_reference() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = std::fs::read_to_string(stored(&dir)).unwrap();
+    let (scene, points) = (inside(&dir, "made.toml"), inside(&dir, "points.msh"));
+    let make = |method: &str, out: &str, beside: &[&str]| {
+        let mut args = vec!["reference", &scene, "--points", &points, "--method", method, "--out", out];
+        args.extend(beside.iter().flat_map(|file| ["--beside", file]));
+        tissuebench(&args)
+    };
+    let (part, joined) = (inside(&dir, "part.json"), inside(&dir, "joined.json"));
+    assert_eq!(make("hex8", &part, &[]).code, 0);
+    let alone = std::fs::read_to_string(&part).unwrap();
+    assert!(alone.contains("\"beside\":[]") && alone.contains("\"displacement_band\":0.0"));
+    assert_eq!(make("hex20-mixed", &joined, &[&part]).code, 0);
+    assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
+    // Refused before anything is solved, and nothing is written.
+    let refused = inside(&dir, "refused.json");
+    let fails = |method: &str, says: &str| {
+        assert_fails(&make(method, &refused, &[&part]), 2, says);
+        assert!(!std::path::Path::new(&refused).exists());
+    };
+    fails("hex9", "no method 'hex9'; it has hex8, hex20-mixed");
+    write(&dir, "made.toml", &(bonded() + "# closer\n"));
+    fails("hex8", "part.json: hex8 on ");
+    fails("hex8", " nodes is of another scene, or another text of it");
+    write(&dir, "made.toml", &bonded());
+    write(&dir, "part.json", &alone.replace("\"points\":[[0.005,", "\"points\":[[0.006,"));
+    fails("hex8", " nodes is of other points");
+    write(&dir, "part.json", "{}");
+    fails("hex8", "part.json: is no reference");
+}
+
+#[test]
 fn the_missing_half_is_the_mirror_image() {
     let dir = tempfile::tempdir().unwrap();
     let scene = r#"title = "Half a kidney in a fluid"
