@@ -129,7 +129,9 @@ fn energy_balances_with_tools_that_slide_and_swing() {
         motion.run(2001, 50, &mut no_load, &mut |b, _| all.push(*b)).unwrap();
         let last = all.last().unwrap();
         let worst = all[5..].iter().map(|b| b.drift.abs()).fold(0.0, f64::max);
-        assert!(worst < 1e-2, "{what}: {worst:e} {last:?}");
+        // Found: 4e-6 without friction, 9e-4 with it, of which a tenth of the friction would be 3e-3.
+        let bound = if friction > 0.0 { 1.5e-3 } else { 1e-5 };
+        assert!(worst < bound, "{what}: {worst:e} {last:?}");
         let t = last.tools;
         assert!(t.work > 1e-5 && t.stored > 1e-3 * t.work && last.external == 0.0, "{what}: {t:?}");
         assert_eq!(t.friction > 1e-2 * t.work, friction > 0.0, "{what}: {t:?}");
@@ -199,7 +201,7 @@ fn a_step_may_change_on_the_way() {
                 })
                 .unwrap();
         }
-        assert!(drift < 1e-2, "{drift:e}");
+        assert!(drift < 2e-4, "{drift:e}");
         assert!((motion.time() / (600.0 * dt) - 1.0).abs() < 1e-12);
         motion.displacements().to_vec()
     };

@@ -145,22 +145,53 @@ fn a_free_body_keeps_momentum_and_energy() {
     let laws = law();
     let mut force = InternalForce::new(body(&free.block.volume, &laws), LanePath::best()).unwrap();
     let (u, v) = free.start();
-    let dt = 0.5 * critical_step(&mut force, &free.mass, &u, |_| true, LANCZOS).unwrap().dt;
-    let mut motion = Dynamics::new(&mut force, &free.mass, &[], undamped(dt), u, v).unwrap();
-    let (mut worst, mut swing) = (0.0f64, (f64::INFINITY, 0.0f64));
-    let mut record = |b: &Balance, _: &[Vector3]| {
-        worst = worst.max(b.drift.abs());
-        swing = (swing.0.min(b.strain), swing.1.max(b.strain));
+    let critical = critical_step(&mut force, &free.mass, &u, |_| true, LANCZOS).unwrap().dt;
+    let mut drift = |part: f64| {
+        let steps = (500.0 / part) as usize;
+        let params = undamped(part * critical);
+        let mut motion = Dynamics::new(&mut force, &free.mass, &[], params, u.clone(), v.clone()).unwrap();
+        let (mut worst, mut swing) = (0.0f64, (f64::INFINITY, 0.0f64));
+        let mut record = |b: &Balance, _: &[Vector3]| {
+            worst = worst.max(b.drift.abs());
+            swing = (swing.0.min(b.strain), swing.1.max(b.strain));
+        };
+        motion.run(1, 10, &mut no_load, &mut record).unwrap();
+        // Angular momentum of x_(n+1) and v_(n+1/2): the same as with x_n, as x_(n+1) - x_n is along v.
+        let (p0, l0) = free.momenta(motion.displacements(), motion.velocities());
+        motion.run(steps, 5, &mut no_load, &mut record).unwrap();
+        let (p, l) = free.momenta(motion.displacements(), motion.velocities());
+        assert!((p - p0).norm() < 1e-12 * p0.norm(), "{:e}", (p - p0).norm() / p0.norm());
+        assert!((l - l0).norm() < 1e-12 * l0.norm(), "{:e}", (l - l0).norm() / l0.norm());
+        assert!(swing.0 < 0.5 * swing.1, "the body vibrates: {swing:?}");
+        worst
     };
-    motion.run(1, 10, &mut no_load, &mut record).unwrap();
-    // Angular momentum of x_(n+1) and v_(n+1/2): the same as with x_n, as x_(n+1) - x_n is along v.
-    let (p0, l0) = free.momenta(motion.displacements(), motion.velocities());
-    motion.run(1000, 10, &mut no_load, &mut record).unwrap();
-    let (p, l) = free.momenta(motion.displacements(), motion.velocities());
-    assert!((p - p0).norm() < 1e-12 * p0.norm(), "{:e}", (p - p0).norm() / p0.norm());
-    assert!((l - l0).norm() < 1e-12 * l0.norm(), "{:e}", (l - l0).norm() / l0.norm());
-    assert!(worst < 1e-2, "{worst:e}");
-    assert!(swing.0 < 0.5 * swing.1, "the body vibrates: {swing:?}");
+    // The energy that central differences keep is the true one but for the square of the step.
+    let (whole, half) = (drift(0.25), drift(0.125));
+    assert!(whole < 2.5e-3 && half < 0.3 * whole, "{whole:e} {half:e}");
+}
+
+/// Central differences are exact for a constant acceleration, `u = g t^2 / 2`, and with velocities moved on by the mean of
+/// the steps before and after they stay so where the step changes.
+#[test]
+fn a_fall_is_exact_whatever_the_steps() {
+    let free = Free::new([2, 2, 2]);
+    let laws = law();
+    let mut force = InternalForce::new(body(&free.block.volume, &laws), LanePath::best()).unwrap();
+    let zero = vec![Vector3::zeros(); free.mass.len()];
+    let dt = 0.5 * critical_step(&mut force, &free.mass, &zero, |_| true, LANCZOS).unwrap().dt;
+    let g = Vector3::new(1.0, -2.0, 9.81);
+    let mut weight = |_: f64, _: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
+        f.iter_mut().zip(&free.mass).for_each(|(f, m)| *f += g * *m);
+    };
+    let mut motion =
+        Dynamics::new(&mut force, &free.mass, &[], undamped(dt), zero.clone(), zero.clone()).unwrap();
+    for (part, steps) in [(1.0, 3), (0.25, 5), (0.7, 4), (1.0, 2)] {
+        motion.set_step(part * dt).unwrap();
+        motion.run(steps, 0, &mut weight, &mut |_, _| ()).unwrap();
+        let fallen = g * (0.5 * motion.time().powi(2));
+        let worst = motion.displacements().iter().map(|u| (u - fallen).norm()).fold(0.0, f64::max);
+        assert!(worst < 1e-12 * fallen.norm(), "{part}: {worst:e} of {:e}", fallen.norm());
+    }
 }
 
 #[test]
@@ -192,7 +223,9 @@ fn energy_balance_with_loads_supports_and_damping() {
         assert!(last.external.abs() > 1e-6 && last.support.abs() > 1e-6, "{last:?}");
         assert!((damping > 0.0) == (last.damping > 1e-6), "{last:?}");
         let worst = all.iter().map(|b| b.drift.abs()).fold(0.0, f64::max);
-        assert!(worst < 1e-2, "damping {damping}: {worst:e} {last:?}");
+        // Found: 1.7e-3, and 1.4e-5 with damping, which takes the highest modes first.
+        let bound = if damping > 0.0 { 1e-4 } else { 3e-3 };
+        assert!(worst < bound, "damping {damping}: {worst:e} {last:?}");
     }
 }
 
