@@ -26,6 +26,9 @@ pub enum Failure {
     /// Explicit dynamics could not start or go on.
     #[error(transparent)]
     Explicit(Box<mechanics::ExplicitError>),
+    /// Implicit dynamics could not start or go on.
+    #[error(transparent)]
+    InTime(Box<mechanics::TimeError>),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -98,6 +101,7 @@ impl Failure {
             | Failure::Solve(_)
             | Failure::Static(_)
             | Failure::Explicit(_)
+            | Failure::InTime(_)
             | Failure::Run(_) => ErrorKind::NotRun,
         }
     }
@@ -142,6 +146,20 @@ impl From<mechanics::StaticError> for Failure {
 impl From<mechanics::ExplicitError> for Failure {
     fn from(error: mechanics::ExplicitError) -> Failure {
         Failure::Explicit(Box::new(error))
+    }
+}
+
+impl From<mechanics::TimeError> for Failure {
+    fn from(error: mechanics::TimeError) -> Failure {
+        use mechanics::TimeError::{Stalled, Static};
+        match error {
+            // What a step could not be solved for is known by its own kind.
+            Static(error) => error.into(),
+            Stalled { ref cause, .. } if matches!(**cause, Static(mechanics::StaticError::Solve(_))) => {
+                Failure::from((**cause).clone())
+            }
+            error => Failure::InTime(Box::new(error)),
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use mechanics::{
 };
 
 use crate::Failure;
+use crate::motion::Motion;
 use crate::outcome::{LoadStep, Metric, ToolStep};
 use crate::prepare::Prepared;
 use crate::setup::Setup;
@@ -40,24 +41,6 @@ pub struct ExplicitParams {
     pub density: Vec<f64>,
     /// Ramp of each tool, s.
     pub over: Vec<f64>,
-}
-
-/// A motion, whole or ended early.
-pub struct Motion {
-    /// Nodal displacements at the last recorded state, m.
-    pub u: Vec<Vector3>,
-    /// Degrees of freedom that move freely.
-    pub dofs: usize,
-    /// Recorded states.
-    pub steps: Vec<LoadStep>,
-    /// Nodal displacements at each of them, m.
-    pub fields: Vec<Vec<Vector3>>,
-    /// The last one.
-    pub last: LoadStep,
-    /// Numbers of the whole motion.
-    pub metrics: Vec<Metric>,
-    /// Why it ended early, if it did.
-    pub failure: Option<ExplicitError>,
 }
 
 /// Runs the motion, from rest and undeformed. One that ends early keeps its numbers, those of the start if no state was
@@ -187,9 +170,10 @@ fn on_pool(
         u: fields.last().cloned().unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
         steps,
         fields,
+        pressure: Vec::new(),
         last,
         metrics,
-        failure,
+        failure: failure.map(Failure::from),
     })
 }
 

@@ -75,7 +75,7 @@ struct ProbeObject {
     x: [f64; 3],
     u: [f64; 3],
     /// xx, yy, zz, xy, yz, zx.
-    stress: [f64; 6],
+    stress: Option<[f64; 6]>,
 }
 
 impl<'a> RunObject<'a> {
@@ -103,14 +103,9 @@ impl<'a> RunObject<'a> {
                 .map(|p| ProbeObject {
                     x: p.x.coords.into(),
                     u: p.u.into(),
-                    stress: [
-                        p.stress[(0, 0)],
-                        p.stress[(1, 1)],
-                        p.stress[(2, 2)],
-                        p.stress[(0, 1)],
-                        p.stress[(1, 2)],
-                        p.stress[(2, 0)],
-                    ],
+                    stress: p
+                        .stress
+                        .map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]),
                 })
                 .collect(),
             tools: outcome.last.as_ref().map_or_else(Vec::new, |last| tools(&outcome.tools, last)),

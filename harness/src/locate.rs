@@ -2,7 +2,7 @@
 
 use cases::scene::{Cloud, ErrorKind, Family, Scene, SupportRule};
 use efg::EfgError;
-use mechanics::{ExplicitError, SolveError, StaticError};
+use mechanics::{ExplicitError, SolveError, StaticError, TimeError};
 
 use crate::Failure;
 use crate::error::{Finding, Key};
@@ -20,6 +20,7 @@ impl Scenario<'_> {
             Failure::Solve(error) => self.of_solve(&error),
             Failure::Static(error) => self.of_static(&error),
             Failure::Explicit(error) => self.of_explicit(&error),
+            Failure::InTime(error) => self.of_time(&error),
         };
         let key = self.key(&finding.key);
         let help = finding.help.as_deref();
@@ -105,6 +106,17 @@ impl Scenario<'_> {
             _ => (Key::Method(""), ""),
         };
         finding(ErrorKind::NotRun, key, error.to_string(), help)
+    }
+
+    fn of_time(&self, error: &TimeError) -> Finding {
+        let (kind, key, help) = match error {
+            TimeError::Parameter { .. } => (ErrorKind::Invalid, Key::Scene("procedure".into()), ""),
+            TimeError::Inaccurate { .. } => {
+                (ErrorKind::NotRun, Key::Scene("procedure.accuracy".into()), MORE_STEPS)
+            }
+            _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+        };
+        finding(kind, key, error.to_string(), help)
     }
 
     fn of_solve(&self, error: &SolveError) -> Finding {

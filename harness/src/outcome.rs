@@ -63,8 +63,8 @@ pub struct Probe {
     pub x: Point3,
     /// Displacement, m.
     pub u: Vector3,
-    /// Stress, Pa.
-    pub stress: Matrix3,
+    /// Stress, Pa; unknown in tissue that relaxes.
+    pub stress: Option<Matrix3>,
 }
 
 /// A tool at the end of a load step.

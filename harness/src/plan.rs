@@ -1,6 +1,7 @@
 //! The plan of a run: the stages it needs, the stages it does not, and why.
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Integration};
+use crate::in_time::InTimeParams;
 use crate::outcome::Stage;
 use crate::relaxation;
 use crate::setup::Setup;
@@ -17,7 +18,7 @@ pub struct Wants {
 /// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
-/// Stages of a linear or a static run, in order.
+/// Stages of a run, in order.
 pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> {
     let mut stages = Vec::new();
     let mut add = |stage, ran, why: String| stages.push(Stage { stage, ran, why });
@@ -64,8 +65,15 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         },
     );
     let explicit = setup.explicit.as_ref();
-    add("mass", explicit.is_some(), if explicit.is_some() { "lumped".into() } else { "static".into() });
-    let steps = setup.statics.map(|params| params.steps);
+    let in_time = setup.in_time.as_ref();
+    let (mass, why) = match (explicit, in_time) {
+        (Some(_), _) => (true, "lumped"),
+        (_, Some(InTimeParams { density: Some(_), .. })) => (true, "consistent"),
+        (_, Some(_)) => (false, "without inertia"),
+        (None, None) => (false, "static"),
+    };
+    add("mass", mass, why.into());
+    let steps = setup.statics.map(|params| params.steps).or(in_time.map(|params| params.time.steps));
     let stiffness = match (explicit.is_some(), steps.is_some()) {
         (true, _) => "explicit: forces alone",
         (_, true) => "the tangent of every iteration",
@@ -74,10 +82,11 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     add("stiffness", explicit.is_none(), stiffness.into());
     add(
         "time steps",
-        explicit.is_some(),
-        match explicit {
-            None => "static".into(),
-            Some(e) => match e.step {
+        explicit.is_some() || in_time.is_some(),
+        match (explicit, in_time) {
+            (None, None) => "static".into(),
+            (None, Some(i)) => format!("{} s in at least {} steps", i.time.end, i.time.steps),
+            (Some(e), _) => match e.step {
                 Some(step) => format!("{} s in steps of {step:e} s", e.duration),
                 None => format!("{} s in steps of {} of the critical one", e.duration, e.safety),
             },
@@ -111,7 +120,8 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         }
         Some(steps) => {
             add("factorisation", true, "one for each iteration, analysed once".into());
-            let steps = if steps == 1 { "1 load step".into() } else { format!("{steps} load steps") };
+            let kind = if in_time.is_some() { "time" } else { "load" };
+            let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
             let why = match (setup.laws.iter().all(|l| l.is_small_strain()), setup.tools.is_empty()) {
                 (true, true) => format!("{steps}; law and loads are linear, so one each would do"),
                 (false, true) => format!("{steps} of a law of large strain"),

@@ -85,7 +85,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     work.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
     work.multiplier_rows += prepared.constraints.len() as u64;
     work.fixed_dofs += prepared.fixed.len() as u64;
-    if setup.statics.is_some() {
+    if setup.statics.is_some() || setup.in_time.is_some() {
         prepared.hold_by_penalty(setup)?;
     }
     if !setup.tools.is_empty() {

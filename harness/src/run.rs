@@ -2,14 +2,16 @@
 
 use std::time::Instant;
 
-use geometry::{Point3, Vector3};
+use geometry::{Matrix3, Point3, Vector3};
 use interp::Scheme;
 use mechanics::{Body, Law, SolveInfo, assemble};
 
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::explicit::{self, Motion};
+use crate::explicit;
+use crate::in_time;
 use crate::mean_pressure::cauchy;
+use crate::motion::Motion;
 use crate::norms::{self, difference, exact_at, norms};
 use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
 use crate::picture::{State, picture};
@@ -115,7 +117,8 @@ pub fn run(
     let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
     let mut phases = timings.summaries();
     phases.push(("total", timings.total()));
-    if let (true, Some((_, solve))) = (work.time_steps > 0, phases.iter().find(|(name, _)| *name == "solve"))
+    if let (true, Some((_, solve))) =
+        (setup.explicit.is_some() && work.time_steps > 0, phases.iter().find(|(name, _)| *name == "solve"))
     {
         let each = 1.0 / (work.time_steps as f64 * method.mesh().cell_count() as f64);
         phases.push(("element-step", solve.times(each)));
@@ -129,7 +132,11 @@ pub fn run(
         spacing: prepared.spacing,
     };
     let u = solution.u.clone();
-    let pressure = solution.path.as_mut().map(|path| std::mem::take(&mut path.pressure)).unwrap_or_default();
+    let pressure = match (&mut solution.path, &mut solution.motion) {
+        (Some(path), _) => std::mem::take(&mut path.pressure),
+        (_, Some(motion)) => std::mem::take(&mut motion.pressure),
+        (None, None) => Vec::new(),
+    };
     let mut metrics = Vec::new();
     // A path that ended early is compared with the reference step by step, not at its end.
     let finished = solution.path.as_ref().is_none_or(Path::whole)
@@ -210,8 +217,16 @@ fn solve_once(
         let solution = Solution { u, dofs, residual, info: None, path: Some(path), motion: None };
         return Ok((prepared, solution, work));
     }
-    if let Some(params) = &setup.explicit {
-        let motion = timings.time("solve", || explicit::solve(setup, params, &prepared, &mut work))?;
+    let motion = match (&setup.explicit, &setup.in_time) {
+        (Some(params), _) => {
+            Some(timings.time("solve", || explicit::solve(setup, params, &prepared, &mut work))?)
+        }
+        (_, Some(params)) => {
+            Some(timings.time("solve", || in_time::solve(method, setup, params, &prepared, &mut work))?)
+        }
+        (None, None) => None,
+    };
+    if let Some(motion) = motion {
         let (u, dofs) = (motion.u.clone(), motion.dofs);
         let solution = Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion) };
         return Ok((prepared, solution, work));
@@ -393,7 +408,7 @@ impl From<Path> for Course {
 impl From<Motion> for Course {
     fn from(motion: Motion) -> Course {
         let Motion { steps, fields, last, metrics, failure, .. } = motion;
-        Course { steps, fields, last, metrics, failure: failure.map(Failure::from) }
+        Course { steps, fields, last, metrics, failure }
     }
 }
 
@@ -482,11 +497,13 @@ fn probes(
         return Ok(Vec::new());
     }
     let rows = method.gradients_at(&prepared.volume, points)?;
-    // Stresses at probes are pointwise, of the first region's law unless the body has one only.
-    let stress = if setup.statics.is_none() && setup.explicit.is_none() {
-        mechanics::stress(&rows, u, &setup.materials, &[])?
+    // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
+    // its past, which is followed at quadrature points only.
+    let stress: Vec<Option<Matrix3>> = if setup.is_linear() {
+        mechanics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
     } else {
-        rows.displacement_gradients(u).iter().map(|h| cauchy(&setup.laws[0], h)).collect()
+        let known = |h: &Matrix3| (!setup.relaxes()).then(|| cauchy(&setup.laws[0], h));
+        rows.displacement_gradients(u).iter().map(known).collect()
     };
     let field = rows.rows().apply(u);
     Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())

@@ -5,11 +5,12 @@ use cases::scene::{
     self, ErrorKind, Family, LoadKind, OnStall, Prescribed, ProcedureKind, Reference, Scene, VectorField,
 };
 use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
-use mechanics::{Law, LinearElastic, NewtonParams, StaticParams};
+use mechanics::{Law, LinearElastic, NewtonParams, Prony, StaticParams, TimeParams};
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
 use crate::error::Key;
 use crate::explicit::ExplicitParams;
+use crate::in_time::InTimeParams;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
@@ -147,13 +148,51 @@ impl Scenario<'_> {
         Some(ExplicitParams {
             duration,
             states: procedure.steps,
-            damping: asked.damping,
+            damping: procedure.damping,
             safety: asked.safety,
             step: asked.step,
             tool_mass: asked.tool_mass,
             density: materials.map(|m| m.density().unwrap_or(f64::NAN)).collect(),
             over: self.scene.tools.iter().map(|t| t.over.unwrap_or(duration)).collect(),
         })
+    }
+
+    fn in_time(&self) -> Result<Option<InTimeParams>, Failure> {
+        let procedure = self.scene.procedure;
+        let asked = procedure.implicit;
+        let Some(end) = procedure.duration.filter(|_| procedure.kind == ProcedureKind::ImplicitDynamic)
+        else {
+            return Ok(None);
+        };
+        let regions = &self.scene.regions;
+        let materials = std::iter::once(&self.scene.material).chain(regions.iter().map(|r| &r.material));
+        let series = std::iter::once(("material".to_string(), &self.scene.prony))
+            .chain(regions.iter().enumerate().map(|(i, r)| (format!("region[{i}].material"), &r.prony)));
+        let relaxation = series.map(|(key, terms)| {
+            let terms: Vec<(f64, f64)> = terms.iter().map(|t| (t.g, t.tau)).collect();
+            let wrong = |bad: mechanics::MaterialError| {
+                Failure::input(Key::Scene(format!("{key}.prony")), bad.to_string(), "")
+            };
+            if terms.is_empty() { Ok(None) } else { Prony::new(&terms).map(Some).map_err(wrong) }
+        });
+        Ok(Some(InTimeParams {
+            time: TimeParams {
+                end,
+                steps: procedure.steps,
+                smallest: SMALLEST,
+                accuracy: asked.accuracy,
+                rho_inf: asked.spectral_radius,
+                newton: NewtonParams {
+                    tolerance: procedure.newton.tolerance,
+                    iterations: procedure.newton.iterations,
+                },
+                augmentations: procedure.newton.augmentations,
+            },
+            density: asked.inertia.then(|| materials.map(|m| m.density().unwrap_or(f64::NAN)).collect()),
+            damping: procedure.damping,
+            over: self.scene.tools.first().and_then(|t| t.over).unwrap_or(end),
+            relaxation: relaxation.collect::<Result<_, _>>()?,
+        }))
     }
 
     /// Nodes, cells and rules.
@@ -360,9 +399,10 @@ impl Scenario<'_> {
                 Ok(Acting { key: format!("load[{index}]"), place: load.place.clone(), applied })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        let (tools, statics, explicit) = (tools(self.scene)?, self.statics(), self.explicit());
+        let (tools, statics) = (tools(self.scene)?, self.statics());
+        let (explicit, in_time) = (self.explicit(), self.in_time()?);
         let relax = self.scene.procedure.on_stall == OnStall::Relax;
-        Ok(Setup { laws, materials, held, loads, tools, statics, relax, explicit, exact })
+        Ok(Setup { laws, materials, held, loads, tools, statics, relax, explicit, in_time, exact })
     }
 
     /// The scene's exact solution for this run's material; `None` where the scene names none.

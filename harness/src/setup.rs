@@ -5,6 +5,7 @@ use geometry::{Point3, Vector3};
 use mechanics::{Law, LinearElastic, StaticParams};
 
 use crate::explicit::ExplicitParams;
+use crate::in_time::InTimeParams;
 use crate::place::Place;
 use crate::tools::SetTool;
 
@@ -65,6 +66,20 @@ pub struct Setup {
     pub relax: bool,
     /// How explicit dynamics is stepped; `None` for another procedure.
     pub explicit: Option<ExplicitParams>,
+    /// How implicit dynamics is stepped; `None` for another procedure.
+    pub in_time: Option<InTimeParams>,
     /// The exact solution, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
+}
+
+impl Setup {
+    /// Whether one linear solve is all there is.
+    pub fn is_linear(&self) -> bool {
+        self.statics.is_none() && self.explicit.is_none() && self.in_time.is_none()
+    }
+
+    /// Whether the stress depends on the past.
+    pub fn relaxes(&self) -> bool {
+        self.in_time.as_ref().is_some_and(|params| params.relaxation.iter().any(Option::is_some))
+    }
 }

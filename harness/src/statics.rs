@@ -62,32 +62,15 @@ pub fn solve(
     prepared: &Prepared,
     work: &mut Work,
 ) -> Result<Path, Failure> {
-    let loads = prepared.loads();
-    let held = prepared.held();
     let contact = prepared.contact.as_ref().map(ContactSurface::new);
-    let tools: Vec<DrivenTool> =
-        setup.tools.iter().map(|t| DrivenTool { tool: &t.tool, drive: t.drive }).collect();
-    let volume = &prepared.volume;
-    let dilation = match (&volume.groups, &volume.pressure) {
-        (_, Some(rows)) => Dilation::Mixed(rows),
-        (Some(groups), None) => Dilation::Groups(groups),
-        (None, None) => Dilation::Standard,
-    };
-    let problem = StaticProblem {
-        nodes: method.nodes(),
-        solid: Solid { volume: &volume.rows, laws: &setup.laws, region: &volume.region, dilation },
-        loads: &loads,
-        fixed: prepared.fixed(),
-        held: &held,
-        contact: contact.as_ref(),
-        tools: &tools,
-    };
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
-    let path = solve_static(&problem, params, |step, u, _| {
-        if step.wanted {
-            steps.push(told(step, setup));
-            fields.push(u.to_vec());
-        }
+    let path = with_problem(method, setup, prepared, contact.as_ref(), |problem| {
+        solve_static(problem, params, |step, u, _| {
+            if step.wanted {
+                steps.push(told(step, setup));
+                fields.push(u.to_vec());
+            }
+        })
     })?;
     let iterations = path.steps.iter().map(solves).sum();
     work.newton_iterations += iterations;
@@ -143,8 +126,35 @@ pub fn solve(
     })
 }
 
+/// Hands the full problem, of tables and loads that it borrows, to what solves it.
+pub(crate) fn with_problem<T>(
+    method: &Discretisation,
+    setup: &Setup,
+    prepared: &Prepared,
+    contact: Option<&ContactSurface>,
+    solve: impl FnOnce(&StaticProblem) -> T,
+) -> T {
+    let volume = &prepared.volume;
+    let dilation = match (&volume.groups, &volume.pressure) {
+        (_, Some(rows)) => Dilation::Mixed(rows),
+        (Some(groups), None) => Dilation::Groups(groups),
+        (None, None) => Dilation::Standard,
+    };
+    let tools: Vec<DrivenTool> =
+        setup.tools.iter().map(|t| DrivenTool { tool: &t.tool, drive: t.drive }).collect();
+    solve(&StaticProblem {
+        nodes: method.nodes(),
+        solid: Solid { volume: &volume.rows, laws: &setup.laws, region: &volume.region, dilation },
+        loads: &prepared.loads(),
+        fixed: prepared.fixed(),
+        held: &prepared.held(),
+        contact,
+        tools: &tools,
+    })
+}
+
 /// Linear systems solved in a step: an iteration of no length only found that it had converged.
-fn solves(step: &Step) -> u64 {
+pub(crate) fn solves(step: &Step) -> u64 {
     step.iterations.iter().filter(|i| i.length > 0.0).count() as u64
 }
 

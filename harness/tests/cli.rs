@@ -122,9 +122,7 @@ fn a_support_that_touches_nothing_is_2() {
 #[test]
 fn sound_scenes_ahead_of_the_solvers_are_3() {
     let dir = tempfile::tempdir().unwrap();
-    let implicit = r#"procedure = { kind = "implicit-dynamic", duration = "1 s" }"#;
     for (name, text, says) in [
-        ("implicit", format!("{BLOCK}\n{implicit}\n"), "the implicit-dynamic procedure"),
         ("free", without(BLOCK, "support"), "rigid motion is left free: translation along x"),
         ("sliding", BLOCK.replace("\"xyz\"", "\"z\""), "rotation about z"),
     ] {

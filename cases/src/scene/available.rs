@@ -22,9 +22,21 @@ impl Scene {
         }
         let kind = self.procedure.kind;
         let explicit = kind == ProcedureKind::Explicit;
-        if kind == ProcedureKind::ImplicitDynamic {
-            let help = "kind = \"linear\", \"static\" and \"explicit\" are";
-            add("procedure.kind", format!("the {} procedure", kind.name()), help);
+        let implicit = kind == ProcedureKind::ImplicitDynamic;
+        if implicit && !self.tools.is_empty() && self.procedure.implicit.spectral_radius > 0.0 {
+            let help = "leave it out: above 0 stiff contact gains energy";
+            add("procedure.spectral-radius", "a spectral radius above 0 with tools".into(), help);
+        }
+        let ramp = |tool: &super::tool::Tool| tool.over.or(self.procedure.duration);
+        for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {
+            if ramp(tool) != ramp(&self.tools[0]) {
+                let help = "give all tools the same, or take kind = \"explicit\"";
+                add(
+                    &format!("tool[{i}].drive.over"),
+                    "a ramp other than the first tool's in implicit dynamics".into(),
+                    help,
+                );
+            }
         }
         for (i, method) in self.methods.iter().enumerate() {
             let at = |key: &str| format!("method[{i}].{key}");
@@ -50,12 +62,14 @@ impl Scene {
                         add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                     }
                     let what = match efg.essential {
-                        _ if kind != ProcedureKind::Static => continue,
+                        _ if kind == ProcedureKind::Linear => continue,
                         Essential::Penalty { .. } => continue,
-                        Essential::Nitsche { .. } => "Nitsche's method in a static procedure",
-                        Essential::Multipliers => "a support by multipliers in a static procedure",
+                        Essential::Nitsche { .. } => "Nitsche's method",
+                        Essential::Multipliers => "a support by multipliers",
                     };
-                    add(&at("essential"), what.into(), "essential = \"penalty\" is");
+                    let article = if implicit { "an" } else { "a" };
+                    let what = format!("{what} in {article} {} procedure", kind.name());
+                    add(&at("essential"), what, "essential = \"penalty\" is");
                 }
             }
         }

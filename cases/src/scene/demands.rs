@@ -18,13 +18,14 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
         let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
         report.add("procedure.duration", Problem::new("has nothing to last").help(help));
     }
-    if scene.procedure.kind == ProcedureKind::Explicit {
+    if !timeless(scene) {
         if scene.procedure.duration.is_none() {
             report.missing("procedure.duration", "dynamics needs an end: duration = \"2 s\"");
         }
-        for (key, material, _) in
-            materials(scene).iter().filter(|(_, material, _)| material.density().is_none())
-        {
+        let massless =
+            scene.procedure.kind == ProcedureKind::ImplicitDynamic && !scene.procedure.implicit.inertia;
+        let lacking = |(_, material, _): &&(String, &Material, &[Relaxation])| material.density().is_none();
+        for (key, material, _) in materials(scene).iter().filter(|m| !massless && lacking(m)) {
             let help =
                 format!("the {} law needs its mass in dynamics: density = \"1000 kg/m^3\"", material.name());
             report.missing(&format!("{key}.density"), &help);

@@ -33,8 +33,8 @@ pub enum Needs {
     Transfer,
     /// A static procedure or dynamics.
     Steps,
-    /// A static procedure.
-    Static,
+    /// A procedure by Newton's method.
+    Newton,
     /// Explicit dynamics.
     Explicit,
     /// A tool.
@@ -110,8 +110,8 @@ impl Metric {
             Needs::Steps,
             "smallest volume ratio J of all quadrature points",
         ),
-        metric("newton-iterations", Dimension::None, Needs::Static, "Newton iterations of all steps"),
-        metric("cut-backs", Dimension::None, Needs::Static, "load steps that failed and were cut"),
+        metric("newton-iterations", Dimension::None, Needs::Newton, "Newton iterations of all steps"),
+        metric("cut-backs", Dimension::None, Needs::Newton, "steps that failed and were cut"),
         metric("time-steps", Dimension::None, Needs::Explicit, "time steps made"),
         metric("critical-step", Dimension::Time, Needs::Explicit, "smallest critical time step estimated"),
         metric(

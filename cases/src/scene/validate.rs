@@ -103,13 +103,15 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
             "needs a [reference] and output.probes in the scene"
         }
         Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear) => {
-            "needs [procedure] kind = \"static\" or \"explicit\" in the scene"
+            "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Explicit if scene.procedure.kind != ProcedureKind::Explicit => {
             "needs [procedure] kind = \"explicit\" in the scene"
         }
-        Needs::Static if scene.procedure.kind != ProcedureKind::Static => {
-            "needs [procedure] kind = \"static\" in the scene"
+        Needs::Newton
+            if !matches!(scene.procedure.kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic) =>
+        {
+            "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
         Needs::ToolReference if scene.tools.is_empty() || !solved => {

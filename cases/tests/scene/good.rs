@@ -26,7 +26,9 @@ fn a_scene_arrives_in_si() {
             steps: 10,
             duration: None,
             newton: Newton::STANDARD,
+            damping: 0.0,
             explicit: Explicit::STANDARD,
+            implicit: Implicit::standard(false),
             on_stall: OnStall::Stop,
         }
     );
@@ -192,12 +194,6 @@ fn what_waits_for_later_is_read_and_then_named() {
     let linear = |from: &str, to: &str| edited(from, to);
     for (text, to, key, said) in [
         (
-            linear("\"linear\"\nsteps", "\"implicit-dynamic\"\nsteps"),
-            "implicit-dynamic",
-            "procedure.kind",
-            "the implicit-dynamic procedure is not available yet",
-        ),
-        (
             linear("\"tet4\"\ndilation = \"nodal-mean\"", "\"tet10\"\ndilation = \"mixed\""),
             "mixed",
             "method[0].dilation",
@@ -282,7 +278,9 @@ fn a_static_scene_runs_with_everything_it_knows() {
             steps: 5,
             duration: None,
             newton,
+            damping: 0.0,
             explicit,
+            implicit: Implicit::standard(false),
             on_stall: OnStall::Stop
         }
     );

@@ -155,19 +155,25 @@ pub(crate) struct ProcedureKeys {
     pub kind: ProcedureKind,
     /// Load steps at whose ends results are told; 1 unless given
     pub steps: Option<u32>,
-    /// Relative residual of a static step; 1e-8 unless given
+    /// Relative residual of a step by Newton's method; 1e-8 unless given
     pub tolerance: Option<f64>,
-    /// Most iterations of a static step; 25 unless given
+    /// Most iterations of such a step; 25 unless given
     pub iterations: Option<u32>,
-    /// Uzawa iterations of contact per static step; 0 (a plain penalty) unless given
+    /// Uzawa iterations of contact per such step; 0 (a plain penalty) unless given
     pub augmentations: Option<u32>,
     /// What follows where a static path finds no equilibrium: "stop" unless given, or "relax", which goes on by dynamic
     /// relaxation (finite elements without a pressure field; a cloud stops)
     pub on_stall: Option<OnStall>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
-    /// Mass-proportional damping of body and tools in explicit dynamics; none unless given
+    /// Mass-proportional damping of body and tools in dynamics; none unless given
     pub damping: Option<Q<Rate>>,
+    /// Whether mass acts in implicit dynamics; true unless given, false for a quasi-static motion of tissue that relaxes
+    pub inertia: Option<bool>,
+    /// Spectral radius of implicit dynamics at infinite frequency, 0 to 1; 0.8 unless given, and 0 with tools
+    pub spectral_radius: Option<f64>,
+    /// Local error of a displacement that a step of implicit dynamics may make; any unless given
+    pub accuracy: Option<Q<Length>>,
     /// Time step over the critical one; 0.9 unless given
     pub safety: Option<f64>,
     /// Time step; safety times the critical one unless given

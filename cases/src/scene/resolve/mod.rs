@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
-use super::procedure::{Explicit, Newton, OnStall, Procedure, ProcedureKind};
+use super::procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
 use super::report::Report;
 use super::units::{Dim, Q};
 use condition::{load, place, support};
@@ -36,13 +36,13 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let regions = regions.collect();
     let supports = keys.support.into_iter().enumerate().map(|(i, s)| support(s, i, report)).collect();
     let loads = keys.load.into_iter().enumerate().filter_map(|(i, l)| load(l, i, report)).collect();
+    let procedure = procedure(keys.procedure, !keys.tool.is_empty(), report);
     let tools = keys.tool.into_iter().enumerate().filter_map(|(i, t)| tool(t, i, report)).collect();
     let methods: Vec<Method> =
         keys.method.into_iter().enumerate().filter_map(|(i, m)| method(m, i, report)).collect();
     let output = output(keys.output, report);
     let reference = keys.reference.and_then(|r| reference(r, report));
     let checks = checks(keys.check, "check", report);
-    let procedure = procedure(keys.procedure, report);
     report.require(!keys.title.trim().is_empty(), "title", "is empty", "say in one line what the scene is");
     Some(Scene {
         title: keys.title,
@@ -130,13 +130,24 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
     })
 }
 
-fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
+fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> Procedure {
     let (newton, standard) = (Newton::STANDARD, Explicit::STANDARD);
     let Some(keys) = keys else {
         let kind = ProcedureKind::Linear;
         let on_stall = OnStall::default();
-        return Procedure { kind, steps: 1, duration: None, newton, on_stall, explicit: standard };
+        let (explicit, implicit) = (standard, Implicit::standard(tools));
+        return Procedure {
+            kind,
+            steps: 1,
+            duration: None,
+            newton,
+            on_stall,
+            damping: 0.0,
+            explicit,
+            implicit,
+        };
     };
+    let implicit = implicit(&keys, tools, report);
     let steps = keys.steps.unwrap_or(1);
     report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
     let duration = keys.duration.map(|q| positive(q.0, "procedure.duration", report));
@@ -147,28 +158,36 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
     let iterations = keys.iterations.map_or(newton.iterations, |n| n as usize);
     report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
     let augmentations = keys.augmentations.map_or(newton.augmentations, |n| n as usize);
+    use ProcedureKind::{Explicit as OfExplicit, ImplicitDynamic as OfImplicit, Static as OfStatic};
+    let (newtons, dynamics) = (&[OfStatic, OfImplicit][..], &[OfExplicit, OfImplicit][..]);
     let given = [
-        ("tolerance", keys.tolerance.is_some(), ProcedureKind::Static),
-        ("iterations", keys.iterations.is_some(), ProcedureKind::Static),
-        ("augmentations", keys.augmentations.is_some(), ProcedureKind::Static),
-        ("on-stall", keys.on_stall.is_some(), ProcedureKind::Static),
-        ("damping", keys.damping.is_some(), ProcedureKind::Explicit),
-        ("safety", keys.safety.is_some(), ProcedureKind::Explicit),
-        ("step", keys.step.is_some(), ProcedureKind::Explicit),
-        ("tool-mass", keys.tool_mass.is_some(), ProcedureKind::Explicit),
+        ("tolerance", keys.tolerance.is_some(), newtons),
+        ("iterations", keys.iterations.is_some(), newtons),
+        ("augmentations", keys.augmentations.is_some(), newtons),
+        ("on-stall", keys.on_stall.is_some(), &[OfStatic]),
+        ("damping", keys.damping.is_some(), dynamics),
+        ("inertia", keys.inertia.is_some(), &[OfImplicit]),
+        ("spectral-radius", keys.spectral_radius.is_some(), &[OfImplicit]),
+        ("accuracy", keys.accuracy.is_some(), &[OfImplicit]),
+        ("safety", keys.safety.is_some(), &[OfExplicit]),
+        ("step", keys.step.is_some(), &[OfExplicit]),
+        ("tool-mass", keys.tool_mass.is_some(), &[OfExplicit]),
     ];
-    for (name, _, kind) in given.into_iter().filter(|(_, given, kind)| *given && keys.kind != *kind) {
+    for (name, _, kinds) in
+        given.into_iter().filter(|(_, given, kinds)| *given && !kinds.contains(&keys.kind))
+    {
         let help = format!("a {} procedure takes none: leave it out", keys.kind.name());
-        let problem = Problem::new(format!("goes with kind = \"{}\" only", kind.name())).help(help);
+        let kinds = kinds.iter().map(|kind| format!("\"{}\"", kind.name())).collect::<Vec<_>>().join(" or ");
+        let problem = Problem::new(format!("goes with kind = {kinds} only")).help(help);
         report.add(&format!("procedure.{name}"), problem);
     }
+    let damping = keys.damping.map_or(0.0, |q| q.0);
     let explicit = Explicit {
-        damping: keys.damping.map_or(standard.damping, |q| q.0),
         safety: keys.safety.unwrap_or(standard.safety),
         step: keys.step.map(|q| positive(q.0, "procedure.step", report)),
         tool_mass: keys.tool_mass.map_or(standard.tool_mass, |m| positive(m, "procedure.tool-mass", report)),
     };
-    let sound = explicit.damping >= 0.0;
+    let sound = damping >= 0.0;
     report.require(sound, "procedure.damping", "is negative", "give 0 /s or more, or leave it out");
     let sound = explicit.safety > 0.0 && explicit.safety <= 1.0;
     report.require(sound, "procedure.safety", "is not in (0, 1]", "0.9 is usual");
@@ -176,5 +195,28 @@ fn procedure(keys: Option<ProcedureKeys>, report: &mut Report) -> Procedure {
     report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
     let newton = Newton { tolerance, iterations, augmentations };
     let on_stall = keys.on_stall.unwrap_or_default();
-    Procedure { kind: keys.kind, steps: steps as usize, duration, newton, on_stall, explicit }
+    let (kind, steps) = (keys.kind, steps as usize);
+    Procedure { kind, steps, duration, newton, on_stall, damping, explicit, implicit }
+}
+
+fn implicit(keys: &ProcedureKeys, tools: bool, report: &mut Report) -> Implicit {
+    let standard = Implicit::standard(tools);
+    let implicit = Implicit {
+        inertia: keys.inertia.unwrap_or(standard.inertia),
+        spectral_radius: keys.spectral_radius.unwrap_or(standard.spectral_radius),
+        accuracy: keys.accuracy.as_ref().map(|q| positive(q.0, "procedure.accuracy", report)),
+    };
+    let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
+    let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
+    report.require(sound, "procedure.spectral-radius", "is not in [0, 1]", help);
+    let moving = [
+        ("damping", keys.damping.is_some()),
+        ("spectral-radius", keys.spectral_radius.is_some()),
+        ("accuracy", keys.accuracy.is_some()),
+    ];
+    for (name, _) in moving.into_iter().filter(|(_, given)| *given && !implicit.inertia) {
+        let problem = Problem::new("is of a motion, and inertia = false has none").help("leave it out");
+        report.add(&format!("procedure.{name}"), problem);
+    }
+    implicit
 }

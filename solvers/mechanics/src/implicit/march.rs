@@ -5,7 +5,7 @@ use super::scheme::{Scheme, Update};
 use super::{Energy, TimeError};
 use crate::contact::ContactCounts;
 use crate::nonlinear::{Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
-use crate::{Drive, Step, Vector3};
+use crate::{Drive, StaticWork, Step, Vector3};
 
 /// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
 /// An error here is one of the problem itself; a solution that ends early is a [`TimePath`] with its failure.
@@ -24,6 +24,7 @@ pub fn solve_in_time(
         pressure: Vec::new(),
         cut_back: 0,
         counts: ContactCounts::default(),
+        work: StaticWork::default(),
         failure: None,
     };
     if let Some(done) = first {
@@ -68,6 +69,7 @@ pub fn solve_in_time(
         }
     }
     path.counts = march.newton.counts();
+    path.work = march.newton.work();
     path.motion = march.motion;
     path.pressure = march.state.pressure;
     Ok(path)

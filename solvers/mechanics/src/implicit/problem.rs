@@ -2,7 +2,7 @@
 
 use super::{Energy, Mass, Ramps, TimeError};
 use crate::contact::ContactCounts;
-use crate::{NewtonParams, Prony, StaticProblem, Step, Vector3};
+use crate::{NewtonParams, Prony, StaticProblem, StaticWork, Step, Vector3};
 
 /// A body driven in real time.
 #[derive(Clone, Debug)]
@@ -85,6 +85,8 @@ pub struct TimePath {
     pub cut_back: usize,
     /// What the contact search did and skipped.
     pub counts: ContactCounts,
+    /// Work in all.
+    pub work: StaticWork,
     /// Why it ended early, if it did.
     pub failure: Option<TimeError>,
 }
