@@ -187,18 +187,20 @@ pub enum KernelName {
     Exponential,
     WendlandC2,
     WendlandC4,
+    WendlandC6,
     RegularisedInterpolating,
 }
 
 impl KernelName {
     /// Every kernel, in the order tables list them.
-    pub const ALL: [KernelName; 7] = [
+    pub const ALL: [KernelName; 8] = [
         KernelName::CubicSpline,
         KernelName::QuarticSpline,
         KernelName::Gaussian,
         KernelName::Exponential,
         KernelName::WendlandC2,
         KernelName::WendlandC4,
+        KernelName::WendlandC6,
         KernelName::RegularisedInterpolating,
     ];
 
@@ -211,6 +213,7 @@ impl KernelName {
             KernelName::Exponential => "exponential",
             KernelName::WendlandC2 => "wendland-c2",
             KernelName::WendlandC4 => "wendland-c4",
+            KernelName::WendlandC6 => "wendland-c6",
             KernelName::RegularisedInterpolating => "regularised-interpolating",
         }
     }

@@ -12,13 +12,14 @@ use crate::select::{Run, groups, labels, series};
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
 /// Markers on one line: more would hide it.
 const MARKS: usize = 12;
-const ENERGIES: [(&str, &str); 6] = [
+const ENERGIES: [(&str, &str); 7] = [
     ("external-work", "work of loads and tools"),
     ("strain-energy", "strain"),
     ("kinetic-energy", "kinetic"),
     ("contact-energy", "contact springs"),
     ("friction-dissipation", "lost in friction"),
     ("damping-dissipation", "lost in damping"),
+    ("scheme-dissipation", "lost in the scheme"),
 ];
 
 /// A line as `(label, dashed, points, band)`.

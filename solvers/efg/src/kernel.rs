@@ -26,6 +26,8 @@ pub enum Kernel {
     WendlandC2,
     /// `(1 - q)^6 (35q^2 + 18q + 3) / 3`. Wendland (1995).
     WendlandC4,
+    /// `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`. Wendland (1995).
+    WendlandC6,
     /// `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`: almost interpolating shape functions. Most and
     /// Bucher (2005).
     RegularisedInterpolating {
@@ -36,13 +38,14 @@ pub enum Kernel {
 
 impl Kernel {
     /// Every kernel with its default parameters, in the order tables list them.
-    pub const ALL: [Kernel; 7] = [
+    pub const ALL: [Kernel; 8] = [
         Kernel::CubicSpline,
         Kernel::QuarticSpline,
         Kernel::Gaussian { alpha: 0.4 },
         Kernel::Exponential { alpha: 0.5, power: 2 },
         Kernel::WendlandC2,
         Kernel::WendlandC4,
+        Kernel::WendlandC6,
         Kernel::RegularisedInterpolating { eps: 1e-5 },
     ];
 
@@ -55,6 +58,7 @@ impl Kernel {
             Kernel::Exponential { .. } => "exponential",
             Kernel::WendlandC2 => "wendland-c2",
             Kernel::WendlandC4 => "wendland-c4",
+            Kernel::WendlandC6 => "wendland-c6",
             Kernel::RegularisedInterpolating { .. } => "regularised-interpolating",
         }
     }
@@ -103,6 +107,7 @@ impl Kernel {
             Kernel::Exponential { alpha, power } => exponential(alpha, power)(q),
             Kernel::WendlandC2 => wendland_c2(q),
             Kernel::WendlandC4 => wendland_c4(q),
+            Kernel::WendlandC6 => wendland_c6(q),
             Kernel::RegularisedInterpolating { eps } => regularised(q, eps),
         }
     }
@@ -117,6 +122,7 @@ impl Kernel {
             Kernel::Exponential { alpha, power } => each(q, w, dw, exponential(alpha, power)),
             Kernel::WendlandC2 => each(q, w, dw, wendland_c2),
             Kernel::WendlandC4 => each(q, w, dw, wendland_c4),
+            Kernel::WendlandC6 => each(q, w, dw, wendland_c6),
             Kernel::RegularisedInterpolating { eps } => each(q, w, dw, |q| regularised(q, eps)),
         }
     }
@@ -172,6 +178,14 @@ fn wendland_c4(q: f64) -> (f64, f64) {
     let s = 1.0 - q;
     let s5 = s * s * s * s * s;
     (s5 * s * (35.0 * q * q + 18.0 * q + 3.0) / 3.0, -56.0 / 3.0 * q * (5.0 * q + 1.0) * s5)
+}
+
+#[inline(always)]
+fn wendland_c6(q: f64) -> (f64, f64) {
+    let s = 1.0 - q;
+    let s2 = s * s;
+    let s7 = s2 * s2 * s2 * s;
+    (s7 * s * (((32.0 * q + 25.0) * q + 8.0) * q + 1.0), -22.0 * q * ((16.0 * q + 7.0) * q + 1.0) * s7)
 }
 
 #[inline(always)]

@@ -30,6 +30,7 @@ fn values_at_one_half() {
         ("exponential", ((-1.0f64).exp() - (-16.0f64).exp()) / (1.0 - (-16.0f64).exp())),
         ("wendland-c2", 3.0 / 16.0),
         ("wendland-c4", 83.0 / 4.0 / 192.0),
+        ("wendland-c6", 61.0 / 1024.0),
         (
             "regularised-interpolating",
             (1.0 / 0.25001f64.powi(2) - 1.00001f64.powi(-2)) / (1e10 - 1.00001f64.powi(-2)),
