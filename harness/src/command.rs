@@ -244,12 +244,21 @@ fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let mesh = geometry::msh::read(&args.points, args.unit)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     // Refused before hours are spent on the methods.
+    let all = || scene.methods.iter().map(|m| m.id.as_str());
+    let mut used: Vec<String> =
+        if args.methods.is_empty() { all().map(Into::into).collect() } else { args.methods.clone() };
     let mut beside = Vec::new();
     for path in &args.beside {
         let other = Stored::read(path).map_err(|problem| fail(&Failure::Input(problem)))?;
         other
             .belongs(&text, mesh.points())
             .map_err(|problem| fail(&Failure::Input(format!("{}: {problem}", path.display()))))?;
+        // A solution is no witness of itself.
+        if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
+            let problem = format!("{}: '{twice}' is there already; name others by --method", path.display());
+            return Err(fail(&Failure::Input(problem)));
+        }
+        used.extend(other.methods().map(Into::into));
         beside.push(other);
     }
     let mut stored =

@@ -151,13 +151,8 @@ impl From<mechanics::ExplicitError> for Failure {
 
 impl From<mechanics::TimeError> for Failure {
     fn from(error: mechanics::TimeError) -> Failure {
-        use mechanics::TimeError::{Stalled, Static};
         match error {
-            // What a step could not be solved for is known by its own kind.
-            Static(error) => error.into(),
-            Stalled { ref cause, .. } if matches!(**cause, Static(mechanics::StaticError::Solve(_))) => {
-                Failure::from((**cause).clone())
-            }
+            mechanics::TimeError::Static(error) => error.into(),
             error => Failure::InTime(Box::new(error)),
         }
     }

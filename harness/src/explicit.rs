@@ -271,7 +271,7 @@ impl Run<'_, '_> {
         LoadStep {
             load: time / self.params.duration,
             tools: tools.collect(),
-            strain_energy: balance.strain,
+            strain_energy: Some(balance.strain),
             smallest_j: smallest_j(self.prepared, u),
             iterations: 0,
             probes: Vec::new(),

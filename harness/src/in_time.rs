@@ -56,8 +56,13 @@ pub fn solve(
         let problem = TimeProblem {
             body,
             ramps: Ramps {
+                loads: Ramp::Linear { over: duration },
+                // A mass that is led starts from rest.
+                supports: match &mass {
+                    Some(_) => Ramp::Smooth { over: duration },
+                    None => Ramp::Linear { over: duration },
+                },
                 tools: Ramp::Linear { over: params.over },
-                ..Ramps::all(Ramp::Linear { over: duration })
             },
             inertia: mass.as_ref().map(|mass| Inertia {
                 mass,
@@ -96,6 +101,8 @@ pub fn solve(
         metric("newton-iterations", iterations as f64, "1"),
         metric("cut-backs", path.cut_back as f64, "1"),
     ];
+    let residual = path.steps.last().and_then(|s| s.step.iterations.last()).map(|i| i.residual);
+    metrics.extend(residual.map(|value| metric("residual", value, "1")));
     if mass.is_some() {
         metrics.push(metric("step-error", largest, "m"));
     }
@@ -115,22 +122,29 @@ pub fn solve(
 fn told(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
     let TimeStep { step, energy, .. } = done;
     let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
-    // Contact is outside the body: its springs and its friction are in the work of the tools.
-    let more = [
+    // What contact springs store and friction takes is outside the body, and so is the tools' own work.
+    let mut more = vec![
         ("time", step.time, "s"),
         ("kinetic-energy", energy.kinetic, "J"),
-        ("external-work", energy.external, "J"),
+        ("work-on-body", energy.external, "J"),
         ("damping-dissipation", energy.damped, "J"),
         ("scheme-dissipation", energy.lost(), "J"),
     ];
+    // What relaxing tissue stores of it is not known.
+    let strain_energy = if setup.relaxes() {
+        more.push(("internal-work", energy.internal, "J"));
+        None
+    } else {
+        Some(energy.internal)
+    };
     LoadStep {
         load: step.time / duration,
         tools: tools.collect(),
-        strain_energy: energy.internal,
+        strain_energy,
         smallest_j: step.smallest,
         iterations: solves(step),
         probes: Vec::<Vector3>::new(),
         against: Vec::new(),
-        more: more.map(|(name, value, unit)| Metric { name: name.into(), value, unit }).to_vec(),
+        more: more.into_iter().map(|(name, value, unit)| Metric { name: name.into(), value, unit }).collect(),
     }
 }

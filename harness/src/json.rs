@@ -54,7 +54,7 @@ struct StepObject<'a> {
     /// Part of the loading, 0 to 1.
     load: f64,
     /// J.
-    strain_energy: f64,
+    strain_energy: Option<f64>,
     smallest_j: f64,
     iterations: u64,
     tools: Vec<ToolObject<'a>>,

@@ -109,11 +109,17 @@ impl Scenario<'_> {
     }
 
     fn of_time(&self, error: &TimeError) -> Finding {
-        let (kind, key, help) = match error {
+        let first = match error {
+            TimeError::Stalled { cause, .. } => cause,
+            error => error,
+        };
+        let (kind, key, help) = match first {
             TimeError::Parameter { .. } => (ErrorKind::Invalid, Key::Scene("procedure".into()), ""),
-            TimeError::Inaccurate { .. } => {
-                (ErrorKind::NotRun, Key::Scene("procedure.accuracy".into()), MORE_STEPS)
-            }
+            TimeError::Inaccurate { .. } => (
+                ErrorKind::NotRun,
+                Key::Scene("procedure.accuracy".into()),
+                "no step is short enough: allow more",
+            ),
             _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
         };
         finding(kind, key, error.to_string(), help)

@@ -7,7 +7,7 @@ use crate::outcome::{LoadStep, Metric};
 
 /// A motion, whole or ended early.
 pub struct Motion {
-    /// Nodal parameters at the last recorded state, m.
+    /// Nodal parameters at the end, m: of the last state that was recorded (explicit) or converged (implicit).
     pub u: Vec<Vector3>,
     /// Parameters of the method's own pressure field there, Pa, tension positive; empty without one.
     pub pressure: Vec<f64>,

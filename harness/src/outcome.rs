@@ -112,7 +112,7 @@ pub struct LoadStep {
     /// One per tool of the scene.
     pub tools: Vec<ToolStep>,
     /// Strain energy, J.
-    pub strain_energy: f64,
+    pub strain_energy: Option<f64>,
     /// Smallest volume ratio of all quadrature points.
     pub smallest_j: f64,
     /// Linear systems solved.
@@ -131,7 +131,7 @@ impl LoadStep {
         LoadStep {
             load: 0.0,
             tools: vec![ToolStep::UNTOUCHED; tools],
-            strain_energy: 0.0,
+            strain_energy: Some(0.0),
             smallest_j: 1.0,
             iterations: 0,
             probes: Vec::new(),
@@ -257,7 +257,9 @@ impl Outcome {
         }
         // Dynamics starts from rest and undeformed: no time, no energy.
         if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
-            rows.push(self.record("strain-energy", "J", "step-0", "value", 0.0));
+            if first.strain_energy.is_some() {
+                rows.push(self.record("strain-energy", "J", "step-0", "value", 0.0));
+            }
             for metric in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
                 rows.push(self.record(&metric.name, metric.unit, "step-0", "value", 0.0));
             }
@@ -268,7 +270,9 @@ impl Outcome {
                 rows.push(self.record(name, unit, &phase, "value", value))
             };
             push("load-carried", "1", step.load);
-            push("strain-energy", "J", step.strain_energy);
+            if let Some(energy) = step.strain_energy {
+                push("strain-energy", "J", energy);
+            }
             push("smallest-j", "1", step.smallest_j);
             if step.iterations > 0 {
                 push("newton-iterations", "1", step.iterations as f64);

@@ -295,7 +295,7 @@ impl Prepared {
         let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
-                "is not available in a static procedure",
+                "is not available where a support is held by Newton's method",
                 "essential = \"penalty\" is",
             ));
         };

@@ -156,7 +156,7 @@ pub(crate) fn go_on(
                 .zip(&setup.tools)
                 .map(|(state, set)| ToolStep::of(state, &set.tool))
                 .collect(),
-            strain_energy: force.energy(&u).map_err(ExplicitError::from)?,
+            strain_energy: Some(force.energy(&u).map_err(ExplicitError::from)?),
             smallest_j: smallest_j(prepared, &u),
             iterations: 0,
             probes: Vec::new(),

@@ -179,7 +179,8 @@ impl Scenario<'_> {
             time: TimeParams {
                 end,
                 steps: procedure.steps,
-                smallest: SMALLEST,
+                // An accuracy asks for steps as short as it takes.
+                smallest: if asked.accuracy.is_some() { 1e-6 } else { SMALLEST },
                 accuracy: asked.accuracy,
                 rho_inf: asked.spectral_radius,
                 newton: NewtonParams {

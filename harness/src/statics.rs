@@ -163,7 +163,7 @@ fn told(step: &Step, setup: &Setup) -> LoadStep {
     LoadStep {
         load: step.time,
         tools: tools.collect(),
-        strain_energy: step.energy,
+        strain_energy: Some(step.energy),
         smallest_j: step.smallest,
         iterations: solves(step),
         probes: Vec::new(),

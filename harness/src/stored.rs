@@ -84,14 +84,17 @@ impl Stored {
     /// Runs the named methods of the scene, or all of them. The last one's values are told, all of them span the bands.
     /// `points` below z = 0 are told by their mirror images if the scene has only the half above.
     pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Result<Stored, Failure> {
-        let mut told: Option<Stored> = None;
+        let mut all = Vec::new();
         for method in scene.methods.iter().filter(|m| only.is_empty() || only.contains(&m.id)) {
-            let mut finer = Stored::by(scene, text, points, &method.id)?;
-            eprintln!("{}: {} nodes", finer.source.method, finer.source.nodes);
-            told.iter().for_each(|coarser| finer.widen(coarser));
-            told = Some(finer);
+            let solution = Stored::by(scene, text, points, &method.id)?;
+            eprintln!("{}: {} nodes", solution.source.method, solution.source.nodes);
+            all.push(solution);
         }
-        told.ok_or_else(|| Failure::Run(format!("{} has no method to make a reference with", scene.file())))
+        let Some(mut told) = all.pop() else {
+            return Err(Failure::Run(format!("{} has no method to make a reference with", scene.file())));
+        };
+        all.iter().for_each(|other| told.widen(other));
+        Ok(told)
     }
 
     /// The solution by one method, without bands.
@@ -129,6 +132,11 @@ impl Stored {
         })
     }
 
+    /// Ids of the methods whose solutions it is made of.
+    pub fn methods(&self) -> impl Iterator<Item = &str> {
+        self.beside.iter().chain([&self.source]).map(|s| s.method.as_str())
+    }
+
     /// Says what differs if this is not of the same scene and points.
     pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
         let Source { method, nodes } = &self.source;
@@ -157,6 +165,8 @@ impl Stored {
         let apart = crate::norms::difference(&there, &here).rms_magnitude;
         self.displacement_band = self.displacement_band.max(apart + other.displacement_band);
         self.beside.extend(other.beside.iter().chain([&other.source]).cloned());
+        // Not by the order in which they were joined.
+        self.beside.sort_by(|a, b| a.method.cmp(&b.method));
     }
 
     /// Reads a file; says what is wrong with it.
@@ -202,7 +212,7 @@ impl Stored {
             tools: (step.tools.iter())
                 .map(|t| ToolStep { closure: t.closure, pushed: t.force, ..ToolStep::UNTOUCHED })
                 .collect(),
-            strain_energy: 0.0,
+            strain_energy: None,
             smallest_j: 1.0,
             iterations: 0,
             probes: vectors(&step.probes),

@@ -33,7 +33,7 @@ pub struct Work {
     pub contact_evaluations: u64,
     /// Of these, skipped whole: no point near the tool.
     pub contact_skips: u64,
-    /// Nodes given a lumped mass.
+    /// Nodes given a mass.
     pub mass_nodes: u64,
     /// Time steps made.
     pub time_steps: u64,

@@ -18,11 +18,15 @@ fn points(dir: &TempDir, corners: [[f64; 3]; 4]) -> String {
 
 /// [`PRESSED`] on a bonded base, so that methods differ, with two of its methods.
 fn bonded() -> String {
+    bonded_without(&["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\""])
+}
+
+fn bonded_without(words: &[&str]) -> String {
     let slides = "{ where = \"y == 0 mm\", fix = \"y\" }";
     PRESSED
         .replace(slides, "{ where = \"z == 0 mm\", fix = \"xyz\" }")
         .lines()
-        .filter(|l| !["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\""].iter().any(|w| l.contains(w)))
+        .filter(|l| !words.iter().any(|w| l.contains(w)))
         .map(|l| format!("{l}\n"))
         .collect()
 }
@@ -74,34 +78,42 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
 #[test]
 fn parts_made_one_by_one_join_to_the_same_reference() {
     let dir = tempfile::tempdir().unwrap();
-    let whole = std::fs::read_to_string(stored(&dir)).unwrap();
-    let (scene, points) = (inside(&dir, "made.toml"), inside(&dir, "points.msh"));
-    let make = |method: &str, out: &str, beside: &[&str]| {
-        let mut args = vec!["reference", &scene, "--points", &points, "--method", method, "--out", out];
+    let three = bonded_without(&["\"base\"", "\"tet10-p1\"", "\"efg\""]);
+    let scene = write(&dir, "made.toml", &three);
+    let points = points(&dir, [[5.0, 5.0, 5.0], [30.0, 5.0, 5.0], [5.0, 30.0, 5.0], [5.0, 5.0, 15.0]]);
+    let make = |methods: &[&str], out: &str, beside: &[&str]| {
+        let mut args = vec!["reference", &scene, "--points", &points, "--out", out];
+        args.extend(methods.iter().flat_map(|id| ["--method", id]));
         args.extend(beside.iter().flat_map(|file| ["--beside", file]));
         tissuebench(&args)
     };
+    let all = inside(&dir, "all.json");
+    assert_eq!(make(&[], &all, &[]).code, 0);
+    let whole = std::fs::read_to_string(&all).unwrap();
     let (part, joined) = (inside(&dir, "part.json"), inside(&dir, "joined.json"));
-    assert_eq!(make("hex8", &part, &[]).code, 0);
+    assert_eq!(make(&["hex8"], &part, &[]).code, 0);
     let alone = std::fs::read_to_string(&part).unwrap();
     assert!(alone.contains("\"beside\":[]") && alone.contains("\"displacement_band\":0.0"));
-    assert_eq!(make("hex20-mixed", &joined, &[&part]).code, 0);
+    assert_eq!(make(&["tet4-nodal", "hex20-mixed"], &joined, &[&part]).code, 0);
+    assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
+    // A solution is no witness of itself.
+    assert_fails(&make(&["hex8"], &joined, &[&part]), 2, "part.json: 'hex8' is there already");
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     // Refused before anything is solved, and nothing is written.
     let refused = inside(&dir, "refused.json");
     let fails = |method: &str, says: &str| {
-        assert_fails(&make(method, &refused, &[&part]), 2, says);
+        assert_fails(&make(&[method], &refused, &[&part]), 2, says);
         assert!(!std::path::Path::new(&refused).exists());
     };
-    fails("hex9", "no method 'hex9'; it has hex8, hex20-mixed");
-    write(&dir, "made.toml", &(bonded() + "# closer\n"));
-    fails("hex8", "part.json: hex8 on ");
-    fails("hex8", " nodes is of another scene, or another text of it");
-    write(&dir, "made.toml", &bonded());
+    fails("hex9", "no method 'hex9'; it has hex8, tet4-nodal, hex20-mixed");
+    write(&dir, "made.toml", &(three.clone() + "# closer\n"));
+    fails("hex20-mixed", "part.json: hex8 on ");
+    fails("hex20-mixed", " nodes is of another scene, or another text of it");
+    write(&dir, "made.toml", &three);
     write(&dir, "part.json", &alone.replace("\"points\":[[0.005,", "\"points\":[[0.006,"));
-    fails("hex8", " nodes is of other points");
+    fails("hex20-mixed", " nodes is of other points");
     write(&dir, "part.json", "{}");
-    fails("hex8", "part.json: is no reference");
+    fails("hex20-mixed", "part.json: is no reference");
 }
 
 #[test]

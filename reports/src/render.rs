@@ -18,6 +18,9 @@ use crate::tables;
 /// Tenths of a rem on a screen for a point on paper.
 const SCREEN: f64 = 1.032;
 
+/// Tells a page of ours from another one of its name.
+const TITLE: &str = "<title>tissuebench report</title>";
+
 const PAGE: &str = include_str!("../assets/report.html");
 
 /// What rendering wrote.
@@ -38,11 +41,6 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;
-    // Beside a page of ours the two folders are ours too.
-    if out.join("report.html").is_file() {
-        remove_files(&table_dir, &["csv", "md", "tex"])?;
-        remove_files(&figure_dir, &["svg", "png"])?;
-    }
     let mut files = Vec::new();
     let mut write = |path: PathBuf, bytes: &[u8]| -> Result<(), ReportError> {
         write_text(&path, bytes)?;
@@ -72,7 +70,13 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
         });
     }
     let page = out.join("report.html");
+    // Beside a page of ours what has our endings in the two folders is ours, and what is not written again is old.
+    let ours = std::fs::read_to_string(&page).is_ok_and(|old| old.contains(TITLE));
     write(page.clone(), page_text(&set, &runs, &tables, &shown)?.as_bytes())?;
+    if ours {
+        remove_files(&table_dir, &["csv", "md", "tex"], &files)?;
+        remove_files(&figure_dir, &["svg", "png"], &files)?;
+    }
     Ok(Rendered { page, files })
 }
 

@@ -11,7 +11,7 @@
 //! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -60,7 +60,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_text(&dir.join("checks.csv"), &csv)?;
     let fields = dir.join("fields");
     make_dir(&fields)?;
-    remove_files(&fields, &["json"])?;
+    remove_files(&fields, &["json"], &[])?;
     let mut taken = Vec::new();
     for field in &run.fields {
         let name = format!("{}--{}.json", slug(&field.case), slug(&field.method));
@@ -109,15 +109,15 @@ pub(crate) fn slug(name: &str) -> String {
     name.chars().map(safe).collect()
 }
 
-/// Removes what an earlier run left, so that no file of it passes for one of this run.
-pub(crate) fn remove_files(dir: &Path, endings: &[&str]) -> Result<(), ReportError> {
-    for old in files_ending(dir, endings)? {
-        fs::remove_file(&old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
+/// Removes what an earlier run left but for what is kept, so that no file of it passes for one of this run.
+pub(crate) fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), ReportError> {
+    for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
+        fs::remove_file(old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
     }
     Ok(())
 }
 
-fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<std::path::PathBuf>, ReportError> {
+fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, ReportError> {
     let io = |source| ReportError::Io { path: dir.into(), source };
     let mut paths = Vec::new();
     for entry in fs::read_dir(dir).map_err(io)? {

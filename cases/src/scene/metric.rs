@@ -35,6 +35,8 @@ pub enum Needs {
     Steps,
     /// A procedure by Newton's method.
     Newton,
+    /// Dynamics.
+    Dynamics,
     /// Explicit dynamics.
     Explicit,
     /// A tool.
@@ -112,7 +114,7 @@ impl Metric {
         ),
         metric("newton-iterations", Dimension::None, Needs::Newton, "Newton iterations of all steps"),
         metric("cut-backs", Dimension::None, Needs::Newton, "steps that failed and were cut"),
-        metric("time-steps", Dimension::None, Needs::Explicit, "time steps made"),
+        metric("time-steps", Dimension::None, Needs::Dynamics, "time steps made"),
         metric("critical-step", Dimension::Time, Needs::Explicit, "smallest critical time step estimated"),
         metric(
             "energy-drift",

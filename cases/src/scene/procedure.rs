@@ -57,7 +57,7 @@ pub struct Procedure {
     pub newton: Newton,
     /// What follows where a static path finds no equilibrium.
     pub on_stall: OnStall,
-    /// Mass-proportional damping of body and tools in one per second (dynamics).
+    /// Mass-proportional damping in one per second (dynamics); of the tools too where they have a mass (explicit).
     pub damping: f64,
     /// How explicit dynamics is stepped.
     pub explicit: Explicit,

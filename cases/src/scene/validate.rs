@@ -105,6 +105,11 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear) => {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
+        Needs::Dynamics
+            if !matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic) =>
+        {
+            "needs [procedure] kind = \"explicit\" or \"implicit-dynamic\" in the scene"
+        }
         Needs::Explicit if scene.procedure.kind != ProcedureKind::Explicit => {
             "needs [procedure] kind = \"explicit\" in the scene"
         }

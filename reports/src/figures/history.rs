@@ -12,9 +12,11 @@ use crate::select::{Run, groups, labels, series};
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
 /// Markers on one line: more would hide it.
 const MARKS: usize = 12;
-const ENERGIES: [(&str, &str); 7] = [
+const ENERGIES: [(&str, &str); 9] = [
     ("external-work", "work of loads and tools"),
+    ("work-on-body", "work on the body"),
     ("strain-energy", "strain"),
+    ("internal-work", "work of the stress"),
     ("kinetic-energy", "kinetic"),
     ("contact-energy", "contact springs"),
     ("friction-dissipation", "lost in friction"),

@@ -155,7 +155,8 @@ fn ramps(runs: &[Run]) -> Vec<String> {
     let paper = || runs.iter().filter(|r| is_paper(&r.is.case) && r.is.family == "fem" && whole(r));
     let mut out = Vec::new();
     for ramp in paper().filter(|r| r.value("time-steps").is_some()) {
-        let same = |r: &&Run| r.is.method == ramp.is.method && r.value("newton-iterations").is_some();
+        let still = |r: &Run| r.value("newton-iterations").is_some() && r.value("time-steps").is_none();
+        let same = |r: &&Run| r.is.method == ramp.is.method && still(r);
         let (Some(still), Some(seconds)) = (paper().find(same), ramp.value("time-reached")) else { continue };
         let (Some(moved), Some(rest)) = (directions(ramp, "max"), directions(still, "max")) else { continue };
         let change = (0..3).map(|a| (moved[a] / rest[a] - 1.0).abs()).fold(0.0, f64::max);

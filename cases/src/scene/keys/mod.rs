@@ -166,7 +166,7 @@ pub(crate) struct ProcedureKeys {
     pub on_stall: Option<OnStall>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
-    /// Mass-proportional damping of body and tools in dynamics; none unless given
+    /// Mass-proportional damping in dynamics, of the tools too where they have a mass (explicit); none unless given
     pub damping: Option<Q<Rate>>,
     /// Whether mass acts in implicit dynamics; true unless given, false for a quasi-static motion of tissue that relaxes
     pub inertia: Option<bool>,

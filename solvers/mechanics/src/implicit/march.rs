@@ -189,10 +189,10 @@ impl<'a> March<'a> {
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
         self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
         let (before, augmentations) = (self.before.as_ref(), self.params.augmentations);
-        let (state, step) = self
-            .newton
-            .step(&self.state, before, time, augmentations, Descent::Nearest)
-            .or_else(|_| self.newton.step(&self.state, before, time, augmentations, Descent::Down))?;
+        let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
+        let (state, step) = to(Descent::Nearest)
+            .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
+            .or_else(|_| to(Descent::Down))?;
         let mut motion = self.motion_at(time, dt, &state.u);
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {

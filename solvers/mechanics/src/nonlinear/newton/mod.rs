@@ -35,7 +35,7 @@ pub struct Iteration {
     pub residual: f64,
     /// `|du . r|` of the step it took, relative to that of the first iteration.
     pub energy: f64,
-    /// Part of the Newton step that the line search left.
+    /// Length of the step over that of the Newton step: what the line search left, or how often it went on.
     pub length: f64,
     /// Whether the tangent was positive definite (on the kernel of the pressures).
     pub definite: bool,
@@ -193,9 +193,11 @@ impl<'a> Newton<'a> {
         self.terms = Some(terms);
     }
 
-    /// Forces at the end of the last step in real time.
+    /// Forces at the end of the last step in real time, which is with that accepted.
     pub fn ended(&mut self) -> Ended {
-        self.ended.take().expect("a step in real time has ended")
+        let ended = self.ended.take().expect("a step in real time has ended");
+        self.peak = self.peak.max(ended.size());
+        ended
     }
 
     /// Prescribed value at the end of the ramp by degree of freedom.
@@ -263,9 +265,6 @@ impl<'a> Newton<'a> {
                 let (tool, closure) = (self.problem.tools[k].tool, state.closures[k]);
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
             }
-        }
-        if let Some(ended) = &balance.ended {
-            self.peak = self.peak.max(ended.size());
         }
         self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))
@@ -337,8 +336,9 @@ impl<'a> Newton<'a> {
                 return Ok(balance);
             }
             let done = log.len() - first;
-            if residual < 0.9 * best.1 {
-                best = (done, residual);
+            // Forces before held degrees of freedom have moved are those of the last state, and small.
+            if held_move.is_some() || residual < 0.9 * best.1 {
+                best = (done, if held_move.is_some() { f64::INFINITY } else { residual });
             }
             // On the way down the energy forces first grow.
             let stuck = self.descent != Descent::Down && done >= best.0 + PATIENCE;

@@ -42,8 +42,9 @@ impl Newton<'_> {
         let natural = saddle
             && self.descent == Descent::Guarded
             && !self.problem.tools.iter().any(|t| matches!(t.drive, Drive::Force(_)));
-        // The energy curves down along such a step, so no full step leads to its minimum.
-        let downhill = self.descent == Descent::Down && self.indefinite && slope > 0.0 && !saddle;
+        // The tangent was made definite: its step is one down the energy, of no natural length.
+        let downhill =
+            self.descent == Descent::Down && self.indefinite && slope > 0.0 && !saddle && !approaches;
         let mut reached: Option<(State, Balance, f64)> = None;
         let mut length = 1.0;
         for trial in 0.. {
