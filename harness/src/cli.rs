@@ -81,6 +81,9 @@ pub struct ReferenceArgs {
     /// Only this method (may be given several times)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
+    /// Solve nothing: take the values of this reference of the same scene, made before
+    #[arg(long, value_name = "FILE", conflicts_with = "methods")]
+    pub told: Option<PathBuf>,
     /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
     #[arg(long, value_name = "FILE")]
     pub beside: Vec<PathBuf>,

@@ -2,7 +2,7 @@
 //! 4 nothing ran, 5 incomplete.
 
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use reports::{RunSet, Status};
@@ -243,16 +243,22 @@ fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
     let mesh = geometry::msh::read(&args.points, args.unit)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
+    let read = |path: &PathBuf| -> Result<Stored, u8> {
+        let of_file = |problem| fail(&Failure::Input(format!("{}: {problem}", path.display())));
+        let stored = Stored::read(path).map_err(|problem| fail(&Failure::Input(problem)))?;
+        stored.belongs(&text, mesh.points()).map_err(of_file)?;
+        Ok(stored)
+    };
+    let told = args.told.as_ref().map(read).transpose()?;
+    let mut used: Vec<String> = match &told {
+        Some(told) => told.methods().map(Into::into).collect(),
+        None if args.methods.is_empty() => scene.methods.iter().map(|m| m.id.clone()).collect(),
+        None => args.methods.clone(),
+    };
     // Refused before hours are spent on the methods.
-    let all = || scene.methods.iter().map(|m| m.id.as_str());
-    let mut used: Vec<String> =
-        if args.methods.is_empty() { all().map(Into::into).collect() } else { args.methods.clone() };
     let mut beside = Vec::new();
     for path in &args.beside {
-        let other = Stored::read(path).map_err(|problem| fail(&Failure::Input(problem)))?;
-        other
-            .belongs(&text, mesh.points())
-            .map_err(|problem| fail(&Failure::Input(format!("{}: {problem}", path.display()))))?;
+        let other = read(path)?;
         // A solution is no witness of itself.
         if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
             let problem = format!("{}: '{twice}' is there already; name others by --method", path.display());
@@ -261,8 +267,12 @@ fn reference(args: &ReferenceArgs) -> Result<(), u8> {
         used.extend(other.methods().map(Into::into));
         beside.push(other);
     }
-    let mut stored =
-        Stored::make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?;
+    let mut stored = match told {
+        Some(told) => told,
+        None => {
+            Stored::make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?
+        }
+    };
     beside.iter().for_each(|other| stored.widen(other));
     print!("{}", list::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");

@@ -96,6 +96,13 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     assert!(alone.contains("\"beside\":[]") && alone.contains("\"displacement_band\":0.0"));
     assert_eq!(make(&["tet4-nodal", "hex20-mixed"], &joined, &[&part]).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
+    // Or all made before.
+    let (nodal, last) = (inside(&dir, "nodal.json"), inside(&dir, "last.json"));
+    assert_eq!((make(&["tet4-nodal"], &nodal, &[]).code, make(&["hex20-mixed"], &last, &[]).code), (0, 0));
+    let join =
+        ["reference", &scene, "--points", &points, "--told", &last, "--beside", &nodal, "--beside", &part];
+    assert_eq!(tissuebench(&[&join[..], &["--out", &joined]].concat()).code, 0);
+    assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     // A solution is no witness of itself.
     assert_fails(&make(&["hex8"], &joined, &[&part]), 2, "part.json: 'hex8' is there already");
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
