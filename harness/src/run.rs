@@ -213,6 +213,9 @@ fn solve_once(
     let prepared = timings.time("prepare", || prepare(method, setup, &mut work))?;
     if let Some(params) = &setup.statics {
         let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, &mut work))?;
+        if path.limit.is_some() {
+            timings.book("solve-to-limit", path.to_limit);
+        }
         let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
         let solution = Solution { u, dofs, residual, info: None, path: Some(path), motion: None };
         return Ok((prepared, solution, work));

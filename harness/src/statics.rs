@@ -1,6 +1,7 @@
 //! The static procedure: load steps by Newton's method, with contact, and what each of them left.
 
 use std::collections::BTreeSet;
+use std::time::Instant;
 
 use geometry::Vector3;
 use mechanics::{
@@ -35,8 +36,11 @@ pub struct Path {
     pub iterations: u64,
     /// Steps that failed and were cut back.
     pub cut_backs: u64,
-    /// The last step that Newton's method converged to, where it found no equilibrium further on.
+    /// The last step before the body gave way: before the first on which no equilibrium was near, or the last one where
+    /// Newton's method found none at all further on.
     pub limit: Option<LoadStep>,
+    /// Seconds to get there.
+    pub to_limit: f64,
     /// Why Newton's method ended early, if it did.
     pub failure: Option<StaticError>,
     /// How dynamic relaxation went on from there, if it was asked for and can.
@@ -64,8 +68,16 @@ pub fn solve(
 ) -> Result<Path, Failure> {
     let contact = prepared.contact.as_ref().map(ContactSurface::new);
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
+    let start = Instant::now();
+    let (mut limit, mut to_limit, mut before) = (None, 0.0, LoadStep::at_start(setup.tools.len()));
     let path = with_problem(method, setup, prepared, contact.as_ref(), |problem| {
         solve_static(problem, params, |step, u, _| {
+            if step.gave_way && limit.is_none() {
+                limit = Some(before.clone());
+            }
+            if limit.is_none() {
+                (to_limit, before) = (start.elapsed().as_secs_f64(), told(step, setup));
+            }
             if step.wanted {
                 steps.push(told(step, setup));
                 fields.push(u.to_vec());
@@ -96,11 +108,10 @@ pub fn solve(
         (None, None) => return Err(Failure::Run("the static solution has no step".into())),
     };
     let residual = path.steps.last().and_then(|s| s.iterations.last()).map_or(0.0, |i| i.residual);
-    let limit = path.failure.as_ref().map(|_| last.clone());
-    let (mut end, mut u, mut relaxed) = (last, path.u, None);
-    if let (Some(limit), true) = (&limit, relaxes) {
-        let closures = limit.tools.iter().map(|tool| tool.closure).collect();
-        let start = Start { load: limit.load, u: u.clone(), closures, history: path.history };
+    let (mut end, mut u, mut relaxed) = (last.clone(), path.u, None);
+    if path.failure.is_some() && relaxes {
+        let closures = last.tools.iter().map(|tool| tool.closure).collect();
+        let start = Start { load: last.load, u: u.clone(), closures, history: path.history };
         let done = relaxation::go_on(setup, params.steps, prepared, start, work)?;
         steps.extend(done.steps.iter().cloned());
         fields.extend(done.fields.iter().cloned());
@@ -108,6 +119,9 @@ pub fn solve(
             (end, u) = (step.clone(), field.clone());
         }
         relaxed = Some(done);
+    }
+    if path.failure.is_some() && limit.is_none() {
+        limit = Some(last);
     }
     let held: BTreeSet<(u32, u8)> = prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
     Ok(Path {
@@ -121,6 +135,7 @@ pub fn solve(
         steps,
         fields,
         limit,
+        to_limit,
         failure: path.failure,
         relaxed,
     })

@@ -32,11 +32,11 @@ impl Timings {
         self.phases.iter().map(|(name, list)| (*name, Summary::of(list))).collect()
     }
 
-    /// Sum of one repeat's phases, summarised over the repeats that all phases share.
+    /// Sum of one repeat's phases, summarised over the repeats that all phases share; parts of a phase are none.
     pub fn total(&self) -> Summary {
-        let repeats = self.phases.iter().map(|(_, list)| list.len()).min().unwrap_or(0);
-        let totals: Vec<f64> =
-            (0..repeats).map(|r| self.phases.iter().map(|(_, list)| list[r]).sum()).collect();
+        let phases = || self.phases.iter().filter(|(name, _)| PHASES.contains(name)).map(|(_, list)| list);
+        let repeats = phases().map(Vec::len).min().unwrap_or(0);
+        let totals: Vec<f64> = (0..repeats).map(|r| phases().map(|list| list[r]).sum()).collect();
         Summary::of(&totals)
     }
 }

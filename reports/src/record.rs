@@ -6,7 +6,7 @@
 //! - errors (`rms-*`, `l2`, `energy`, `pressure`, `max-error*`) and plain outcomes (`max-*`, `tip`, `strain-energy`)
 //!   have `statistic = "value"` and `phase = ""`;
 //! - times are `quantity = "time"`, `unit = "s"`, one row per `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`,
-//!   `total`) and per `statistic` (`median`, `spread`, `min`);
+//!   `total`; within `solve` a static path's `solve-to-limit`) and per `statistic` (`median`, `spread`, `min`);
 //! - a transfer scheme is `family = "interp"`, `variant` its name, `method` the scheme's id and `nodes` the number of source
 //!   nodes; `parameters` names the source with `from=METHOD` or the field with `field=linear`;
 //! - what is told step by step has one row per step and quantity, with `phase = "step-N"` (N counts from 0): `closure` (m) or

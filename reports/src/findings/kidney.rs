@@ -123,7 +123,7 @@ fn parts(split: &Split) -> Option<String> {
     ))
 }
 
-/// Where a static path had no equilibrium to go on to, and how it went on.
+/// Where a static path had no equilibrium near to go on to, how long it took there, and how it went on.
 fn limits(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for run in runs.iter().filter(|r| is_paper(&r.is.case)) {
@@ -136,10 +136,19 @@ fn limits(runs: &[Run]) -> Vec<String> {
             (Some(steps), Some(reached)) if reached > load => {
                 format!("; dynamic relaxation goes on to {} in {steps:.0} steps", percent(reached))
             }
+            (None, Some(reached)) if reached > load => {
+                format!(
+                    "; there the tissue gives way to another equilibrium, and goes on to {}",
+                    percent(reached)
+                )
+            }
             _ => String::new(),
         };
+        let within = run
+            .time("solve-to-limit", "median")
+            .map_or(String::new(), |s| format!(", within {}", duration(s)));
         out.push(format!(
-            "{}, {}: Newton's method finds no equilibrium beyond {} of the load, {} N at a closure of {} mm{on}.",
+            "{}, {}: Newton's method finds no equilibrium near beyond {} of the load, {} N at a closure of {} mm{within}{on}.",
             run.is.case,
             run.is.method,
             percent(load),

@@ -8,7 +8,7 @@ use super::{FactorError, Kind, Symmetric, check_pivots};
 use crate::SolveError;
 
 /// `L L^T`, or `L D L^T` (D on the diagonal of `lower`) of a matrix that is not definite.
-pub(super) struct Dense {
+pub(crate) struct Dense {
     lower: Mat<f64>,
     definite: bool,
 }

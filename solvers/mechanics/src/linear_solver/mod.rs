@@ -13,7 +13,7 @@ use std::sync::Arc;
 use crate::{SolveError, Stiffness};
 
 pub(crate) use sparse::Symbolic;
-pub(crate) use unsymmetric::Unsymmetric;
+pub(crate) use unsymmetric::{Border, Unsymmetric};
 
 /// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
 /// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless
@@ -123,10 +123,10 @@ impl Symmetric {
         m
     }
 
-    /// Multiplies the diagonal of the unknowns before the multipliers by `1 + shift`.
-    pub fn shift(&mut self, shift: f64) {
-        for j in 0..self.multipliers {
-            self.values[self.offsets[j + 1] - 1] *= 1.0 + shift;
+    /// Makes the diagonal of the unknowns before the multipliers what it was in `diagonal`, times `1 + shift`.
+    pub fn shift(&mut self, diagonal: &[f64], shift: f64) {
+        for (j, d) in diagonal.iter().enumerate().take(self.multipliers) {
+            self.values[self.offsets[j + 1] - 1] = d * (1.0 + shift);
         }
     }
 
@@ -163,17 +163,30 @@ impl Symmetric {
     }
 }
 
-enum Factor {
+/// The numbers of a factor.
+pub(crate) enum Factor {
     Empty,
     Dense(dense::Dense),
     Sparse(Box<sparse::Sparse>),
 }
 
+impl Factor {
+    /// Negative pivots: with a saddle matrix as many as multipliers if the rest is definite on their kernel
+    /// (Sylvester's law of inertia).
+    pub fn negative_pivots(&self) -> usize {
+        match self {
+            Factor::Empty => 0,
+            Factor::Dense(factor) => factor.negative_pivots(),
+            Factor::Sparse(factor) => factor.negative_pivots(),
+        }
+    }
+}
+
 /// A factored matrix; serves any number of right-hand sides.
 pub(crate) struct Factorization {
-    matrix: Symmetric,
-    factor: Factor,
-    kind: Kind,
+    pub matrix: Symmetric,
+    pub factor: Factor,
+    pub kind: Kind,
 }
 
 /// What went wrong with a definite factorisation; the caller knows why it should have been definite.
@@ -192,7 +205,8 @@ impl From<SolveError> for FactorError {
 pub(crate) fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
     let kind = matrix.kind();
     let symbolic = analyse(&matrix, dense_limit)?;
-    factor_as(symbolic.as_ref(), matrix, kind)
+    let factor = factor_as(symbolic.as_ref(), &matrix, kind)?;
+    Ok(Factorization { matrix, factor, kind })
 }
 
 /// The symbolic analysis that any number of matrices of one pattern share; `None` for a dense factorisation.
@@ -203,15 +217,14 @@ pub(crate) fn analyse(matrix: &Symmetric, dense_limit: usize) -> Result<Option<A
 /// Numbers of the factor of a matrix with the pattern that was analysed.
 pub(crate) fn factor_as(
     symbolic: Option<&Arc<Symbolic>>,
-    matrix: Symmetric,
+    matrix: &Symmetric,
     kind: Kind,
-) -> Result<Factorization, FactorError> {
-    let factor = match symbolic {
+) -> Result<Factor, FactorError> {
+    Ok(match symbolic {
         _ if matrix.dim() == 0 => Factor::Empty,
-        None => Factor::Dense(dense::Dense::new(&matrix, kind)?),
-        Some(symbolic) => Factor::Sparse(Box::new(sparse::Sparse::new(symbolic.clone(), &matrix, kind)?)),
-    };
-    Ok(Factorization { matrix, factor, kind })
+        None => Factor::Dense(dense::Dense::new(matrix, kind)?),
+        Some(symbolic) => Factor::Sparse(Box::new(sparse::Sparse::new(symbolic.clone(), matrix, kind)?)),
+    })
 }
 
 /// Refuses a pivot that is mere rounding beside its diagonal entry.
@@ -224,7 +237,11 @@ fn check_pivots(ratios: impl Iterator<Item = f64>) -> Result<(), FactorError> {
 }
 
 fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+    dot(x, x).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Solves in place by `once` and returns the relative residual. Refines until the residual is at rounding or no longer
@@ -285,16 +302,6 @@ impl Factorization {
     /// Number of unknowns.
     pub fn dim(&self) -> usize {
         self.matrix.dim()
-    }
-
-    /// Negative pivots: with a saddle matrix as many as multipliers if the rest is definite on their kernel
-    /// (Sylvester's law of inertia).
-    pub fn negative_pivots(&self) -> usize {
-        match &self.factor {
-            Factor::Empty => 0,
-            Factor::Dense(factor) => factor.negative_pivots(),
-            Factor::Sparse(factor) => factor.negative_pivots(),
-        }
     }
 
     /// Numbers stored in the factor.

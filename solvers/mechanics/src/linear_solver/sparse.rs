@@ -1,6 +1,6 @@
 //! Sparse factorisation: METIS order, then faer's supernodal kernels.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
@@ -18,6 +18,9 @@ use crate::SolveError;
 pub(crate) struct Symbolic {
     cholesky: SymbolicCholesky<usize>,
     forward: Vec<usize>,
+    /// Numbers of factors that are no more, to be written over: on fresh memory the system took a tenth of the time of
+    /// a path with 4000 unknowns.
+    spare: Mutex<Vec<Vec<f64>>>,
 }
 
 impl Symbolic {
@@ -27,7 +30,11 @@ impl Symbolic {
         let order = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n));
         let cholesky = factorize_symbolic_cholesky(pattern(matrix), Side::Upper, order, Default::default())
             .map_err(|e| too_large(n, &e))?;
-        Ok(Symbolic { cholesky, forward })
+        Ok(Symbolic { cholesky, forward, spare: Mutex::default() })
+    }
+
+    fn spare(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
+        self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
@@ -41,10 +48,16 @@ fn too_large(dofs: usize, why: &dyn std::fmt::Display) -> SolveError {
 }
 
 /// Numbers of `L L^T`, or of `L D L^T` of a matrix that is not definite.
-pub(super) struct Sparse {
+pub(crate) struct Sparse {
     symbolic: Arc<Symbolic>,
     values: Vec<f64>,
     definite: bool,
+}
+
+impl Drop for Sparse {
+    fn drop(&mut self) {
+        self.symbolic.spare().push(std::mem::take(&mut self.values));
+    }
 }
 
 impl Sparse {
@@ -52,7 +65,7 @@ impl Sparse {
         let n = matrix.dim();
         let cholesky = &symbolic.cholesky;
         let definite = kind == Kind::Definite;
-        let mut values = Vec::new();
+        let mut values = symbolic.spare().pop().unwrap_or_default();
         values.try_reserve_exact(cholesky.len_val()).map_err(|e| too_large(n, &e))?;
         values.resize(cholesky.len_val(), 0.0);
         let no_memory = |_| too_large(n, &"no memory for the workspace");

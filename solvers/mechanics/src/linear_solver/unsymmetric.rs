@@ -1,37 +1,88 @@
-//! Unsymmetric systems: the tangent of a body on which friction slides.
+//! Unsymmetric systems: the tangent of a body on which friction slides, or which tools press by force.
 
 use faer::MatMut;
 use faer::prelude::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::{Factorization, norm, refined};
+use super::{Factorization, dot, norm, refined};
 use crate::SolveError;
 
 /// Krylov vectors kept; the skew part has the rank of the sliding points at most, and a coefficient of friction of
 /// 0.15 needs about 10.
 const KRYLOV: usize = 40;
-/// A factored symmetric matrix and a few unsymmetric entries `(row, column, value)` on top of it.
+/// A row and a column beyond those of a matrix: a tool driven by force, whose closure is unknown.
+pub(crate) struct Border {
+    /// Column, without its last entry.
+    pub column: Vec<f64>,
+    /// Row, without its last entry.
+    pub row: Vec<f64>,
+    /// The entry that both end in.
+    pub corner: f64,
+}
+
+/// A factored symmetric matrix, a few unsymmetric entries `(row, column, value)` on top of it, and borders around it:
+/// `[S + U, C; R, D]`, D diagonal.
 ///
-/// Solved by GMRES (Saad & Schultz 1986) with the symmetric factor as the preconditioner; by sparse LU with partial
-/// pivoting where that does not converge. On 1331 nodes one LU took as long as forty factorisations of the
+/// Solved by GMRES (Saad & Schultz 1986) with the factor of `[S, C; R, D]` as the preconditioner; by sparse LU with
+/// partial pivoting where that does not converge. On 1331 nodes one LU took as long as forty factorisations of the
 /// symmetric part.
 pub(crate) struct Unsymmetric {
     symmetric: Factorization,
     extra: Vec<(usize, usize, f64)>,
+    borders: Vec<Border>,
+    /// `S^-1 C`, and `D - R S^-1 C`.
+    solved: Vec<Vec<f64>>,
+    schur: LU<f64, Dyn, Dyn>,
 }
 
 impl Unsymmetric {
-    /// `symmetric + extra`; entries of one place add up.
-    pub fn new(symmetric: Factorization, extra: Vec<(usize, usize, f64)>) -> Unsymmetric {
-        Unsymmetric { symmetric, extra }
+    /// Entries of one place add up.
+    pub fn new(
+        symmetric: Factorization,
+        extra: Vec<(usize, usize, f64)>,
+        borders: Vec<Border>,
+    ) -> Result<Unsymmetric, SolveError> {
+        let mut solved: Vec<Vec<f64>> = borders.iter().map(|b| b.column.clone()).collect();
+        solved.iter_mut().try_for_each(|x| symmetric.solve_once(x))?;
+        let schur = DMatrix::from_fn(borders.len(), borders.len(), |i, j| {
+            let corner = if i == j { borders[i].corner } else { 0.0 };
+            corner - dot(&borders[i].row, &solved[j])
+        });
+        Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu() })
     }
 
     fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+        let (x, moves) = x.split_at(self.symmetric.dim());
+        let (y, lacks) = y.split_at_mut(x.len());
         self.symmetric.matrix.subtract_product(x, y);
         for &(i, j, a) in &self.extra {
             y[i] -= a * x[j];
         }
+        for ((border, d), lack) in self.borders.iter().zip(moves).zip(lacks) {
+            y.iter_mut().zip(&border.column).for_each(|(y, c)| *y -= c * d);
+            *lack -= border.corner * d + dot(&border.row, x);
+        }
+    }
+
+    /// Without the unsymmetric entries: the borders by block elimination.
+    fn precondition(&self, b: &mut [f64]) -> Result<(), SolveError> {
+        let (x, moves) = b.split_at_mut(self.symmetric.dim());
+        self.symmetric.solve_once(x)?;
+        if moves.is_empty() {
+            return Ok(());
+        }
+        let lacks = moves.iter().zip(&self.borders).map(|(lack, border)| lack - dot(&border.row, x));
+        let mut found = DVector::from_iterator(moves.len(), lacks);
+        if !self.schur.solve_mut(&mut found) {
+            return Err(SolveError::ZeroPivot);
+        }
+        moves.copy_from_slice(found.as_slice());
+        for (column, d) in self.solved.iter().zip(found.iter()) {
+            x.iter_mut().zip(column).for_each(|(x, c)| *x -= c * d);
+        }
+        Ok(())
     }
 
     /// Solves in place to a relative residual of `goal`, or ten times that, and returns it; by LU where that fails.
@@ -71,16 +122,16 @@ impl Unsymmetric {
         let mut right = vec![size];
         for k in 0..KRYLOV {
             let mut z = basis[k].clone();
-            self.symmetric.solve_once(&mut z)?;
+            self.precondition(&mut z)?;
             let mut w = vec![0.0; z.len()];
             self.subtract_product(&z, &mut w);
             w.iter_mut().for_each(|w| *w = -*w);
             preconditioned.push(z);
             let mut h = Vec::with_capacity(k + 2);
             for v in &basis {
-                let dot: f64 = v.iter().zip(&w).map(|(a, b)| a * b).sum();
-                w.iter_mut().zip(v).for_each(|(w, v)| *w -= dot * v);
-                h.push(dot);
+                let along = dot(v, &w);
+                w.iter_mut().zip(v).for_each(|(w, v)| *w -= along * v);
+                h.push(along);
             }
             let next = norm(&w);
             for (i, &(c, s)) in rotations.iter().enumerate() {
@@ -113,9 +164,9 @@ impl Unsymmetric {
 
     fn direct(&self, b: &mut [f64]) -> Result<f64, SolveError> {
         let matrix = &self.symmetric.matrix;
-        let n = matrix.dim();
+        let n = b.len();
         let mut triplets = Vec::with_capacity(2 * matrix.rows.len() + self.extra.len());
-        for j in 0..n {
+        for j in 0..matrix.dim() {
             for k in matrix.offsets[j]..matrix.offsets[j + 1] {
                 let (i, value) = (matrix.rows[k], matrix.values[k]);
                 triplets.push(Triplet::new(i, j, value));
@@ -125,6 +176,16 @@ impl Unsymmetric {
             }
         }
         triplets.extend(self.extra.iter().map(|&(i, j, v)| Triplet::new(i, j, v)));
+        for (k, border) in (matrix.dim()..).zip(&self.borders) {
+            let entries = border
+                .row
+                .iter()
+                .zip(&border.column)
+                .enumerate()
+                .filter(|(_, (r, c))| **r != 0.0 || **c != 0.0);
+            triplets.extend(entries.flat_map(|(i, (&r, &c))| [Triplet::new(k, i, r), Triplet::new(i, k, c)]));
+            triplets.push(Triplet::new(k, k, border.corner));
+        }
         let failed = |why: String| SolveError::TooLarge { dofs: n, why };
         let full =
             SparseColMat::try_new_from_triplets(n, n, &triplets).map_err(|e| failed(format!("{e:?}")))?;

@@ -96,6 +96,9 @@ pub struct Step {
     pub wanted: bool,
     /// The iterations that led there.
     pub iterations: Vec<Iteration>,
+    /// Whether it gave way on the way: no equilibrium was near, and the one it ended in lies down the energy, past
+    /// states without a definite tangent.
+    pub gave_way: bool,
     /// One per tool.
     pub tools: Vec<ToolState>,
     /// Strain energy, J.
@@ -111,8 +114,7 @@ pub struct StaticWork {
     pub assemblies: u64,
     /// Numeric factorisations, more than assemblies where a tangent is not definite.
     pub factorisations: u64,
-    /// Linear systems solved: one per iteration, one per tool driven by force that touches, and with a pressure field
-    /// one per trial whose residual did not fall.
+    /// Linear systems solved: one per iteration, and with a pressure field one per trial whose residual did not fall.
     pub solves: u64,
     /// Evaluations of the forces, one per trial state.
     pub forces: u64,

@@ -288,6 +288,7 @@ impl<'a> Newton<'a> {
         let step = Step {
             time,
             wanted: false,
+            gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite),
             iterations,
             tools,
             energy: balance.internal.energy,

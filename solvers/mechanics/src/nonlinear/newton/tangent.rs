@@ -1,11 +1,11 @@
 //! The tangent of an iteration: assembled, factored, and the step it gives.
 
 use super::{Balance, Descent, Newton, State};
-use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, Kind, Unsymmetric};
-use crate::nonlinear::StaticError;
+use crate::linear_solver::{self, Border, DENSE_LIMIT, FactorError, Factorization, Kind, Unsymmetric};
+use crate::nonlinear::{Drive, StaticError};
 use crate::{Matrix3, SolveError, Vector3};
 
-/// A factored tangent.
+/// A factored tangent, of the free unknowns and of the closures of the tools that have a border.
 pub(super) enum Factored {
     Symmetric(Factorization),
     Unsymmetric(Unsymmetric),
@@ -88,19 +88,30 @@ impl Newton<'_> {
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
         let mut step = self.system.gather(&right, &right_pressure);
-        let factored = self.factor(matrix, skew)?;
+        let (tools, borders): (Vec<usize>, Vec<Border>) = self.borders(balance).into_iter().unzip();
+        let lacking = self.lacking(balance, time);
+        step.extend(tools.iter().map(|&k| lacking[k]));
+        let factored = self.factor(matrix, skew, borders)?;
         self.solve(&factored, &mut step)?;
-        let closures = self.drive(&factored, state, balance, time, &mut step)?;
+        let moves = step.split_off(self.system.dim());
+        let mut closures = vec![0.0; self.problem.tools.len()];
+        for (k, driven) in self.problem.tools.iter().enumerate() {
+            let Drive::Force(full) = driven.drive else { continue };
+            closures[k] = match tools.iter().position(|&t| t == k) {
+                Some(at) => moves[at],
+                None => self.approach(k, state, full * self.scales(time).tools),
+            };
+        }
         Ok(Direction { step, closures, factored })
     }
 
     /// Solves with the matrix as it was assembled, pressures scaled.
     pub(super) fn solve(&mut self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
         self.work.solves += 1;
-        let scale = self.system.pressure_scale;
-        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        let (scale, pressures) = (self.system.pressure_scale, self.system.free..self.system.dim());
+        b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
         factored.solve(b, self.forcing)?;
-        b[self.system.free..].iter_mut().for_each(|p| *p *= scale);
+        b[pressures].iter_mut().for_each(|p| *p *= scale);
         Ok(())
     }
 
@@ -109,30 +120,31 @@ impl Newton<'_> {
     /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
     fn factor(
         &mut self,
-        matrix: linear_solver::Symmetric,
+        mut matrix: linear_solver::Symmetric,
         skew: Vec<(usize, usize, f64)>,
+        borders: Vec<Border>,
     ) -> Result<Factored, StaticError> {
         if self.symbolic.is_none() {
             self.symbolic = Some(linear_solver::analyse(&matrix, DENSE_LIMIT)?);
         }
         let symbolic = self.symbolic.as_ref().expect("just analysed").as_ref();
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
-        let with_skew = |factor| match skew.is_empty() {
-            true => Factored::Symmetric(factor),
-            false => Factored::Unsymmetric(Unsymmetric::new(factor, skew.clone())),
+        let whole = |factor| match skew.is_empty() && borders.is_empty() {
+            true => Ok(Factored::Symmetric(factor)),
+            false => Unsymmetric::new(factor, skew, borders).map(Factored::Unsymmetric),
         };
         let shifts: &[f64] = match self.descent {
             Descent::Nearest | Descent::Guarded => &[0.0],
             Descent::Down => &[0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0],
         };
+        let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
         for &shift in shifts {
-            let mut shifted = matrix.clone();
-            shifted.shift(shift);
+            matrix.shift(&diagonal, shift);
             self.work.factorisations += 1;
-            match linear_solver::factor_as(symbolic, shifted, kind) {
+            match linear_solver::factor_as(symbolic, &matrix, kind) {
                 Ok(factor) if self.descent != Descent::Down || factor.negative_pivots() == pressures => {
                     self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
-                    return Ok(with_skew(factor));
+                    return Ok(whole(Factorization { matrix, factor, kind })?);
                 }
                 Ok(_) | Err(FactorError::NotDefinite) => {}
                 Err(FactorError::Other(SolveError::NearlySingular { .. } | SolveError::ZeroPivot)) => {}
@@ -142,8 +154,9 @@ impl Newton<'_> {
         if self.descent != Descent::Down && kind == Kind::Definite {
             self.indefinite = true;
             self.work.factorisations += 1;
-            return match linear_solver::factor_as(symbolic, matrix, Kind::Indefinite) {
-                Ok(factor) => Ok(with_skew(factor)),
+            let kind = Kind::Indefinite;
+            return match linear_solver::factor_as(symbolic, &matrix, kind) {
+                Ok(factor) => Ok(whole(Factorization { matrix, factor, kind })?),
                 Err(FactorError::Other(error)) => Err(error.into()),
                 Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
             };
