@@ -10,8 +10,8 @@ pub(crate) fn madd<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
 /// `ln(1 + j)` for `1 + j` positive and normal, to 2e-16 absolute and 4e-16 relative.
 ///
 /// `1 + j = 2^k (1 + f)` with `1 + f` in [sqrt(1/2), sqrt 2) by exponent arithmetic, then the atanh series of
-/// `s = f / (2 + f)` with the minimax coefficients of fdlibm's `e_log.c` (Sun Microsystems 1993). For k = 0 the
-/// remainder is `j` itself, not the rounded `1 + j` less 1: no digits are lost at small strain.
+/// `s = f / (2 + f)` with the minimax coefficients of fdlibm's `e_log.c` (Sun Microsystems 1993). What
+/// rounding `1 + j` took off is added again over `1 + j`: no digits are lost at small strain.
 #[inline(always)]
 pub(crate) fn ln_1p<const FMA: bool>(j: f64) -> f64 {
     const SQRT_HALF_HIGH: u64 = 0x3fe6_a09e;
@@ -22,7 +22,8 @@ pub(crate) fn ln_1p<const FMA: bool>(j: f64) -> f64 {
     // 2^52 + 2^51 plus an integer in the last bits: the conversion to f64 is one subtraction on every path.
     let k = f64::from_bits(0x4338_0000_0000_0000 + (high >> 20)) - 6_755_399_441_055_744.0 - 1023.0;
     let mantissa = ((high & 0xf_ffff) + SQRT_HALF_HIGH) << 32 | (x.to_bits() & 0xffff_ffff);
-    let f = if k == 0.0 { j } else { f64::from_bits(mantissa) - 1.0 };
+    let f = f64::from_bits(mantissa) - 1.0;
+    let lost = j - (x - 1.0);
     let s = f / (2.0 + f);
     let z = s * s;
     let w = z * z;
@@ -35,7 +36,8 @@ pub(crate) fn ln_1p<const FMA: bool>(j: f64) -> f64 {
         6.666_666_666_666_735e-1,
     );
     let half = 0.5 * f * f;
-    k * LN2_HIGH + (f - (half - m(s, half + odd + even, k * LN2_LOW)))
+    let low = m(lost, 1.0 / x, k * LN2_LOW);
+    m(k, LN2_HIGH, f - (half - m(s, half + odd + even, low)))
 }
 
 /// `(1 + j)^(-1/3) - 1` for `1 + j` positive and normal, to 4e-16 relative even near `j = 0`.

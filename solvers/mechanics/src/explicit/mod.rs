@@ -7,6 +7,7 @@ mod critical_step;
 mod error;
 mod force;
 mod hex8;
+mod hex8_lanes;
 mod lane_math;
 mod mass;
 mod moduli;
@@ -21,6 +22,7 @@ mod relaxation;
 mod rows;
 mod tet4;
 mod tools;
+mod trilinear;
 
 pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
 pub use critical_step::{CriticalStep, LanczosParams, Springs, critical_step, critical_step_touching};

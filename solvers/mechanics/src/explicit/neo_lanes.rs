@@ -1,107 +1,97 @@
 //! The neo-Hookean point for lanes: the formulas of [`crate::NeoHookean`] as straight-line scalar code, which a loop
-//! over lanes turns into vector instructions.
+//! over lanes turns into vector instructions. Every difference that vanishes at `H = 0` is formed without cancellation.
 
 use super::lane_math::{inverse_cbrt_less_1, ln_1p, madd};
 
-/// `H` (row by row) with what follows from it; every difference that vanishes at `H = 0` is formed without
-/// cancellation.
+/// What a law needs of `H` beside `H` itself.
 #[derive(Clone, Copy)]
-pub(super) struct Strained {
-    h: [f64; 9],
-    cof: [f64; 9],
-    trace: f64,
+pub(super) struct Invariants {
+    pub trace: f64,
     /// Second invariant and determinant of `H`.
-    rest: f64,
+    pub rest: f64,
     /// `J - 1 = tr H + II(H) + det H`.
     pub j: f64,
 }
 
-#[inline(always)]
-pub(super) fn strained<const FMA: bool>(h: [f64; 9]) -> Strained {
-    let m = madd::<FMA>;
-    let minor = |a: usize, d: usize, b: usize, c: usize| m(h[a], h[d], -(h[b] * h[c]));
-    let cof = [
-        minor(4, 8, 5, 7),
-        minor(5, 6, 3, 8),
-        minor(3, 7, 4, 6),
-        minor(2, 7, 1, 8),
-        minor(0, 8, 2, 6),
-        minor(1, 6, 0, 7),
-        minor(1, 5, 2, 4),
-        minor(2, 3, 0, 5),
-        minor(0, 4, 1, 3),
-    ];
-    let trace = h[0] + h[4] + h[8];
-    let det = m(h[0], cof[0], m(h[1], cof[1], h[2] * cof[2]));
-    let rest = cof[0] + cof[4] + cof[8] + det;
-    Strained { h, cof, trace, rest, j: trace + rest }
-}
+/// The `a`, `b`, `c` of `w P = a H + b (cof H - H^T) + c I`: every isotropic stress of this file has this form, as
+/// `cof F = (1 + tr H) I + cof H - H^T`.
+pub(super) type Coefficients = [f64; 3];
 
-impl Strained {
-    /// `cof F = J F^-T = (1 + tr H) I - H^T + cof H`, and `J (F - F^-T) = H + H^T - cof H + (II + det) I + (J-1) H`.
+impl Invariants {
     #[inline(always)]
-    fn parts<const FMA: bool>(&self) -> ([f64; 9], [f64; 9]) {
-        let (mut cof_f, mut less) = ([0.0; 9], [0.0; 9]);
-        for r in 0..3 {
-            for c in 0..3 {
-                let (k, t) = (3 * r + c, 3 * c + r);
-                let swapped = self.h[t] - self.cof[k];
-                cof_f[k] = -swapped;
-                less[k] = madd::<FMA>(self.h[k], 1.0 + self.j, swapped);
-            }
-            cof_f[4 * r] += 1.0 + self.trace;
-            less[4 * r] += self.rest;
-        }
-        (cof_f, less)
+    pub fn new(trace: f64, rest: f64) -> Invariants {
+        Invariants { trace, rest, j: trace + rest }
+    }
+
+    /// Of `H`, row by row. `II + det` with the minors of the first row, each with its part of `II`: ten products.
+    #[inline(always)]
+    pub fn of<const FMA: bool>(h: &[f64; 9]) -> Invariants {
+        let m = madd::<FMA>;
+        let x = m(h[4], h[8], -(h[5] * h[7]));
+        let y = m(h[5], h[6], -(h[3] * (1.0 + h[8])));
+        let z = m(h[3], h[7], -(h[6] * (1.0 + h[4])));
+        let rest = m(1.0 + h[0], x, m(h[1], y, m(h[2], z, h[0] * (h[4] + h[8]))));
+        Invariants::new(h[0] + h[4] + h[8], rest)
+    }
+
+    /// `w/J (s J (F - F^-T) + v cof F)`, given `s w` and `s w/J`, `v w/J`: `J (F - F^-T) = J H - (cof H - H^T) + rest I`.
+    #[inline(always)]
+    fn combined<const FMA: bool>(&self, stretch: f64, shape: f64, volume: f64) -> Coefficients {
+        let m = madd::<FMA>;
+        [stretch, volume - shape, m(shape, self.rest, m(volume, self.trace, volume))]
     }
 
     /// `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof F)`.
     #[inline(always)]
-    pub fn stress<const FMA: bool>(&self, w: f64, mu: f64, lambda: f64) -> [f64; 9] {
-        let (cof_f, less) = self.parts::<FMA>();
-        let per_j = w / (1.0 + self.j);
-        let (shape, volume) = (mu * per_j, lambda * ln_1p::<FMA>(self.j) * per_j);
-        combined::<FMA>(shape, &less, volume, &cof_f)
+    pub fn stress<const FMA: bool>(&self, w: f64, mu: f64, lambda: f64) -> Coefficients {
+        // The logarithm has this quotient too: one division for both.
+        let per_j = w * (1.0 / (1.0 + self.j));
+        self.combined::<FMA>(w * mu, mu * per_j, lambda * ln_1p::<FMA>(self.j) * per_j)
     }
 
-    /// `I1 - 3 = 2 tr H + H : H`.
+    /// `b = J^(-2/3) I1 / 3 - 1` and the stress `w mu J^(-2/3) (F - I1/3 F^-T)`, the energy's and that of a group's
+    /// points but for the dilation they share.
     #[inline(always)]
-    fn i1<const FMA: bool>(&self) -> f64 {
-        let mut square = 0.0;
-        for k in 0..9 {
-            square = madd::<FMA>(self.h[k], self.h[k], square);
-        }
-        madd::<FMA>(2.0, self.trace, square)
-    }
-
-    /// `b = J^(-2/3) I1 / 3 - 1`.
-    #[inline(always)]
-    pub fn isochoric<const FMA: bool>(&self) -> f64 {
+    pub fn isochoric<const FMA: bool>(&self, h: &[f64; 9], w_mu: f64) -> (f64, Coefficients) {
+        let m = madd::<FMA>;
+        let row = |k: usize| m(h[k], h[k], m(h[k + 1], h[k + 1], h[k + 2] * h[k + 2]));
+        // (I1 - 3) / 3 = (2 tr H + H : H) / 3.
+        let i = m(2.0, self.trace, row(0) + row(3) + row(6)) * (1.0 / 3.0);
         let d = inverse_cbrt_less_1::<FMA>(self.j);
-        let (z, i) = (d * (2.0 + d), self.i1::<FMA>() / 3.0);
-        madd::<FMA>(z, i, z + i)
-    }
-
-    /// `w P` with a shared dilation: `w mu S J^(-2/3) (F - I1/3 F^-T) + w p cof F`, where over the groups of the point
-    /// `S = sum share J_a^(2/3)` and `p = sum share p_a`.
-    #[inline(always)]
-    pub fn dilated_stress<const FMA: bool>(&self, w: f64, mu: f64, s: f64, p: f64) -> [f64; 9] {
-        let (cof_f, less) = self.parts::<FMA>();
-        let y = 1.0 + inverse_cbrt_less_1::<FMA>(self.j);
+        let (y, z) = (1.0 + d, d * (2.0 + d));
+        let stretch = w_mu * (y * y);
         // J^-1 = y^3: no division.
-        let shape = w * mu * s * (y * y) * (y * y * y);
-        let volume = madd::<FMA>(-shape, self.i1::<FMA>() / 3.0, w * p);
-        combined::<FMA>(shape, &less, volume, &cof_f)
+        let shape = stretch * (y * y * y);
+        (m(z, i, z + i), self.combined::<FMA>(stretch, shape, -shape * i))
     }
 }
 
+/// The stress of a point with a shared dilation, `S` times the isochoric one and `w p cof F`, where over the groups of the
+/// point `S = sum share J_a^(2/3)` and `p = sum share p_a`.
 #[inline(always)]
-fn combined<const FMA: bool>(a: f64, x: &[f64; 9], b: f64, y: &[f64; 9]) -> [f64; 9] {
-    let mut sum = [0.0; 9];
-    for k in 0..9 {
-        sum[k] = madd::<FMA>(a, x[k], b * y[k]);
-    }
-    sum
+pub(super) fn pressed<const FMA: bool>([a, b, c]: Coefficients, trace: f64, s: f64, wp: f64) -> Coefficients {
+    let m = madd::<FMA>;
+    [s * a, m(s, b, wp), m(s, c, m(wp, trace, wp))]
+}
+
+/// `w P` row by row.
+#[inline(always)]
+pub(super) fn piola<const FMA: bool>(h: &[f64; 9], [a, b, c]: Coefficients) -> [f64; 9] {
+    let m = madd::<FMA>;
+    // Entry `k` with `cof H` from the places of its minor, and its mirror `t`.
+    let entry =
+        |k: usize, t: usize, [p, q, r, s]: [usize; 4]| m(a, h[k], b * (m(h[p], h[q], -(h[r] * h[s])) - h[t]));
+    [
+        entry(0, 0, [4, 8, 5, 7]) + c,
+        entry(1, 3, [5, 6, 3, 8]),
+        entry(2, 6, [3, 7, 4, 6]),
+        entry(3, 1, [2, 7, 1, 8]),
+        entry(4, 4, [0, 8, 2, 6]) + c,
+        entry(5, 7, [1, 6, 0, 7]),
+        entry(6, 2, [1, 5, 2, 4]),
+        entry(7, 5, [2, 3, 0, 5]),
+        entry(8, 8, [0, 4, 1, 3]) + c,
+    ]
 }
 
 /// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,

@@ -63,22 +63,22 @@ impl LanePath {
 
 /// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`.
 macro_rules! on_path {
-    ($(#[$doc:meta])* fn $name:ident($($arg:ident: $ty:ty),* $(,)?) = $kernel:ident) => {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident) => {
         $(#[$doc])*
-        fn $name(path: $crate::explicit::path::LanePath, $($arg: $ty),*) {
+        $vis fn $name(path: $crate::explicit::path::LanePath, $($arg: $ty),*) $(-> $out)? {
             match path.kind() {
                 $crate::explicit::path::Kind::Portable => $kernel::<false>($($arg),*),
                 #[cfg(target_arch = "x86_64")]
                 $crate::explicit::path::Kind::Avx2 => {
                     #[target_feature(enable = "avx2,fma")]
-                    fn run($($arg: $ty),*) { $kernel::<true>($($arg),*) }
+                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
                     // SAFETY: a path of this kind is made only where these features were detected.
                     unsafe { run($($arg),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::explicit::path::Kind::Avx512 => {
                     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-                    fn run($($arg: $ty),*) { $kernel::<true>($($arg),*) }
+                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
                     // SAFETY: as above.
                     unsafe { run($($arg),*) }
                 }

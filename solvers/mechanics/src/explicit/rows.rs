@@ -7,7 +7,7 @@
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
 use super::moduli::Moduli;
-use super::neo_lanes::strained;
+use super::neo_lanes::{Invariants, piola};
 use super::order::locality_order;
 use super::path::{LANES, LanePath, on_path};
 use super::quad::axpy;
@@ -124,9 +124,10 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
         let mut p = [[0.0; LANES]; 9];
         let Moduli { mu, lambda } = batch.moduli;
         for l in 0..LANES {
-            let x = strained::<FMA>(std::array::from_fn(|k| h[k][l]));
+            let h = std::array::from_fn(|k| h[k][l]);
+            let x = Invariants::of::<FMA>(&h);
             good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-            let stress = x.stress::<FMA>(batch.weights[l], mu, lambda);
+            let stress = piola::<FMA>(&h, x.stress::<FMA>(batch.weights[l], mu, lambda));
             for k in 0..9 {
                 p[k][l] = stress[k];
             }

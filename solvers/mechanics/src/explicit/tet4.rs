@@ -7,7 +7,7 @@
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
 use super::moduli::Moduli;
-use super::neo_lanes::strained;
+use super::neo_lanes::{Invariants, piola, pressed};
 use super::nodal::Nodal;
 use super::order::locality_order;
 use super::path::{LANES, LanePath, on_path};
@@ -211,9 +211,10 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
             let d = gather::<FMA>(block, u);
             let mut out = [[0.0; LANES]; 9];
             for l in 0..LANES {
-                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
+                let h = gradient::<FMA>(&d, &block.grads, l);
+                let x = Invariants::of::<FMA>(&h);
                 good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-                let p = x.stress::<FMA>(block.weight[l], mu, lambda);
+                let p = piola::<FMA>(&h, x.stress::<FMA>(block.weight[l], mu, lambda));
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
             scatter::<FMA>(block, &out, f);
@@ -237,11 +238,12 @@ fn dilations_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], sums: &mut [[f64;
             let d = gather::<FMA>(block, u);
             let mut out = [[0.0; LANES]; 2];
             for l in 0..LANES {
-                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
+                let h = gradient::<FMA>(&d, &block.grads, l);
+                let x = Invariants::of::<FMA>(&h);
                 good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
                 let share = 0.25 * block.weight[l];
                 out[0][l] = share * x.j;
-                out[1][l] = share * mu * x.isochoric::<FMA>();
+                out[1][l] = share * mu * x.isochoric::<FMA>(&h, 0.0).0;
             }
             for l in 0..LANES {
                 for a in 0..4 {
@@ -277,8 +279,10 @@ fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) {
             }
             let mut out = [[0.0; LANES]; 9];
             for l in 0..LANES {
-                let x = strained::<FMA>(gradient::<FMA>(&d, &block.grads, l));
-                let p = x.dilated_stress::<FMA>(block.weight[l], mu, shared[0][l], shared[1][l]);
+                let h = gradient::<FMA>(&d, &block.grads, l);
+                let (x, w) = (Invariants::of::<FMA>(&h), block.weight[l]);
+                let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
+                let p = piola::<FMA>(&h, pressed::<FMA>(isochoric, x.trace, shared[0][l], w * shared[1][l]));
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
             scatter::<FMA>(block, &out, f);
