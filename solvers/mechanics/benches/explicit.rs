@@ -7,13 +7,16 @@
 //! |---|---|---|---|---|
 //! | tet4 | 88 (9 gradients, weight, 4 short nodes) | 190 | 4.4 ns | 4.8 ns |
 //! | tet4 nodal dilation | 176 (two passes) | 390 | 8.8 ns | 9.8 ns |
-//! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2000 | 33 ns | 50 ns |
-//! | hex8 mean dilation | 656 (second pass from cache) | 3300 | 33 ns | 83 ns |
+//! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2200 | 33 ns | 55 ns |
+//! | hex8 mean dilation | 656 (one pass) | 2600 | 33 ns | 65 ns |
 //! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 870 | 40 ns | 22 ns |
 //!
 //! What each kernel waits for, from its measured distance to these bounds: tet4 for the gather and scatter of 16 nodes'
-//! quads per lane pair (12 ns, 2.5 times the arithmetic); hex8 for arithmetic and the traffic of its 36 accumulators
-//! with the first-level cache (88 ns, 1.8 times; 148 out of cache); EFG for loads, eight per neighbour (63 ns in cache, 87 out of it).
+//! quads per lane pair (12 ns, 2.5 times the arithmetic); hex8 for products, of which 1000 vectors of eight elements (mean
+//! dilation 1245) at one per cycle of 3.7 GHz are 34 ns (42), for the gather and scatter of its nodes, sums and
+//! differences (15 ns), and outside the kernel for copies of nodes and their sums (8 ns): kernel alone 57 ns (67), whole
+//! evaluation 65 (74), beside busy neighbours the least of 20 samples; out of cache for memory, 130 (130); EFG for loads,
+//! eight per neighbour (63 ns in cache, 87 out of it).
 //! Not covered: quadratic elements (they take the EFG kernel), laws other than neo-Hookean and nodal dilation of EFG
 //! rows (both take the plain loop).
 

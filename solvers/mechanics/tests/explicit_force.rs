@@ -196,10 +196,19 @@ fn bits_do_not_depend_on_threads() {
 
 #[test]
 fn a_point_inside_out_is_named() {
-    let block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    for kind in [CellKind::Tet4, CellKind::Hex8] {
+        let block = Block::new(kind, [5, 4, 3]);
+        let mean = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
+        for groups in [None, Some(&mean)] {
+            inside_out(&block, groups);
+        }
+    }
+}
+
+fn inside_out(block: &Block, groups: Option<&DilationGroups>) {
     let laws = laws();
-    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
-    let mut u = deformed(&block, 0.1);
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups };
+    let mut u = deformed(block, 0.1);
     let node = block.volume.row(57).0[2] as usize;
     u[node] += Vector3::new(0.05, 0.02, 0.01);
     let mut f = vec![Vector3::zeros(); u.len()];
