@@ -2,7 +2,7 @@
 //!
 //! Three passes over the eight points: `H` with its invariants, the law, the stress carried back. In one pass a point is a
 //! chain of some 150 cycles that fills the window of the processor; apart, points overlap, and with one dilation per
-//! element the second half finds `H` where the first left it (together 0.73 and 0.60 of the time).
+//! element the second half finds `H` where the first left it (together 0.70 and 0.57 of the time).
 //!
 //! Every loop over lanes stands in a function of its own: arrays that come in by reference are known not to overlap, and
 //! without that knowledge a loop of eight stays scalar, at three times the time.
