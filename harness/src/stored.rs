@@ -1,6 +1,7 @@
 //! A reference in a file: what several fine solutions of one scene agree on, and how far they differ. It is made once by
 //! `tissuebench reference`, takes too long to be made at every run, and is compared with by `[reference] record`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use cases::scene::{Body, ErrorKind, Scene};
@@ -20,8 +21,8 @@ use crate::run::Reference;
 pub struct Stored {
     /// The scene it was made from.
     pub case: String,
-    /// BLAKE3 of that scene's text.
-    pub scene: String,
+    /// BLAKE3 of that scene without its title, source and methods: what the solutions are solutions of.
+    pub problem: String,
     /// Version and commit of the program that made it.
     pub program: String,
     /// Compiler and instruction sets: they change the last bits.
@@ -50,6 +51,31 @@ pub struct Source {
     pub method: String,
     /// Nodes.
     pub nodes: usize,
+    /// Its table in the scene, as TOML.
+    pub table: String,
+}
+
+/// What a scene asks, and the tables of its methods that may answer.
+struct Asked {
+    problem: String,
+    /// By id.
+    methods: BTreeMap<String, String>,
+}
+
+impl Asked {
+    /// `text` is that of a scene that has been read.
+    fn of(text: &str) -> Asked {
+        let mut table: toml::Table = text.parse().expect("a scene is TOML");
+        let mut methods = BTreeMap::new();
+        if let Some(toml::Value::Array(tables)) = table.remove("method") {
+            for table in tables {
+                let id = table.get("id").and_then(toml::Value::as_str).unwrap_or_default().to_string();
+                methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
+            }
+        }
+        ["title", "source"].map(|words| table.remove(words));
+        Asked { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
+    }
 }
 
 /// The end of a load step.
@@ -114,13 +140,18 @@ impl Stored {
             probe_band: 0.0,
         };
         let displacement = points.iter().zip(&solution.targets);
-        let provenance = provenance::provenance(&[(case_name(scene), text.into())], 0);
+        let provenance = provenance::provenance(&[], 0);
+        let Asked { problem, methods } = Asked::of(text);
         Ok(Stored {
             case: case_name(scene),
-            scene: provenance.scenes[0].blake3.clone(),
+            problem,
             program: format!("tissuebench {} ({})", provenance.version, provenance.commit),
             made_on: format!("{}; {}", provenance.rustc, provenance.features),
-            source: Source { method: solution.method.clone(), nodes: solution.nodes },
+            source: Source {
+                method: solution.method.clone(),
+                nodes: solution.nodes,
+                table: methods[method].clone(),
+            },
             beside: Vec::new(),
             probes: scene.output.probes.clone(),
             steps: solution.steps.iter().map(step).collect(),
@@ -137,15 +168,22 @@ impl Stored {
         self.beside.iter().chain([&self.source]).map(|s| s.method.as_str())
     }
 
-    /// Says what differs if this is not of the same scene and points.
+    /// Says what differs if this is not of the same problem and points, or by methods that the scene has in another form.
     pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
-        let Source { method, nodes } = &self.source;
-        let of = |what| Err(format!("{method} on {nodes} nodes is of {what}"));
-        if self.scene != provenance::hash(text) {
-            return of("another scene, or another text of it");
+        let Source { method, nodes, .. } = &self.source;
+        let asked = Asked::of(text);
+        if self.problem != asked.problem {
+            return Err(format!("{method} on {nodes} nodes is of another scene, or another text of it"));
+        }
+        for Source { method, nodes, table } in self.beside.iter().chain([&self.source]) {
+            if asked.methods.get(method) != Some(table) {
+                return Err(format!(
+                    "{method} on {nodes} nodes is not by the scene's '{method}', but by\n{table}"
+                ));
+            }
         }
         let same = self.points.iter().copied().eq(points.iter().map(|x| <[f64; 3]>::from(x.coords)));
-        if same { Ok(()) } else { of("other points") }
+        if same { Ok(()) } else { Err(format!("{method} on {nodes} nodes is of other points")) }
     }
 
     /// Widens the bands so far that they reach over those of another solution of the same scene at the same points.

@@ -113,9 +113,19 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
         assert!(!std::path::Path::new(&refused).exists());
     };
     fails("hex9", "no method 'hex9'; it has hex8, tet4-nodal, hex20-mixed");
-    write(&dir, "made.toml", &(three.clone() + "# closer\n"));
+    let change = |from: &str, to: &str| {
+        assert!(three.contains(from), "{three}");
+        write(&dir, "made.toml", &three.replace(from, to));
+    };
+    change("steps = 2", "steps = 4");
     fails("hex20-mixed", "part.json: hex8 on ");
     fails("hex20-mixed", " nodes is of another scene, or another text of it");
+    change("element = \"hex8\"", "element = \"hex8\", dilation = \"element-mean\"");
+    fails("hex20-mixed", " nodes is not by the scene's 'hex8', but by\n");
+    // Words and other methods are not what was solved.
+    write(&dir, "made.toml", &(three.replace("title = \"", "title = \"Once more: ") + "# closer\n"));
+    assert_eq!(make(&["tet4-nodal", "hex20-mixed"], &joined, &[&part]).code, 0);
+    assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     write(&dir, "made.toml", &three);
     write(&dir, "part.json", &alone.replace("\"points\":[[0.005,", "\"points\":[[0.006,"));
     fails("hex20-mixed", " nodes is of other points");
