@@ -25,8 +25,10 @@ const RECHECK: usize = 1000;
 /// How explicit dynamics is stepped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplicitParams {
-    /// End, s. Loads and prescribed displacements grow in proportion to time until then.
+    /// End, s.
     pub duration: f64,
+    /// Time over which loads and prescribed displacements grow in proportion to it, s; 0 is at once.
+    pub ramp: f64,
     /// Equal parts of the duration at whose ends the state is recorded.
     pub states: usize,
     /// Mass-proportional damping of body and tools, 1/s.
@@ -75,7 +77,7 @@ fn on_pool(
     let mut force = InternalForce::new(body, LanePath::best())?;
     work.mass_nodes += mass.len() as u64;
 
-    let ramp = |t: f64| (t / params.duration).min(1.0);
+    let ramp = |t: f64| if t < params.ramp { t / params.ramp } else { 1.0 };
     let loads = nodal_forces(rows, &prepared.loads())?;
     let loaded: Vec<usize> = (0..loads.len()).filter(|&i| loads[i] != Vector3::zeros()).collect();
     let mut load = |t: f64, _: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {

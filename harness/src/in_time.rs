@@ -26,6 +26,8 @@ pub struct InTimeParams {
     pub density: Option<Vec<f64>>,
     /// Mass-proportional damping, 1/s.
     pub damping: f64,
+    /// Ramp of loads and prescribed displacements, s; 0 is at once.
+    pub ramp: f64,
     /// Ramp of the tools, s.
     pub over: f64,
     /// Relaxation by region; empty in an elastic body.
@@ -51,16 +53,17 @@ pub fn solve(
         None => None,
     };
     let duration = params.time.end;
+    let linear = if params.ramp > 0.0 { Ramp::Linear { over: params.ramp } } else { Ramp::AtOnce };
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
     let path = with_problem(method, setup, prepared, contact.as_ref(), |body| {
         let problem = TimeProblem {
             body,
             ramps: Ramps {
-                loads: Ramp::Linear { over: duration },
+                loads: linear,
                 // A mass that is led starts from rest.
-                supports: match &mass {
-                    Some(_) => Ramp::Smooth { over: duration },
-                    None => Ramp::Linear { over: duration },
+                supports: match (&mass, linear) {
+                    (Some(_), Ramp::Linear { over }) => Ramp::Smooth { over },
+                    _ => linear,
                 },
                 tools: Ramp::Linear { over: params.over },
             },
@@ -105,6 +108,7 @@ pub fn solve(
     metrics.extend(residual.map(|value| metric("residual", value, "1")));
     if mass.is_some() {
         metrics.push(metric("step-error", largest, "m"));
+        metrics.push(metric("energy-drift", drift(&path.steps), "1"));
     }
     let held: BTreeSet<(u32, u8)> = prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
     Ok(Motion {
@@ -117,6 +121,19 @@ pub fn solve(
         metrics,
         failure: path.failure.map(Failure::from),
     })
+}
+
+/// Largest energy that the balance lacks or has too much, over the largest of its terms so far.
+fn drift(steps: &[TimeStep]) -> f64 {
+    let (mut drift, mut scale) = (0.0f64, 0.0f64);
+    for TimeStep { energy, .. } in steps {
+        let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];
+        scale = terms.iter().fold(scale, |scale, term| scale.max(term.abs()));
+        if scale > 0.0 {
+            drift = drift.max(energy.lost().abs() / scale);
+        }
+    }
+    drift
 }
 
 fn told(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {

@@ -41,6 +41,7 @@ pub mod task;
 pub mod timing;
 pub mod tools;
 pub mod transfer;
+mod way;
 pub mod work;
 
 pub use error::Failure;

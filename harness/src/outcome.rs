@@ -126,6 +126,11 @@ pub struct LoadStep {
 }
 
 impl LoadStep {
+    /// Time in dynamics, s.
+    pub fn time(&self) -> Option<f64> {
+        self.more.iter().find(|m| m.name == "time").map(|m| m.value)
+    }
+
     /// Before anything acts.
     pub(crate) fn at_start(tools: usize) -> LoadStep {
         LoadStep {

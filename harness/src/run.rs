@@ -21,6 +21,7 @@ use crate::setup::Setup;
 use crate::statics::{self, Path};
 use crate::timing::Timings;
 use crate::transfer::transfers;
+use crate::way;
 use crate::work::Work;
 
 /// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
@@ -152,7 +153,13 @@ pub fn run(
         .and_then(|path| path.failure.clone().map(Failure::from));
     let (last, steps, stalled) = match (solution.path, solution.motion) {
         (Some(path), _) => history(&mut metrics, method, &prepared, path.into(), asks)?,
-        (None, Some(motion)) => history(&mut metrics, method, &prepared, motion.into(), asks)?,
+        (None, Some(motion)) => {
+            let told = history(&mut metrics, method, &prepared, motion.into(), asks)?;
+            if told.2.is_none() {
+                metrics.extend(way::metrics(&told.1, setup.exact.as_deref(), asks.probes));
+            }
+            told
+        }
         (None, None) => (None, Vec::new(), None),
     };
     let status = match (&stalled, &relaxed_from) {

@@ -147,6 +147,7 @@ impl Scenario<'_> {
             std::iter::once(&self.scene.material).chain(self.scene.regions.iter().map(|r| &r.material));
         Some(ExplicitParams {
             duration,
+            ramp: procedure.over.unwrap_or(duration),
             states: procedure.steps,
             damping: procedure.damping,
             safety: asked.safety,
@@ -191,6 +192,7 @@ impl Scenario<'_> {
             },
             density: asked.inertia.then(|| materials.map(|m| m.density().unwrap_or(f64::NAN)).collect()),
             damping: procedure.damping,
+            ramp: procedure.over.unwrap_or(end),
             over: self.scene.tools.first().and_then(|t| t.over).unwrap_or(end),
             relaxation: relaxation.collect::<Result<_, _>>()?,
         }))
@@ -406,14 +408,15 @@ impl Scenario<'_> {
         Ok(Setup { laws, materials, held, loads, tools, statics, relax, explicit, in_time, exact })
     }
 
-    /// The scene's exact solution for this run's material; `None` where the scene names none.
+    /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene
+    /// names none.
     fn exact(&self, e: LinearElastic) -> Result<Option<Box<dyn Exact>>, Failure> {
         let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
         let values = parameters.clone();
         let params = Params { young: e.young(), poisson: e.poisson(), values };
-        exact_by_name(name, &params)
-            .map(Some)
-            .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))
+        let exact = exact_by_name(name, &params)
+            .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))?;
+        Ok(Some(self.scene.procedure.duration.and_then(|end| exact.at(end)).unwrap_or(exact)))
     }
 }
 

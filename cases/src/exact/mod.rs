@@ -4,10 +4,13 @@
 //! by its own constructor or by name with a list of parameters ([`exact_by_name`]). Stresses follow from the
 //! gradients by Hooke's law written out here, so that a solver's material never judges itself.
 //!
-//! Beside them stand large strains ([`Homogeneous`], [`FiniteBending`], of the laws in [`Hyperelastic`]) and contact
-//! ([`Hertz`]).
+//! A solution may move ([`BarWave`]) or relax ([`RelaxingCompression`]): it is a field at one time and gives that at any other.
+//!
+//! Beside them stand large strains ([`Homogeneous`], [`FiniteBending`], of the laws in [`Hyperelastic`]), contact
+//! ([`Hertz`]) and a period ([`VibratingCantilever`]).
 
 mod affine;
+mod bar_wave;
 mod cantilever;
 mod elastic;
 mod finite_bending;
@@ -18,12 +21,15 @@ mod params;
 mod polylog;
 mod pure_bending;
 mod quadratic_patch;
+mod relaxing_compression;
 mod rigid;
 mod saint_venant;
 mod thick_sphere;
 mod uniaxial_compression;
+mod vibrating_cantilever;
 
 pub use affine::Affine;
+pub use bar_wave::BarWave;
 pub use cantilever::CantileverPlaneStrain;
 pub use elastic::Elastic;
 pub use finite_bending::FiniteBending;
@@ -33,10 +39,12 @@ pub use hyperelastic::Hyperelastic;
 pub use params::{ExactError, Parameter, Params};
 pub use pure_bending::PureBending;
 pub use quadratic_patch::QuadraticPatch;
+pub use relaxing_compression::RelaxingCompression;
 pub use rigid::Rigid;
 pub use saint_venant::SaintVenantFlexure;
 pub use thick_sphere::ThickSphere;
 pub use uniaxial_compression::UniaxialCompression;
+pub use vibrating_cantilever::VibratingCantilever;
 
 use crate::names::nearest;
 use params::Values;
@@ -64,7 +72,7 @@ pub trait Exact: Send + Sync {
         self.elastic().stress(&self.gradient(x))
     }
 
-    /// Body force `b = -div sigma`, N/m^3; none unless a solution needs one.
+    /// Body force `b = -div sigma`, N/m^3; none unless a solution needs one. Of a motion it is that of inertia, `-rho u''`.
     fn body_force(&self, _x: &Point3) -> Vector3 {
         Vector3::zeros()
     }
@@ -73,12 +81,17 @@ pub trait Exact: Send + Sync {
     fn traction(&self, x: &Point3, normal: &Vector3) -> Vector3 {
         self.stress(x) * normal
     }
+
+    /// The field at another time (s) since its start, for a solution that moves or relaxes; one made by name is at time 0.
+    fn at(&self, _time: f64) -> Option<Box<dyn Exact>> {
+        None
+    }
 }
 
 type Build = fn(Elastic, &Values) -> Result<Box<dyn Exact>, ExactError>;
 
 /// Name, parameters and constructor of every solution.
-const SOLUTIONS: [(&str, &[Parameter], Build); 8] = [
+const SOLUTIONS: [(&str, &[Parameter], Build); 10] = [
     ("affine", affine::PARAMETERS, affine::build),
     ("quadratic-patch", quadratic_patch::PARAMETERS, quadratic_patch::build),
     ("pure-bending", pure_bending::PARAMETERS, pure_bending::build),
@@ -87,6 +100,8 @@ const SOLUTIONS: [(&str, &[Parameter], Build); 8] = [
     ("uniaxial-compression", uniaxial_compression::PARAMETERS, uniaxial_compression::build),
     ("thick-sphere", thick_sphere::PARAMETERS, thick_sphere::build),
     ("rigid", rigid::PARAMETERS, rigid::build),
+    ("bar-wave", bar_wave::PARAMETERS, bar_wave::build),
+    ("relaxing-compression", relaxing_compression::PARAMETERS, relaxing_compression::build),
 ];
 
 fn entry(name: &str) -> Result<&'static (&'static str, &'static [Parameter], Build), ExactError> {

@@ -1,7 +1,7 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
 use super::error::Problem;
-use super::field::VectorField;
+use super::field::{Prescribed, ScalarField, VectorField};
 use super::method::{Dilation, Element, Family};
 use super::model::{LoadKind, Material, Relaxation, Scene};
 use super::output::Reference;
@@ -29,6 +29,13 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             let help =
                 format!("the {} law needs its mass in dynamics: density = \"1000 kg/m^3\"", material.name());
             report.missing(&format!("{key}.density"), &help);
+        }
+        let moves = |p: &Prescribed| !matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
+        let led = scene.supports.iter().position(|s| s.motion.iter().flatten().any(moves));
+        if let (Some(i), false, Some(0.0)) = (led, massless, scene.procedure.over) {
+            let help = "a mass can't jump: give the time it takes";
+            let problem = format!("is no time for support[{i}] to move in");
+            report.add("procedure.over", Problem::new(problem).help(help));
         }
     }
 }

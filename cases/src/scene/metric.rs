@@ -45,6 +45,10 @@ pub enum Needs {
     ToolReference,
     /// Probes, and a method as `[reference]`.
     ProbesReference,
+    /// Dynamics with probes.
+    Motion,
+    /// Dynamics with probes, and an exact solution that moves.
+    Exact,
 }
 
 const fn metric(name: &'static str, dimension: Dimension, needs: Needs, meaning: &'static str) -> Metric {
@@ -85,6 +89,18 @@ impl Metric {
         metric("stress", Dimension::None, Needs::Reference, "relative L2 error of the stress"),
         metric("pressure", Dimension::None, Needs::Reference, "relative L2 error of the pressure"),
         metric("probe-error", Dimension::None, Needs::Probes, "largest relative error at the probes"),
+        metric(
+            "history-error",
+            Dimension::None,
+            Needs::Exact,
+            "largest error at the probes in all recorded states, over the largest exact displacement there",
+        ),
+        metric(
+            "period",
+            Dimension::Time,
+            Needs::Motion,
+            "mean period of the first probe: between its passages upwards through the middle of its recorded way",
+        ),
         metric("tip", Dimension::None, Needs::Probes, "computed over exact displacement at the first probe"),
         metric("order-l2", Dimension::None, Needs::Levels, "observed order of the L2 error"),
         metric("order-energy", Dimension::None, Needs::Levels, "observed order of the energy error"),
@@ -119,8 +135,8 @@ impl Metric {
         metric(
             "energy-drift",
             Dimension::None,
-            Needs::Explicit,
-            "largest error of the energy balance over its largest term",
+            Needs::Dynamics,
+            "largest error of the energy balance over its largest term; with implicit steps what the scheme dissipates",
         ),
         metric("max-x", Dimension::Length, Needs::Run, "largest displacement along x, either way"),
         metric("max-y", Dimension::Length, Needs::Run, "largest displacement along y, either way"),

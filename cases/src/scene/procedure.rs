@@ -42,7 +42,7 @@ pub enum OnStall {
 }
 
 /// How the scene is stepped. In a static procedure loads, prescribed displacements and drives of tools grow in proportion
-/// over its steps, in dynamics over its duration (a tool may have a ramp of its own); loads are dead loads, per undeformed
+/// over its steps, in dynamics over its duration or a time of their own, and a tool over that of its drive; loads are dead loads, per undeformed
 /// area and volume and of fixed direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
@@ -53,6 +53,9 @@ pub struct Procedure {
     pub steps: usize,
     /// End of the time axis in seconds (dynamics).
     pub duration: Option<f64>,
+    /// Time in seconds over which loads and supports grow before they are held (dynamics); 0 is at once, and the file that says
+    /// nothing means the duration.
+    pub over: Option<f64>,
     /// How a step is solved (static procedure, implicit dynamics).
     pub newton: Newton,
     /// What follows where a static path finds no equilibrium.

@@ -56,8 +56,17 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
         Some(Reference::Exact { name, parameters }) => {
             if let Some(e) = scene.material.elastic() {
                 let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
-                if let Err(bad) = exact_by_name(name, &params) {
-                    report.add("reference", Problem::new(format!("can't be built: {bad}")));
+                match exact_by_name(name, &params) {
+                    Err(bad) => report.add("reference", Problem::new(format!("can't be built: {bad}"))),
+                    Ok(exact) if exact.at(0.0).is_some() && scene.procedure.duration.is_none() => {
+                        let problem = format!(
+                            "moves in time, which a {} procedure has not",
+                            scene.procedure.kind.name()
+                        );
+                        let help = "take kind = \"explicit\" or \"implicit-dynamic\", or a solution at rest";
+                        report.add("reference.exact", Problem::new(problem).found(name).help(help));
+                    }
+                    Ok(_) => {}
                 }
             }
         }
@@ -88,6 +97,18 @@ fn targets(scene: &Scene, report: &mut Report) {
     }
 }
 
+/// Whether the procedure has a time axis.
+fn in_time(scene: &Scene) -> bool {
+    matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic)
+}
+
+/// Whether probes can be compared with an exact solution on their way.
+fn moves(scene: &Scene) -> bool {
+    in_time(scene)
+        && !scene.output.probes.is_empty()
+        && matches!(scene.reference, Some(Reference::Exact { .. }))
+}
+
 /// Whether the reference is a solution, run or stored.
 fn is_solved(scene: &Scene) -> bool {
     matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)))
@@ -105,9 +126,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear) => {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
-        Needs::Dynamics
-            if !matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic) =>
-        {
+        Needs::Dynamics if !in_time(scene) => {
             "needs [procedure] kind = \"explicit\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Explicit if scene.procedure.kind != ProcedureKind::Explicit => {
@@ -124,6 +143,12 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         }
         Needs::ProbesReference if scene.output.probes.is_empty() || !solved => {
             "needs output.probes and [reference] method or record in the scene"
+        }
+        Needs::Exact if !moves(scene) => {
+            "needs output.probes and dynamics with [reference] exact = \"...\" in the scene"
+        }
+        Needs::Motion if !in_time(scene) || scene.output.probes.is_empty() => {
+            "needs output.probes and dynamics in the scene"
         }
         Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",
         _ => return,

@@ -25,6 +25,7 @@ fn a_scene_arrives_in_si() {
             kind: ProcedureKind::Linear,
             steps: 10,
             duration: None,
+            over: None,
             newton: Newton::STANDARD,
             damping: 0.0,
             explicit: Explicit::STANDARD,
@@ -277,6 +278,7 @@ fn a_static_scene_runs_with_everything_it_knows() {
             kind: ProcedureKind::Static,
             steps: 5,
             duration: None,
+            over: None,
             newton,
             damping: 0.0,
             explicit,
@@ -337,6 +339,7 @@ fn contradictions_of_a_static_scene_name_their_key() {
         ("steps = 10", "steps = 10\ntolerance = 1", "procedure.tolerance", "is no tolerance"),
         ("steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"),
         ("steps = 10", "steps = 10\nduration = \"1 s\"", "procedure.duration", "has nothing to last"),
+        ("steps = 10", "steps = 10\nover = \"1 s\"", "procedure.over", "goes with kind = \"explicit\" or"),
         (
             "poisson = 0.45\n",
             "poisson = 0.45\nprony = [{ g = 0.3, tau = \"1 s\" }]\n",
@@ -461,4 +464,37 @@ fn the_schema_knows_every_key_of_the_outline() {
     }
     assert_eq!(schema["additionalProperties"], false);
     assert!(study_schema()["properties"]["run"].is_object());
+}
+
+#[test]
+fn what_moves_needs_time() {
+    let start = SCENE.find("[reference]").expect("there");
+    let checks = "[[check]]\nmetric = \"history-error\"\nat_most = 0.01\n[[check]]\nmetric = \"period\"\nat_most = \"1 s\"\n";
+    let wave = "[reference]\nexact = \"bar-wave\"\npull = \"1 kPa\"\nlength = \"40 mm\"\ndensity = \"1000 kg/m^3\"\n";
+    let regional = "poisson = 0.3 }";
+    let text = format!("{}{wave}{checks}", &SCENE[..start])
+        .replacen(regional, "poisson = 0.3, density = \"1000 kg/m^3\" }", 1)
+        .replacen("kind = \"linear\"", "kind = \"explicit\"\nduration = \"1 s\"\nover = \"0.1 s\"", 1);
+    let scene = parse(&text, "s.toml").unwrap();
+    assert_eq!(scene.procedure.over, Some(0.1));
+    let at_once = "over = \"0 s\"";
+    for (from, to, key, said) in [
+        ("over = \"0.1 s\"", at_once, "procedure.over", "is no time for support[1] to move in"),
+        ("over = \"0.1 s\"", "over = \"-1 s\"", "procedure.over", "is negative"),
+        (
+            "kind = \"explicit\"\nduration = \"1 s\"\nover = \"0.1 s\"",
+            "kind = \"static\"",
+            "reference.exact",
+            "'bar-wave' moves in time, which a static procedure has not",
+        ),
+        (wave, "", "check[0].metric", "'history-error' needs output.probes and dynamics"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let errors = parse(&text.replacen(from, to, 1), "s.toml").expect_err(to);
+        let found = errors.iter().find(|e| e.key == key).unwrap_or_else(|| panic!("{key}: {errors:?}"));
+        assert!(found.to_string().contains(said), "{found}");
+    }
+    let held =
+        text.replacen("move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }", "fix = \"x\"", 1);
+    assert!(parse(&held.replacen("over = \"0.1 s\"", at_once, 1), "s.toml").is_ok());
 }

@@ -1,4 +1,4 @@
-//! Implicit dynamics against closed forms: one degree of freedom, a bar, a cantilever.
+//! Implicit dynamics against closed forms: one degree of freedom, a bar.
 
 mod implicit_common;
 
@@ -118,73 +118,4 @@ fn a_bar_vibrates_in_its_discrete_mode() {
     })
     .unwrap();
     assert_eq!((step, path.cut_back, path.failure), (40, 0, None));
-}
-
-/// First bending frequency of a cantilever, from the zeros of its end's motion; the trapezoidal rule's own error is
-/// taken out by `omega = 2 / dt tan(omega_h dt / 2)`.
-fn cantilever(kind: CellKind, cells: usize) -> f64 {
-    let (length, side) = (0.2, 0.01);
-    let beam = Cuboid::new(kind, [length, side, side], [cells, 1, 1]);
-    let laws = linear(20e3, 0.0);
-    let fixed = beam.held(|x, _| (x.x == 0.0).then_some(0.0));
-    let body = beam.body(&laws, &fixed);
-    let mass = beam.consistent(DENSITY);
-    // Euler and Bernoulli's mode as velocity at the start.
-    let b = ROOT / length;
-    let s = (ROOT.cosh() + ROOT.cos()) / (ROOT.sinh() + ROOT.sin());
-    let mode = beam.field(|x| {
-        let z = b * x.x;
-        Vector3::new(0.0, 1e-3 * (z.cosh() - z.cos() - s * (z.sinh() - z.sin())), 0.0)
-    });
-    let problem = moving(&body, &mass, &[], &mode);
-    let dt = 2.0 * std::f64::consts::PI / bernoulli() / 60.0;
-    let end = beam.nodes().iter().position(|x| x.x == length && x.y == 0.0 && x.z == 0.0).unwrap();
-    let mut heights = vec![0.0];
-    solve_in_time(&problem, &params(100.0 * dt, 100, 1.0), |_, motion, _| heights.push(motion.u[end].y))
-        .unwrap();
-    let zeros: Vec<f64> = (1..heights.len() - 1)
-        .filter(|&n| heights[n] * heights[n + 1] < 0.0)
-        .map(|n| n as f64 + heights[n] / (heights[n] - heights[n + 1]))
-        .collect();
-    assert_eq!(zeros.len(), 3, "{zeros:?}");
-    2.0 / dt * (0.5 * std::f64::consts::PI / (zeros[2] / 3.0)).tan()
-}
-
-/// First root of `cos x cosh x = -1`.
-const ROOT: f64 = 1.875_104_068_711_961;
-
-/// Of a square section: `ROOT^2 / L^2 sqrt(E I / (rho A))`.
-fn bernoulli() -> f64 {
-    (ROOT / 0.2f64).powi(2) * (20e3 * 0.01f64.powi(2) / 12.0 / DENSITY).sqrt()
-}
-
-/// Timoshenko's beam, shear factor 5/6: the root of the determinant of the boundary conditions (Huang, J. Appl. Mech.
-/// 28 (1961) 579-584) near Euler and Bernoulli's.
-fn timoshenko() -> f64 {
-    let slender = 0.01f64.powi(2) / 12.0 / 0.2f64.powi(2);
-    let shear = slender * 2.0 / (5.0 / 6.0);
-    let equation = |b: f64| {
-        let root = ((slender - shear).powi(2) + 4.0 / (b * b)).sqrt();
-        let (alpha, beta) =
-            ((0.5 * (root - slender - shear)).sqrt(), (0.5 * (root + slender + shear)).sqrt());
-        let sum = b * b * (slender - shear).powi(2) + 2.0;
-        let both = b * (slender + shear) / (1.0 - b * b * slender * shear).sqrt();
-        2.0 + sum * (b * alpha).cosh() * (b * beta).cos() - both * (b * alpha).sinh() * (b * beta).sin()
-    };
-    let (mut low, mut high) = (0.9 * ROOT * ROOT, 1.1 * ROOT * ROOT);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if equation(low) * equation(middle) <= 0.0 { high = middle } else { low = middle }
-    }
-    bernoulli() * 0.5 * (low + high) / (ROOT * ROOT)
-}
-
-#[test]
-fn a_slender_cantilever_has_timoshenkos_frequency() {
-    let exact = timoshenko();
-    assert!(exact < bernoulli() && exact > 0.99 * bernoulli());
-    for (kind, coarse, fine) in [(CellKind::Hex20, 3, 6), (CellKind::Tet10, 5, 10)] {
-        let errors = [cantilever(kind, coarse), cantilever(kind, fine)].map(|w| w / exact - 1.0);
-        assert!(errors[1].abs() < 0.01 && errors[1].abs() < 0.6 * errors[0].abs(), "{kind:?}: {errors:?}");
-    }
 }

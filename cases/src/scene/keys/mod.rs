@@ -166,6 +166,8 @@ pub(crate) struct ProcedureKeys {
     pub on_stall: Option<OnStall>,
     /// End of the time axis
     pub duration: Option<Q<Time>>,
+    /// Time over which loads and supports grow in dynamics, and are then held; the duration unless given, "0 s" is at once
+    pub over: Option<Q<Time>>,
     /// Mass-proportional damping in dynamics, of the tools too where they have a mass (explicit); none unless given
     pub damping: Option<Q<Rate>>,
     /// Whether mass acts in implicit dynamics; true unless given, false for a quasi-static motion of tissue that relaxes

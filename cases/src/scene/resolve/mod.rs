@@ -140,6 +140,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
             kind,
             steps: 1,
             duration: None,
+            over: None,
             newton,
             on_stall,
             damping: 0.0,
@@ -166,6 +167,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
         ("augmentations", keys.augmentations.is_some(), newtons),
         ("on-stall", keys.on_stall.is_some(), &[OfStatic]),
         ("damping", keys.damping.is_some(), dynamics),
+        ("over", keys.over.is_some(), dynamics),
         ("inertia", keys.inertia.is_some(), &[OfImplicit]),
         ("spectral-radius", keys.spectral_radius.is_some(), &[OfImplicit]),
         ("accuracy", keys.accuracy.is_some(), &[OfImplicit]),
@@ -182,6 +184,9 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
         report.add(&format!("procedure.{name}"), problem);
     }
     let damping = keys.damping.map_or(0.0, |q| q.0);
+    let over = keys.over.map(|q| q.0);
+    let sound = over.is_none_or(|t| t >= 0.0);
+    report.require(sound, "procedure.over", "is negative", "give \"0 s\" for at once, or leave it out");
     let explicit = Explicit {
         safety: keys.safety.unwrap_or(standard.safety),
         step: keys.step.map(|q| positive(q.0, "procedure.step", report)),
@@ -196,7 +201,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
     let newton = Newton { tolerance, iterations, augmentations };
     let on_stall = keys.on_stall.unwrap_or_default();
     let (kind, steps) = (keys.kind, steps as usize);
-    Procedure { kind, steps, duration, newton, on_stall, damping, explicit, implicit }
+    Procedure { kind, steps, duration, over, newton, on_stall, damping, explicit, implicit }
 }
 
 fn implicit(keys: &ProcedureKeys, tools: bool, report: &mut Report) -> Implicit {

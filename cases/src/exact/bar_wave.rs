@@ -1,0 +1,134 @@
+//! A bar pulled at its end: d'Alembert's waves between a fixed and a free end.
+//!
+//! ```text
+//! Source      d'Alembert's solution of the wave equation (Graff, Wave Motion in Elastic Solids, 1975, ch. 2.1 and 2.4): of
+//!             the wave that the pull sends out, a fixed end returns the opposite, a free end the same.
+//!
+//!   |//+--------------------------------+
+//!   +//|                                | ==> p(t)      p = p0 t / T until T, then p0; at once with T = 0
+//!    //+--------------------------------+
+//!      x = 0                          x = L             sides on frictionless walls
+//!
+//! Field       c^2 = M / rho,  M = lambda + 2 mu,  s = L - x,  Q(t) = integral_0^t p,
+//!             u_x = c / M sum_n (-1)^n (Q(t - (2 n L + s) / c) - Q(t - (2 (n + 1) L - s) / c)),  u_y = u_z = 0.
+//! Conditions  from rest; u_x = 0 on x = 0, traction p on x = L, no shear and no motion across the sides.
+//! Must hold   rho u'' = div sigma between the fronts. Pulled at once the end goes straight from 0 to twice the static
+//!             p0 L / M and back, in periods of 4 L / c.
+//! ```
+
+use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+
+/// Longitudinal waves in a bar without lateral motion, from its end at `x = L`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BarWave {
+    elastic: Elastic,
+    pull: f64,
+    length: f64,
+    density: f64,
+    over: f64,
+    time: f64,
+}
+
+/// What of the pull a sum over the waves is made of.
+#[derive(Clone, Copy)]
+enum Of {
+    Integral,
+    Value,
+    Rate,
+}
+
+impl BarWave {
+    /// Pull `p0` (Pa) that grows over `over` (s, 0 for at once), length (m) and density (kg/m^3), both above zero; at time 0.
+    pub fn new(
+        elastic: Elastic,
+        pull: f64,
+        [length, density]: [f64; 2],
+        over: f64,
+    ) -> Result<BarWave, ExactError> {
+        for (name, value) in [("length", length), ("density", density)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let need = "above zero".into();
+                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+            }
+        }
+        if !(over >= 0.0) {
+            let need = "zero or above".into();
+            return Err(ExactError::BadParameter { solution: NAME, name: "over", value: over, need });
+        }
+        Ok(BarWave { elastic, pull, length, density, over, time: 0.0 })
+    }
+
+    fn modulus(&self) -> f64 {
+        self.elastic.lambda() + 2.0 * self.elastic.mu()
+    }
+
+    /// Speed of the waves `c`, m/s.
+    pub fn speed(&self) -> f64 {
+        (self.modulus() / self.density).sqrt()
+    }
+
+    /// `p` at a time, its integral since 0 or its rate.
+    fn pulled(&self, of: Of, t: f64) -> f64 {
+        let part = match of {
+            _ if t <= 0.0 => 0.0,
+            Of::Integral if t < self.over => 0.5 * t * t / self.over,
+            Of::Value if t < self.over => t / self.over,
+            Of::Rate if t < self.over => 1.0 / self.over,
+            Of::Integral => t - 0.5 * self.over,
+            Of::Value => 1.0,
+            Of::Rate => 0.0,
+        };
+        self.pull * part
+    }
+
+    /// `sum_n (-1)^n (f(t - (2 n L + s) / c) + sign f(t - (2 (n + 1) L - s) / c))`, `f` of the pull (Pa).
+    fn waves(&self, of: Of, x: f64, sign: f64) -> f64 {
+        let (c, from_end) = (self.speed(), self.length - x);
+        let passages = (0.5 * self.time * c / self.length).ceil() as usize;
+        let wave = |n: usize| {
+            let far = 2.0 * n as f64 * self.length;
+            let out = self.pulled(of, self.time - (far + from_end) / c);
+            let back = self.pulled(of, self.time - (far + 2.0 * self.length - from_end) / c);
+            (if n.is_multiple_of(2) { 1.0 } else { -1.0 }) * (out + sign * back)
+        };
+        (0..=passages).map(wave).sum()
+    }
+}
+
+impl Exact for BarWave {
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    fn displacement(&self, p: &Point3) -> Vector3 {
+        Vector3::new(self.speed() / self.modulus() * self.waves(Of::Integral, p.x, -1.0), 0.0, 0.0)
+    }
+
+    fn gradient(&self, p: &Point3) -> Matrix3 {
+        let mut h = Matrix3::zeros();
+        h[(0, 0)] = self.waves(Of::Value, p.x, 1.0) / self.modulus();
+        h
+    }
+
+    fn body_force(&self, p: &Point3) -> Vector3 {
+        Vector3::new(-self.waves(Of::Rate, p.x, -1.0) / self.speed(), 0.0, 0.0)
+    }
+
+    fn at(&self, time: f64) -> Option<Box<dyn Exact>> {
+        Some(Box::new(BarWave { time, ..*self }))
+    }
+}
+
+const NAME: &str = "bar-wave";
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::required("pull", "Pa", "traction along x on the end, as large as it becomes"),
+    Parameter::required("length", "m", "length along x, from 0"),
+    Parameter::required("density", "kg/m^3", "mass per volume"),
+    Parameter::optional("over", "s", "time over which the pull grows", 0.0),
+];
+
+pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
+    let [pull, length, density, over] = [0, 1, 2, 3].map(|k| values.at(k));
+    Ok(Box::new(BarWave::new(elastic, pull, [length, density], over)?))
+}

@@ -1,0 +1,108 @@
+//! Free-slip compression of tissue that relaxes: shortened at a constant rate between frictionless plates, then held.
+//!
+//! ```text
+//! Source      Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989), standard solid; the modulus in
+//!             tension by the correspondence principle, 1 / E = 1 / (3 G) + 1 / (9 K) of the transforms.
+//!
+//!   z   ======= plate =======
+//!   |     |           |  ^
+//!   |     |           |  |  h -> h (1 - e(t))   e = e0 t / T until T, then e0; at once with T = 0
+//!   +--   |           |  |
+//!       ======= plate =======                   sides free, plates slip, no inertia
+//!
+//! Material    G(t) = mu (1 - g + g exp(-t / tau)) and K: the shear response relaxes, that of the volume does not.
+//! Field       E(t) = E_inf + (E - E_inf) exp(-t / T'),  E_inf = 9 K G_inf / (3 K + G_inf),
+//!             T' = tau (3 K + mu) / (3 K + G_inf),  sigma_zz = -integral_0^t E(t - s) de(s),
+//!             u = (l x, l y, -e z),  l = e / 2 + sigma_zz / (6 K).
+//! Conditions  as of `uniaxial-compression`, whose state it is at the time 0 of a compression put on at once.
+//! Must hold   homogeneous: exact to what the steps in time leave, of order 2. While held the sides move out to keep free.
+//! ```
+
+use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+
+/// Homogeneous uniaxial stress along z in a linear material whose shear modulus relaxes by one term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelaxingCompression {
+    elastic: Elastic,
+    strain: f64,
+    over: f64,
+    share: f64,
+    tau: f64,
+    time: f64,
+}
+
+impl RelaxingCompression {
+    /// Shortening `strain` per unit height reached after `over` (s, 0 for at once); a share `0 <= g < 1` of the shear modulus
+    /// relaxes with the time `tau` (s, above zero). At time 0.
+    pub fn new(
+        elastic: Elastic,
+        strain: f64,
+        over: f64,
+        [share, tau]: [f64; 2],
+    ) -> Result<RelaxingCompression, ExactError> {
+        for (name, value, sound, need) in [
+            ("over", over, over >= 0.0, "zero or above"),
+            ("share", share, (0.0..1.0).contains(&share), "from 0 to below 1"),
+            ("tau", tau, tau > 0.0, "above zero"),
+        ] {
+            if !sound {
+                return Err(ExactError::BadParameter { solution: NAME, name, value, need: need.into() });
+            }
+        }
+        Ok(RelaxingCompression { elastic, strain, over, share, tau, time: 0.0 })
+    }
+
+    /// `e` and `-sigma_zz` (Pa).
+    fn state(&self) -> (f64, f64) {
+        let (bulk, mu) = (3.0 * self.elastic.bulk(), self.elastic.mu());
+        let relaxed = mu * (1.0 - self.share);
+        let tau = self.tau * (bulk + mu) / (bulk + relaxed);
+        let long = 3.0 * bulk * relaxed / (bulk + relaxed);
+        let falls = self.elastic.young() - long;
+        if self.over == 0.0 {
+            return (self.strain, self.strain * (long + falls * (-self.time / tau).exp()));
+        }
+        let (rate, led) = (self.strain / self.over, self.time.min(self.over));
+        let fading = (-(self.time - led) / tau).exp() - (-self.time / tau).exp();
+        (rate * led, rate * (long * led + falls * tau * fading))
+    }
+}
+
+impl Exact for RelaxingCompression {
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    fn displacement(&self, x: &Point3) -> Vector3 {
+        self.gradient(x) * x.coords
+    }
+
+    fn gradient(&self, _x: &Point3) -> Matrix3 {
+        let (strain, pressed) = self.state();
+        let lateral = 0.5 * strain - pressed / (6.0 * self.elastic.bulk());
+        Matrix3::from_diagonal(&Vector3::new(lateral, lateral, -strain))
+    }
+
+    /// That of its past: Hooke's law of its gradient is another.
+    fn stress(&self, _x: &Point3) -> Matrix3 {
+        Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.state().1))
+    }
+
+    fn at(&self, time: f64) -> Option<Box<dyn Exact>> {
+        Some(Box::new(RelaxingCompression { time, ..*self }))
+    }
+}
+
+const NAME: &str = "relaxing-compression";
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::required("strain", "", "shortening per unit height along z, positive in compression"),
+    Parameter::required("share", "", "share of the shear modulus that relaxes"),
+    Parameter::required("tau", "s", "relaxation time"),
+    Parameter::optional("over", "s", "time over which the shortening grows", 0.0),
+];
+
+pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
+    let [strain, share, tau, over] = [0, 1, 2, 3].map(|k| values.at(k));
+    Ok(Box::new(RelaxingCompression::new(elastic, strain, over, [share, tau])?))
+}

@@ -1,0 +1,75 @@
+//! Probes on their way through a motion: against an exact one, and how fast they swing.
+
+use cases::exact::Exact;
+use geometry::{Point3, Vector3};
+
+use crate::outcome::{LoadStep, Metric};
+
+/// Numbers of the probes' way over all recorded states of a whole motion.
+pub(crate) fn metrics(steps: &[LoadStep], exact: Option<&dyn Exact>, probes: &[Point3]) -> Vec<Metric> {
+    let states: Vec<(f64, &[Vector3])> =
+        steps.iter().filter_map(|step| Some((step.time()?, step.probes.as_slice()))).collect();
+    let first: Vec<(f64, Vector3)> =
+        states.iter().filter_map(|(time, probes)| Some((*time, *probes.first()?))).collect();
+    [("history-error", error(&states, exact, probes), "1"), ("period", period(&first), "s")]
+        .into_iter()
+        .filter_map(|(name, value, unit)| Some(Metric { name: name.into(), value: value?, unit }))
+        .collect()
+}
+
+/// Largest error over the largest exact displacement; `None` without an exact solution that moves.
+fn error(states: &[(f64, &[Vector3])], exact: Option<&dyn Exact>, probes: &[Point3]) -> Option<f64> {
+    let (mut error, mut largest) = (0.0f64, 0.0f64);
+    for (time, found) in states {
+        let exact = exact?.at(*time)?;
+        for (x, u) in probes.iter().zip(*found) {
+            let expected = exact.displacement(x);
+            error = error.max((u - expected).norm());
+            largest = largest.max(expected.norm());
+        }
+    }
+    (largest > 0.0).then(|| error / largest)
+}
+
+/// Mean time between the passages of a point, at rest at time 0, through the middle of its way in the direction of its
+/// largest displacement; `None` with less than two of them. Between two states the way is straight.
+fn period(states: &[(f64, Vector3)]) -> Option<f64> {
+    let farthest = states.iter().map(|s| s.1).max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
+    let way: Vec<(f64, f64)> =
+        std::iter::once((0.0, 0.0)).chain(states.iter().map(|(time, u)| (*time, u.dot(&farthest)))).collect();
+    let (low, high) = way.iter().fold((0.0f64, 0.0f64), |(low, high), (_, s)| (low.min(*s), high.max(*s)));
+    let middle = 0.5 * (low + high);
+    let passages: Vec<f64> = way
+        .windows(2)
+        .filter(|pair| pair[0].1 < middle && pair[1].1 >= middle)
+        .map(|pair| {
+            let ((t, s), (next, after)) = (pair[0], pair[1]);
+            t + (next - t) * (middle - s) / (after - s)
+        })
+        .collect();
+    let (first, last) = (passages.first()?, passages.last()?);
+    (passages.len() > 1).then(|| (last - first) / (passages.len() - 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_period_is_that_of_the_swing() {
+        let swing = |per_period: usize, periods: f64| -> Option<f64> {
+            let states: Vec<(f64, Vector3)> = (1..=(per_period as f64 * periods) as usize)
+                .map(|k| {
+                    let t = 0.3 * k as f64 / per_period as f64;
+                    let angle = 2.0 * std::f64::consts::PI * t / 0.3;
+                    (t, Vector3::new(0.0, -2e-3 * (1.0 - angle.cos()), 1e-3))
+                })
+                .collect();
+            period(&states)
+        };
+        // Of equal steps every passage lies at the same place between two of them.
+        assert!((swing(40, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
+        assert!((swing(37, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
+        assert_eq!((swing(40, 1.2), period(&[])), (None, None));
+    }
+}
