@@ -469,8 +469,8 @@ fn history(
     Ok((Some(last), steps, failure))
 }
 
-/// Errors of one step against the reference's at the same part of the load: of every tool's force, relative, and the
-/// largest of the displacements at the probes.
+/// Errors of one step against the reference's at the same part of the load: of every tool's force and of the strain energy,
+/// relative, and the largest of the displacements at the probes.
 fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
@@ -482,6 +482,9 @@ fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
                 "1",
             );
         }
+    }
+    if let (Some(energy), Some(other)) = (step.strain_energy, reference.strain_energy.filter(|e| *e > 0.0)) {
+        push(&mut metrics, "strain-energy-error", (energy / other - 1.0).abs(), "1");
     }
     let distances = step.probes.iter().zip(&reference.probes).map(|(u, v)| (u - v).norm());
     if let Some(largest) = distances.reduce(f64::max) {

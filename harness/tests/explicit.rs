@@ -144,6 +144,65 @@ fn a_step_too_large_and_an_inversion_are_named_and_exit_with_3() {
     assert!(metric(object, "smallest-j") > 0.0 && metric(object, "max-z") > 0.0);
 }
 
+/// A ball of 5 mm that starts 1 mm above a block and goes down by 10 mm.
+const STRUCK: &str = r#"title = "A ball on a block"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45, density = "1000 kg/m^3" }
+support = [{ where = "z == 0 mm", fix = "xyz" }]
+procedure = { kind = "explicit", duration = "20 ms", steps = 10 }
+tool = [{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 mm", "26 mm"], along = [0, 0, -1], drive = { closure = "10 mm" }, penalty = "1e-4 MPa/mm" }]
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { cells = [8, 8, 4] } },
+    { id = "tet4", family = "fem", element = "tet4", size = { cells = [8, 8, 4] } },
+]
+"#;
+
+#[test]
+fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
+    let (done, told) = run(STRUCK);
+    assert_fails(&done, 3, "contact-lost: ");
+    assert_fails(&done, 3, "key 'tool': ");
+    for object in &told {
+        assert_eq!(object["status"], "contact-lost", "{object}");
+        let message = object["message"].as_str().unwrap();
+        // Half of the ball's radius.
+        assert!(message.contains("(limit 2.5e-3 m, half its inradius)"), "{message}");
+        // Touching at 1 mm or somewhat later, it is so deep from 3.5 mm on where nothing gives way; states are 0.9 mm apart.
+        let (states, closure) = (object["steps"].as_array().unwrap().len(), metric(object, "closure"));
+        assert!(states == 3 && closure > 2.6e-3 && closure < 4.4e-3, "{states}: {closure}");
+        assert!((metric(object, "load-carried") - 0.3).abs() < 1e-12);
+        assert!(metric(object, "tool-force") > 0.0 && metric(object, "penetration") < 2.5e-3);
+    }
+    // Stiff enough, it stays outside to the end.
+    let (done, told) = run(&STRUCK.replace("1e-4 MPa", "1e-1 MPa"));
+    assert_eq!((done.code, &told[0]["status"]), (0, &"ok".into()), "{}", done.stderr);
+
+    // Driven by force, a tool swings on its contact with its own mass.
+    let light = STRUCK
+        .replace("closure = \"10 mm\"", "force = \"2 N\"")
+        .replace("steps = 10", "steps = 10, tool-mass = 1e-6")
+        .replace("1e-4 MPa", "5 MPa");
+    let (done, told) = run(&light);
+    assert_fails(&done, 3, "key 'procedure': ");
+    for object in &told {
+        assert_eq!(object["status"], "contact-lost", "{object}");
+        assert!(object["message"].as_str().unwrap().contains("give it more mass"), "{object}");
+    }
+}
+
+#[test]
+fn what_overflows_is_named_and_exits_with_3() {
+    // Accelerations of 1e200 m/s^2 are numbers; the square of the velocity is none.
+    let text = BLOCK.replace("poisson = 0.3", "poisson = 0.3, density = \"1000 kg/m^3\"");
+    let text = text.replace("1 kPa", "1e200 Pa");
+    let text = format!("{text}procedure = {{ kind = \"explicit\", duration = \"50 ms\", steps = 50 }}\n");
+    let (done, told) = run(&text);
+    assert_fails(&done, 3, "not-finite: ");
+    assert_eq!(told[0]["status"], "not-finite");
+    assert!(told[0]["message"].as_str().unwrap().contains("is not finite"), "{}", told[0]);
+    assert_eq!((metric(&told[0], "load-carried"), metric(&told[0], "max-z")), (0.0, 0.0));
+}
+
 #[test]
 fn bad_explicit_scenes_name_the_key() {
     let good = moving(PRESSED);

@@ -45,6 +45,8 @@ pub enum Needs {
     ToolReference,
     /// Probes, and a method as `[reference]`.
     ProbesReference,
+    /// A static procedure or dynamics, and a method as `[reference]`.
+    StepsReference,
     /// Dynamics with probes.
     Motion,
     /// Dynamics with probes, and an exact solution that moves.
@@ -119,6 +121,12 @@ impl Metric {
             Dimension::None,
             Needs::ToolReference,
             "error of the first tool's force over that of the reference method, at the end",
+        ),
+        metric(
+            "strain-energy-error",
+            Dimension::None,
+            Needs::StepsReference,
+            "error of the strain energy over that of the reference method, at the end",
         ),
         metric("penetration", Dimension::Length, Needs::Tool, "deepest penetration of a tool"),
         metric("load-carried", Dimension::None, Needs::Steps, "part of the loading that was carried, 0 to 1"),

@@ -144,6 +144,12 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::ProbesReference if scene.output.probes.is_empty() || !solved => {
             "needs output.probes and [reference] method or record in the scene"
         }
+        Needs::StepsReference
+            if matches!(scene.procedure.kind, ProcedureKind::Linear)
+                || !matches!(scene.reference, Some(Reference::Method { .. })) =>
+        {
+            "needs [procedure] kind = \"static\" or dynamics, and [reference] method in the scene"
+        }
         Needs::Exact if !moves(scene) => {
             "needs output.probes and dynamics with [reference] exact = \"...\" in the scene"
         }
