@@ -88,7 +88,7 @@ pub fn verdict(check: &Check) -> String {
 
 /// A table of finished runs: sizes, errors, displacement, milliseconds per phase.
 pub fn outcomes(outcomes: &[Outcome]) -> String {
-    let columns: [(&str, &str, f64); 13] = [
+    let columns: [(&str, &str, f64); 16] = [
         ("l2", "L2 [%]", 100.0),
         ("energy", "energy [%]", 100.0),
         ("pressure", "pressure [%]", 100.0),
@@ -97,6 +97,9 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         ("max-y", "max y [mm]", 1e3),
         ("max-z", "max z [mm]", 1e3),
         ("tip", "probe/exact", 1.0),
+        ("history-error", "history [%]", 100.0),
+        ("period", "period [s]", 1.0),
+        ("strain-energy-error", "work error [%]", 100.0),
         ("load-carried", "load [%]", 100.0),
         ("tool-force", "force [N]", 1.0),
         ("tool-force-error", "force error [%]", 100.0),

@@ -24,7 +24,9 @@ fn error(states: &[(f64, &[Vector3])], exact: Option<&dyn Exact>, probes: &[Poin
         let exact = exact?.at(*time)?;
         for (x, u) in probes.iter().zip(*found) {
             let expected = exact.displacement(x);
-            error = error.max((u - expected).norm());
+            let off = (u - expected).norm();
+            // `max` would drop a NaN.
+            error = if off > error || off.is_nan() { off } else { error };
             largest = largest.max(expected.norm());
         }
     }
@@ -53,7 +55,31 @@ fn period(states: &[(f64, Vector3)]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use cases::exact::{BarWave, Elastic, PureBending};
+
     use super::*;
+
+    #[test]
+    fn errors_are_relative_to_the_largest_exact_displacement() {
+        let elastic = Elastic::new(20e3, 0.3).unwrap();
+        let bar = BarWave::new(elastic, 100.0, [0.1, 1000.0], 0.0).unwrap();
+        let probes = [0.1, 0.04].map(|x| Point3::new(x, 0.0, 0.0));
+        let told = |part: f64, at_end: f64| {
+            let states = [0.01, 0.02, 0.03].map(|t| {
+                let u = probes.map(|x| bar.at(t).unwrap().displacement(&x) * part);
+                (t, [u[0] + Vector3::new(0.0, if t > 0.025 { at_end } else { 0.0 }, 0.0), u[1]])
+            });
+            let states: Vec<(f64, &[Vector3])> = states.iter().map(|(t, u)| (*t, u.as_slice())).collect();
+            error(&states, Some(&bar), &probes).unwrap()
+        };
+        assert_eq!(told(1.0, 0.0), 0.0);
+        assert!((told(0.99, 0.0) - 0.01).abs() < 1e-12);
+        let largest = bar.at(0.03).unwrap().displacement(&probes[0]).norm();
+        assert!((told(1.0, 0.1 * largest) - 0.1).abs() < 1e-12);
+        assert!(told(1.0, f64::NAN).is_nan());
+        let still = PureBending::new(elastic, 0.5);
+        assert_eq!(error(&[(0.01, &[Vector3::zeros(); 2])], Some(&still), &probes), None);
+    }
 
     #[test]
     fn a_period_is_that_of_the_swing() {
