@@ -73,7 +73,9 @@ impl Asked {
                 methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
             }
         }
-        ["title", "source"].map(|words| table.remove(words));
+        for words in ["title", "source"] {
+            table.remove(words);
+        }
         Asked { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
     }
 }

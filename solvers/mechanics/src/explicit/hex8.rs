@@ -16,8 +16,8 @@ use super::path::{LANES, LanePath};
 use super::trilinear::{CORNERS, NODE, fit, reference};
 use crate::{Matrix3, Point3, Vector3};
 
-/// Elements per chunk: some 1000 distinct nodes.
-const SIZE: usize = 512;
+/// Elements per chunk: some 1400 distinct nodes.
+const SIZE: usize = 1024;
 
 pub(super) struct Hex8 {
     border: Border,
