@@ -96,8 +96,8 @@ pub struct Step {
     pub wanted: bool,
     /// The iterations that led there.
     pub iterations: Vec<Iteration>,
-    /// Whether it gave way on the way: no equilibrium was near, and the one it ended in lies down the energy, past
-    /// states without a definite tangent.
+    /// Whether it gave way on the way: no equilibrium was near, and where the tangent was not definite energy was still
+    /// set free beyond the Newton step.
     pub gave_way: bool,
     /// One per tool.
     pub tools: Vec<ToolState>,

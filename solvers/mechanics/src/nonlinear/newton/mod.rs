@@ -288,7 +288,7 @@ impl<'a> Newton<'a> {
         let step = Step {
             time,
             wanted: false,
-            gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite),
+            gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite && i.length > 1.0),
             iterations,
             tools,
             energy: balance.internal.energy,
