@@ -1,7 +1,7 @@
 //! Bodies seen from outside, deformed and coloured by displacement.
 
 use super::axes::TEXT;
-use super::canvas::{Anchor, BLACK_INK, Canvas, GREY};
+use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
 use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
@@ -95,6 +95,8 @@ pub(super) struct Pose {
 /// Room for a colour bar with its numbers, and between bodies, points.
 const BAR: f64 = 54.0;
 const GAP: f64 = 6.0;
+/// Width of bold text over that of regular text.
+const BOLD: f64 = 1.12;
 /// Room for the title above a body, and with the margin below it.
 const HEAD: f64 = 58.0;
 const ROOM: f64 = 66.0;
@@ -143,7 +145,11 @@ impl Pose {
         let (left, top) = self.corner(index);
         let middle = left + self.width / 2.0;
         let (name, rest) = title.split_once(" (").unwrap_or((title, ""));
-        canvas.bold((middle, top + 12.0), name, TEXT, Anchor::Middle);
+        // The number of nodes stands below; what is still wider than the body's column is set smaller.
+        let count = rest.split(' ').next().unwrap_or_default();
+        let name = name.strip_suffix(count).and_then(|n| n.strip_suffix('-')).unwrap_or(name);
+        let size = TEXT * (self.width / (BOLD * text_width(name, TEXT))).min(1.0);
+        canvas.bold((middle, top + 12.0), name, size, Anchor::Middle);
         for (line, text) in [rest.trim_end_matches(')'), first, second].into_iter().enumerate() {
             if !text.is_empty() {
                 canvas.text((middle, top + 24.0 + 12.0 * line as f64), text, TEXT, GREY, Anchor::Middle);
