@@ -32,21 +32,10 @@ pub(crate) fn hex_points(
     points: &mut Vec<Point3>,
     weights: &mut Vec<f64>,
 ) -> Result<(), EfgError> {
-    // Corner signs in the node order of hex8: bottom counter-clockwise, then top.
-    const SIGNS: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
     for (xi, weight) in rule.points.iter().zip(&rule.weights) {
         let mut x = Vector3::zeros();
         let mut jacobian = Matrix3::zeros();
-        for (p, sign) in mesh.cell_points(cell).zip(&SIGNS) {
+        for (p, sign) in mesh.cell_points(cell).zip(&geometry::HEX_CORNERS) {
             let f: [f64; 3] = std::array::from_fn(|a| 0.5 * (1.0 + sign[a] * xi[a]));
             x += p.coords * (f[0] * f[1] * f[2]);
             let slope =

@@ -4,7 +4,8 @@
 
 use crate::{CellKind, Matrix3, Point3};
 
-const HEX_SIGNS: [[f64; 3]; 8] = [
+/// Corners of the reference cube in VTK order, which is the node order of hex8: bottom counter-clockwise, then top.
+pub const HEX_CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -20,7 +21,7 @@ pub(crate) fn reference_nodes(kind: CellKind) -> Vec<[f64; 3]> {
     let mut nodes: Vec<[f64; 3]> = if kind.is_tet() {
         vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     } else {
-        HEX_SIGNS.to_vec()
+        HEX_CORNERS.to_vec()
     };
     if kind.order() == 2 {
         for &[a, b] in kind.edges() {
@@ -51,7 +52,7 @@ fn shapes(kind: CellKind, xi: [f64; 3], mut visit: impl FnMut(usize, f64, [f64; 
         }
         return;
     }
-    for (a, s) in HEX_SIGNS.iter().enumerate() {
+    for (a, s) in HEX_CORNERS.iter().enumerate() {
         let f: [f64; 3] = std::array::from_fn(|d| 1.0 + s[d] * xi[d]);
         let product = 0.125 * f[0] * f[1] * f[2];
         let plain = [0.125 * s[0] * f[1] * f[2], 0.125 * s[1] * f[0] * f[2], 0.125 * s[2] * f[0] * f[1]];
@@ -64,7 +65,7 @@ fn shapes(kind: CellKind, xi: [f64; 3], mut visit: impl FnMut(usize, f64, [f64; 
     }
     if kind == CellKind::Hex20 {
         for (e, &[a, b]) in kind.edges().iter().enumerate() {
-            let s: [f64; 3] = std::array::from_fn(|d| 0.5 * (HEX_SIGNS[a][d] + HEX_SIGNS[b][d]));
+            let s: [f64; 3] = std::array::from_fn(|d| 0.5 * (HEX_CORNERS[a][d] + HEX_CORNERS[b][d]));
             // Along the edge's own axis (s = 0) the factor is 1 - xi^2, across it 1 + s xi.
             let f: [f64; 3] =
                 std::array::from_fn(|d| if s[d] == 0.0 { 1.0 - xi[d] * xi[d] } else { 1.0 + s[d] * xi[d] });

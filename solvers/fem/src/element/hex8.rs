@@ -9,16 +9,7 @@ pub struct Hex8;
 
 impl Element<8> for Hex8 {
     const KIND: CellKind = CellKind::Hex8;
-    const NODES: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
+    const NODES: [[f64; 3]; 8] = geometry::HEX_CORNERS;
 
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 8] {
