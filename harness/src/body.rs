@@ -145,9 +145,9 @@ fn base(body: &Body) -> usize {
         Body::Box { .. }
         | Body::Cylinder { .. }
         | Body::Ball { .. }
-        | Body::Kidney { half: false }
+        | Body::Kidney { .. }
         | Body::SphereShell { .. } => 2,
-        Body::Kidney { half: true } | Body::File(_) => 1,
+        Body::File(_) => 1,
     }
 }
 

@@ -136,6 +136,7 @@ impl Scenario<'_> {
             smallest: SMALLEST,
             newton: NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations },
             augmentations: newton.augmentations,
+            limit_within: procedure.limit_within,
         })
     }
 

@@ -36,7 +36,7 @@ pub struct Path {
     pub iterations: u64,
     /// Steps that failed and were cut back.
     pub cut_backs: u64,
-    /// The last step before the body gave way: before the first on which no equilibrium was near, or the last one where
+    /// The last step in a stable equilibrium: before the first that ends in none or on which none was near, or the last one where
     /// Newton's method found none at all further on.
     pub limit: Option<LoadStep>,
     /// Seconds to get there.
@@ -72,7 +72,7 @@ pub fn solve(
     let (mut limit, mut to_limit, mut before) = (None, 0.0, LoadStep::at_start(setup.tools.len()));
     let path = with_problem(method, setup, prepared, contact.as_ref(), |problem| {
         solve_static(problem, params, |step, u, _| {
-            if step.gave_way && limit.is_none() {
+            if (step.gave_way || !step.stable) && limit.is_none() {
                 limit = Some(before.clone());
             }
             if limit.is_none() {

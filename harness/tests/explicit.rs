@@ -177,6 +177,17 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     let (done, told) = run(&STRUCK.replace("1e-4 MPa", "1e-1 MPa"));
     assert_eq!((done.code, &told[0]["status"]), (0, &"ok".into()), "{}", done.stderr);
 
+    // Between the points of a coarse surface a ball slips through, and would hang on it from within: at rest too.
+    let coarse = STRUCK.replace("1e-4 MPa", "1e-2 MPa").replace("[8, 8, 4]", "[4, 4, 2]");
+    let still = coarse.replace("kind = \"explicit\", duration = \"20 ms\"", "kind = \"static\"");
+    for (scene, status) in [(&coarse, "contact-lost"), (&still, "stalled")] {
+        let (done, told) = run(scene);
+        assert_fails(&done, 3, "out of the body from within");
+        assert_eq!((&told[0]["method"], &told[0]["status"]), (&"hex8".into(), &status.into()));
+        let carried = metric(&told[0], "load-carried");
+        assert!((0.5..0.75).contains(&carried) && metric(&told[0], "tool-force") > 0.0, "{carried}");
+    }
+
     // Driven by force, a tool swings on its contact with its own mass.
     let light = STRUCK
         .replace("closure = \"10 mm\"", "force = \"2 N\"")

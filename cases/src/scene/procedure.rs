@@ -58,6 +58,8 @@ pub struct Procedure {
     pub over: Option<f64>,
     /// How a step is solved (static procedure, implicit dynamics).
     pub newton: Newton,
+    /// Part of the load to within which a limit point of a static path is sought, if it is.
+    pub limit_within: Option<f64>,
     /// What follows where a static path finds no equilibrium.
     pub on_stall: OnStall,
     /// Mass-proportional damping in one per second (dynamics); of the tools too where they have a mass (explicit).

@@ -123,7 +123,7 @@ fn parts(split: &Split) -> Option<String> {
     ))
 }
 
-/// Where a static path had no equilibrium near to go on to, how long it took there, and how it went on.
+/// Up to where a static path was stable, how long it took there, and how it went on.
 fn limits(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for run in runs.iter().filter(|r| is_paper(&r.is.case)) {
@@ -148,7 +148,7 @@ fn limits(runs: &[Run]) -> Vec<String> {
             .time("solve-to-limit", "median")
             .map_or(String::new(), |s| format!(", within {}", duration(s)));
         out.push(format!(
-            "{}, {}: Newton's method finds no equilibrium near beyond {} of the load, {} N at a closure of {} mm{within}{on}.",
+            "{}, {}: the body is stable up to {} of the load, {} N at a closure of {} mm{within}{on}.",
             run.is.case,
             run.is.method,
             percent(load),

@@ -26,7 +26,8 @@ fn bodies(kind: CellKind) -> Vec<(&'static str, Mesh, f64)> {
         ("shell", shell(ShellExtent::Whole), shell_volume),
         ("octant", shell(ShellExtent::Octant), shell_volume / 8.0),
         ("kidney", kidney_mesh(kind, 4).unwrap(), 4.0 / 3.0 * PI * 1e-5),
-        ("half kidney", half_kidney_mesh(kind, 1).unwrap(), 2.0 / 3.0 * PI * 1e-5),
+        ("half kidney", half_kidney_mesh(kind, 2).unwrap(), 2.0 / 3.0 * PI * 1e-5),
+        ("half kidney, odd", half_kidney_mesh(kind, 3).unwrap(), 2.0 / 3.0 * PI * 1e-5),
     ]
 }
 

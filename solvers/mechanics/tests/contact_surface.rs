@@ -269,6 +269,36 @@ fn states_without_meaning_are_refused() {
 }
 
 #[test]
+fn a_tool_that_pushes_from_within_is_named_however_the_body_is_turned() {
+    for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Hex20] {
+        let block = Block::new(kind, [4, 3, 2]);
+        let rows = block.surface(&SIDES);
+        let surface = ContactSurface::new(&rows);
+        for turn in [Matrix3::identity(), nalgebra::Rotation3::new(Vector3::new(0.3, 2.0, -0.4)).into_inner()]
+        {
+            let moved = |p: &Point3| turn * p.coords - p.coords;
+            let u: Vec<Vector3> = block.mesh.points().iter().map(moved).collect();
+            let side = |from_top: f64| {
+                let ball = ToolShape::Sphere { radius: 5e-3 };
+                let at = Point3::from(turn * Vector3::new(0.02, 0.015, 0.02 + from_top));
+                let tool = Tool::new(ball, at, Matrix3::identity(), -turn.column(2), coulomb()).unwrap();
+                let history = ContactHistory::new(&tool, rows.points().len());
+                let contacts = surface.tractions(&tool, 0.0, &u, &history, &mut ContactCounts::default());
+                let contacts = contacts.unwrap().unwrap();
+                assert!(!contacts.points().is_empty());
+                surface.check_side(&contacts, &u)
+            };
+            assert_eq!(side(3e-3), Ok(()));
+            assert!(
+                matches!(side(-3e-3), Err(ContactError::WithinBody { .. })),
+                "{kind:?}: {:?}",
+                side(-3e-3)
+            );
+        }
+    }
+}
+
+#[test]
 fn a_surface_without_points_is_skipped() {
     let rows = Rows::new(1, vec![0], vec![], vec![], shape::Unity::NotPromised).unwrap();
     let rows = SurfaceRows::new(PointRows::new(vec![], rows).unwrap(), vec![], vec![]).unwrap();

@@ -182,7 +182,8 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let tools = [DrivenTool { tool: &tool, drive: Drive::Closure(4e-3) }];
     let body = StaticProblem { contact: Some(&contact), tools: &tools, ..block.body(&laws, &fixed) };
     let newton = NewtonParams { tolerance: 1e-9, iterations: 25 };
-    let quasi = StaticParams { steps: 20, smallest: 1.0 / 64.0, newton, augmentations: 0 };
+    let quasi =
+        StaticParams { steps: 20, smallest: 1.0 / 64.0, newton, augmentations: 0, limit_within: None };
     let still = solve_static(&body, &quasi, |_, _, _| ()).unwrap();
     assert_eq!(still.failure, None);
 

@@ -161,6 +161,9 @@ pub(crate) struct ProcedureKeys {
     pub iterations: Option<u32>,
     /// Uzawa iterations of contact per such step; 0 (a plain penalty) unless given
     pub augmentations: Option<u32>,
+    /// Part of the load to within which a limit point is sought, where a static path loses its stability: steps are halved
+    /// down to it; unless given a limit point is told where a load step ends beyond one
+    pub limit_within: Option<f64>,
     /// What follows where a static path finds no equilibrium: "stop" unless given, or "relax", which goes on by dynamic
     /// relaxation (finite elements without a pressure field; a cloud stops)
     pub on_stall: Option<OnStall>,

@@ -142,6 +142,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
             duration: None,
             over: None,
             newton,
+            limit_within: None,
             on_stall,
             damping: 0.0,
             explicit,
@@ -165,6 +166,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
         ("tolerance", keys.tolerance.is_some(), newtons),
         ("iterations", keys.iterations.is_some(), newtons),
         ("augmentations", keys.augmentations.is_some(), newtons),
+        ("limit-within", keys.limit_within.is_some(), &[OfStatic]),
         ("on-stall", keys.on_stall.is_some(), &[OfStatic]),
         ("damping", keys.damping.is_some(), dynamics),
         ("over", keys.over.is_some(), dynamics),
@@ -199,9 +201,17 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
     let both = keys.safety.is_some() && explicit.step.is_some();
     report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
     let newton = Newton { tolerance, iterations, augmentations };
+    let limit_within = keys.limit_within;
+    let sound = limit_within.is_none_or(|part| (1e-4..=1.0).contains(&part));
+    report.require(
+        sound,
+        "procedure.limit-within",
+        "is no part of the load",
+        "give 1e-4 to 1; 0.02 is usual",
+    );
     let on_stall = keys.on_stall.unwrap_or_default();
     let (kind, steps) = (keys.kind, steps as usize);
-    Procedure { kind, steps, duration, over, newton, on_stall, damping, explicit, implicit }
+    Procedure { kind, steps, duration, over, newton, limit_within, on_stall, damping, explicit, implicit }
 }
 
 fn implicit(keys: &ProcedureKeys, tools: bool, report: &mut Report) -> Implicit {

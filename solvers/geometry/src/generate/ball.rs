@@ -32,12 +32,13 @@ pub fn kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
 }
 
 /// The half z >= 0 of the kidney, cells drawn together under the surface and under the edges of a jaw of 10 x 20 mm
-/// on the z axis: `4 n` and `6 n` cells across the inner block along x and y, `n` from z = 0 to its top, and `(3 n) / 2`
-/// layers around it. Facet groups: "surface", and "symmetry" at z = 0.
+/// on the z axis: `2 n` and `3 n` cells across the inner block along x and y, `n / 2` from z = 0 to its top, and
+/// `3 n / 4` layers around it (both rounded down, and at least 1). Facet groups: "surface", and "symmetry" at z = 0.
 pub fn half_kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
     check_cells("the number of cells across the jaw", n)?;
-    let [x, y, z] = [4, 6, 2].map(|m| n.saturating_mul(m));
-    let blocks = Blocks { cells: [x, y, z], layers: x * 3 / 8, jaw: true };
+    let [x, y] = [2, 3].map(|m| n.saturating_mul(m));
+    let [half, layers] = [n / 2, y / 4].map(|cells| cells.max(1));
+    let blocks = Blocks { cells: [x, y, 2 * half], layers, jaw: true };
     let mesh = parameter_ball(kind, blocks)?.moved(|p| Kidney.map(&onto_ball(p)))?;
     quality::check(&mesh)?;
     Ok(mesh)

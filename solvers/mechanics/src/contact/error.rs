@@ -1,5 +1,7 @@
 //! What can be wrong with a tool, and what can go wrong in contact.
 
+use crate::Point3;
+
 /// Why a tool cannot be made, or why contact has no meaning in a state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContactError {
@@ -85,5 +87,17 @@ pub enum ContactError {
         penetration: f64,
         /// The limit, m.
         limit: f64,
+    },
+    /// A point that a tool pushes out of the body from within.
+    #[error(
+        "the tool pushes surface point {point} near ({:.4}, {:.4}, {:.4}) m out of the body from within: it has slipped \
+         through between the points of the surface, and a finer surface is needed",
+        at.x, at.y, at.z
+    )]
+    WithinBody {
+        /// The point (the lowest, if there are several).
+        point: usize,
+        /// Where it is, m.
+        at: Point3,
     },
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use shape::SurfaceRows;
 
-use super::{ContactError, Tool};
+use super::{ContactError, Contacts, Tool};
 use crate::{Point3, Vector3};
 
 /// Points per cluster, at most.
@@ -19,6 +19,8 @@ pub struct ContactSurface<'a> {
     clusters: Vec<Cluster>,
     /// Nodes that the clusters see, one cluster after another.
     nodes: Vec<u32>,
+    /// For each point two others beside it, counter-clockwise seen from outside; the point itself where there are none.
+    beside: Vec<[u32; 2]>,
 }
 
 /// The current position of a point is `x = X + sum_I N_I u_I`. With `m` the middle and `h` the half range of `u` over
@@ -46,9 +48,14 @@ impl<'a> ContactSurface<'a> {
             split(&mut order, 0, rows.points(), &mut ranges);
         }
         let mut nodes = Vec::new();
-        let clusters =
+        let clusters: Vec<Cluster> =
             ranges.into_iter().map(|points| Cluster::new(rows, &order, points, &mut nodes)).collect();
-        ContactSurface { rows, order, clusters, nodes }
+        let mut beside = vec![[0; 2]; order.len()];
+        for cluster in &clusters {
+            let near = &order[cluster.points.clone()];
+            near.iter().for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
+        }
+        ContactSurface { rows, order, clusters, nodes, beside }
     }
 
     /// The surface quadrature.
@@ -89,6 +96,21 @@ impl<'a> ContactSurface<'a> {
             near.push(&self.order[cluster.points.clone()]);
         }
         Ok(near)
+    }
+
+    /// Fails where a tool pushes out of the body instead of into it: it has slipped through between points, and now lifts
+    /// them from within. The deformed normal `(x_b - x_a) x (x_c - x_a)` comes from two points beside, which leaves out
+    /// what bends between them: a push that leaves the surface by less than 12 degrees is let be.
+    pub fn check_side(&self, contacts: &Contacts, u: &[Vector3]) -> Result<(), ContactError> {
+        for (&point, push) in contacts.points().iter().zip(contacts.tractions()) {
+            let [b, c] = self.beside[point as usize].map(|q| self.position(q as usize, u));
+            let at = self.position(point as usize, u);
+            let normal = (b - at).cross(&(c - at));
+            if push.dot(&normal) > 0.2 * push.norm() * normal.norm() {
+                return Err(ContactError::WithinBody { point: point as usize, at });
+            }
+        }
+        Ok(())
     }
 
     /// Current position `X + sum_I N_I u_I` of a point.
@@ -146,6 +168,25 @@ impl Cluster {
             self.half + (high - low) * (0.5 * self.lebesgue) + middle.abs() * self.excess,
         ))
     }
+}
+
+/// The two points that span the surface around `q` best: near, and well apart as seen from it.
+fn two_beside(rows: &SurfaceRows, q: u32, near: &[u32]) -> [u32; 2] {
+    let normal = rows.normals()[q as usize];
+    let way = |other: u32| rows.points()[other as usize] - rows.points()[q as usize];
+    // Not around an edge, whose other side has another normal.
+    let mut flat: Vec<u32> =
+        near.iter().copied().filter(|&p| p != q && normal.dot(&rows.normals()[p as usize]) > 0.7).collect();
+    flat.sort_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()));
+    for (k, &b) in flat.iter().enumerate() {
+        for &a in &flat[..k] {
+            let turn = way(a).cross(&way(b)).dot(&normal) / (way(a).norm() * way(b).norm());
+            if turn.abs() > 0.5 {
+                return if turn > 0.0 { [a, b] } else { [b, a] };
+            }
+        }
+    }
+    [q; 2]
 }
 
 fn range(vectors: impl Iterator<Item = Vector3>) -> (Vector3, Vector3) {

@@ -110,6 +110,16 @@ impl<'a> Pressing<'a> {
         Ok(())
     }
 
+    /// Fails where a tool pushes from within the body, in the state `u` (m) at the end: on the way there it may.
+    pub(super) fn check_sides(&mut self, u: &[Vector3]) -> Result<(), ContactError> {
+        for tool in &self.tools {
+            let contacts =
+                self.surface.tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)?;
+            contacts.iter().try_for_each(|c| self.surface.check_side(c, u))?;
+        }
+        Ok(())
+    }
+
     fn mass(&self, tool: &PressingTool, dt: f64) -> f64 {
         tool.tool.law().penalty() * self.area * dt * dt
     }

@@ -177,6 +177,11 @@ pub fn relax_under(
         info.slow_mode = info.omega_min / expected;
         confirmed = if info.error < params.tolerance { confirmed + 1 } else { 0 };
         if confirmed == CONFIRM {
+            if let Some(pressing) = &mut pressing {
+                let time = step as f64 * dt;
+                let within = pressing.check_sides(&u);
+                within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+            }
             return Ok((u, info));
         }
     }

@@ -169,6 +169,8 @@ impl<'a> Tools<'a> {
             }
             tool.settle(contacts.as_ref(), self.surface);
             tool.check(index, step, time, dt, contacts.as_ref(), self.surface)?;
+            let within = contacts.iter().try_for_each(|c| self.surface.check_side(c, u));
+            within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
             tool.advance(step == 0, time, dt);
         }
         Ok(())

@@ -35,6 +35,8 @@ pub(crate) struct Unsymmetric {
     /// `S^-1 C`, and `D - R S^-1 C`.
     solved: Vec<Vec<f64>>,
     schur: LU<f64, Dyn, Dyn>,
+    /// Whether the symmetric part of that Schur complement is positive definite.
+    stable: bool,
 }
 
 impl Unsymmetric {
@@ -50,7 +52,13 @@ impl Unsymmetric {
             let corner = if i == j { borders[i].corner } else { 0.0 };
             corner - dot(&borders[i].row, &solved[j])
         });
-        Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu() })
+        let stable = (&schur + schur.transpose()).cholesky().is_some();
+        Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu(), stable })
+    }
+
+    /// Whether the borders leave the matrix positive definite, if it is without them.
+    pub fn stable(&self) -> bool {
+        self.stable
     }
 
     fn subtract_product(&self, x: &[f64], y: &mut [f64]) {

@@ -70,6 +70,9 @@ pub struct StaticParams {
     pub newton: NewtonParams,
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
     pub augmentations: usize,
+    /// Part of the load to within which the first limit or bifurcation point is sought, if it is: steps on which a tangent
+    /// is not definite are halved down to it. Without it such a point is seen only where a step ends beyond it.
+    pub limit_within: Option<f64>,
 }
 
 /// A tool after a step.
@@ -97,8 +100,11 @@ pub struct Step {
     /// The iterations that led there.
     pub iterations: Vec<Iteration>,
     /// Whether it gave way on the way: no equilibrium was near, and where the tangent was not definite energy was still
-    /// set free beyond the Newton step.
+    /// set free beyond the Newton step; or, where a limit point is sought, the nearest one was not stable.
     pub gave_way: bool,
+    /// Whether it ends in a stable equilibrium: the last tangent was positive definite, with friction its symmetric part.
+    /// One that is not is a point beyond a limit or a bifurcation, which a body left to itself does not keep to.
+    pub stable: bool,
     /// One per tool.
     pub tools: Vec<ToolState>,
     /// Strain energy, J.
@@ -171,6 +177,7 @@ pub fn solve_static(
         failure: None,
     };
     let (mut next, mut step) = (1, longest);
+    let (mut within, mut near_limit) = (params.limit_within, false);
     while next <= count {
         let target = next as f64 * longest;
         let left = target - state.time;
@@ -180,12 +187,25 @@ pub fn solve_static(
         // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
         // a point, the last state is.
         let mut to = |descent| newton.step(&state, before.as_ref(), time, params.augmentations, descent);
-        let reached = to(Descent::Nearest)
-            .or_else(|error| if state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
-            .or_else(|_| to(Descent::Down));
+        let reached = if within.is_some_and(|within| time - state.time > within) {
+            to(Descent::Smooth)
+        } else {
+            let nearest = to(Descent::Nearest)
+                .or_else(|error| if state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) });
+            match nearest {
+                // The limit point that is sought: on to where the body comes to rest.
+                Ok((_, done)) if within.is_some() && !done.stable => {
+                    to(Descent::Down).map(|(reached, done)| (reached, Step { gave_way: true, ..done }))
+                }
+                nearest => nearest.or_else(|_| to(Descent::Down)),
+            }
+        };
         match reached {
             Ok((reached, mut done)) => {
                 done.wanted = reaches;
+                if done.gave_way {
+                    within = None;
+                }
                 let quick = done.iterations.len() <= 6;
                 observe(&done, &reached.u, &reached.pressure);
                 path.steps.push(done);
@@ -193,10 +213,12 @@ pub fn solve_static(
                 if reaches {
                     next += 1;
                 }
-                step = if quick { (2.0 * step).min(longest) } else { step };
+                let grows = quick && !std::mem::take(&mut near_limit);
+                step = if grows { (2.0 * step).min(longest) } else { step };
             }
             Err(cause) => {
                 path.cut_back += 1;
+                near_limit = within.is_some();
                 let failed = time - state.time;
                 step = 0.5 * failed;
                 if step < params.smallest * longest {

@@ -141,6 +141,7 @@ pub fn steps(steps: usize) -> StaticParams {
         smallest: 1.0 / 64.0,
         newton: NewtonParams { tolerance: 1e-11, iterations: 30 },
         augmentations: 0,
+        limit_within: None,
     }
 }
 

@@ -37,7 +37,7 @@ pub struct Iteration {
     pub energy: f64,
     /// Length of the step over that of the Newton step: what the line search left, or how often it went on.
     pub length: f64,
-    /// Whether the tangent was positive definite (on the kernel of the pressures).
+    /// Whether the tangent was positive definite (on the kernel of the pressures), tools driven by force included.
     pub definite: bool,
 }
 
@@ -113,6 +113,8 @@ pub(crate) struct Newton<'a> {
 /// What Newton's method looks for where the tangent is not definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Descent {
+    /// The nearest equilibrium by tangents that are all definite: on a branch that stays stable.
+    Smooth,
     /// The nearest equilibrium: a symmetric one stays symmetric. With a pressure field every step is a full one.
     Nearest,
     /// The nearest equilibrium, with a pressure field by steps that are cut: where full ones cycle between sticking
@@ -263,6 +265,7 @@ impl<'a> Newton<'a> {
         if let Some(surface) = self.problem.contact {
             for (k, (history, contacts)) in state.history.iter_mut().zip(&balance.contacts).enumerate() {
                 let (tool, closure) = (self.problem.tools[k].tool, state.closures[k]);
+                contacts.iter().try_for_each(|c| surface.check_side(c, &state.u))?;
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
             }
         }
@@ -289,6 +292,8 @@ impl<'a> Newton<'a> {
             time,
             wanted: false,
             gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite && i.length > 1.0),
+            // The tangent of the last iteration is one Newton step short of the end.
+            stable: iterations.iter().rev().find(|i| i.length > 0.0).is_none_or(|i| i.definite),
             iterations,
             tools,
             energy: balance.internal.energy,
@@ -360,7 +365,7 @@ impl<'a> Newton<'a> {
             let (next, length) =
                 self.search(state, &direction, held_move.as_deref(), slope, &balance, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
-            log.push(Iteration { residual, energy, length, definite: !self.indefinite });
+            log.push(Iteration { residual, energy, length, definite: direction.definite });
             balance = next;
         }
     }

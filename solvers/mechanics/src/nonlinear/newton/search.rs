@@ -23,7 +23,7 @@ impl Newton<'_> {
         last: &Balance,
         time: f64,
     ) -> Result<(Balance, f64), StaticError> {
-        let Direction { step, closures, factored } = direction;
+        let Direction { step, closures, factored, .. } = direction;
         let start = (state.u.clone(), state.pressure.clone(), state.closures.clone());
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
         // Volumes count by the scale of the matrix that was solved, which makes forces of them.

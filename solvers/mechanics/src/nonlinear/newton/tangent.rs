@@ -17,10 +17,20 @@ pub(super) struct Direction {
     pub step: Vec<f64>,
     /// Of the closures of tools driven by force.
     pub closures: Vec<f64>,
+    /// Whether the tangent was positive definite, tools driven by force included.
+    pub definite: bool,
     pub factored: Factored,
 }
 
 impl Factored {
+    /// Whether tools driven by force leave the tangent definite, if it is so with them held.
+    fn stable(&self) -> bool {
+        match self {
+            Factored::Symmetric(_) => true,
+            Factored::Unsymmetric(f) => f.stable(),
+        }
+    }
+
     fn solve(&self, b: &mut [f64], goal: f64) -> Result<(), SolveError> {
         match self {
             Factored::Symmetric(f) => f.solve(b),
@@ -92,6 +102,10 @@ impl Newton<'_> {
         let lacking = self.lacking(balance, time);
         step.extend(tools.iter().map(|&k| lacking[k]));
         let factored = self.factor(matrix, skew, borders)?;
+        let definite = !self.indefinite && factored.stable();
+        if self.descent == Descent::Smooth && !definite {
+            return Err(SolveError::NotPositiveDefinite.into());
+        }
         self.solve(&factored, &mut step)?;
         let moves = step.split_off(self.system.dim());
         let mut closures = vec![0.0; self.problem.tools.len()];
@@ -102,7 +116,7 @@ impl Newton<'_> {
                 None => self.approach(k, state, full * self.scales(time).tools),
             };
         }
-        Ok(Direction { step, closures, factored })
+        Ok(Direction { step, closures, factored, definite })
     }
 
     /// Solves with the matrix as it was assembled, pressures scaled.
@@ -134,7 +148,7 @@ impl Newton<'_> {
             false => Unsymmetric::new(factor, skew, borders).map(Factored::Unsymmetric),
         };
         let shifts: &[f64] = match self.descent {
-            Descent::Nearest | Descent::Guarded => &[0.0],
+            Descent::Smooth | Descent::Nearest | Descent::Guarded => &[0.0],
             Descent::Down => &[0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0],
         };
         let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
@@ -151,7 +165,7 @@ impl Newton<'_> {
                 Err(FactorError::Other(error)) => return Err(error.into()),
             }
         }
-        if self.descent != Descent::Down && kind == Kind::Definite {
+        if matches!(self.descent, Descent::Nearest | Descent::Guarded) && kind == Kind::Definite {
             self.indefinite = true;
             self.work.factorisations += 1;
             let kind = Kind::Indefinite;
