@@ -200,6 +200,7 @@ impl Plan {
         let mut failed = Vec::new();
         let mut work = Work::default();
         for (&index, result) in &results {
+            let task = &self.tasks[index];
             work += result.work;
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
@@ -215,9 +216,11 @@ impl Plan {
             }
             if let Some((failure, code)) = &result.failure {
                 set.failures.push(failure.clone());
-                failed.push(*code);
+                // Of many clouds one may fail: how many did is a result.
+                if self.study.runs[task.run].seeds == 0 {
+                    failed.push(*code);
+                }
             }
-            let task = &self.tasks[index];
             set.checks.extend(self.verdicts(task, result));
         }
         for (_, _, scene) in &self.scenes {
@@ -230,10 +233,10 @@ impl Plan {
         Finished { set, failed, ran: results.len(), work }
     }
 
-    /// Checks of one run: the scene's own and those of the study's run table.
+    /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
     fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
         let scene = &self.scenes[task.scene].2;
-        let label = label(task, &result.records);
+        let label = label(task, &result.records, self.study.runs[task.run].seeds > 0);
         self.checks(task)
             .filter(|check| !check::needs_levels(check))
             .map(|check| {
@@ -249,7 +252,10 @@ impl Plan {
 
     fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
         let scene = &self.scenes[task.scene].2;
-        let all = scene.checks.iter().chain(&self.study.runs[task.run].checks);
+        let run = &self.study.runs[task.run];
+        // A scene's checks are of its own cloud.
+        let own = if run.seeds == 0 { &scene.checks[..] } else { &[] };
+        let all = own.iter().chain(&run.checks);
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }
 
@@ -297,17 +303,21 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
 fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
-    // A picture of an organ says something; one of a box does not, nor does one for each kernel.
+    // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
     let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
-    let picture = organ && run.kernels.is_empty() && run.nodes.is_empty();
+    let picture = organ && run.kernels.is_empty() && run.nodes.is_empty() && run.seeds == 0;
     for &poisson in &ratios {
         for method in &scene.methods {
             if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
                 continue;
             }
             for (level, sized) in sizes(run, method) {
-                for method in kernels(run, sized) {
-                    tasks.push(Task { run: index, scene: at, method, level, poisson, picture });
+                for method in kernels(run, sized).into_iter().flat_map(|method| seeds(run, method)) {
+                    // The scene's own cloud may have been asked for before.
+                    let same = |t: &Task| (t.scene, t.poisson) == (at, poisson) && t.method == method;
+                    if run.seeds == 0 || !tasks.iter().any(same) {
+                        tasks.push(Task { run: index, scene: at, method, level, poisson, picture });
+                    }
                 }
             }
         }
@@ -357,8 +367,16 @@ fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
         .collect()
 }
 
+/// The method on a cloud of each seed that the run table names.
+fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    match run.seeds {
+        0 => vec![method],
+        count => (1..=count).filter_map(|seed| method.seeded(seed)).collect(),
+    }
+}
+
 /// Method id with what tells this run from others of the same id.
-fn label(task: &Task, records: &[Record]) -> String {
+fn label(task: &Task, records: &[Record], seeded: bool) -> String {
     let mut text = task.method.id.clone();
     if task.level > 0 {
         text += &format!(" level {}", task.level);
@@ -368,6 +386,9 @@ fn label(task: &Task, records: &[Record]) -> String {
     }
     if let Some(poisson) = task.poisson {
         text += &format!(" nu={poisson}");
+    }
+    if seeded {
+        text += &format!(" seed={}", records.first().map_or(0, |r| r.seed));
     }
     text
 }

@@ -67,6 +67,47 @@ fn the_same_bits_again_and_at_any_number_of_threads() {
     }
 }
 
+#[test]
+fn many_clouds_are_one_method_with_a_spread() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = cases("first.toml");
+    let text = format!(
+        r#"title = "Clouds"
+
+[[run]]
+scene = '{scene}'
+methods = ["efg"]
+
+[[run]]
+scene = '{scene}'
+methods = ["efg"]
+seeds = 3
+"#
+    );
+    let (study, out) = (write(&dir, "study.toml", &text), inside(&dir, "out"));
+    let done = tissuebench(&["verify", &study, "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let mut found: Vec<(u64, f64)> = results(&out)
+        .records
+        .iter()
+        .filter(|r| r.quantity == "max" && r.family == "efg")
+        .map(|r| (r.seed, r.value))
+        .collect();
+    found.sort_by_key(|f| f.0);
+    // The scene's own cloud, of seed 1, is not run twice.
+    assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [1, 2, 3]);
+    assert!(found[0].1 != found[1].1 && found[1].1 != found[2].1);
+    let table = |name: &str| std::fs::read_to_string(format!("{out}/report/tables/{name}.csv")).unwrap();
+    let placement = table("placement");
+    let row = placement.lines().find(|l| l.contains("max |u| [mm]")).expect("a row of maxima");
+    let cells: Vec<&str> = row.split(',').collect();
+    assert_eq!((cells[3], cells[5]), ("3", "3"), "{row}");
+    let most = found.iter().fold(0.0f64, |m, f| m.max(f.1));
+    assert!((cells[10].parse::<f64>().unwrap() - 1e3 * most).abs() < 1e-9, "{row}");
+    // Elsewhere the first cloud stands for all.
+    assert_eq!(table("maxima").lines().filter(|l| l.contains("efg")).count(), 1);
+}
+
 fn first_difference<'a, T: PartialEq>(a: &'a [T], b: &'a [T]) -> Option<(&'a T, &'a T)> {
     a.iter().zip(b).find(|(a, b)| a != b)
 }

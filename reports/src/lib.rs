@@ -3,6 +3,7 @@
 //! The harness hands over a [`RunSet`]; [`write_run`] puts it into a folder, [`render`] turns the folder into CSV, Markdown and
 //! LaTeX tables, SVG and PNG figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
 
+mod clouds;
 mod error;
 mod figures;
 mod findings;

@@ -6,6 +6,7 @@ use minijinja::Environment;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
 
+use crate::clouds::{self, Clouds};
 use crate::error::ReportError;
 use crate::figures;
 use crate::findings;
@@ -37,7 +38,7 @@ pub struct Rendered {
 /// The same records give the same bytes. Nothing is solved or timed again.
 pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     let set = read_run(results)?;
-    let runs = select::runs(&set.records);
+    let (runs, clouds) = clouds::part(&select::runs(&set.records));
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;
@@ -47,7 +48,7 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
         files.push(path);
         Ok(())
     };
-    let tables = tables::all(&set, &runs);
+    let tables = tables::all(&set, &runs, &clouds);
     for table in &tables {
         for (ending, text) in [("csv", table.csv()), ("md", table.markdown()), ("tex", table.latex())] {
             write(table_dir.join(format!("{}.{ending}", table.name)), text.as_bytes())?;
@@ -72,7 +73,7 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     let page = out.join("report.html");
     // Beside a page of ours what has our endings in the two folders is ours, and what is not written again is old.
     let ours = std::fs::read_to_string(&page).is_ok_and(|old| old.contains(TITLE));
-    write(page.clone(), page_text(&set, &runs, &tables, &shown)?.as_bytes())?;
+    write(page.clone(), page_text(&set, (&runs, &clouds), &tables, &shown)?.as_bytes())?;
     if ours {
         remove_files(&table_dir, &["csv", "md", "tex"], &files)?;
         remove_files(&figure_dir, &["svg", "png"], &files)?;
@@ -131,11 +132,11 @@ struct PageView<'a> {
 
 fn page_text(
     set: &RunSet,
-    runs: &[select::Run],
+    (runs, clouds): (&[select::Run], &[Clouds]),
     tables: &[Table],
     figures: &[FigureView],
 ) -> Result<String, ReportError> {
-    let findings: Vec<TopicView> = findings::all(set, runs)
+    let findings: Vec<TopicView> = findings::all(set, runs, clouds)
         .into_iter()
         .map(|t| TopicView { title: t.title, sentences: t.sentences })
         .collect();
@@ -167,7 +168,7 @@ fn page_text(
         figures,
         counts: Counts {
             cases: cases.len(),
-            runs: runs.len(),
+            runs: runs.len() + clouds.iter().map(|group| group.len() - 1).sum::<usize>(),
             numbers: set.records.len(),
             failures: set.failures.len(),
             pass: count(Status::Pass),

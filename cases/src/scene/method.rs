@@ -176,6 +176,20 @@ pub enum Cloud {
     },
 }
 
+impl Method {
+    /// The method on a cloud of another seed, if chance has a part in its cloud.
+    pub fn seeded(&self, new: u64) -> Option<Method> {
+        let mut method = self.clone();
+        let Family::Efg(efg) = &mut method.family else { return None };
+        match &mut efg.cloud {
+            Cloud::Mesh { jitter: Some(jitter), .. } => jitter.seed = new,
+            Cloud::Mesh { jitter: None, .. } => return None,
+            Cloud::Uniform { seed, .. } | Cloud::Graded { seed, .. } => *seed = new,
+        }
+        Some(method)
+    }
+}
+
 /// Kernel names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -25,7 +25,7 @@ pub struct Study {
     pub runs: Vec<Run>,
 }
 
-/// One scene with what is varied of it: methods times levels (or node counts) times kernels times Poisson's ratios.
+/// One scene with what is varied of it: methods times levels (or node counts) times kernels times seeds times Poisson's ratios.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The scene file.
@@ -40,6 +40,9 @@ pub struct Run {
     pub nodes: Vec<usize>,
     /// Kernels of clouds; their own where empty.
     pub kernels: Vec<KernelName>,
+    /// Clouds of the seeds 1 to this in place of their own; 0 for their own. How far a result depends on where nodes happen
+    /// to stand is their spread: the scene's checks, which are of its own cloud, are not asked of them.
+    pub seeds: u64,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
     /// What must hold, beside the scene's own checks.
@@ -76,6 +79,9 @@ pub(crate) struct RunKeys {
     /// Kernels of clouds
     #[serde(default)]
     pub kernels: Vec<KernelName>,
+    /// Clouds of this many seeds, from 1 on, in place of their own
+    #[serde(default)]
+    pub seeds: u32,
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
@@ -121,6 +127,8 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     report.require(sound, &at("poisson"), "holds a number that is no Poisson's ratio", help);
     let sound = keys.nodes.iter().all(|n| *n >= 4);
     report.require(sound, &at("nodes"), "holds a number that is no cloud", "give 4 nodes or more");
+    let sound = keys.seeds != 1 && keys.seeds <= 10_000;
+    report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
     report.require(alone, &at("nodes"), "stands beside levels", "vary levels or node counts, not both");
     Run {
@@ -130,6 +138,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         poisson: keys.poisson,
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
         kernels: keys.kernels,
+        seeds: keys.seeds.into(),
         quick: keys.quick,
         checks: checks(keys.check, &at("check"), report),
     }
@@ -159,6 +168,9 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         let help = "element-free Galerkin methods have them";
         report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
     }
+    let seeded = scene.methods.iter().filter(chosen).all(|m| m.seeded(1).is_some());
+    let help = "a cloud that is uniform, graded or jittered has one: name such methods in methods";
+    report.require(run.seeds == 0 || seeded, &format!("{key}.seeds"), "are not of every method", help);
     let elastic = scene.material.elastic().is_some();
     let help = format!("the {} law has none", scene.material.name());
     report.require(

@@ -15,6 +15,12 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["without quotes"],
     ),
     ("title = \"t\"\n[[run]]\nscene = \"first.toml\"\nnodes = [3] #<", "run[0].nodes", &["4 nodes or more"]),
+    ("title = \"t\"\n[[run]]\nscene = \"first.toml\"\nseeds = 1 #<", "run[0].seeds", &["no spread", "50 is"]),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nseeds = 5 #<",
+        "run[0].seeds",
+        &["are not of every method", "name such methods"],
+    ),
     (
         "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nlevels = [1]\nnodes = [83] #<",
         "run[0].nodes",

@@ -4,7 +4,9 @@ mod accuracy;
 mod cheapest;
 mod kidney;
 mod outcome;
+mod placement;
 
+use crate::clouds::Clouds;
 use crate::record::RunSet;
 use crate::select::{Run, groups, is_patch};
 
@@ -15,12 +17,13 @@ pub(crate) struct Topic {
 }
 
 /// Every topic with something to say.
-pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Topic> {
+pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
     let topics = [
         Topic { title: "Cheapest way to one percent", sentences: cheapest::cheapest(&solved) },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
+        Topic { title: "Node placement", sentences: placement::placement(clouds) },
         Topic { title: "Transfer", sentences: kidney::transfer(runs) },
         Topic { title: "Patch tests", sentences: accuracy::patch(&solved) },
         Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },

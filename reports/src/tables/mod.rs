@@ -6,6 +6,7 @@ mod errors;
 mod kidney;
 mod orders;
 mod outcome;
+mod placement;
 mod timing;
 mod transfer;
 
@@ -13,12 +14,13 @@ pub(crate) use kidney::{
     Pair as KidneyPair, Split as KidneySplit, pairs as kidney_pairs, splits as kidney_splits,
 };
 
+use crate::clouds::Clouds;
 use crate::record::RunSet;
 use crate::select::{Run, groups, labels};
 use crate::table::Table;
 
 /// Every table with at least one row, in the order of the report.
-pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
+pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
     let tables = [
         errors::relative(runs),
         errors::rms(runs),
@@ -28,6 +30,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Table> {
         timing::phases(runs),
         transfer::schemes(runs),
         conditioning::conditioning(runs),
+        placement::placement(clouds),
         kidney::beside_the_paper(runs),
         kidney::rms_parts(runs),
         closure::force_closure(runs),

@@ -1,0 +1,110 @@
+//! Runs that differ by the seed of their cloud only: how far a result depends on where nodes happen to stand.
+
+use crate::select::Run;
+
+/// Many clouds of one method, its seeds ascending.
+pub(crate) type Clouds<'a> = Vec<Run<'a>>;
+
+/// The runs that are shown everywhere else, one cloud of each method, and the groups of several.
+pub(crate) fn part<'a>(runs: &[Run<'a>]) -> (Vec<Run<'a>>, Vec<Clouds<'a>>) {
+    let mut groups: Vec<Clouds> = Vec::new();
+    for run in runs {
+        match groups.iter_mut().find(|g| same_but_seed(&g[0], run)) {
+            Some(group) => group.push(run.clone()),
+            None => groups.push(vec![run.clone()]),
+        }
+    }
+    for group in &mut groups {
+        group.sort_by_key(|run| run.is.seed);
+    }
+    let shown = groups.iter().map(|group| group[0].clone()).collect();
+    groups.retain(|group| group.len() > 1);
+    (shown, groups)
+}
+
+fn same_but_seed(a: &Run, b: &Run) -> bool {
+    let (x, y) = (a.is, b.is);
+    x.seed != y.seed
+        && (&x.case, &x.method, &x.family, &x.variant) == (&y.case, &y.method, &y.family, &y.variant)
+        && (&x.parameters, x.level, x.nodes) == (&y.parameters, y.level, y.nodes)
+        && x.poisson.total_cmp(&y.poisson).is_eq()
+}
+
+/// Least, lower quartile, median, upper quartile and most of a quantity over the clouds that have it, and their number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spread {
+    pub(crate) count: usize,
+    pub(crate) quantiles: [f64; 5],
+}
+
+impl Spread {
+    /// Of the runs that carried all of their load; `None` without any.
+    pub(crate) fn of(clouds: &[Run], quantity: &str) -> Option<Spread> {
+        let whole = |run: &&Run| run.value("load-carried").is_none_or(|load| load > 0.999_999);
+        let mut values: Vec<f64> =
+            clouds.iter().filter(whole).filter_map(|run| run.value(quantity)).collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        // Between the two nearest of the sorted values, as R does by default (Hyndman & Fan 1996, type 7).
+        let quantile = |part: f64| {
+            let at = part * last as f64;
+            let below = at.floor() as usize;
+            values[below] + (at - below as f64) * (values[last.min(below + 1)] - values[below])
+        };
+        Some(Spread { count: values.len(), quantiles: [0.0, 0.25, 0.5, 0.75, 1.0].map(quantile) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+    use crate::select::runs;
+
+    fn record(method: &str, seed: u64, quantity: &str, value: f64) -> Record {
+        let words = |s: &str| s.to_string();
+        Record {
+            case: words("block"),
+            method: words(method),
+            family: words("efg"),
+            variant: words("cubic-spline"),
+            parameters: words(""),
+            poisson: 0.3,
+            level: 0,
+            nodes: 83,
+            elements: 0,
+            points: 0,
+            dofs: 0,
+            spacing: 0.01,
+            seed,
+            quantity: words(quantity),
+            unit: words("1"),
+            phase: words(""),
+            statistic: words("value"),
+            value,
+        }
+    }
+
+    #[test]
+    fn one_cloud_is_shown_and_all_are_counted() {
+        let mut records: Vec<Record> = [5.0, 1.0, 4.0, 2.0]
+            .iter()
+            .zip([3, 1, 4, 2])
+            .map(|(&v, seed)| record("efg", seed, "l2", v))
+            .collect();
+        records.push(record("other", 7, "l2", 9.0));
+        // A cloud that carried a part of its load has errors of that part.
+        records.push(record("efg", 3, "load-carried", 0.5));
+        let all = runs(&records);
+        let (shown, clouds) = part(&all);
+        assert_eq!(
+            shown.iter().map(|r| (r.name(), r.is.seed)).collect::<Vec<_>>(),
+            [("efg", 1), ("other", 7)]
+        );
+        assert_eq!(clouds.len(), 1);
+        assert_eq!(clouds[0].iter().map(|r| r.is.seed).collect::<Vec<_>>(), [1, 2, 3, 4]);
+        let spread = Spread::of(&clouds[0], "l2").unwrap();
+        assert_eq!(spread, Spread { count: 3, quantiles: [1.0, 1.5, 2.0, 3.0, 4.0] });
+        assert_eq!(Spread::of(&clouds[0], "energy"), None);
+    }
+}

@@ -1,0 +1,58 @@
+//! Results over many clouds of the same nodes in number, placed by different seeds.
+
+use crate::clouds::{Clouds, Spread};
+use crate::select::groups;
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+/// What is told where it is there, with what its unit is multiplied by to be shown.
+const QUANTITIES: [(&str, &str, f64); 7] = [
+    ("rms", "RMS |u| [mm]", 1e3),
+    ("l2", "relative L2 [1]", 1.0),
+    ("energy", "relative energy [1]", 1.0),
+    ("pressure", "relative pressure [1]", 1.0),
+    ("max", "max |u| [mm]", 1e3),
+    ("tool-force", "tool force [N]", 1.0),
+    ("smallest-j", "smallest J [1]", 1.0),
+];
+
+/// Quartiles of every quantity over the clouds of a method.
+pub(super) fn placement(clouds: &[Clouds]) -> Table {
+    let mut table = Table::new(
+        "placement",
+        "Node placement",
+        "The same method on clouds of one number of nodes that differ by their seed: how many carried the whole load, and the least, the \
+         quartiles and the most of what they gave. The other tables have the first seed only",
+        &[
+            ("case", Words),
+            ("method", Words),
+            ("nodes", Number),
+            ("clouds", Number),
+            ("number", Words),
+            ("whole", Number),
+            ("least", Number),
+            ("lower quartile", Number),
+            ("median", Number),
+            ("upper quartile", Number),
+            ("most", Number),
+        ],
+    );
+    for case in groups(clouds, |g| (g[0].is.case.clone(), g[0].is.poisson.to_bits())) {
+        for group in case.iter().filter(|g| g[0].is.family != "interp") {
+            for (quantity, name, scale) in QUANTITIES {
+                let Some(Spread { count, quantiles }) = Spread::of(group, quantity) else { continue };
+                let mut row = vec![
+                    Cell::Text(&group[0].is.case),
+                    Cell::Text(group[0].name()),
+                    Cell::Count(group[0].is.nodes),
+                    Cell::Count(group.len() as u64),
+                    Cell::Text(name),
+                    Cell::Count(count as u64),
+                ];
+                row.extend(quantiles.map(|q| Cell::Digits(Some(q * scale), 3)));
+                table.row(&row);
+            }
+        }
+    }
+    table
+}
