@@ -18,6 +18,10 @@ pub struct Wants {
 /// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
+/// Stages that a run which ends before anything is solved does not come to.
+const OF_SOLVING: [&str; 6] =
+    ["stiffness", "factorisation", "contact search", "friction history", "transfer", "transfer schemes"];
+
 /// Stages of a run, in order.
 pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> {
     let mut stages = Vec::new();
@@ -156,6 +160,11 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             (false, _) => "none asked for".into(),
         },
     );
+    if setup.prepare_only {
+        for stage in stages.iter_mut().filter(|stage| OF_SOLVING.contains(&stage.stage)) {
+            (stage.ran, stage.why) = (false, "nothing is solved (kind = \"prepare\")".into());
+        }
+    }
     stages
 }
 

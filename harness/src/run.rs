@@ -2,18 +2,18 @@
 
 use std::time::Instant;
 
-use geometry::{Matrix3, Point3, Vector3};
+use geometry::{Point3, Vector3};
 use interp::Scheme;
-use mechanics::{Body, Law, SolveInfo, assemble};
+use mechanics::{SolveInfo, assemble};
 
 use crate::Failure;
+use crate::course::history;
 use crate::discretise::Discretisation;
 use crate::explicit;
 use crate::in_time;
-use crate::mean_pressure::cauchy;
+use crate::measure::{measure, of_tables, probes, push};
 use crate::motion::Motion;
-use crate::norms::{self, difference, exact_at, norms};
-use crate::outcome::{Identity, LoadStep, Metric, Outcome, Probe, Size, Stage, of_tool};
+use crate::outcome::{Identity, LoadStep, Outcome, Probe, Size, Stage};
 use crate::picture::{State, picture};
 use crate::prepare::{Prepared, prepare};
 use crate::relaxation;
@@ -82,18 +82,18 @@ pub struct Solved {
 }
 
 /// What a procedure came to.
-struct Solution {
+pub(crate) struct Solution {
     /// Nodal parameters at the end, m.
-    u: Vec<Vector3>,
+    pub(crate) u: Vec<Vector3>,
     dofs: usize,
     /// Relative residual at the end.
-    residual: f64,
+    pub(crate) residual: f64,
     /// Of a linear procedure.
-    info: Option<SolveInfo>,
+    pub(crate) info: Option<SolveInfo>,
     /// Of a static procedure.
-    path: Option<Path>,
+    pub(crate) path: Option<Path>,
     /// Of dynamics.
-    motion: Option<Motion>,
+    pub(crate) motion: Option<Motion>,
 }
 
 /// Runs one method.
@@ -115,6 +115,9 @@ pub fn run(
         (prepared, solution, work) = solve_once(method, setup, &mut timings)?;
     }
     let memory = crate::memory::peak();
+    if setup.prepare_only {
+        return Ok(prepared_only(identity, plan, method, prepared, (timings, memory, work)));
+    }
     let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
     let mut phases = timings.summaries();
     phases.push(("total", timings.total()));
@@ -125,13 +128,7 @@ pub fn run(
         phases.push(("element-step", solve.times(each)));
     }
 
-    let size = Size {
-        nodes: method.nodes().len() as u64,
-        elements: method.mesh().cell_count() as u64,
-        points: prepared.volume.rows.weights().len() as u64,
-        dofs: solution.dofs as u64,
-        spacing: prepared.spacing,
-    };
+    let size = size(method, &prepared, solution.dofs);
     let u = solution.u.clone();
     let pressure = match (&mut solution.path, &mut solution.motion) {
         (Some(path), _) => std::mem::take(&mut path.pressure),
@@ -211,6 +208,49 @@ pub fn run(
     Ok(Solved { outcome, prepared, u })
 }
 
+fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
+    Size {
+        nodes: method.nodes().len() as u64,
+        elements: method.mesh().cell_count() as u64,
+        points: prepared.volume.rows.weights().len() as u64,
+        dofs: dofs as u64,
+        spacing: prepared.spacing,
+    }
+}
+
+/// What a run that ends before anything is solved leaves: times, memory, and what its tables are like.
+fn prepared_only(
+    identity: Identity,
+    plan: Vec<Stage>,
+    method: &Discretisation,
+    prepared: Prepared,
+    (timings, memory, work): (Timings, u64, Work),
+) -> Solved {
+    let mut metrics = Vec::new();
+    of_tables(&mut metrics, &prepared);
+    let mut phases = timings.summaries();
+    phases.push(("total", timings.total()));
+    let outcome = Outcome {
+        identity,
+        size: size(method, &prepared, 0),
+        metrics,
+        phases,
+        memory,
+        probes: Vec::new(),
+        plan,
+        transfers: Vec::new(),
+        field: None,
+        work,
+        tools: Vec::new(),
+        last: None,
+        steps: Vec::new(),
+        status: "ok",
+        stalled: None,
+        relaxed: None,
+    };
+    Solved { outcome, prepared, u: Vec::new() }
+}
+
 fn solve_once(
     method: &Discretisation,
     setup: &Setup,
@@ -218,6 +258,11 @@ fn solve_once(
 ) -> Result<(Prepared, Solution, Work), Failure> {
     let mut work = Work::default();
     let prepared = timings.time("prepare", || prepare(method, setup, &mut work))?;
+    if setup.prepare_only {
+        let solution =
+            Solution { u: Vec::new(), dofs: 0, residual: 0.0, info: None, path: None, motion: None };
+        return Ok((prepared, solution, work));
+    }
     if let Some(params) = &setup.statics {
         let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, &mut work))?;
         if path.limit.is_some() {
@@ -284,245 +329,6 @@ fn displacement(
         field = timings.time("transfer", once)?;
     }
     Ok(field)
-}
-
-pub(crate) fn push(metrics: &mut Vec<Metric>, name: &str, value: f64, unit: &'static str) {
-    metrics.push(Metric { name: name.into(), value, unit });
-}
-
-/// Errors, maxima, energies, counts.
-fn measure(
-    metrics: &mut Vec<Metric>,
-    method: &Discretisation,
-    setup: &Setup,
-    prepared: &Prepared,
-    solution: &Solution,
-    (field, outside): (Vec<Vector3>, usize),
-    asks: &Asks,
-) -> Result<(), Failure> {
-    let body = Body {
-        nodes: method.nodes(),
-        volume: &prepared.volume.rows,
-        materials: &setup.materials,
-        region: &prepared.volume.region,
-        dilation: prepared.volume.groups.as_ref(),
-    };
-    // Stresses are compared with Hooke's; a pressure field of its own is another stress than the displacement's.
-    let hooke =
-        setup.laws.iter().all(Law::is_small_strain) && prepared.volume.pressure.is_none() && !setup.relaxes();
-    if let (Some(exact), false) = (&setup.exact, hooke) {
-        let (fine, _) = method.error_rows(&prepared.volume)?;
-        if let Some(value) = norms::l2(&fine, &solution.u, exact.as_ref()) {
-            push(metrics, "l2", value, "1");
-        }
-    }
-    if let (Some(exact), true) = (&setup.exact, hooke) {
-        let (fine, region) = method.error_rows(&prepared.volume)?;
-        let n = norms(&body, &fine, &region, &solution.u, exact.as_ref())?;
-        for (name, value) in
-            [("l2", n.l2), ("energy", n.energy), ("pressure", n.pressure), ("stress", n.stress)]
-        {
-            if let Some(value) = value {
-                push(metrics, name, value, "1");
-            }
-        }
-    }
-    let points = if asks.targets.is_empty() { method.nodes() } else { asks.targets };
-    let against = match (&setup.exact, asks.reference) {
-        (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
-        (None, Some(reference)) => Some(reference.targets.clone()),
-        (None, None) => None,
-    };
-    if let Some(against) = against {
-        push_difference(metrics, "rms", &field, &against);
-        push(metrics, "max-error", difference(&field, &against).max, "m");
-        let largest = against.iter().fold(0.0, |m: f64, u| m.max(u.norm()));
-        if largest > 0.0 {
-            push(metrics, "relative-max", difference(&field, &against).max / largest, "1");
-        }
-    }
-    if let Some(beside) = asks.beside {
-        push_difference(metrics, "beside-rms", &field, &beside.targets);
-    }
-    for (axis, name) in ["max-x", "max-y", "max-z"].into_iter().enumerate() {
-        push(metrics, name, field.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())), "m");
-    }
-    push(metrics, "max", field.iter().fold(0.0, |m: f64, u| m.max(u.norm())), "m");
-    push(metrics, "targets-outside", outside as f64, "1");
-    let energy = match (&solution.path, &solution.motion) {
-        (Some(path), _) => path.last.strain_energy,
-        (_, Some(motion)) => motion.last.strain_energy,
-        (None, None) => Some(mechanics::strain_energy(&body, &solution.u)?),
-    };
-    if let Some(energy) = energy {
-        push(metrics, "strain-energy", energy, "J");
-    }
-    push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
-    if solution.motion.is_none() {
-        push(metrics, "residual", solution.residual, "1");
-    }
-    if let Some(info) = &solution.info {
-        push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
-    }
-    let resultant = prepared.resultant();
-    for (axis, name) in ["load-x", "load-y", "load-z"].into_iter().enumerate() {
-        push(metrics, name, resultant[axis], "N");
-    }
-    if let Some(mls) = &prepared.volume.mls {
-        push(metrics, "neighbours-min", mls.neighbours_min as f64, "1");
-        push(metrics, "neighbours-mean", mls.neighbours_mean, "1");
-        push(metrics, "neighbours-max", mls.neighbours_max as f64, "1");
-        push(metrics, "condition-median", mls.condition_median, "1");
-        push(metrics, "condition-max", mls.condition_max, "1");
-        push(metrics, "fallbacks", mls.fallbacks() as f64, "1");
-        push(metrics, "fallbacks-enlarged", mls.enlarged as f64, "1");
-        push(metrics, "fallbacks-regularised", mls.regularised as f64, "1");
-        push(metrics, "fallbacks-reduced", mls.reduced as f64, "1");
-    }
-    if let Some(error) = prepared.volume.volume_error {
-        push(metrics, "volume-error", error, "1");
-    }
-    Ok(())
-}
-
-/// A procedure in steps, as it came out of its solver.
-struct Course {
-    steps: Vec<LoadStep>,
-    fields: Vec<Vec<Vector3>>,
-    last: LoadStep,
-    metrics: Vec<Metric>,
-    failure: Option<Failure>,
-}
-
-impl From<Path> for Course {
-    fn from(path: Path) -> Course {
-        let Path { steps, fields, last, iterations, cut_backs, limit, failure, relaxed, .. } = path;
-        let mut metrics = Vec::new();
-        if let Some(limit) = &limit {
-            push(&mut metrics, "limit-load", limit.load, "1");
-            for (index, tool) in limit.tools.iter().enumerate() {
-                push(&mut metrics, &of_tool("limit-closure", index), tool.closure, "m");
-                push(&mut metrics, &of_tool("limit-tool-force", index), tool.pushed, "N");
-            }
-        }
-        push(&mut metrics, "newton-iterations", iterations as f64, "1");
-        push(&mut metrics, "cut-backs", cut_backs as f64, "1");
-        let failure = match relaxed {
-            None => failure.map(Failure::from),
-            Some(relaxed) => {
-                push(&mut metrics, "relaxation-steps", relaxed.made as f64, "1");
-                relaxed.failure.map(Failure::from)
-            }
-        };
-        Course { steps, fields, last, metrics, failure }
-    }
-}
-
-impl From<Motion> for Course {
-    fn from(motion: Motion) -> Course {
-        let Motion { steps, fields, last, metrics, failure, .. } = motion;
-        Course { steps, fields, last, metrics, failure }
-    }
-}
-
-/// What a procedure in steps left: its last state, its load steps with their errors against the reference's, and why it ended
-/// early.
-type History = (Option<LoadStep>, Vec<LoadStep>, Option<Failure>);
-
-fn history(
-    metrics: &mut Vec<Metric>,
-    method: &Discretisation,
-    prepared: &Prepared,
-    course: Course,
-    asks: &Asks,
-) -> Result<History, Failure> {
-    let Course { mut steps, fields, last, metrics: of_procedure, failure } = course;
-    push(metrics, "load-carried", last.load, "1");
-    push(metrics, "smallest-j", last.smallest_j, "1");
-    push(metrics, "load-steps", steps.len() as f64, "1");
-    metrics.extend(of_procedure);
-    for (index, tool) in last.tools.iter().enumerate() {
-        push(metrics, &of_tool("closure", index), tool.closure, "m");
-        push(metrics, &of_tool("tool-force", index), tool.pushed, "N");
-        push(metrics, &of_tool("contact-points", index), tool.active as f64, "1");
-    }
-    if let Some(deepest) = last.tools.iter().map(|t| t.penetration).reduce(f64::max) {
-        push(metrics, "penetration", deepest, "m");
-    }
-    if !asks.probes.is_empty() {
-        let (rows, _) = method.at_points(&prepared.volume, asks.probes)?;
-        for (step, u) in steps.iter_mut().zip(&fields) {
-            step.probes = rows.rows().apply(u);
-        }
-    }
-    if let Some(reference) = asks.reference {
-        for step in &mut steps {
-            let same = |other: &&LoadStep| (other.load - step.load).abs() < 1e-9;
-            if let Some(of_reference) = reference.steps.iter().find(same) {
-                step.against = against(step, of_reference);
-            }
-        }
-        if let (Some(end), None, true) = (steps.last(), &failure, reference.finished) {
-            metrics.extend(end.against.iter().cloned());
-        }
-    }
-    Ok((Some(last), steps, failure))
-}
-
-/// Errors of one step against the reference's at the same part of the load: of every tool's force and of the strain energy,
-/// relative, and the largest of the displacements at the probes.
-fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
-    let mut metrics = Vec::new();
-    for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
-        if other.pushed != 0.0 {
-            push(
-                &mut metrics,
-                &of_tool("tool-force-error", index),
-                (tool.pushed / other.pushed - 1.0).abs(),
-                "1",
-            );
-        }
-    }
-    if let (Some(energy), Some(other)) = (step.strain_energy, reference.strain_energy.filter(|e| *e > 0.0)) {
-        push(&mut metrics, "strain-energy-error", (energy / other - 1.0).abs(), "1");
-    }
-    let distances = step.probes.iter().zip(&reference.probes).map(|(u, v)| (u - v).norm());
-    if let Some(largest) = distances.reduce(f64::max) {
-        push(&mut metrics, "probe-difference", largest, "m");
-    }
-    metrics
-}
-
-/// RMS of a difference per direction (`NAME-x` and so on) and of the magnitude (`NAME`).
-pub(crate) fn push_difference(metrics: &mut Vec<Metric>, name: &str, field: &[Vector3], against: &[Vector3]) {
-    let d = difference(field, against);
-    for (axis, value) in ["x", "y", "z"].into_iter().zip(d.rms) {
-        push(metrics, &format!("{name}-{axis}"), value, "m");
-    }
-    push(metrics, name, d.rms_magnitude, "m");
-}
-
-fn probes(
-    method: &Discretisation,
-    setup: &Setup,
-    prepared: &Prepared,
-    u: &[Vector3],
-    points: &[Point3],
-) -> Result<Vec<Probe>, Failure> {
-    if points.is_empty() {
-        return Ok(Vec::new());
-    }
-    let rows = method.gradients_at(&prepared.volume, points)?;
-    // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
-    // its past, which is followed at quadrature points only.
-    let stress: Vec<Option<Matrix3>> = if setup.is_linear() {
-        mechanics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
-    } else {
-        let known = |h: &Matrix3| (!setup.relaxes()).then(|| cauchy(&setup.laws[0], h));
-        rows.displacement_gradients(u).iter().map(known).collect()
-    };
-    let field = rows.rows().apply(u);
-    Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())
 }
 
 /// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.

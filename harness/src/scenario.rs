@@ -406,7 +406,20 @@ impl Scenario<'_> {
         let (tools, statics) = (tools(self.scene)?, self.statics());
         let (explicit, in_time) = (self.explicit(), self.in_time()?);
         let relax = self.scene.procedure.on_stall == OnStall::Relax;
-        Ok(Setup { laws, materials, held, loads, tools, statics, relax, explicit, in_time, exact })
+        let prepare_only = self.scene.procedure.kind == ProcedureKind::Prepare;
+        Ok(Setup {
+            laws,
+            materials,
+            held,
+            loads,
+            tools,
+            prepare_only,
+            statics,
+            relax,
+            explicit,
+            in_time,
+            exact,
+        })
     }
 
     /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene

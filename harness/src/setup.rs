@@ -60,6 +60,8 @@ pub struct Setup {
     pub loads: Vec<Acting>,
     /// Rigid tools.
     pub tools: Vec<SetTool>,
+    /// Whether nothing is solved.
+    pub prepare_only: bool,
     /// How a static procedure is stepped; `None` for another one.
     pub statics: Option<StaticParams>,
     /// Whether a static path that stalls goes on by dynamic relaxation.

@@ -6,10 +6,11 @@ use geometry::{Point3, Vector3};
 
 use crate::Failure;
 use crate::discretise::Discretisation;
+use crate::measure::{push, push_difference};
 use crate::norms::difference;
 use crate::outcome::{Metric, Transfer};
 use crate::prepare::Prepared;
-use crate::run::{Asks, push, push_difference};
+use crate::run::Asks;
 use crate::timing::Timings;
 use crate::work::Work;
 

@@ -56,6 +56,7 @@ fn what_a_plan_skips_is_not_done_and_what_it_runs_is() {
         "bar-wave-explicit",
         "bar-wave-implicit",
         "cantilever",
+        "cloud-cost",
         "compression",
         "first",
         "patch-displacement",

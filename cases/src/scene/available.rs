@@ -62,7 +62,7 @@ impl Scene {
                         add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                     }
                     let what = match efg.essential {
-                        _ if kind == ProcedureKind::Linear => continue,
+                        _ if matches!(kind, ProcedureKind::Linear | ProcedureKind::Prepare) => continue,
                         Essential::Penalty { .. } => continue,
                         Essential::Nitsche { .. } => "Nitsche's method",
                         Essential::Multipliers => "a support by multipliers",

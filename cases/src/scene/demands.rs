@@ -14,6 +14,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     laws(scene, report);
     tools(scene, report);
     mixed(scene, report);
+    unsolved(scene, report);
     if scene.procedure.duration.is_some() && timeless(scene) {
         let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
         report.add("procedure.duration", Problem::new("has nothing to last").help(help));
@@ -40,8 +41,25 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     }
 }
 
+/// Where nothing is solved there is no displacement to compare, carry over or tell.
+fn unsolved(scene: &Scene, report: &mut Report) {
+    if scene.procedure.kind != ProcedureKind::Prepare {
+        return;
+    }
+    let output = &scene.output;
+    for (key, given) in [
+        ("reference", scene.reference.is_some()),
+        ("output.probes", !output.probes.is_empty()),
+        ("output.transfer", !output.transfers.is_empty()),
+        ("output.beside", output.beside.is_some()),
+    ] {
+        let help = "leave it out, or take [procedure] kind = \"linear\"";
+        report.require(!given, key, "is of a displacement, and kind = \"prepare\" solves for none", help);
+    }
+}
+
 fn timeless(scene: &Scene) -> bool {
-    matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static)
+    matches!(scene.procedure.kind, ProcedureKind::Prepare | ProcedureKind::Linear | ProcedureKind::Static)
 }
 
 /// Every material with its key.

@@ -7,6 +7,8 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcedureKind {
+    /// Shape functions and integration rows only: what a method costs before anything is solved.
+    Prepare,
     /// One linear solve.
     Linear,
     /// Quasi-static load steps, each by Newton's method; tools touch and large-strain laws act.
@@ -21,6 +23,7 @@ impl ProcedureKind {
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
+            ProcedureKind::Prepare => "prepare",
             ProcedureKind::Linear => "linear",
             ProcedureKind::Static => "static",
             ProcedureKind::Explicit => "explicit",

@@ -123,7 +123,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
             "needs a [reference] and output.probes in the scene"
         }
-        Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear) => {
+        Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Prepare) => {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Dynamics if !in_time(scene) => {
@@ -145,7 +145,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
             "needs output.probes and [reference] method or record in the scene"
         }
         Needs::StepsReference
-            if matches!(scene.procedure.kind, ProcedureKind::Linear)
+            if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Prepare)
                 || !matches!(scene.reference, Some(Reference::Method { .. })) =>
         {
             "needs [procedure] kind = \"static\" or dynamics, and [reference] method in the scene"

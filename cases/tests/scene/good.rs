@@ -339,6 +339,12 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "'mixed' has no stable pressure field with tet4",
         ),
         ("steps = 10", "steps = 10\ntolerance = 1", "procedure.tolerance", "is no tolerance"),
+        (
+            "kind = \"static\"",
+            "kind = \"prepare\"",
+            "reference",
+            "is of a displacement, and kind = \"prepare\" solves for none",
+        ),
         ("steps = 10", "steps = 10\nlimit-within = 2", "procedure.limit-within", "is no part of the load"),
         ("steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"),
         ("steps = 10", "steps = 10\nduration = \"1 s\"", "procedure.duration", "has nothing to last"),

@@ -2,6 +2,7 @@
 
 mod closure;
 mod conditioning;
+mod cost;
 mod errors;
 mod kidney;
 mod orders;
@@ -28,6 +29,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         orders::observed(runs),
         orders::convergence_index(runs),
         timing::phases(runs),
+        cost::cost(runs),
         transfer::schemes(runs),
         conditioning::conditioning(runs),
         placement::placement(clouds),

@@ -114,7 +114,7 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
 }
 
 /// Solver series with a label each that tells them apart within their case and Poisson's ratio.
-fn labelled<'r>(runs: &[Run<'r>]) -> Vec<(String, Series<'r>)> {
+pub(super) fn labelled<'r>(runs: &[Run<'r>]) -> Vec<(String, Series<'r>)> {
     let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
     let mut out = Vec::new();
     for group in groups(&solved, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
