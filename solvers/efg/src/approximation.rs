@@ -10,6 +10,13 @@ use crate::{Basis, EfgError, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
+/// About so many points, or one in [`SPARING`], give an estimate of a table's size: to a standard error of 1 % where neighbours
+/// scatter by a third. Growing by doubling would take up to three times the memory while it copies, and touch pages anew.
+pub(crate) const SAMPLES: usize = 1000;
+/// Of small tables one point in so many is enough.
+pub(crate) const SPARING: usize = 25;
+/// Taken times that estimate.
+pub(crate) const MARGIN: f64 = 1.03;
 /// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
 /// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
@@ -122,7 +129,9 @@ impl Approximation {
         let mut batches: Vec<Batch> = Vec::new();
         let mut offsets = Vec::with_capacity(points.len() + 1);
         offsets.push(0);
-        let (mut nodes, mut values, mut grads) = (Vec::new(), Vec::new(), Vec::new());
+        let entries = self.expected_entries(points);
+        let (mut nodes, mut values) = (Vec::with_capacity(entries), Vec::with_capacity(entries));
+        let mut grads = Vec::with_capacity(if GRAD { entries } else { 0 });
         let mut outcomes = Vec::with_capacity(points.len());
         for wave in points.chunks(wave) {
             let chunks = wave.par_chunks(CHUNK);
@@ -142,15 +151,21 @@ impl Approximation {
                 grads.extend_from_slice(&batch.grads);
                 outcomes.extend_from_slice(&batch.outcomes);
             }
-            // By the mean so far, with a margin: growing by doubling would copy and touch pages anew.
-            let rest = (points.len() - outcomes.len()) * (nodes.len() / outcomes.len() + 1);
-            let entries = rest + rest / 16;
-            nodes.reserve(entries);
-            values.reserve(entries);
-            grads.reserve(if GRAD { entries } else { 0 });
         }
         let rows = Rows::new(self.nodes.len(), offsets, nodes, values, UNITY)?;
         Ok((rows, grads, MlsInfo::new(&outcomes)))
+    }
+
+    /// Entries of a table by the neighbours of a few of its points, with a margin.
+    fn expected_entries(&self, points: &[Point3]) -> usize {
+        let step = (points.len() / SAMPLES).max(SPARING);
+        let mut at = Workspace::default();
+        let (mut sampled, mut found) = (0, 0);
+        for x in points.iter().step_by(step) {
+            at.gather(x, self.buckets.candidates(x).iter().copied(), &self.balls, 1.0);
+            (sampled, found) = (sampled + 1, found + at.nodes.len());
+        }
+        (MARGIN * found as f64 * points.len() as f64 / sampled.max(1) as f64) as usize
     }
 
     /// The same arithmetic in the same order on either path, so the same bits; wide registers take 0.8 of the time.

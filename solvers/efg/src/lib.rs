@@ -19,7 +19,7 @@
 mod approximation;
 mod basis;
 mod buckets;
-mod cell_fields;
+mod cell_rows;
 mod cells;
 mod error;
 mod facets;

@@ -4,7 +4,7 @@
 use geometry::{Facet, Mesh};
 use shape::{GradRows, Rows, TraceRows, Unity, VolumeRows};
 
-use crate::cell_fields::{CellFields, combine, face_basis, local_corners, volume_basis};
+use crate::cell_rows::{CellRows, face_basis, local_corners, volume_basis};
 use crate::cells::tet_measure;
 use crate::facets::{triangle_rule, vector_area};
 use crate::{Approximation, EfgError, MlsInfo};
@@ -61,38 +61,13 @@ pub fn smoothed_rows(
     smoothing: Smoothing,
     face_points: usize,
 ) -> Result<(VolumeRows, MlsInfo), EfgError> {
-    let cells: Vec<usize> = (0..background.cell_count()).collect();
-    match smoothing {
-        Smoothing::Constant => rows::<1>(approximation, background, &cells, face_points),
-        Smoothing::Linear => rows::<4>(approximation, background, &cells, face_points),
-    }
-}
-
-fn rows<const P: usize>(
-    approximation: &Approximation,
-    background: &Mesh,
-    cells: &[usize],
-    face_points: usize,
-) -> Result<(VolumeRows, MlsInfo), EfgError> {
-    let (fields, info) = CellFields::<P>::new(approximation, background, cells, face_points)?;
-    let basis = volume_basis::<P>();
-    let entries = P * fields.nodes.len();
-    let mut offsets = vec![0];
-    let mut nodes = Vec::with_capacity(entries);
-    let (mut values, mut grads) = (Vec::with_capacity(entries), Vec::with_capacity(entries));
-    let mut weights = Vec::with_capacity(P * cells.len());
-    for index in 0..cells.len() {
-        let range = fields.offsets[index]..fields.offsets[index + 1];
-        for q in 0..P {
-            nodes.extend_from_slice(&fields.nodes[range.clone()]);
-            values.extend(fields.values[range.clone()].iter().map(|v| v[q]));
-            grads.extend(fields.slopes[range.clone()].iter().map(|s| combine(s, &basis[q])));
-            offsets.push(nodes.len());
-            weights.push(fields.volumes[index] / P as f64);
-        }
-    }
+    let (rows, info) = match smoothing {
+        Smoothing::Constant => CellRows::new::<1>(approximation, background, face_points)?,
+        Smoothing::Linear => CellRows::new::<4>(approximation, background, face_points)?,
+    };
+    let CellRows { offsets, nodes, values, grads, weights, points } = rows;
     let rows = Rows::new(approximation.nodes().len(), offsets, nodes, values, UNITY)?;
-    Ok((VolumeRows::new(GradRows::new(fields.points, rows, grads)?, weights)?, info))
+    Ok((VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?, info))
 }
 
 /// What the smoothed gradients of [`smoothed_rows`] are at the points of [`crate::flux_rows`] on the same facets: those

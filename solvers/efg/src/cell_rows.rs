@@ -1,10 +1,11 @@
-//! Smoothed gradients of cells by their moments: one table of face points serves both sides of every face.
+//! Rows of cells with gradients smoothed by their moments: one table of face points serves both sides of every face.
 
 use geometry::Mesh;
 use geometry::quadrature::{self, Rule};
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Vector3};
 
+use crate::approximation::{MARGIN, SAMPLES, SPARING};
 use crate::cells::tet_measure;
 use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
 use crate::{Approximation, EfgError, MlsInfo};
@@ -12,40 +13,53 @@ use crate::{Approximation, EfgError, MlsInfo};
 /// Cells per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
 
-/// Smoothed gradients of some cells by coefficients: `grad~_I(x) = sum_j slopes_j b_j(x)`, with `b = 1` (P = 1) or the
-/// barycentric coordinates of the cell (P = 4).
-pub(crate) struct CellFields<const P: usize> {
+/// Cells per wave and thread: their rows are kept twice while they are joined to the others.
+const WAVE: usize = 4 * CHUNK;
+
+/// Rows of every cell of a mesh of tet4, P for each: values at its points, and the smoothed gradients there (1/m).
+pub(crate) struct CellRows {
     pub offsets: Vec<usize>,
-    /// Nodes of each cell, ascending.
+    /// Nodes of each row, ascending.
     pub nodes: Vec<u32>,
-    /// Coefficients, 1/m.
-    pub slopes: Vec<[Vector3; P]>,
-    /// Values at the cell's P points.
-    pub values: Vec<[f64; P]>,
-    /// Volumes, m^3.
-    pub volumes: Vec<f64>,
-    /// P points per cell.
+    pub values: Vec<f64>,
+    pub grads: Vec<Vector3>,
+    /// Weights, m^3.
+    pub weights: Vec<f64>,
     pub points: Vec<Point3>,
 }
 
-/// Fields of one chunk of cells.
-struct Batch<const P: usize> {
+/// Rows of one chunk of cells.
+#[derive(Default)]
+struct Batch {
     lengths: Vec<usize>,
     nodes: Vec<u32>,
-    slopes: Vec<[Vector3; P]>,
-    values: Vec<[f64; P]>,
+    values: Vec<f64>,
+    grads: Vec<Vector3>,
 }
 
-impl<const P: usize> CellFields<P> {
-    pub fn new(
+/// What a cell is made of: the points of its faces and its own, as rows of one table.
+struct Parts<'a, const P: usize> {
+    mesh: &'a Mesh,
+    faces: Faces,
+    areas: Vec<Vector3>,
+    rule: Rule<2>,
+    /// Face points first, cell points after.
+    at: PointRows,
+    first_inner: usize,
+    volumes: Vec<f64>,
+    basis: [[f64; P]; P],
+}
+
+impl CellRows {
+    pub fn new<const P: usize>(
         approximation: &Approximation,
         mesh: &Mesh,
-        cells: &[usize],
         face_points: usize,
-    ) -> Result<(CellFields<P>, MlsInfo), EfgError> {
+    ) -> Result<(CellRows, MlsInfo), EfgError> {
         let rule = triangle_rule(face_points)?;
-        let (mut volumes, mut inner) = (Vec::with_capacity(cells.len()), Vec::with_capacity(P * cells.len()));
-        for &cell in cells {
+        let count = mesh.cell_count();
+        let (mut volumes, mut inner) = (Vec::with_capacity(count), Vec::with_capacity(P * count));
+        for cell in 0..count {
             let (volume, centroid) = tet_measure(mesh, cell)?;
             volumes.push(volume);
             for b in &volume_basis::<P>() {
@@ -58,8 +72,7 @@ impl<const P: usize> CellFields<P> {
                 inner.push(centroid + offset);
             }
         }
-        let faces = faces(mesh, cells);
-        // Face points first, cell points after: one table, one report.
+        let faces = faces(mesh);
         let mut points = Vec::with_capacity(faces.corners.len() * rule.len() + inner.len());
         for &corners in &faces.corners {
             triangle_points(mesh, corners, &rule, &mut points);
@@ -68,55 +81,75 @@ impl<const P: usize> CellFields<P> {
         points.extend_from_slice(&inner);
         let (at, info) = approximation.point_rows(&points)?;
         let areas: Vec<Vector3> = faces.corners.iter().map(|&c| vector_area(mesh, c)).collect();
-        let order: Vec<usize> = (0..cells.len()).collect();
-        let batches: Vec<Batch<P>> = order
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                let mut batch =
-                    Batch { lengths: Vec::new(), nodes: Vec::new(), slopes: Vec::new(), values: Vec::new() };
-                let mut sum = Sum::<P>::new(approximation.nodes().len());
-                for &index in chunk {
-                    let volume = volumes[index];
-                    for (face, &(number, sign)) in faces.of_cell[index].iter().enumerate() {
-                        let flow = areas[number as usize] * (sign / volume);
-                        let corners = local_corners(mesh, cells[index], face);
-                        for (q, xi) in rule.points.iter().enumerate() {
-                            // The rule's weights sum to 1/2, the area of the reference triangle.
-                            let flow = flow * (2.0 * rule.weights[q]);
-                            let flows = face_basis::<P>(corners, xi).map(|b| flow * b);
-                            sum.add_flow(&at, number as usize * rule.len() + q, &flows);
-                        }
-                    }
-                    let slopes = basis_slopes::<P>(mesh, cells[index]);
-                    for q in 0..P {
-                        sum.add_inner(&at, first_inner + P * index + q, q, &slopes);
-                    }
-                    sum.drain_into(&mut batch);
-                }
-                batch
-            })
-            .collect();
-        let mut fields = CellFields {
-            offsets: vec![0],
-            nodes: Vec::new(),
-            slopes: Vec::new(),
-            values: Vec::new(),
-            volumes,
+        let parts = Parts::<P> { mesh, faces, areas, rule, at, first_inner, volumes, basis: volume_basis() };
+
+        let entries = parts.expected_entries(approximation.nodes().len());
+        let mut rows = CellRows {
+            offsets: Vec::with_capacity(P * count + 1),
+            nodes: Vec::with_capacity(entries),
+            values: Vec::with_capacity(entries),
+            grads: Vec::with_capacity(entries),
+            weights: parts.volumes.iter().flat_map(|v| [v / P as f64; P]).collect(),
             points: inner,
         };
-        for batch in batches {
-            for length in batch.lengths {
-                fields.offsets.push(fields.offsets[fields.offsets.len() - 1] + length);
+        rows.offsets.push(0);
+        let cells: Vec<usize> = (0..count).collect();
+        for wave in cells.chunks(WAVE * rayon::current_num_threads()) {
+            // A sum has a place for every node of the cloud: one for each chunk would make the whole quadratic.
+            let sum = || Sum::<P>::new(approximation.nodes().len());
+            let work = |sum: &mut Sum<P>, chunk: &[usize]| {
+                let mut batch = Batch::default();
+                chunk.iter().for_each(|&cell| parts.add(cell, sum, &mut batch));
+                batch
+            };
+            let batches: Vec<Batch> = wave.par_chunks(CHUNK).map_init(sum, work).collect();
+            for batch in batches {
+                for length in batch.lengths {
+                    rows.offsets.push(rows.offsets[rows.offsets.len() - 1] + length);
+                }
+                rows.nodes.extend_from_slice(&batch.nodes);
+                rows.values.extend_from_slice(&batch.values);
+                rows.grads.extend_from_slice(&batch.grads);
             }
-            fields.nodes.extend_from_slice(&batch.nodes);
-            fields.slopes.extend_from_slice(&batch.slopes);
-            fields.values.extend_from_slice(&batch.values);
         }
-        Ok((fields, info))
+        Ok((rows, info))
     }
 }
 
-pub(crate) fn combine<const P: usize>(slopes: &[Vector3; P], basis: &[f64; P]) -> Vector3 {
+impl<const P: usize> Parts<'_, P> {
+    /// Appends the rows of a cell.
+    fn add(&self, cell: usize, sum: &mut Sum<P>, batch: &mut Batch) {
+        for (face, &(number, sign)) in self.faces.of_cell[cell].iter().enumerate() {
+            let flow = self.areas[number as usize] * (sign / self.volumes[cell]);
+            let corners = local_corners(self.mesh, cell, face);
+            for (q, xi) in self.rule.points.iter().enumerate() {
+                // The rule's weights sum to 1/2, the area of the reference triangle.
+                let flow = flow * (2.0 * self.rule.weights[q]);
+                let flows = face_basis::<P>(corners, xi).map(|b| flow * b);
+                sum.add_flow(&self.at, number as usize * self.rule.len() + q, &flows);
+            }
+        }
+        let slopes = basis_slopes::<P>(self.mesh, cell);
+        for q in 0..P {
+            sum.add_inner(&self.at, self.first_inner + P * cell + q, q, &slopes);
+        }
+        sum.drain_into(&self.basis, batch);
+    }
+
+    /// Entries of all rows by those of a few cells, with a margin.
+    fn expected_entries(&self, nodes: usize) -> usize {
+        let count = self.volumes.len();
+        let (mut sum, mut batch) = (Sum::<P>::new(nodes), Batch::default());
+        let mut sampled = 0;
+        for cell in (0..count).step_by((count / SAMPLES).max(SPARING)) {
+            self.add(cell, &mut sum, &mut batch);
+            sampled += 1;
+        }
+        (MARGIN * batch.nodes.len() as f64 * count as f64 / sampled.max(1) as f64) as usize
+    }
+}
+
+fn combine<const P: usize>(slopes: &[Vector3; P], basis: &[f64; P]) -> Vector3 {
     let mut g = slopes[0] * basis[0];
     for j in 1..P {
         g += slopes[j] * basis[j];
@@ -215,17 +248,23 @@ impl<const P: usize> Sum<P> {
         }
     }
 
-    /// Appends the cell by ascending node and clears.
-    fn drain_into(&mut self, batch: &mut Batch<P>) {
+    /// Appends the rows of the cell's points, by ascending node, and clears.
+    fn drain_into(&mut self, basis: &[[f64; P]; P], batch: &mut Batch) {
         self.touched.sort_unstable();
-        batch.lengths.push(self.touched.len());
+        for (q, basis) in basis.iter().enumerate() {
+            batch.lengths.push(self.touched.len());
+            batch.nodes.extend_from_slice(&self.touched);
+            for &node in &self.touched {
+                let i = node as usize;
+                let moments = self.moments[i];
+                let slopes = if P == 1 { moments } else { solve_moments(moments) };
+                batch.values.push(self.values[i][q]);
+                batch.grads.push(combine(&slopes, basis));
+            }
+        }
         for &node in &self.touched {
             let i = node as usize;
-            batch.nodes.push(node);
-            batch.values.push(std::mem::replace(&mut self.values[i], [0.0; P]));
-            let moments = std::mem::replace(&mut self.moments[i], [Vector3::zeros(); P]);
-            batch.slopes.push(if P == 1 { moments } else { solve_moments(moments) });
-            self.seen[i] = false;
+            (self.values[i], self.moments[i], self.seen[i]) = ([0.0; P], [Vector3::zeros(); P], false);
         }
         self.touched.clear();
     }
@@ -238,7 +277,7 @@ fn solve_moments<const P: usize>(moments: [Vector3; P]) -> [Vector3; P] {
     moments.map(|m| (m - mean) * 20.0)
 }
 
-/// The distinct faces of some cells of a mesh of tet4, each once.
+/// The distinct faces of the cells of a mesh of tet4, each once.
 struct Faces {
     /// Canonical corners of each face.
     corners: Vec<[u32; 3]>,
@@ -246,24 +285,24 @@ struct Faces {
     of_cell: Vec<[(u32, f64); 4]>,
 }
 
-fn faces(mesh: &Mesh, cells: &[usize]) -> Faces {
-    let mut all: Vec<([u32; 3], u32, u8, bool)> = Vec::with_capacity(4 * cells.len());
-    for (index, &cell) in cells.iter().enumerate() {
+fn faces(mesh: &Mesh) -> Faces {
+    let mut all: Vec<([u32; 3], u32, u8, bool)> = Vec::with_capacity(4 * mesh.cell_count());
+    for cell in 0..mesh.cell_count() {
         for (face, local) in mesh.kind(cell).faces().iter().enumerate() {
             let nodes = mesh.cell(cell);
             let (corners, turned) = canonical([0, 1, 2].map(|k| nodes[local[k]]));
-            all.push((corners, index as u32, face as u8, turned));
+            all.push((corners, cell as u32, face as u8, turned));
         }
     }
     all.sort_unstable();
     let mut corners: Vec<[u32; 3]> = Vec::with_capacity(all.len() / 2);
-    let mut of_cell = vec![[(0, 1.0); 4]; cells.len()];
-    for (triangle, index, face, turned) in all {
+    let mut of_cell = vec![[(0, 1.0); 4]; mesh.cell_count()];
+    for (triangle, cell, face, turned) in all {
         if corners.last() != Some(&triangle) {
             corners.push(triangle);
         }
         let sign = if turned { -1.0 } else { 1.0 };
-        of_cell[index as usize][face as usize] = (corners.len() as u32 - 1, sign);
+        of_cell[cell as usize][face as usize] = (corners.len() as u32 - 1, sign);
     }
     Faces { corners, of_cell }
 }
