@@ -5,18 +5,18 @@
 //!
 //! | kernel | bytes | flops | memory at 20 GB/s | arithmetic at 40 Gflop/s |
 //! |---|---|---|---|---|
-//! | tet4 | 88 (9 gradients, weight, 4 short nodes) | 190 | 4.4 ns | 4.8 ns |
-//! | tet4 nodal dilation | 176 (two passes) | 390 | 8.8 ns | 9.8 ns |
-//! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2200 | 33 ns | 55 ns |
-//! | hex8 mean dilation | 656 (one pass) | 2600 | 33 ns | 65 ns |
-//! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 870 | 40 ns | 22 ns |
+//! | tet4 | 88 (9 gradients, weight, 4 short nodes) | 180 | 4.4 ns | 4.5 ns |
+//! | tet4 nodal dilation | 176 (two passes) | 380 | 8.8 ns | 9.5 ns |
+//! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2100 | 33 ns | 53 ns |
+//! | hex8 mean dilation | 656 (one pass) | 2500 | 33 ns | 63 ns |
+//! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 860 | 40 ns | 22 ns |
 //!
 //! What each kernel waits for, from its measured distance to these bounds: tet4 for the gather and scatter of 16 nodes'
-//! quads per lane pair (12 ns, 2.5 times the arithmetic); hex8 for products, of which 1000 vectors of eight elements (mean
-//! dilation 1245) at one per cycle of 3.7 GHz are 34 ns (42), for the gather and scatter of its nodes, sums and
-//! differences (15 ns), and outside the kernel for copies of nodes and their sums (8 ns): kernel alone 57 ns (67), whole
-//! evaluation 65 (74), beside busy neighbours the least of 20 samples; out of cache for memory, 130 (130); EFG for loads,
-//! eight per neighbour (63 ns in cache, 87 out of it).
+//! quads per lane pair (11 ns, 2.4 times the arithmetic; nodal dilation 21 ns, 2.2 times); hex8 for products, of which 950
+//! vectors of eight elements (mean dilation 1200) at one per cycle of 3.7 GHz are 32 ns (40), for sums and differences and
+//! the scatter of its nodes (20 ns), and outside the kernel for copies of nodes and their sums (5 ns): kernel alone 52 ns (62),
+//! whole evaluation 58 (68), beside busy neighbours the least of 20 samples; out of cache for memory, 130 (130); EFG for
+//! loads, eight per neighbour (53 ns in cache, 90 out of it).
 //! Not covered: quadratic elements (they take the EFG kernel), laws other than neo-Hookean and nodal dilation of EFG
 //! rows (both take the plain loop).
 

@@ -10,8 +10,15 @@ use rayon::prelude::*;
 
 use crate::Vector3;
 
-/// One node of one chunk: three components and a pad, one AVX2 register.
-pub(super) type Slot = [f64; 4];
+/// One node of one chunk: three components and a pad, one AVX2 register. Aligned: every other one would straddle two cache
+/// lines (0.97 of the time of tet4).
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+pub(super) struct Slot(pub [f64; 4]);
+
+impl Slot {
+    pub const ZERO: Slot = Slot([0.0; 4]);
+}
 
 /// Nodes per task of the sum over copies.
 const NODES: usize = 1024;
@@ -65,7 +72,7 @@ impl Border {
         &self.nodes[self.range(chunk)]
     }
 
-    fn range(&self, chunk: usize) -> Range<usize> {
+    pub fn range(&self, chunk: usize) -> Range<usize> {
         self.offsets[chunk]..self.offsets[chunk + 1]
     }
 
@@ -90,37 +97,32 @@ impl Border {
         tasks.into_par_iter().map(run).reduce(|| true, |x, y| x & y)
     }
 
-    /// Sum of the copies of every node, `finish(node, sum)` into `out`.
+    /// `finish` of the sum of the copies of every node, into `out`. Sums of a whole task before the first `finish` would go
+    /// through memory once more (0.97 of the time of tet4 and hex8 without).
     pub fn sum<const W: usize, T: Send>(
         &self,
-        slots: &[[f64; W]],
+        copy: impl Fn(usize) -> [f64; W] + Sync,
+        finish: impl Fn([f64; W]) -> T + Sync,
         out: &mut [T],
-        finish: impl Fn(&mut [T], usize, &[[f64; W]]) + Sync,
     ) {
         out.par_chunks_mut(NODES).enumerate().for_each(|(task, out)| {
-            let first = task * NODES;
-            let mut sums = [[0.0; W]; NODES];
-            for (i, sum) in sums[..out.len()].iter_mut().enumerate() {
-                let node = first + i;
-                let range = self.copy_offsets[node] as usize..self.copy_offsets[node + 1] as usize;
-                for &slot in &self.copies[range] {
+            let offsets = &self.copy_offsets[task * NODES..][..out.len() + 1];
+            for (out, range) in out.iter_mut().zip(offsets.windows(2)) {
+                let mut sum = [0.0; W];
+                for &slot in &self.copies[range[0] as usize..range[1] as usize] {
+                    let copy = copy(slot as usize);
                     for c in 0..W {
-                        sum[c] += slots[slot as usize][c];
+                        sum[c] += copy[c];
                     }
                 }
+                *out = finish(sum);
             }
-            let n = out.len();
-            finish(out, first, &sums[..n]);
         });
     }
 
     /// Nodal forces from the slots.
     pub fn forces(&self, slots: &[Slot], f: &mut [Vector3]) {
-        self.sum(slots, f, |f, _, sums| {
-            for (f, s) in f.iter_mut().zip(sums) {
-                *f = Vector3::new(s[0], s[1], s[2]);
-            }
-        });
+        self.sum(|slot| slots[slot].0, |[x, y, z, _]| Vector3::new(x, y, z), f);
     }
 }
 
@@ -129,7 +131,7 @@ impl Border {
 pub(super) fn load(nodes: &[u32], u: &[Vector3], slots: &mut [Slot]) {
     for (slot, &node) in slots.iter_mut().zip(nodes) {
         let v = &u[node as usize];
-        *slot = [v.x, v.y, v.z, 0.0];
+        *slot = Slot([v.x, v.y, v.z, 0.0]);
     }
 }
 

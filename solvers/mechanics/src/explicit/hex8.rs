@@ -71,7 +71,7 @@ impl Hex8 {
         let chunks = parts.iter().map(chunk).collect();
         let lists: Vec<Vec<u32>> = parts.iter().map(|p| p.nodes.clone()).collect();
         let border = Border::new(rows.node_count(), &lists);
-        let slots = vec![[0.0; 4]; border.slot_count()];
+        let slots = vec![Slot::ZERO; border.slot_count()];
         Some(Hex8 { border, chunks, u: slots.clone(), f: slots, mean: body.groups.is_some() })
     }
 
@@ -84,7 +84,7 @@ impl Hex8 {
         let Hex8 { border, chunks, u: slots, f: sums, mean } = self;
         let upright = border.for_each(slots, sums, |c, slots, sums| {
             load(border.chunk(c), u, slots);
-            sums.fill([0.0; 4]);
+            sums.fill(Slot::ZERO);
             let (mut upright, mut first) = (true, 0);
             for &(end, moduli) in &chunks[c].runs {
                 let kernel = if *mean { dilated } else { internal };

@@ -11,19 +11,23 @@
 //! `b = J^(-2/3) I1 / 3 - 1`; the second takes two back, `J_a^(2/3)` and
 //! `p_a = (1/V_a) dE/dJ_a = (B_a (1 + sigma) + sigma M_a + L_a ln J_a) / (J_a V_a)`, `sigma = J_a^(2/3) - 1`.
 
+use rayon::prelude::*;
 use shape::DilationGroups;
 
-use super::chunks::{Border, Slot};
+use super::chunks::Border;
 use super::force::ExplicitBody;
 use super::moduli::Moduli;
 use super::neo_lanes::close_group;
 use super::path::{LANES, LanePath, on_path};
 
+/// Nodes per task.
+const NODES: usize = 1024;
+
 pub(super) struct Nodal {
-    /// `sum share w (J - 1)` and `B_a` of each slot.
+    /// `sum share w (J - 1)` and `B_a` of each slot, then what `closed` has for it.
     slots: Vec<[f64; 2]>,
     constants: Vec<Constants>,
-    /// `J_a^(2/3)` and `p_a` of each node.
+    /// `sum share w (J - 1)` and `B_a` of each node, then `J_a^(2/3)` and `p_a`.
     closed: Vec<[f64; 2]>,
 }
 
@@ -77,47 +81,42 @@ impl Nodal {
 
     /// From the sums of the first pass to what the second needs.
     pub fn close(&mut self, path: LanePath, border: &Border) {
-        let constants = &self.constants;
-        border.sum(&self.slots, &mut self.closed, |closed, first, sums| {
-            close(path, &constants[first..first + sums.len()], sums, closed);
-        });
+        let Nodal { slots, constants, closed } = self;
+        border.sum(|slot| slots[slot], |sum| sum, closed);
+        let tasks = constants.par_chunks(NODES).zip(closed.par_chunks_mut(NODES));
+        tasks.for_each(|(constants, closed)| close(path, constants, closed));
     }
 
-    /// `J_a^(2/3)` into the pad of the displacements, `p_a` into that of the forces, which start from zero.
-    #[inline(always)]
-    pub fn load(&self, nodes: &[u32], u: &mut [Slot], f: &mut [Slot]) {
-        for ((&node, u), f) in nodes.iter().zip(u).zip(f) {
-            let [s, p] = self.closed[node as usize];
-            u[3] = s;
-            *f = [0.0, 0.0, 0.0, p];
-        }
+    /// `J_a^(2/3)` and `p_a` of each node, and the slots to bring them to.
+    pub fn closed(&mut self) -> (&[[f64; 2]], &mut [[f64; 2]]) {
+        (&self.closed, &mut self.slots)
     }
 }
 
 on_path! {
-    fn close(constants: &[Constants], sums: &[[f64; 2]], closed: &mut [[f64; 2]]) = close_lanes
+    fn close(constants: &[Constants], closed: &mut [[f64; 2]]) = close_lanes
 }
 
 #[inline(always)]
-fn close_lanes<const FMA: bool>(constants: &[Constants], sums: &[[f64; 2]], closed: &mut [[f64; 2]]) {
+fn close_lanes<const FMA: bool>(constants: &[Constants], closed: &mut [[f64; 2]]) {
     let one = |c: &Constants, [j, b]: [f64; 2]| {
         close_group::<FMA>(j * c.per_volume, b, c.per_volume, c.mu, c.lambda)
     };
     // In blocks of fixed length, so that the loop becomes vector instructions.
-    let whole = sums.len() / LANES * LANES;
-    let blocks = constants[..whole].chunks_exact(LANES).zip(sums.chunks_exact(LANES));
-    for ((c, s), out) in blocks.zip(closed.chunks_exact_mut(LANES)) {
+    let (blocks, rest) = closed.as_chunks_mut::<LANES>();
+    let (constants, last) = constants.as_chunks::<LANES>();
+    for (c, at) in constants.iter().zip(blocks) {
         let mut lanes = [[0.0; LANES]; 2];
         for l in 0..LANES {
-            let [a, b] = one(&c[l], s[l]);
+            let [a, b] = one(&c[l], at[l]);
             lanes[0][l] = a;
             lanes[1][l] = b;
         }
         for l in 0..LANES {
-            out[l] = [lanes[0][l], lanes[1][l]];
+            at[l] = [lanes[0][l], lanes[1][l]];
         }
     }
-    for i in whole..sums.len() {
-        closed[i] = one(&constants[i], sums[i]);
+    for (c, at) in last.iter().zip(rest) {
+        *at = one(c, *at);
     }
 }

@@ -16,16 +16,20 @@ use std::arch::x86_64::*;
 pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     #[cfg(target_arch = "x86_64")]
     if WIDE {
-        // SAFETY: WIDE stands for AVX2 and FMA; unaligned loads and stores of four f64 inside their arrays.
+        // SAFETY: WIDE stands for AVX2 and FMA; slots are aligned, and other loads and stores ask for no alignment and stay
+        // inside their arrays.
         unsafe {
-            let sum =
-                _mm256_fmadd_pd(_mm256_set1_pd(a), _mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(y.as_ptr()));
-            _mm256_storeu_pd(y.as_mut_ptr(), sum);
+            let sum = _mm256_fmadd_pd(
+                _mm256_set1_pd(a),
+                _mm256_load_pd(x.0.as_ptr()),
+                _mm256_load_pd(y.0.as_ptr()),
+            );
+            _mm256_store_pd(y.0.as_mut_ptr(), sum);
         }
         return;
     }
     for i in 0..4 {
-        y[i] = madd::<WIDE>(a, x[i], y[i]);
+        y.0[i] = madd::<WIDE>(a, x.0[i], y.0[i]);
     }
 }
 
@@ -47,7 +51,7 @@ pub(super) fn lanes_of_differences<const WIDE: bool>(
                 for k in 0..4 {
                     let l = 4 * half + k;
                     let at = &u[nodes[l] as usize];
-                    d[k] = _mm256_sub_pd(_mm256_loadu_pd(at.as_ptr()), _mm256_loadu_pd(origin[l].as_ptr()));
+                    d[k] = _mm256_sub_pd(_mm256_load_pd(at.0.as_ptr()), _mm256_load_pd(origin[l].0.as_ptr()));
                 }
                 let t = transposed(d);
                 for i in 0..3 {
@@ -60,7 +64,7 @@ pub(super) fn lanes_of_differences<const WIDE: bool>(
     for l in 0..LANES {
         let at = &u[nodes[l] as usize];
         for i in 0..3 {
-            out[i][l] = at[i] - origin[l][i];
+            out[i][l] = at.0[i] - origin[l].0[i];
         }
     }
     out
@@ -73,7 +77,7 @@ pub(super) fn quads_of_lanes<const WIDE: bool>(
     y: &[f64; LANES],
     z: &[f64; LANES],
 ) -> [Slot; LANES] {
-    let mut out = [[0.0; 4]; LANES];
+    let mut out = [Slot::ZERO; LANES];
     #[cfg(target_arch = "x86_64")]
     if WIDE {
         // SAFETY: as in `axpy`.
@@ -82,14 +86,51 @@ pub(super) fn quads_of_lanes<const WIDE: bool>(
                 let row = |v: &[f64; LANES]| _mm256_loadu_pd(v.as_ptr().add(4 * half));
                 let t = transposed([row(x), row(y), row(z), _mm256_setzero_pd()]);
                 for l in 0..4 {
-                    _mm256_storeu_pd(out[4 * half + l].as_mut_ptr(), t[l]);
+                    _mm256_store_pd(out[4 * half + l].0.as_mut_ptr(), t[l]);
                 }
             }
         }
         return out;
     }
     for l in 0..LANES {
-        out[l] = [x[l], y[l], z[l], 0.0];
+        out[l] = Slot([x[l], y[l], z[l], 0.0]);
+    }
+    out
+}
+
+/// For eight lanes, both numbers of `pairs` summed over four nodes. Tet4 with nodal dilation takes 0.95 of the time that it
+/// took with one number after the other.
+#[inline(always)]
+pub(super) fn lanes_of_sums<const WIDE: bool>(
+    pairs: &[[f64; 2]],
+    nodes: &[[u16; LANES]; 4],
+) -> [[f64; LANES]; 2] {
+    let mut out = [[0.0; LANES]; 2];
+    #[cfg(target_arch = "x86_64")]
+    if WIDE {
+        // SAFETY: as in `axpy`.
+        unsafe {
+            for half in 0..2 {
+                let mut s = [_mm_setzero_pd(); 4];
+                for k in 0..4 {
+                    for a in 0..4 {
+                        let at = &pairs[nodes[a][4 * half + k] as usize];
+                        s[k] = _mm_add_pd(s[k], _mm_loadu_pd(at.as_ptr()));
+                    }
+                }
+                let (even, odd) = (_mm256_set_m128d(s[2], s[0]), _mm256_set_m128d(s[3], s[1]));
+                _mm256_storeu_pd(out[0].as_mut_ptr().add(4 * half), _mm256_unpacklo_pd(even, odd));
+                _mm256_storeu_pd(out[1].as_mut_ptr().add(4 * half), _mm256_unpackhi_pd(even, odd));
+            }
+        }
+        return out;
+    }
+    for l in 0..LANES {
+        for a in 0..4 {
+            let at = &pairs[nodes[a][l] as usize];
+            out[0][l] += at[0];
+            out[1][l] += at[1];
+        }
     }
     out
 }
@@ -101,13 +142,13 @@ pub(super) fn add<const WIDE: bool>(x: &Slot, y: &mut Slot) {
     if WIDE {
         // SAFETY: as in `axpy`.
         unsafe {
-            let sum = _mm256_add_pd(_mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(y.as_ptr()));
-            _mm256_storeu_pd(y.as_mut_ptr(), sum);
+            let sum = _mm256_add_pd(_mm256_load_pd(x.0.as_ptr()), _mm256_load_pd(y.0.as_ptr()));
+            _mm256_store_pd(y.0.as_mut_ptr(), sum);
         }
         return;
     }
     for i in 0..4 {
-        y[i] += x[i];
+        y.0[i] += x.0[i];
     }
 }
 

@@ -11,7 +11,7 @@ use super::neo_lanes::{Invariants, piola, pressed};
 use super::nodal::Nodal;
 use super::order::locality_order;
 use super::path::{LANES, LanePath, on_path};
-use super::quad::{add, axpy, lanes_of_differences, quads_of_lanes};
+use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
 use crate::Vector3;
 
 /// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
@@ -49,7 +49,7 @@ impl Tet4 {
         let chunk =
             |part| Chunk::new(part, |q| volume.row(q).1.try_into().unwrap(), |q| volume.weights()[q], law);
         let chunks = parts.iter().map(chunk).collect();
-        let slots = vec![[0.0; 4]; border.slot_count()];
+        let slots = vec![Slot::ZERO; border.slot_count()];
         Some(Tet4 { border, chunks, u: slots.clone(), f: slots, nodal })
     }
 
@@ -63,7 +63,7 @@ impl Tet4 {
         let upright = match nodal {
             None => border.for_each(slots, sums, |c, slots, sums| {
                 load(border.chunk(c), u, slots);
-                sums.fill([0.0; 4]);
+                sums.fill(Slot::ZERO);
                 let mut upright = true;
                 internal(path, &chunks[c], slots, sums, &mut upright);
                 upright
@@ -77,9 +77,13 @@ impl Tet4 {
                     upright
                 });
                 nodal.close(path, border);
-                border.for_each(slots, sums, |c, slots, sums| {
-                    nodal.load(border.chunk(c), slots, sums);
-                    dilated(path, &chunks[c], slots, sums);
+                let (closed, shared) = nodal.closed();
+                border.for_each(shared, sums, |c, shared, sums| {
+                    for (shared, &node) in shared.iter_mut().zip(border.chunk(c)) {
+                        *shared = closed[node as usize];
+                    }
+                    sums.fill(Slot::ZERO);
+                    dilated(path, &chunks[c], &slots[border.range(c)], shared, sums);
                     true
                 });
                 upright
@@ -117,11 +121,15 @@ impl Chunk {
         let (mut blocks, mut runs) = (Vec::new(), Vec::new());
         for alike in order.chunk_by(|&a, &b| law(chunk.items[a] as usize).0 == law(chunk.items[b] as usize).0)
         {
-            for group in alike.chunks(LANES) {
+            // Lanes far apart: neighbours share nodes, and eight sums in turn into one node wait for each other (0.97 of the
+            // time, with nodal dilation 0.90).
+            let stride = alike.len().div_ceil(LANES);
+            for first in 0..stride {
+                let group = alike[first..].iter().step_by(stride);
                 // A lane left over has no weight and no gradient: J = 1 and no force, on the chunk's first node.
                 let mut block =
                     Block { grads: [[0.0; LANES]; 9], weight: [0.0; LANES], nodes: [[0; LANES]; 4] };
-                for (l, &k) in group.iter().enumerate() {
+                for (l, &k) in group.enumerate() {
                     let item = chunk.items[k] as usize;
                     let g = grads(item);
                     for a in 0..3 {
@@ -145,7 +153,7 @@ impl Chunk {
 /// Displacements relative to node 0, [3 a + i].
 #[inline(always)]
 fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
-    let mut origin = [[0.0; 4]; LANES];
+    let mut origin = [Slot::ZERO; LANES];
     for l in 0..LANES {
         origin[l] = u[block.nodes[0][l] as usize];
     }
@@ -157,10 +165,10 @@ fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
     d
 }
 
-/// Adds the forces of nodes 1 to 3, and minus their sum on node 0. The pads stay as they are.
+/// Adds the forces of nodes 1 to 3, and minus their sum on node 0.
 #[inline(always)]
 fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
-    let mut sum = [[0.0; 4]; LANES];
+    let mut sum = [Slot::ZERO; LANES];
     for a in 0..3 {
         let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
         for l in 0..LANES {
@@ -212,9 +220,9 @@ fn internal_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot], up
             let mut out = [[0.0; LANES]; 9];
             for l in 0..LANES {
                 let h = gradient::<FMA>(&d, &block.grads, l);
-                let x = Invariants::of::<FMA>(&h);
+                let (x, minors) = Invariants::of::<FMA>(&h);
                 good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-                let p = piola::<FMA>(&h, x.stress::<FMA>(block.weight[l], mu, lambda));
+                let p = piola::<FMA>(&h, minors, x.stress::<FMA>(block.weight[l], mu, lambda));
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
             scatter::<FMA>(block, &out, f);
@@ -239,7 +247,7 @@ fn dilations_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], sums: &mut [[f64;
             let mut out = [[0.0; LANES]; 2];
             for l in 0..LANES {
                 let h = gradient::<FMA>(&d, &block.grads, l);
-                let x = Invariants::of::<FMA>(&h);
+                let (x, _) = Invariants::of::<FMA>(&h);
                 good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
                 let share = 0.25 * block.weight[l];
                 out[0][l] = share * x.j;
@@ -259,30 +267,25 @@ fn dilations_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], sums: &mut [[f64;
 }
 
 on_path! {
-    /// Second pass: forces added to `f`. The pads hold `J_a^(2/3)` (of `u`) and `p_a` (of `f`).
-    fn dilated(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) = dilated_lanes
+    /// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
+    fn dilated(chunk: &Chunk, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_lanes
 }
 
 #[inline(always)]
-fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], f: &mut [Slot]) {
+fn dilated_lanes<const FMA: bool>(chunk: &Chunk, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) {
     let mut first = 0;
     for &(end, Moduli { mu, .. }) in &chunk.runs {
         for block in &chunk.blocks[first..end] {
             let d = gather::<FMA>(block, u);
-            let mut shared = [[0.0; LANES]; 2];
-            for l in 0..LANES {
-                for a in 0..4 {
-                    let at = block.nodes[a][l] as usize;
-                    shared[0][l] += 0.25 * u[at][3];
-                    shared[1][l] += 0.25 * f[at][3];
-                }
-            }
+            let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
             let mut out = [[0.0; LANES]; 9];
             for l in 0..LANES {
                 let h = gradient::<FMA>(&d, &block.grads, l);
-                let (x, w) = (Invariants::of::<FMA>(&h), block.weight[l]);
+                let (x, minors) = Invariants::of::<FMA>(&h);
+                let w = block.weight[l];
                 let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
-                let p = piola::<FMA>(&h, pressed::<FMA>(isochoric, x.trace, shared[0][l], w * shared[1][l]));
+                let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
+                let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
                 forces::<FMA>(&p, &block.grads, l, &mut out);
             }
             scatter::<FMA>(block, &out, f);
