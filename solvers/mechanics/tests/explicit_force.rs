@@ -163,7 +163,7 @@ fn plain_forces_are_the_gradient_of_the_energy() {
 fn bits_do_not_depend_on_threads() {
     let block = |kind, cells| Block::new(kind, cells);
     let tet4 = block(CellKind::Tet4, [12, 9, 9]);
-    let hex8 = block(CellKind::Hex8, [12, 9, 9]);
+    let hex8 = block(CellKind::Hex8, [12, 11, 9]);
     let tet10 = block(CellKind::Tet10, [5, 5, 4]);
     let nodal = DilationGroups::nodal(&tet4.volume).unwrap();
     let mean = fem::element_dilation(&hex8.mesh, &fem::VolumeRule::STANDARD).unwrap();
