@@ -6,12 +6,18 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Forgets the peak so far.
-pub fn reset_peak() {
-    ALLOCATOR.reset_peak_usage();
-}
+/// What is allocated now.
+pub struct Baseline(usize);
 
-/// The largest amount allocated at once since the last reset, bytes.
-pub fn peak() -> u64 {
-    ALLOCATOR.peak_usage() as u64
+impl Baseline {
+    /// Forgets the peak so far.
+    pub fn new() -> Baseline {
+        ALLOCATOR.reset_peak_usage();
+        Baseline(ALLOCATOR.current_usage())
+    }
+
+    /// The largest amount allocated at once since then beyond what was there, bytes.
+    pub fn peak(&self) -> u64 {
+        ALLOCATOR.peak_usage().saturating_sub(self.0) as u64
+    }
 }

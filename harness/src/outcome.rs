@@ -185,7 +185,7 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Seconds per phase; the last entry is the total.
     pub phases: Vec<(&'static str, Summary)>,
-    /// Peak of allocated memory over the run, bytes.
+    /// Most memory allocated at once in the run beyond its input, bytes.
     pub memory: u64,
     /// Probes, in the scene's order.
     pub probes: Vec<Probe>,

@@ -33,7 +33,7 @@ pub(super) fn cost(runs: &[Run]) -> Table {
         "cost",
         "Growth of cost",
         "Exponent p of time ~ nodes^p by least squares over all sizes of a method (three or more that span a factor of four), with its \
-         standard error; time to prepare per integration point and peak memory per integration point at the largest size",
+         standard error; time to prepare per integration point and memory beyond the input per integration point at the largest size",
         &[
             ("case", Words),
             ("ν [1]", Number),

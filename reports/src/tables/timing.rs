@@ -13,7 +13,7 @@ pub(super) fn phases(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "timing",
         "Run time by phase",
-        "Median ± interquartile range over repeats, no range where there was one repeat only; peak memory of the process. Transfer schemes have a table of their own",
+        "Median ± interquartile range over repeats, no range where there was one repeat only; most memory at once beyond the input (mesh, cloud, reference). Transfer schemes have a table of their own",
         &[
             ("case", Words),
             ("ν [1]", Number),

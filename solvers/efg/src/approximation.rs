@@ -10,13 +10,13 @@ use crate::{Basis, EfgError, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
-/// About so many points, or one in [`SPARING`], give an estimate of a table's size: to a standard error of 1 % where neighbours
+/// About so many points, or one in [`SPARING`], give an estimate of a table's size: to a standard error of 0.5 % where neighbours
 /// scatter by a third. Growing by doubling would take up to three times the memory while it copies, and touch pages anew.
-pub(crate) const SAMPLES: usize = 1000;
+pub(crate) const SAMPLES: usize = 4000;
 /// Of small tables one point in so many is enough.
 pub(crate) const SPARING: usize = 25;
 /// Taken times that estimate.
-pub(crate) const MARGIN: f64 = 1.03;
+pub(crate) const MARGIN: f64 = 1.01;
 /// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
 /// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
@@ -118,8 +118,13 @@ impl Approximation {
 
     /// Values and gradients (1/m) at points; nodes of a row by ascending index.
     pub fn grad_rows(&self, points: &[Point3]) -> Result<(GradRows, MlsInfo), EfgError> {
-        let (rows, grads, info) = self.table::<true>(points)?;
-        Ok((GradRows::new(points.to_vec(), rows, grads)?, info))
+        self.grad_rows_at(points.to_vec())
+    }
+
+    /// As [`Approximation::grad_rows`], of points that are kept.
+    pub(crate) fn grad_rows_at(&self, points: Vec<Point3>) -> Result<(GradRows, MlsInfo), EfgError> {
+        let (rows, grads, info) = self.table::<true>(&points)?;
+        Ok((GradRows::new(points, rows, grads)?, info))
     }
 
     fn table<const GRAD: bool>(&self, points: &[Point3]) -> Result<(Rows, Vec<Vector3>, MlsInfo), EfgError> {
@@ -206,7 +211,7 @@ impl Approximation {
     #[inline(always)]
     fn evaluate<const GRAD: bool>(&self, x: &Point3, at: &mut Workspace) -> Result<Outcome, EfgError> {
         at.gather(x, self.buckets.candidates(x).iter().copied(), &self.balls, 1.0);
-        let neighbours = at.nodes.len();
+        let neighbours = at.nodes.len() as u32;
         match self.fit::<GRAD>(self.basis, 0.0, at) {
             Some(condition) => {
                 Ok(Outcome { neighbours, condition, enlarged: false, regularised: false, reduced: false })
@@ -234,7 +239,7 @@ impl Approximation {
         at.gather(x, 0..self.balls.len() as u32, &self.balls, enlargement);
         let found = at.nodes.len();
         let mut outcome = Outcome {
-            neighbours: found,
+            neighbours: found as u32,
             condition: 0.0,
             enlarged: enlargement > 1.0,
             regularised: false,

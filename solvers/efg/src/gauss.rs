@@ -36,7 +36,7 @@ pub fn gauss_rows(
             None => unreachable!("the rule was set above"),
         }
     }
-    let (at, info) = approximation.grad_rows(&points)?;
+    let (at, info) = approximation.grad_rows_at(points)?;
     Ok((VolumeRows::new(at, weights)?, info))
 }
 

@@ -27,7 +27,7 @@ pub struct MlsInfo {
 /// One point's share of the report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outcome {
-    pub(crate) neighbours: usize,
+    pub(crate) neighbours: u32,
     pub(crate) condition: f64,
     pub(crate) enlarged: bool,
     pub(crate) regularised: bool,
@@ -43,7 +43,8 @@ impl MlsInfo {
     pub(crate) fn new(outcomes: &[Outcome]) -> MlsInfo {
         let count = |what: fn(&Outcome) -> bool| outcomes.iter().filter(|o| what(o)).count();
         let points = outcomes.len();
-        let total: usize = outcomes.iter().map(|o| o.neighbours).sum();
+        let neighbours = || outcomes.iter().map(|o| o.neighbours as usize);
+        let total: usize = neighbours().sum();
         let mut conditions: Vec<f64> = outcomes.iter().map(|o| o.condition).collect();
         let condition_median = match points {
             0 => 0.0,
@@ -51,9 +52,9 @@ impl MlsInfo {
         };
         MlsInfo {
             points,
-            neighbours_min: outcomes.iter().map(|o| o.neighbours).min().unwrap_or(0),
+            neighbours_min: neighbours().min().unwrap_or(0),
             neighbours_mean: total as f64 / points.max(1) as f64,
-            neighbours_max: outcomes.iter().map(|o| o.neighbours).max().unwrap_or(0),
+            neighbours_max: neighbours().max().unwrap_or(0),
             condition_max: conditions.into_iter().fold(0.0, f64::max),
             condition_median,
             enlarged: count(|o| o.enlarged),
