@@ -7,7 +7,7 @@ use geometry::{Point3, msh};
 use interp::Scheme;
 
 use crate::discretise::Discretisation;
-use crate::outcome::{Outcome, Size as Sizes, Stage, Unfinished};
+use crate::outcome::{LoadStep, Outcome, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
 use crate::run::{self, Asks, Repeats, run};
 use crate::scenario::Scenario;
@@ -28,6 +28,7 @@ pub struct Group<'a> {
     reference_work: Work,
     reference_stalled: Option<Failure>,
     repeats: Repeats,
+    watch: Option<fn(&LoadStep)>,
 }
 
 /// The case name of a scene: its file's stem.
@@ -70,13 +71,20 @@ impl<'a> Group<'a> {
             reference_work: Work::default(),
             reference_stalled: None,
             repeats,
+            watch: None,
         })
     }
 
     /// One method's solution as a reference, whole or not at all; `targets` are where its displacement is told, m.
-    pub fn solve_for(scene: &'a Scene, id: &str, targets: Vec<Point3>) -> Result<run::Reference, Failure> {
+    /// `watch` is told every converged step.
+    pub fn solve_for(
+        scene: &'a Scene,
+        id: &str,
+        targets: Vec<Point3>,
+        watch: fn(&LoadStep),
+    ) -> Result<run::Reference, Failure> {
         let mut group = Group::unreferenced(scene, Repeats { most: 1, seconds: 0.0 })?;
-        group.targets = targets;
+        (group.targets, group.watch) = (targets, Some(watch));
         group.run_reference(id, None)?;
         match group.reference_stalled {
             Some(failure) => Err(failure),
@@ -102,7 +110,8 @@ impl<'a> Group<'a> {
         }
         let mut scenario = self.scenario(method, 0);
         scenario.size_key = size.map(|_| "reference.size".into());
-        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+        let (discretisation, mut setup) = (scenario.discretise()?, scenario.setup()?);
+        setup.watch = self.watch;
         if self.targets.is_empty() {
             self.targets = discretisation.nodes().to_vec();
         }

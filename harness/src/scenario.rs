@@ -413,6 +413,7 @@ impl Scenario<'_> {
             held,
             loads,
             tools,
+            watch: None,
             prepare_only,
             statics,
             relax,

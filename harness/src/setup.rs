@@ -6,6 +6,7 @@ use mechanics::{Law, LinearElastic, StaticParams};
 
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
+use crate::outcome::LoadStep;
 use crate::place::Place;
 use crate::tools::SetTool;
 
@@ -60,6 +61,8 @@ pub struct Setup {
     pub loads: Vec<Acting>,
     /// Rigid tools.
     pub tools: Vec<SetTool>,
+    /// Told every converged step of a static path, for those who wait.
+    pub watch: Option<fn(&LoadStep)>,
     /// Whether nothing is solved.
     pub prepare_only: bool,
     /// How a static procedure is stepped; `None` for another one.

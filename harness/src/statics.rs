@@ -72,6 +72,9 @@ pub fn solve(
     let (mut limit, mut to_limit, mut before) = (None, 0.0, LoadStep::at_start(setup.tools.len()));
     let path = with_problem(method, setup, prepared, contact.as_ref(), |problem| {
         solve_static(problem, params, |step, u, _| {
+            if let Some(watch) = setup.watch {
+                watch(&told(step, setup));
+            }
             if (step.gave_way || !step.stable) && limit.is_none() {
                 limit = Some(before.clone());
             }

@@ -108,12 +108,20 @@ pub struct StoredTool {
     pub high: f64,
 }
 
+/// A line for those who wait an hour for the end, and all that is left where there is none.
+fn waiting(step: &LoadStep) {
+    let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed);
+    let tools: String = step.tools.iter().map(force).collect();
+    eprintln!("{:6.2} % of the load in {} iterations{tools}", 100.0 * step.load, step.iterations);
+}
+
 impl Stored {
     /// Runs the named methods of the scene, or all of them. The last one's values are told, all of them span the bands.
     /// `points` below z = 0 are told by their mirror images if the scene has only the half above.
     pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Result<Stored, Failure> {
         let mut all = Vec::new();
         for method in scene.methods.iter().filter(|m| only.is_empty() || only.contains(&m.id)) {
+            eprintln!("{}", method.id);
             let solution = Stored::by(scene, text, points, &method.id)?;
             eprintln!("{}: {} nodes", solution.source.method, solution.source.nodes);
             all.push(solution);
@@ -132,7 +140,7 @@ impl Stored {
         let mirrored = |v: Vector3| Vector3::new(v.x, v.y, -v.z);
         let images: Vec<Point3> =
             points.iter().map(|x| if below(x) { Point3::from(mirrored(x.coords)) } else { *x }).collect();
-        let solution = Group::solve_for(scene, method, images)?;
+        let solution = Group::solve_for(scene, method, images, waiting)?;
         let tool =
             |t: &ToolStep| StoredTool { closure: t.closure, force: t.pushed, low: t.pushed, high: t.pushed };
         let step = |step: &LoadStep| StoredStep {

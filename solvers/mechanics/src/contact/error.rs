@@ -88,16 +88,18 @@ pub enum ContactError {
         /// The limit, m.
         limit: f64,
     },
-    /// A point that a tool pushes out of the body from within.
+    /// A tool that pushes out of the body from within.
     #[error(
-        "the tool pushes surface point {point} near ({:.4}, {:.4}, {:.4}) m out of the body from within: it has slipped \
-         through between the points of the surface, and a finer surface is needed",
-        at.x, at.y, at.z
+        "{:.0} % of the tool's force push out of the body from within, at surface point {point} near ({:.4}, {:.4}, {:.4}) m: it has \
+         slipped through between the points of the surface, and a finer surface is needed",
+        100.0 * share, at.x, at.y, at.z
     )]
     WithinBody {
-        /// The point (the lowest, if there are several).
+        /// Part of the force that does.
+        share: f64,
+        /// The point where it does (the lowest, if there are several).
         point: usize,
-        /// Where it is, m.
+        /// Where that is, m.
         at: Point3,
     },
 }
