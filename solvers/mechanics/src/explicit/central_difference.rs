@@ -325,7 +325,12 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             [("external force", &self.external), ("displacement", &self.u), ("velocity", &self.v)]
                 .into_iter()
                 .find_map(|(what, f)| bad(f).map(|node| (what, node)))
-                .unwrap_or(("kinetic energy", 0));
+                .unwrap_or_else(|| {
+                    // All are numbers, and the square of one overflows: that of the fastest.
+                    let speed = |i: &usize| self.v[*i].amax();
+                    let fastest = (0..self.v.len()).max_by(|i, j| speed(i).total_cmp(&speed(j)));
+                    ("kinetic energy", fastest.unwrap_or(0))
+                });
         ExplicitError::NotFinite { step, time, what, node }
     }
 
