@@ -216,8 +216,8 @@ impl Plan {
             }
             if let Some((failure, code)) = &result.failure {
                 set.failures.push(failure.clone());
-                // Of many clouds one may fail: how many did is a result.
-                if self.study.runs[task.run].seeds == 0 {
+                // Of many clouds one may stall: how many did is a result. One without any numbers is in no count.
+                if self.study.runs[task.run].seeds == 0 || result.records.is_empty() {
                     failed.push(*code);
                 }
             }

@@ -71,7 +71,7 @@ pub struct StaticParams {
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
     pub augmentations: usize,
     /// Part of the load to within which the first limit or bifurcation point is sought, if it is: steps on which a tangent
-    /// is not definite are halved down to it. Without it such a point is seen only where a step ends beyond it.
+    /// is not definite are halved down to it, or to twice the smallest step. Without it such a point is seen only where a step ends beyond it.
     pub limit_within: Option<f64>,
 }
 
@@ -177,7 +177,9 @@ pub fn solve_static(
         failure: None,
     };
     let (mut next, mut step) = (1, longest);
-    let (mut within, mut near_limit) = (params.limit_within, false);
+    // No finer than a step that can be halved once more: one that can't has to take any way there is.
+    let finest = 2.0 * params.smallest * longest;
+    let (mut within, mut near_limit) = (params.limit_within.map(|within| within.max(finest)), false);
     while next <= count {
         let target = next as f64 * longest;
         let left = target - state.time;

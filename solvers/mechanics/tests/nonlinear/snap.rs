@@ -77,12 +77,13 @@ fn the_limit_load_is_found_where_it_is_sought() {
     // The hinges make the strut softer than its theory by a factor that shows at half the limit.
     let height = strut(0.5, &steps(4)).1 / RISE;
     let limit = 0.5 / (1.5 * 3f64.sqrt() * (height - height.powi(3)));
-    for within in [0.2, 0.01] {
+    // The last is finer than the smallest step, a 64th of a quarter, halved once.
+    for within in [0.2, 0.01, 1e-4] {
         let (path, _) = strut(1.5, &StaticParams { limit_within: Some(within), ..steps(4) });
         let gave_way = path.steps.iter().position(|step| step.gave_way).expect("it gives way");
         assert!(path.steps[..gave_way].iter().all(|step| step.stable));
         let [below, above] = [gave_way - 1, gave_way].map(|k| 1.5 * path.steps[k].time);
-        assert!(above - below <= 1.5 * within, "{below} to {above}");
+        assert!(above - below <= 1.5 * f64::max(within, 2.0 / 256.0), "{below} to {above}");
         assert!(below < 1.02 * limit && above > 0.98 * limit, "{below} to {above}, not {limit} of the limit");
     }
 }
