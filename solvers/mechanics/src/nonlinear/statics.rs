@@ -188,7 +188,18 @@ pub fn solve_static(
         let time = if reaches { target } else { state.time + step };
         // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
         // a point, the last state is.
-        let mut to = |descent| newton.step(&state, before.as_ref(), time, params.augmentations, descent);
+        // Some tool driven by force does not touch yet.
+        let apart = (problem.tools.iter().enumerate()).any(|(k, tool)| {
+            matches!(tool.drive, Drive::Force(_)) && path.steps.last().is_none_or(|s| s.tools[k].active == 0)
+        });
+        let mut to = |descent| {
+            let step = newton.step(&state, before.as_ref(), time, params.augmentations, descent);
+            step.or_else(|error| {
+                let led = apart && matches!(descent, Descent::Smooth | Descent::Nearest);
+                let reached = led.then(|| newton.lead(&state, time, params.augmentations, descent));
+                reached.flatten().ok_or(error)
+            })
+        };
         let reached = if within.is_some_and(|within| time - state.time > within) {
             to(Descent::Smooth)
         } else {

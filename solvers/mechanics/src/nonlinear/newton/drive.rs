@@ -1,23 +1,37 @@
 //! Tools driven by force: their closures are unknowns.
 
-use super::{Balance, Newton, State};
+use super::{Balance, Descent, Newton, State};
 use crate::Vector3;
 use crate::linear_solver::Border;
-use crate::nonlinear::Drive;
+use crate::nonlinear::{Drive, Step};
+
+/// Strides of a start led by closure before it is given up: a tool that slips off never carries its force. Starts of the
+/// kidney between jaws take 10 to 13.
+const STRIDES: usize = 50;
+/// Part of the first stride below which a start is given up.
+const SHORTEST: f64 = 0.1;
+/// Iterations of a stride after which the next is twice as long.
+const QUICK: usize = 6;
 
 impl Newton<'_> {
     /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
     /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
     pub(super) fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
-        let scale = self.scales(time).tools;
-        (self.problem.tools.iter().zip(&balance.contacts))
-            .map(|(driven, contacts)| match driven.drive {
-                Drive::Force(full) => {
-                    full * scale + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
-                }
-                Drive::Closure(_) => 0.0,
+        (self.problem.tools.iter().zip(&balance.contacts).enumerate())
+            .map(|(k, (driven, contacts))| {
+                self.force(k, time).map_or(0.0, |force| {
+                    force + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
+                })
             })
             .collect()
+    }
+
+    /// The force that drives a tool at `time`, N; `None` for one driven or led by closure.
+    pub(super) fn force(&self, tool: usize, time: f64) -> Option<f64> {
+        match self.problem.tools[tool].drive {
+            Drive::Force(full) if !self.led[tool] => Some(full * self.scales(time).tools),
+            Drive::Force(_) | Drive::Closure(_) => None,
+        }
     }
 
     /// The tools driven by force that touch, each with its row and column of the tangent: with `a = sum w N S along`
@@ -29,7 +43,7 @@ impl Newton<'_> {
         let none = vec![0.0; balance.pressure.len()];
         let mut borders = Vec::new();
         for (k, (driven, contacts)) in self.problem.tools.iter().zip(&balance.contacts).enumerate() {
-            let (Drive::Force(_), Some(contacts)) = (driven.drive, contacts) else { continue };
+            let (Some(_), Some(contacts)) = (self.force(k, 1.0), contacts) else { continue };
             let along = driven.tool.along();
             let mut sides = [
                 vec![Vector3::zeros(); self.problem.nodes.len()],
@@ -62,5 +76,76 @@ impl Newton<'_> {
         let gap = surface.gap(driven, state.closures[tool], &state.u);
         let area: f64 = surface.rows().weights().iter().sum();
         gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area)
+    }
+
+    /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are led by closure until
+    /// each carries its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
+    /// whose tangent says nothing of those to come: Newton's method goes from no contact to deep contact and back,
+    /// where a closure that is given is taken up by the body. `None` where that leads to no equilibrium either.
+    pub(crate) fn lead(
+        &mut self,
+        start: &State,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Option<(State, Step)> {
+        let drives = self.problem.tools.iter().map(|t| t.drive);
+        self.led = drives.map(|drive| matches!(drive, Drive::Force(_))).collect();
+        let reached = self.follow(start, time, augmentations, descent);
+        self.led.fill(false);
+        reached
+    }
+
+    fn follow(
+        &mut self,
+        start: &State,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Option<(State, Step)> {
+        let tools = self.problem.tools;
+        let forces: Vec<f64> = (tools.iter())
+            .map(|t| match t.drive {
+                Drive::Force(full) => full * self.scales(time).tools,
+                Drive::Closure(_) => 0.0,
+            })
+            .collect();
+        let gaps: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, 0.0)).collect();
+        let unit: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, forces[k]) - gaps[k]).collect();
+        let mut state = start.clone();
+        // Motion of the nodes for a stride of one, once the tools touch: the guess of the next.
+        let mut way: Option<Vec<Vector3>> = None;
+        let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
+        for _ in 0..STRIDES {
+            let forced = !self.led.contains(&true);
+            let mut guess = state.clone();
+            for (k, closure) in guess.closures.iter_mut().enumerate().filter(|(k, _)| self.led[*k]) {
+                *closure += stride * unit[k] + if touches { 0.0 } else { gaps[k] };
+            }
+            if let (Some(way), false) = (&way, forced) {
+                guess.u.iter_mut().zip(way).for_each(|(u, way)| *u += stride * way);
+            }
+            let kind = if forced { descent } else { Descent::Nearest };
+            match self.step(&guess, None, time, augmentations, kind) {
+                Ok((reached, step)) if forced => {
+                    iterations.extend(step.iterations);
+                    return Some((reached, Step { iterations, ..step }));
+                }
+                Ok((reached, step)) => {
+                    way = touches.then(|| {
+                        reached.u.iter().zip(&state.u).map(|(now, then)| (now - then) / stride).collect()
+                    });
+                    for (k, (driven, tool)) in tools.iter().zip(&step.tools).enumerate() {
+                        self.led[k] &= -tool.force.dot(&driven.tool.along()) < forces[k];
+                    }
+                    stride *= if step.iterations.len() <= QUICK { 2.0 } else { 1.0 };
+                    iterations.extend(step.iterations);
+                    (state, touches) = (reached, true);
+                }
+                Err(_) if forced || stride < SHORTEST => return None,
+                Err(_) => stride *= 0.25,
+            }
+        }
+        None
     }
 }

@@ -108,6 +108,8 @@ pub(crate) struct Newton<'a> {
     indefinite: bool,
     /// Relative residual to which unsymmetric systems are solved.
     forcing: f64,
+    /// Tools driven by force that are led by closure for the time being.
+    led: Vec<bool>,
 }
 
 /// What Newton's method looks for where the tangent is not definite.
@@ -178,6 +180,7 @@ impl<'a> Newton<'a> {
             descent: Descent::Nearest,
             indefinite: false,
             forcing: 1e-7,
+            led: vec![false; problem.tools.len()],
         })
     }
 
@@ -403,13 +406,12 @@ impl<'a> Newton<'a> {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let tools = self.scales(time).tools;
         let scale = if balance.scale > 0.0 { balance.scale } else { 1.0 };
         let mut residual = norm(forces) / scale;
         residual = residual.max(norm(volumes) / self.volume);
-        for (driven, lacking) in self.problem.tools.iter().zip(self.lacking(balance, time)) {
-            if let Drive::Force(full) = driven.drive {
-                residual = residual.max(lacking.abs() / (full * tools).abs());
+        for (k, lacking) in self.lacking(balance, time).into_iter().enumerate() {
+            if let Some(force) = self.force(k, time) {
+                residual = residual.max(lacking.abs() / force.abs());
             }
         }
         residual

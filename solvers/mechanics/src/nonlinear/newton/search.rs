@@ -3,7 +3,7 @@
 use super::tangent::Direction;
 use super::{Balance, Descent, Newton, State, work};
 use crate::Vector3;
-use crate::nonlinear::{Drive, StaticError};
+use crate::nonlinear::StaticError;
 
 /// Most times a step down the energy is taken.
 const FARTHEST: f64 = 64.0;
@@ -34,14 +34,12 @@ impl Newton<'_> {
         let before =
             size(&self.system.gather(&last.out, &last.pressure)).hypot(norm(&self.lacking(last, time)));
         // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
-        let approaches = (self.problem.tools.iter().zip(&last.contacts)).any(|(driven, contacts)| {
-            matches!(driven.drive, Drive::Force(_)) && contacts.as_ref().is_none_or(|c| c.points().is_empty())
-        });
+        let forced = |tool: usize| self.force(tool, time).is_some();
+        let approaches = (last.contacts.iter().enumerate())
+            .any(|(k, contacts)| forced(k) && contacts.as_ref().is_none_or(|c| c.points().is_empty()));
         let saddle = !state.pressure.is_empty();
         // The closures of tools driven by force are not part of a factor: with them the saddle's full step goes.
-        let natural = saddle
-            && self.descent == Descent::Guarded
-            && !self.problem.tools.iter().any(|t| matches!(t.drive, Drive::Force(_)));
+        let natural = saddle && self.descent == Descent::Guarded && !(0..last.contacts.len()).any(forced);
         // The tangent was made definite: its step is one down the energy, of no natural length.
         let downhill =
             self.descent == Descent::Down && self.indefinite && slope > 0.0 && !saddle && !approaches;

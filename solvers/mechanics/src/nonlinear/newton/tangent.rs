@@ -2,7 +2,7 @@
 
 use super::{Balance, Descent, Newton, State};
 use crate::linear_solver::{self, Border, DENSE_LIMIT, FactorError, Factorization, Kind, Unsymmetric};
-use crate::nonlinear::{Drive, StaticError};
+use crate::nonlinear::StaticError;
 use crate::{Matrix3, SolveError, Vector3};
 
 /// A factored tangent, of the free unknowns and of the closures of the tools that have a border.
@@ -109,11 +109,11 @@ impl Newton<'_> {
         self.solve(&factored, &mut step)?;
         let moves = step.split_off(self.system.dim());
         let mut closures = vec![0.0; self.problem.tools.len()];
-        for (k, driven) in self.problem.tools.iter().enumerate() {
-            let Drive::Force(full) = driven.drive else { continue };
-            closures[k] = match tools.iter().position(|&t| t == k) {
+        for (k, closure) in closures.iter_mut().enumerate() {
+            let Some(force) = self.force(k, time) else { continue };
+            *closure = match tools.iter().position(|&t| t == k) {
                 Some(at) => moves[at],
-                None => self.approach(k, state, full * self.scales(time).tools),
+                None => self.approach(k, state, force),
             };
         }
         Ok(Direction { step, closures, factored, definite })
