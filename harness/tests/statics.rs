@@ -136,6 +136,25 @@ fn a_path_that_ends_early_keeps_what_it_carried_and_exits_with_3() {
     assert_eq!((done.code, objects(&done.stdout).len()), (3, 2));
 }
 
+#[test]
+fn a_path_known_to_end_early_does_not_fail_its_study() {
+    let dir = tempfile::tempdir().unwrap();
+    for (band, code) in [("[0.6, 0.65]", 0), ("[0.7, 0.8]", 1)] {
+        let check = format!(
+            "check = [{{ metric = \"load-carried\", known_band = {band}, reason = \"past the largest stress\" }}]"
+        );
+        let scene =
+            write(&dir, "known.toml", &BEYOND.replacen("method = [", &format!("{check}\nmethod = ["), 1));
+        let study = write(&dir, "study.toml", &format!("title = \"Known\"\n[[run]]\nscene = '{scene}'\n"));
+        let out = inside(&dir, "out");
+        let done = tissuebench(&["verify", &study, "--out", &out]);
+        // A stall that is not known is 3 beside a check that fails.
+        assert_eq!(done.code, code, "{}", done.stderr);
+        let report = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
+        assert!(report.contains("stalled: "), "the report says nothing of it");
+    }
+}
+
 fn run_referenced(dir: &TempDir, text: &str) -> (common::Done, Vec<Value>) {
     let done = tissuebench(&["run", &write(dir, "referenced.toml", text), "--format", "json"]);
     let objects = objects(&done.stdout);
