@@ -134,7 +134,7 @@ impl Scenario<'_> {
         (procedure.kind == ProcedureKind::Static).then_some(StaticParams {
             steps: procedure.steps,
             smallest: SMALLEST,
-            newton: NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations },
+            newton: NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations, chords: true },
             augmentations: newton.augmentations,
             limit_within: procedure.limit_within,
         })
@@ -188,6 +188,7 @@ impl Scenario<'_> {
                 newton: NewtonParams {
                     tolerance: procedure.newton.tolerance,
                     iterations: procedure.newton.iterations,
+                    chords: true,
                 },
                 augmentations: procedure.newton.augmentations,
             },

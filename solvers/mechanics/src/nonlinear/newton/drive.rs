@@ -115,6 +115,7 @@ impl Newton<'_> {
         let mut state = start.clone();
         // Motion of the nodes for a stride of one, once the tools touch: the guess of the next.
         let mut way: Option<Vec<Vector3>> = None;
+        let mut carried = vec![0.0; tools.len()];
         let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
         for _ in 0..STRIDES {
             let forced = !self.led.contains(&true);
@@ -132,15 +133,27 @@ impl Newton<'_> {
                     return Some((reached, Step { iterations, ..step }));
                 }
                 Ok((reached, step)) => {
+                    iterations.extend_from_slice(&step.iterations);
+                    let carries: Vec<f64> = tools
+                        .iter()
+                        .zip(&step.tools)
+                        .map(|(t, now)| -now.force.dot(&t.tool.along()))
+                        .collect();
+                    // Beyond its force a tool would go back, and friction turn round: less of the stride then.
+                    let part = (0..tools.len())
+                        .filter(|&k| self.led[k] && carries[k] > 1.1 * forces[k])
+                        .map(|k| (forces[k] - carried[k]) / (carries[k] - carried[k]))
+                        .fold(1.0, f64::min);
+                    if touches && part < 1.0 && stride > SHORTEST {
+                        stride *= part.max(0.1);
+                        continue;
+                    }
                     way = touches.then(|| {
                         reached.u.iter().zip(&state.u).map(|(now, then)| (now - then) / stride).collect()
                     });
-                    for (k, (driven, tool)) in tools.iter().zip(&step.tools).enumerate() {
-                        self.led[k] &= -tool.force.dot(&driven.tool.along()) < forces[k];
-                    }
+                    (0..tools.len()).for_each(|k| self.led[k] &= carries[k] < 0.95 * forces[k]);
                     stride *= if step.iterations.len() <= QUICK { 2.0 } else { 1.0 };
-                    iterations.extend(step.iterations);
-                    (state, touches) = (reached, true);
+                    (state, carried, touches) = (reached, carries, true);
                 }
                 Err(_) if forced || stride < SHORTEST => return None,
                 Err(_) => stride *= 0.25,

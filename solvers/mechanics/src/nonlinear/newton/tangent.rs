@@ -20,6 +20,8 @@ pub(super) struct Direction {
     /// Whether the tangent was positive definite, tools driven by force included.
     pub definite: bool,
     pub factored: Factored,
+    /// The tools whose borders the factor has.
+    tools: Vec<usize>,
 }
 
 impl Factored {
@@ -97,15 +99,39 @@ impl Newton<'_> {
             }
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
-        let mut step = self.system.gather(&right, &right_pressure);
+        let right = self.system.gather(&right, &right_pressure);
         let (tools, borders): (Vec<usize>, Vec<Border>) = self.borders(balance).into_iter().unzip();
-        let lacking = self.lacking(balance, time);
-        step.extend(tools.iter().map(|&k| lacking[k]));
         let factored = self.factor(matrix, skew, borders)?;
         let definite = !self.indefinite && factored.stable();
         if self.descent == Descent::Smooth && !definite {
             return Err(SolveError::NotPositiveDefinite.into());
         }
+        let last = Direction { step: Vec::new(), closures: Vec::new(), definite, factored, tools };
+        self.take(last, right, state, balance, time)
+    }
+
+    /// The chord: a step with the tangent of `last`.
+    pub(super) fn again(
+        &mut self,
+        last: Direction,
+        state: &State,
+        balance: &Balance,
+        time: f64,
+    ) -> Result<Direction, StaticError> {
+        let right = self.system.gather(&balance.out, &balance.pressure);
+        self.take(last, right, state, balance, time)
+    }
+
+    fn take(
+        &mut self,
+        Direction { definite, factored, tools, .. }: Direction,
+        mut step: Vec<f64>,
+        state: &State,
+        balance: &Balance,
+        time: f64,
+    ) -> Result<Direction, StaticError> {
+        let lacking = self.lacking(balance, time);
+        step.extend(tools.iter().map(|&k| lacking[k]));
         self.solve(&factored, &mut step)?;
         let moves = step.split_off(self.system.dim());
         let mut closures = vec![0.0; self.problem.tools.len()];
@@ -116,7 +142,7 @@ impl Newton<'_> {
                 None => self.approach(k, state, force),
             };
         }
-        Ok(Direction { step, closures, factored, definite })
+        Ok(Direction { step, closures, definite, factored, tools })
     }
 
     /// Solves with the matrix as it was assembled, pressures scaled.
