@@ -21,19 +21,27 @@
 //! ```
 
 mod barycentric;
+mod circumcentre;
+mod delaunay;
 mod error;
+mod frame;
+mod hull;
 mod inverse_distance;
 mod mls;
+mod natural_neighbour;
 mod nearest;
 mod neighbours;
 mod radial;
 mod scheme;
 mod shepard;
+mod sibson;
+mod twofold;
 
 pub use barycentric::barycentric;
 pub use error::InterpError;
 pub use inverse_distance::inverse_distance;
 pub use mls::mls;
+pub use natural_neighbour::natural_neighbour;
 pub use nearest::nearest;
 pub use radial::{Radial, radial};
 pub use scheme::Scheme;
@@ -42,10 +50,11 @@ pub use shepard::shepard;
 /// What a scheme met on the way; nothing here is an error, and nothing is silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransferInfo {
-    /// Targets outside the mesh, extrapolated from the nearest cell (barycentric only; the other schemes know
-    /// no mesh and hence no outside).
+    /// Targets outside the mesh (barycentric) or the convex hull of the nodes (natural neighbour), extrapolated; the
+    /// other schemes know no outside.
     pub outside: usize,
     /// Targets that needed another than the plain formula: an enlarged support (Shepard, moving least
-    /// squares), a regularised or reduced basis (moving least squares).
+    /// squares), a regularised or reduced basis (moving least squares), the best linear
+    /// field instead of the volumes (natural neighbour).
     pub fallbacks: usize,
 }

@@ -1,11 +1,12 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) refuses a NaN as well
 //! Radial basis functions with a linear polynomial: one dense, positive definite solve for all targets.
 
-use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, Matrix4xX, MatrixXx4};
+use nalgebra::{Cholesky, DMatrix, Matrix4, Matrix4xX, MatrixXx4};
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Rows, Unity};
 
 use crate::InterpError;
+use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::neighbours::{check_count, check_finite};
 
 /// Radial function, conditionally positive definite of order 2 in space: unique with a linear polynomial
@@ -44,8 +45,6 @@ impl Radial {
 const MOST_ENTRIES: usize = 1 << 27;
 /// Targets per parallel task: fixed, so that the bits are the same at any thread count.
 const CHUNK: usize = 128;
-/// Thickness of a cloud relative to its half-extent below which it counts as flat.
-const FLAT: f64 = 1e-7;
 /// Smallest over largest pivot below which rows are noise between the closest nodes (at 1e-12 some 0.1 of a
 /// value; 1e-5 to 1e-2 in sound clouds of up to 2500 nodes).
 const SMALLEST_PIVOT: f64 = 1e-12;
@@ -173,17 +172,6 @@ impl System {
     }
 }
 
-/// Centre of the bounding box and half its longest side, m.
-fn centre_and_half_extent(nodes: &[Point3]) -> (Point3, f64) {
-    let (mut low, mut high) = (nodes[0], nodes[0]);
-    for x in nodes {
-        low = low.inf(x);
-        high = high.sup(x);
-    }
-    let half = (high - low) * 0.5;
-    (low + half, half.max())
-}
-
 /// Squared distance and indices of the closest pair.
 fn closest_pair(nodes: &[Point3]) -> (f64, usize, usize) {
     let mut closest = (f64::INFINITY, 0, 1);
@@ -196,14 +184,6 @@ fn closest_pair(nodes: &[Point3]) -> (f64, usize, usize) {
         }
     }
     closest
-}
-
-/// Root-mean-square distance of the nodes from their best plane.
-fn thickness(nodes: &[Point3]) -> f64 {
-    let n = nodes.len() as f64;
-    let mean = nodes.iter().map(|x| x.coords).sum::<nalgebra::Vector3<f64>>() / n;
-    let moment: Matrix3<f64> = nodes.iter().map(|x| (x.coords - mean) * (x.coords - mean).transpose()).sum();
-    (moment / n).symmetric_eigenvalues().min().max(0.0).sqrt()
 }
 
 /// `Y` (n, 4) of `P = Y R` by modified Gram-Schmidt, twice over; and `B = Y R^-T`, for which `P^T B = I`.

@@ -37,13 +37,15 @@ pub enum Scheme {
     ThinPlate,
     /// [`crate::radial`] with [`Radial::Cubic`].
     Cubic,
+    /// [`crate::natural_neighbour`].
+    NaturalNeighbour,
     /// [`crate::barycentric`].
     Barycentric,
 }
 
 impl Scheme {
     /// Every scheme, in the order tables list them; parameters as in the transfer study of the kidney.
-    pub const ALL: [Scheme; 8] = [
+    pub const ALL: [Scheme; 9] = [
         Scheme::Nearest,
         Scheme::InverseDistance { neighbours: 4, power: 2.0 },
         Scheme::Shepard { dilatation: 1.6 },
@@ -51,6 +53,7 @@ impl Scheme {
         Scheme::MlsQuadratic { dilatation: 2.5 },
         Scheme::ThinPlate,
         Scheme::Cubic,
+        Scheme::NaturalNeighbour,
         Scheme::Barycentric,
     ];
 
@@ -64,6 +67,7 @@ impl Scheme {
             Scheme::MlsQuadratic { .. } => "mls-quadratic",
             Scheme::ThinPlate => "thin-plate",
             Scheme::Cubic => "cubic",
+            Scheme::NaturalNeighbour => "natural-neighbour",
             Scheme::Barycentric => "barycentric",
         }
     }
@@ -77,7 +81,11 @@ impl Scheme {
     pub fn exact_degree(self) -> usize {
         match self {
             Scheme::Nearest | Scheme::InverseDistance { .. } | Scheme::Shepard { .. } => 0,
-            Scheme::MlsLinear { .. } | Scheme::ThinPlate | Scheme::Cubic | Scheme::Barycentric => 1,
+            Scheme::MlsLinear { .. }
+            | Scheme::ThinPlate
+            | Scheme::Cubic
+            | Scheme::NaturalNeighbour
+            | Scheme::Barycentric => 1,
             Scheme::MlsQuadratic { .. } => 2,
         }
     }
@@ -109,6 +117,7 @@ impl Scheme {
             }
             Scheme::ThinPlate => crate::radial(nodes, Radial::ThinPlate, targets).map(plain),
             Scheme::Cubic => crate::radial(nodes, Radial::Cubic, targets).map(plain),
+            Scheme::NaturalNeighbour => crate::natural_neighbour(nodes, targets),
             Scheme::Barycentric => {
                 let mesh = mesh.ok_or(InterpError::NeedsMesh { scheme: self.name() })?;
                 let points = mesh.points();
