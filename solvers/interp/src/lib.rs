@@ -29,6 +29,7 @@ mod error;
 mod frame;
 mod hull;
 mod inverse_distance;
+mod lanes;
 mod mls;
 mod natural_neighbour;
 mod nearest;

@@ -58,7 +58,7 @@ pub fn natural_neighbour(
     let mut batches: Vec<Batch> = Vec::new();
     targets
         .par_chunks(CHUNK)
-        .map(|chunk| Batch::new(chunk.iter().map(scaled), &hull, &voronoi))
+        .map(|chunk| Batch::new(&chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi))
         .collect_into_vec(&mut batches);
     let (mut offsets, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
     let mut info = TransferInfo::default();
@@ -76,6 +76,7 @@ pub fn natural_neighbour(
 }
 
 /// Rows of one chunk of targets.
+#[derive(Default)]
 struct Batch {
     lengths: Vec<usize>,
     nodes: Vec<u32>,
@@ -84,27 +85,63 @@ struct Batch {
 }
 
 impl Batch {
-    fn new(targets: impl Iterator<Item = Point3>, hull: &Hull, voronoi: &Voronoi) -> Batch {
-        let mut batch = Batch {
-            lengths: Vec::new(),
-            nodes: Vec::new(),
-            values: Vec::new(),
-            info: TransferInfo::default(),
-        };
+    /// The same arithmetic in the same order on either path, so the same bits; fused multiply-add, which would change them, is
+    /// left off.
+    fn new(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked; that is all the function requires.
+            return unsafe { Batch::new_avx2(targets, hull, voronoi) };
+        }
+        Batch::new_plain(targets, hull, voronoi)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn new_avx2(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        Batch::new_plain(targets, hull, voronoi)
+    }
+
+    #[inline(always)]
+    fn new_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        let mut batch = Batch::default();
         let mut at = Workspace::new(voronoi);
         for x in targets {
-            match hull.place(&x) {
-                Place::Inside => voronoi.coordinates(&x, None, &mut at),
+            let inner = match hull.place(x) {
+                Place::Inside => None,
                 Place::Near { inner, outside } => {
-                    voronoi.coordinates(&x, Some(&inner), &mut at);
                     batch.info.outside += usize::from(outside);
+                    Some(inner)
                 }
-            }
+            };
+            voronoi.coordinates(x, inner.as_ref(), &mut at);
             batch.info.fallbacks += usize::from(at.fallback);
             batch.lengths.push(at.nodes.len());
             batch.nodes.extend_from_slice(&at.nodes);
             batch.values.extend_from_slice(&at.values);
         }
         batch
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_registers_give_the_same_bits() {
+        let at = |i: usize, c: f64| (i as f64 * c).fract() * 2.0 - 1.0;
+        let points = |n: usize, scale: f64| -> Vec<Point3> {
+            (0..n).map(|i| Point3::new(at(i, 0.754_877), at(i, 0.569_84), at(i, 0.317_8)) * scale).collect()
+        };
+        let nodes = points(150, 1.0);
+        let mesh = Delaunay::new(&nodes).unwrap();
+        let (hull, voronoi) = (Hull::new(&nodes, &mesh), Voronoi::new(nodes, &mesh));
+        let targets = points(601, 1.1);
+        let (chosen, plain) =
+            (Batch::new(&targets, &hull, &voronoi), Batch::new_plain(&targets, &hull, &voronoi));
+        assert!((100..500).contains(&chosen.info.outside), "{:?}", chosen.info);
+        assert!(chosen.nodes == plain.nodes && chosen.values == plain.values);
+        assert_eq!(chosen.info, plain.info);
     }
 }

@@ -12,6 +12,7 @@ use shape::{Point3, Vector3};
 use crate::circumcentre::circumcentre;
 use crate::delaunay::{Delaunay, FACES, NONE};
 use crate::hull::DEPTH;
+use crate::lanes::{LANES, Lanes, dot};
 
 /// A circumsphere holds a point up to half of this much of the tetrahedron's size beyond it. What is taken from a cell then is
 /// wrong by the third power of that, and a point that lattices put on many spheres is held by all of them, in spite of
@@ -21,7 +22,7 @@ const CLOSED: f64 = 1e-9;
 /// as rounding.
 const PRECISION: f64 = 1e-6;
 /// Smaller ones are left.
-const EXACT: f64 = 1e-15;
+const EXACT: f64 = 1e-14;
 /// Coordinates much below this count as little, those much above it alike, where a linear field is fitted: beneath the hull
 /// all but those of its own nodes are of the order of the depth.
 const FADE: f64 = DEPTH;
@@ -119,6 +120,7 @@ impl Voronoi {
 
     /// The coordinates of a point within the hull, and of `inner` in its stead if that is given: the point then takes the
     /// linear field that fits the neighbours of `inner` best.
+    #[inline(always)]
     pub(crate) fn coordinates(&self, x: &Point3, inner: Option<&Point3>, at: &mut Workspace) {
         let inside = inner.unwrap_or(x);
         at.nodes.clear();
@@ -146,11 +148,13 @@ impl Voronoi {
     }
 
     /// From the point to the mean of the neighbours by their coordinates: zero but for rounding (Sibson 1980).
+    #[inline(always)]
     fn gap(&self, x: &Point3, at: &Workspace) -> Vector3 {
         at.nodes.iter().zip(&at.values).map(|(&node, &value)| (self.nodes[node as usize] - x) * value).sum()
     }
 
     /// A cell whose circumsphere holds the point, by walking towards it.
+    #[inline(always)]
     fn locate(&self, x: &Point3, start: u32) -> u32 {
         let mut cell = start;
         'walk: for _ in 0..self.cells.len() {
@@ -173,6 +177,7 @@ impl Voronoi {
 
     /// Collects the cells whose circumsphere holds the point, and the rim of faces around them, all of which see the
     /// point from within: of the two cells at a face it is on the side of the one whose sphere it is deeper in.
+    #[inline(always)]
     fn open(&self, x: &Point3, start: u32, at: &mut Workspace) {
         at.stamp = match at.stamp.checked_add(2) {
             Some(stamp) => stamp,
@@ -213,6 +218,7 @@ impl Voronoi {
     }
 
     /// Three times the volumes that the point takes from its neighbours.
+    #[inline(always)]
     fn volumes(&self, x: &Point3, at: &mut Workspace) {
         for &cell in &at.cavity {
             let Cell { corners, shares, .. } = &self.cells[cell as usize];
@@ -224,12 +230,21 @@ impl Voronoi {
                 at.volumes[node as usize] += share;
             }
         }
-        for &(cell, k) in &at.rim {
-            let face = &self.faces[cell as usize][k as usize];
-            let nodes = FACES[k as usize].map(|i| self.cells[cell as usize].corners[i]);
-            let shares = face.shares_below(nodes.map(|v| self.nodes[v as usize] - x));
-            for (node, share) in nodes.into_iter().zip(shares) {
-                at.volumes[node as usize] -= share;
+        for group in at.rim.chunks(LANES) {
+            // Lanes beyond the last face repeat it, and are not read.
+            let mut tets = Tetrahedra::default();
+            let mut nodes = [[0; 3]; LANES];
+            for lane in 0..LANES {
+                let (cell, k) = group[lane.min(group.len() - 1)];
+                nodes[lane] = FACES[k as usize].map(|i| self.cells[cell as usize].corners[i]);
+                let corners = nodes[lane].map(|v| self.nodes[v as usize] - x);
+                tets.set(lane, &self.faces[cell as usize][k as usize], corners);
+            }
+            let shares = tets.shares();
+            for (lane, nodes) in nodes.iter().enumerate().take(group.len()) {
+                for (&node, share) in nodes.iter().zip(&shares) {
+                    at.volumes[node as usize] -= share.0[lane];
+                }
             }
         }
         for &node in &at.nodes {
@@ -274,6 +289,7 @@ impl Voronoi {
 
 impl Cell {
     /// The circumsphere holds the point: `|x - c|^2 <= R^2`, without the difference of two large squares.
+    #[inline(always)]
     fn holds(&self, x: &Point3) -> bool {
         let y = x - self.origin;
         (y - 2.0 * self.centre).dot(&y) <= self.reach
@@ -294,25 +310,49 @@ impl Face {
         });
         Face { normal, shares }
     }
+}
 
-    /// Three times the shares of the face's corners in the tetrahedron that it makes with the origin on its positive side;
-    /// corners from the origin.
-    fn shares_below(&self, [a, b, c]: [Vector3; 3]) -> [f64; 3] {
-        let (aa, bb, cc) = (a.dot(&a), b.dot(&b), c.dot(&c));
-        let (ab, bc, ca) = (a.dot(&b), b.dot(&c), c.dot(&a));
+/// The tetrahedra that four faces make with the origin, which is on their positive side.
+#[derive(Default)]
+struct Tetrahedra {
+    normal: [Lanes; 3],
+    shares: [Lanes; 3],
+    /// Of the faces, from the origin.
+    corners: [[Lanes; 3]; 3],
+}
+
+impl Tetrahedra {
+    #[inline(always)]
+    fn set(&mut self, lane: usize, face: &Face, corners: [Vector3; 3]) {
+        for i in 0..3 {
+            self.normal[i].0[lane] = face.normal[i];
+            self.shares[i].0[lane] = face.shares[i];
+            for axis in 0..3 {
+                self.corners[i][axis].0[lane] = corners[i][axis];
+            }
+        }
+    }
+
+    /// Three times the volumes that are the faces' corners'.
+    #[inline(always)]
+    fn shares(&self) -> [Lanes; 3] {
+        let [a, b, c] = &self.corners;
+        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+        let (ab, bc, ca) = (dot(a, b), dot(b, c), dot(c, a));
         // Products of the normals b x c, c x a and a x b: cofactors of the matrix of products above.
         let (naa, nbb, ncc) = (bb * cc - bc * bc, cc * aa - ca * ca, aa * bb - ab * ab);
         let (nab, nbc, nca) = (bc * ca - ab * cc, ca * ab - bc * aa, ab * bc - ca * bb);
         // Heights of the circumcentre over the four faces, times their normals, inwards.
-        let height = -self.normal.dot(&a);
-        let scale = 0.5 / height;
+        let height = Lanes::all(0.0) - dot(&self.normal, a);
+        let scale = Lanes::all(0.5) / height;
         let ha = (aa * naa + bb * nab + cc * nca) * scale;
         let hb = (aa * nab + bb * nbb + cc * nbc) * scale;
         let hc = (aa * nca + bb * nbc + cc * ncc) * scale;
         let top = height - (ha + hb + hc);
-        let (ha, hb, hc) = (ha / (8.0 * naa), hb / (8.0 * nbb), hc / (8.0 * ncc));
+        let eight = Lanes::all(8.0);
+        let (ha, hb, hc) = (ha / (eight * naa), hb / (eight * nbb), hc / (eight * ncc));
         // Share of a in the triangle (0, a, b): |b|^2 (|a|^2 + a.b) - 2 (a.b)^2 over 8 |a x b|.
-        let share = |p: f64, q: f64, pq: f64| q * (p + pq) - 2.0 * pq * pq;
+        let share = |p: Lanes, q: Lanes, pq: Lanes| q * (p + pq) - (pq + pq) * pq;
         [
             top * self.shares[0] + hb * share(aa, cc, ca) + hc * share(aa, bb, ab),
             top * self.shares[1] + hc * share(bb, aa, ab) + ha * share(bb, cc, bc),
