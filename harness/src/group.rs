@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use geometry::{Point3, msh};
-use interp::Scheme;
+use interp::{Radial, Scheme};
 
 use crate::discretise::Discretisation;
 use crate::outcome::{LoadStep, Outcome, Size as Sizes, Stage, Unfinished};
@@ -258,25 +258,54 @@ fn schemes(scene: &Scene) -> Result<Vec<(String, Scheme)>, Failure> {
             let key = transfer_key(scene, index, "scheme");
             Failure::of_scene(scene, ErrorKind::NotAvailable, &key, "is not available", "")
         })?;
-        let pick = |dilatation: f64| transfer.dilatation.unwrap_or(dilatation);
-        list.push(match default {
-            Scheme::InverseDistance { neighbours, power } => {
-                let (n, p) = (transfer.neighbours.unwrap_or(neighbours), transfer.power.unwrap_or(power));
-                (format!("neighbours={n};power={p}"), Scheme::InverseDistance { neighbours: n, power: p })
-            }
-            Scheme::Shepard { dilatation } => {
-                (format!("dilatation={}", pick(dilatation)), Scheme::Shepard { dilatation: pick(dilatation) })
-            }
-            Scheme::MlsLinear { dilatation } => (
-                format!("dilatation={}", pick(dilatation)),
-                Scheme::MlsLinear { dilatation: pick(dilatation) },
-            ),
-            Scheme::MlsQuadratic { dilatation } => (
-                format!("dilatation={}", pick(dilatation)),
-                Scheme::MlsQuadratic { dilatation: pick(dilatation) },
-            ),
-            other => (String::new(), other),
-        });
+        list.push(with_settings(default, transfer));
     }
     Ok(list)
+}
+
+/// The scheme as the scene sets it, and its settings as records have them.
+fn with_settings(default: Scheme, given: &scene::Transfer) -> (String, Scheme) {
+    let dilatation = |default: f64| given.dilatation.unwrap_or(default);
+    let shape = |default: f64| given.shape.unwrap_or(default);
+    let polynomial = |default: bool| given.polynomial.unwrap_or(default);
+    match default {
+        Scheme::InverseDistance { neighbours, power } => {
+            let (n, p) = (given.neighbours.unwrap_or(neighbours), given.power.unwrap_or(power));
+            (format!("neighbours={n};power={p}"), Scheme::InverseDistance { neighbours: n, power: p })
+        }
+        Scheme::Shepard { dilatation: d } => {
+            let d = dilatation(d);
+            (format!("dilatation={d}"), Scheme::Shepard { dilatation: d })
+        }
+        Scheme::MlsLinear { dilatation: d } => {
+            let d = dilatation(d);
+            (format!("dilatation={d}"), Scheme::MlsLinear { dilatation: d })
+        }
+        Scheme::MlsQuadratic { dilatation: d } => {
+            let d = dilatation(d);
+            (format!("dilatation={d}"), Scheme::MlsQuadratic { dilatation: d })
+        }
+        Scheme::MlsModified { dilatation: d } => {
+            let d = dilatation(d);
+            (format!("dilatation={d}"), Scheme::MlsModified { dilatation: d })
+        }
+        Scheme::Radial(Radial::Multiquadric { shape: c }) => {
+            let c = shape(c);
+            (format!("shape={c}"), Scheme::Radial(Radial::Multiquadric { shape: c }))
+        }
+        Scheme::Radial(Radial::Gaussian { shape: c, polynomial: p }) => {
+            let (shape, polynomial) = (shape(c), polynomial(p));
+            let settings = format!("shape={shape};polynomial={polynomial}");
+            (settings, Scheme::Radial(Radial::Gaussian { shape, polynomial }))
+        }
+        Scheme::Radial(Radial::WendlandC2 { support, polynomial: p }) => {
+            let (support, polynomial) = (dilatation(support), polynomial(p));
+            let settings = format!("dilatation={support};polynomial={polynomial}");
+            (settings, Scheme::Radial(Radial::WendlandC2 { support, polynomial }))
+        }
+        Scheme::Nearest
+        | Scheme::Radial(Radial::ThinPlate | Radial::Cubic)
+        | Scheme::NaturalNeighbour
+        | Scheme::Barycentric => (String::new(), default),
+    }
 }

@@ -31,8 +31,12 @@ pub struct Transfer {
     pub neighbours: Option<usize>,
     /// Power of the inverse distance.
     pub power: Option<f64>,
-    /// Support radius over the local spacing, where the scheme has one.
+    /// Support radius over the local spacing (for `wendland-c2` the mean one), where the scheme has one.
     pub dilatation: Option<f64>,
+    /// Length of the shape parameter over the mean spacing, where the scheme has one.
+    pub shape: Option<f64>,
+    /// A linear polynomial beside the radial functions, where the scheme may do without.
+    pub polynomial: Option<bool>,
 }
 
 /// Points of a transfer.
@@ -56,8 +60,13 @@ pub enum SchemeName {
     Shepard,
     MlsLinear,
     MlsQuadratic,
+    MlsModified,
     ThinPlate,
     Cubic,
+    Multiquadric,
+    Gaussian,
+    WendlandC2,
+    NaturalNeighbour,
     Barycentric,
     /// The solver's own rows
     Own,
@@ -65,14 +74,19 @@ pub enum SchemeName {
 
 impl SchemeName {
     /// Every scheme, in the order tables list them.
-    pub const ALL: [SchemeName; 9] = [
+    pub const ALL: [SchemeName; 14] = [
         SchemeName::Nearest,
         SchemeName::InverseDistance,
         SchemeName::Shepard,
         SchemeName::MlsLinear,
         SchemeName::MlsQuadratic,
+        SchemeName::MlsModified,
         SchemeName::ThinPlate,
         SchemeName::Cubic,
+        SchemeName::Multiquadric,
+        SchemeName::Gaussian,
+        SchemeName::WendlandC2,
+        SchemeName::NaturalNeighbour,
         SchemeName::Barycentric,
         SchemeName::Own,
     ];
@@ -85,8 +99,13 @@ impl SchemeName {
             SchemeName::Shepard => "shepard",
             SchemeName::MlsLinear => "mls-linear",
             SchemeName::MlsQuadratic => "mls-quadratic",
+            SchemeName::MlsModified => "mls-modified",
             SchemeName::ThinPlate => "thin-plate",
             SchemeName::Cubic => "cubic",
+            SchemeName::Multiquadric => "multiquadric",
+            SchemeName::Gaussian => "gaussian",
+            SchemeName::WendlandC2 => "wendland-c2",
+            SchemeName::NaturalNeighbour => "natural-neighbour",
             SchemeName::Barycentric => "barycentric",
             SchemeName::Own => "own",
         }

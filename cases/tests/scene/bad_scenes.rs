@@ -362,6 +362,24 @@ const OUTPUT: &[Bad] = &[
         &["takes no dilatation"],
     ),
     (
+        "scheme = \"inverse-distance\", neighbours = 4, power = 2",
+        "scheme = \"cubic\", shape = 2 #<\n",
+        "output.transfer.shape",
+        &["cubic takes no shape"],
+    ),
+    (
+        "scheme = \"inverse-distance\", neighbours = 4, power = 2",
+        "scheme = \"multiquadric\", shape = 0 #<\n",
+        "output.transfer.shape",
+        &["zero"],
+    ),
+    (
+        "scheme = \"inverse-distance\", neighbours = 4, power = 2",
+        "scheme = \"natural-neighbour\", polynomial = false #<\n",
+        "output.transfer.polynomial",
+        &["natural-neighbour takes no polynomial"],
+    ),
+    (
         "to = \"probes\"",
         "to = \"reference-nodes\" #<\n",
         "output.transfer.to",

@@ -37,6 +37,8 @@ pub struct Approximation {
     balls: Vec<Ball>,
     kernel: Kernel,
     basis: Basis,
+    /// Regularisation of the quadratic block, relative to the sum of the weights.
+    mu: f64,
     buckets: Buckets,
 }
 
@@ -87,7 +89,18 @@ impl Approximation {
         let balls =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&nodes, &radii);
-        Ok(Approximation { nodes, balls, kernel, basis, buckets })
+        Ok(Approximation { nodes, balls, kernel, basis, mu: 0.0, buckets })
+    }
+
+    /// With the quadratic block of the moment matrix regularised at every point, by `mu` times the sum of the weights (modified
+    /// moving least squares; Joldes et al. 2015): linear fields stay exact, quadratic ones are almost. The linear
+    /// basis has no such block.
+    pub fn regularised(self, mu: f64) -> Result<Approximation, EfgError> {
+        if !(0.0..=1.0).contains(&mu) {
+            let what = "regularisation";
+            return Err(EfgError::BadParameter { what, value: mu, allowed: "a value from 0 to 1" });
+        }
+        Ok(Approximation { mu, ..self })
     }
 
     /// Node positions, m.
@@ -212,7 +225,7 @@ impl Approximation {
     fn evaluate<const GRAD: bool>(&self, x: &Point3, at: &mut Workspace) -> Result<Outcome, EfgError> {
         at.gather(x, self.buckets.candidates(x).iter().copied(), &self.balls, 1.0);
         let neighbours = at.nodes.len() as u32;
-        match self.fit::<GRAD>(self.basis, 0.0, at) {
+        match self.fit::<GRAD>(self.basis, self.mu, at) {
             Some(condition) => {
                 Ok(Outcome { neighbours, condition, enlarged: false, regularised: false, reduced: false })
             }
@@ -247,14 +260,16 @@ impl Approximation {
         };
         let rungs: &[(Basis, f64)] = match self.basis {
             Basis::Linear => &[(Basis::Linear, 0.0)],
-            Basis::Quadratic => {
-                &[(Basis::Quadratic, 0.0), (Basis::Quadratic, REGULARISATION), (Basis::Linear, 0.0)]
-            }
+            Basis::Quadratic => &[
+                (Basis::Quadratic, self.mu),
+                (Basis::Quadratic, self.mu.max(REGULARISATION)),
+                (Basis::Linear, 0.0),
+            ],
         };
         for &(basis, mu) in rungs {
             if let Some(condition) = self.fit::<GRAD>(basis, mu, at) {
                 outcome.condition = condition;
-                outcome.regularised = mu > 0.0;
+                outcome.regularised = mu > self.mu;
                 outcome.reduced = basis != self.basis;
                 return Ok(outcome);
             }

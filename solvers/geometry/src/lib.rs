@@ -31,7 +31,7 @@ pub mod shapes;
 pub use cell::{CellKind, FaceKind};
 pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh};
 pub use isoparametric::HEX_CORNERS;
-pub use locate::{LocateError, Location, locate};
+pub use locate::{LocateError, Location, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};
 pub use shapes::Kidney;

@@ -2,7 +2,7 @@
 
 use geometry::generate::{Jitter, box_mesh, kidney_mesh};
 use geometry::shapes::{Kidney, Shape};
-use geometry::{CellKind, LocateError, Location, Mesh, Point3, Vector3, locate};
+use geometry::{CellKind, LocateError, Location, Mesh, Point3, Vector3, closest_on_triangle, locate};
 
 fn unit_cube(kind: CellKind) -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed: 2 });
@@ -97,4 +97,23 @@ fn what_cannot_be_located_is_named() {
     let points = points.into_iter().map(Point3::from).collect();
     let flat = Mesh::new(points, &[(CellKind::Tet4, vec![0, 1, 2, 3])]).unwrap();
     assert_eq!(locate(&flat, &[]), Err(LocateError::Flat { cell: 0, det_j: 0.0 }));
+}
+
+#[test]
+fn the_closest_point_of_a_triangle_is_closest() {
+    let corners = [Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.2, 0.1), Point3::new(0.3, 0.9, -0.2)];
+    let [a, b, c] = corners;
+    for i in 0..200 {
+        let t = i as f64;
+        let x = Point3::new((3.1 * t).sin(), (7.7 * t).cos(), (1.3 * t).sin()) * 2.0;
+        let found = (closest_on_triangle(&x, &corners) - x).norm();
+        // No point of a fine grid over the triangle is closer, and one is about as close.
+        let n = 60;
+        let grid = (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j)));
+        let best = grid
+            .map(|(i, j)| a + (b - a) * (i as f64 / n as f64) + (c - a) * (j as f64 / n as f64))
+            .map(|p| (p - x).norm())
+            .fold(f64::INFINITY, f64::min);
+        assert!(found <= best + 1e-12 && found > best - 0.02, "{i}: {found} {best}");
+    }
 }

@@ -10,7 +10,7 @@ use std::hint::black_box;
 fn transfer(criterion: &mut Criterion) {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
     let targets = cloud(&Kidney, 1331, 2, &[]).unwrap().points;
-    // Barycentric transfer wants a mesh over its nodes: the coarsest of about 83.
+    // Barycentric transfer wants a mesh over its nodes: a coarse one, of 321 nodes and 1536 cells.
     let mesh = kidney_mesh(CellKind::Tet4, 4).unwrap();
     let mut group = criterion.benchmark_group("transfer");
     for scheme in Scheme::ALL {

@@ -2,7 +2,7 @@
 
 use geometry::{Mesh, Point3, locate};
 use nalgebra::Matrix3;
-use shape::{PointRows, Rows, Unity};
+use shape::{GradRows, PointRows, Rows, Unity};
 
 use crate::neighbours::check_finite;
 use crate::{InterpError, TransferInfo};
@@ -32,6 +32,24 @@ pub fn barycentric(mesh: &Mesh, targets: &[Point3]) -> Result<(PointRows, Transf
     let offsets = (0..=targets.len()).map(|row| 4 * row).collect();
     let rows = Rows::new(mesh.points().len(), offsets, nodes, values, Unity::Within(1e-9))?;
     Ok((PointRows::new(targets.to_vec(), rows)?, info))
+}
+
+/// [`barycentric`] with gradients (1/m), constant in each tetrahedron.
+pub fn barycentric_gradients(
+    mesh: &Mesh,
+    targets: &[Point3],
+) -> Result<(GradRows, TransferInfo), InterpError> {
+    let (rows, info) = barycentric(mesh, targets)?;
+    let mut grads = Vec::with_capacity(4 * targets.len());
+    for corners in rows.rows().nodes().chunks_exact(4) {
+        let [o, a, b, c] = [0, 1, 2, 3].map(|k| mesh.points()[corners[k] as usize]);
+        let edges = Matrix3::from_columns(&[a - o, b - o, c - o]);
+        // Flat cells are refused where targets are located.
+        let inverse = edges.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let [ga, gb, gc] = [0, 1, 2].map(|k| inverse.row(k).transpose());
+        grads.extend([-ga - gb - gc, ga, gb, gc]);
+    }
+    Ok((GradRows::new(targets.to_vec(), rows.rows().clone(), grads)?, info))
 }
 
 /// Barycentric coordinates of any point; some are negative outside the tetrahedron.

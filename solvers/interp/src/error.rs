@@ -52,6 +52,22 @@ pub enum InterpError {
         /// Smallest over largest pivot of the factorisation; zero if the distance alone decided.
         pivot_ratio: f64,
     },
+    /// Radial functions so wide that those of neighbouring nodes can't be told apart.
+    #[error(
+        "{scheme}: {what} {width} (in mean spacings of the nodes) makes a system so nearly singular that values at \
+         the nodes are missed by {miss:e} of themselves; take less"
+    )]
+    TooWide {
+        /// Scheme.
+        scheme: &'static str,
+        /// What the width is called.
+        what: &'static str,
+        /// Width over mean spacing.
+        width: f64,
+        /// Largest difference between values of 1 and -1 given at the nodes and those found there; infinite if the
+        /// system is not positive definite.
+        miss: f64,
+    },
     /// Nodes in one plane (or line, or point): they determine no linear field in space.
     #[error("{scheme}: the nodes lie in one plane (thickness {thickness:e} m, half-extent {extent:e} m)")]
     FlatCloud {
@@ -78,6 +94,14 @@ pub enum InterpError {
         entries: usize,
         /// Most entries allowed.
         limit: usize,
+    },
+    /// A scheme without gradients in closed form.
+    #[error(
+        "{scheme} has no gradients; moving least squares, radial bases and barycentric interpolation have"
+    )]
+    NoGradient {
+        /// Scheme.
+        scheme: &'static str,
     },
     /// A scheme that needs a mesh, without one.
     #[error("{scheme} needs a mesh of tetrahedra over the nodes; none is given")]

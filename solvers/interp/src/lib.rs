@@ -2,10 +2,12 @@
 //!
 //! A scheme is a table from nodes to targets: built once from positions alone, applied to any field as a
 //! sparse product. What a scheme reproduces and whether it interpolates is stated with it
-//! ([`Scheme::exact_degree`], [`Scheme::interpolates`]) and tested.
+//! ([`Scheme::exact_degree`], [`Scheme::interpolates`]) and tested. The transpose of a table carries forces from the
+//! targets back to the nodes ([`shape::Rows::apply_transposed`]); some schemes have gradients, too
+//! ([`Scheme::grad_rows`]).
 //!
 //! ```
-//! use interp::Scheme;
+//! use interp::{Radial, Scheme};
 //! use shape::{Point3, Vector3};
 //! let nodes: Vec<Point3> =
 //!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
@@ -15,37 +17,47 @@
 //!     let (rows, _) = scheme.rows(&nodes, None, &target)?;
 //!     Ok((rows.rows().apply(&field)[0] - 0.1 * target[0].coords).norm())
 //! };
-//! assert!(error(Scheme::Cubic)? < 1e-15); // exact for linear fields
+//! assert!(error(Scheme::Radial(Radial::Cubic))? < 1e-15); // exact for linear fields
 //! assert!(error(Scheme::InverseDistance { neighbours: 4, power: 2.0 })? > 1e-6); // exact for constants only
 //! # Ok::<(), interp::InterpError>(())
 //! ```
 
 mod barycentric;
+mod circumcentre;
+mod delaunay;
 mod error;
+mod frame;
+mod hull;
 mod inverse_distance;
+mod lanes;
 mod mls;
+mod natural_neighbour;
 mod nearest;
 mod neighbours;
 mod radial;
 mod scheme;
 mod shepard;
+mod sibson;
+mod twofold;
 
-pub use barycentric::barycentric;
+pub use barycentric::{barycentric, barycentric_gradients};
 pub use error::InterpError;
 pub use inverse_distance::inverse_distance;
-pub use mls::mls;
+pub use mls::{mls, mls_gradients, mls_modified, mls_modified_gradients};
+pub use natural_neighbour::natural_neighbour;
 pub use nearest::nearest;
-pub use radial::{Radial, radial};
+pub use radial::{Radial, radial, radial_gradients};
 pub use scheme::Scheme;
 pub use shepard::shepard;
 
 /// What a scheme met on the way; nothing here is an error, and nothing is silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransferInfo {
-    /// Targets outside the mesh, extrapolated from the nearest cell (barycentric only; the other schemes know
-    /// no mesh and hence no outside).
+    /// Targets outside the mesh (barycentric) or the convex hull of the nodes (natural neighbour), extrapolated; the
+    /// other schemes know no outside.
     pub outside: usize,
     /// Targets that needed another than the plain formula: an enlarged support (Shepard, moving least
-    /// squares), a regularised or reduced basis (moving least squares).
+    /// squares), a regularised or reduced basis (moving least squares), the best linear
+    /// field instead of the volumes (natural neighbour).
     pub fallbacks: usize,
 }

@@ -1,12 +1,15 @@
 //! Moving least squares, linear and quadratic: the shape functions of element-free Galerkin used as a
 //! transfer.
 
-use efg::{Approximation, Basis, Kernel, Support};
+use efg::{Approximation, Basis, Kernel, MlsInfo, Support};
 use geometry::Cloud;
-use shape::{Point3, PointRows};
+use shape::{GradRows, Point3, PointRows};
 
 use crate::neighbours::{check_count, check_finite};
 use crate::{InterpError, TransferInfo};
+
+/// Regularisation of the quadratic block in [`mls_modified`], relative to the sum of the weights.
+const MODIFIED: f64 = 1e-5;
 
 /// Moving least squares with the cubic-spline kernel (Lancaster and Salkauskas 1981): exact for linear or
 /// quadratic fields, as the basis is; does not interpolate.
@@ -20,15 +23,70 @@ pub fn mls(
     support: Support,
     targets: &[Point3],
 ) -> Result<(PointRows, TransferInfo), InterpError> {
+    Ok(counted(plain(nodes, basis, support, targets)?.point_rows(targets)?))
+}
+
+/// [`mls`] with gradients (1/m).
+pub fn mls_gradients(
+    nodes: &[Point3],
+    basis: Basis,
+    support: Support,
+    targets: &[Point3],
+) -> Result<(GradRows, TransferInfo), InterpError> {
+    Ok(counted(plain(nodes, basis, support, targets)?.grad_rows(targets)?))
+}
+
+/// Modified moving least squares (Joldes et al. 2015): the quadratic basis, whose second derivatives are penalised by 1e-5 of
+/// the sum of the weights, so that supports need not hold ten nodes in general position. Exact for linear fields,
+/// almost for quadratic ones; does not interpolate. Support and fallbacks as in [`mls`]; the penalty is none of them.
+pub fn mls_modified(
+    nodes: &[Point3],
+    support: Support,
+    targets: &[Point3],
+) -> Result<(PointRows, TransferInfo), InterpError> {
+    Ok(counted(modified(nodes, support, targets)?.point_rows(targets)?))
+}
+
+/// [`mls_modified`] with gradients (1/m).
+pub fn mls_modified_gradients(
+    nodes: &[Point3],
+    support: Support,
+    targets: &[Point3],
+) -> Result<(GradRows, TransferInfo), InterpError> {
+    Ok(counted(modified(nodes, support, targets)?.grad_rows(targets)?))
+}
+
+fn plain(
+    nodes: &[Point3],
+    basis: Basis,
+    support: Support,
+    targets: &[Point3],
+) -> Result<Approximation, InterpError> {
     let scheme = match basis {
         Basis::Linear => "mls-linear",
         Basis::Quadratic => "mls-quadratic",
     };
+    approximation(scheme, nodes, basis, support, targets)
+}
+
+fn modified(nodes: &[Point3], support: Support, targets: &[Point3]) -> Result<Approximation, InterpError> {
+    Ok(approximation("mls-modified", nodes, Basis::Quadratic, support, targets)?.regularised(MODIFIED)?)
+}
+
+fn approximation(
+    scheme: &'static str,
+    nodes: &[Point3],
+    basis: Basis,
+    support: Support,
+    targets: &[Point3],
+) -> Result<Approximation, InterpError> {
     check_finite(nodes, targets)?;
     check_count(scheme, nodes.len(), basis.terms())?;
     let cloud = Cloud::from_points(nodes.to_vec())?;
     let radii = support.radii(nodes, &cloud.spacing)?;
-    let approximation = Approximation::new(cloud.points, radii, Kernel::CubicSpline, basis)?;
-    let (rows, info) = approximation.point_rows(targets)?;
-    Ok((rows, TransferInfo { outside: 0, fallbacks: info.fallbacks() }))
+    Ok(Approximation::new(cloud.points, radii, Kernel::CubicSpline, basis)?)
+}
+
+fn counted<T>((rows, info): (T, MlsInfo)) -> (T, TransferInfo) {
+    (rows, TransferInfo { outside: 0, fallbacks: info.fallbacks() })
 }

@@ -1,16 +1,19 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) refuses a NaN as well
-//! Radial basis functions with a linear polynomial: one dense, positive definite solve for all targets.
+//! Radial basis functions, with a linear polynomial or without: one dense, positive definite solve for all targets.
 
-use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix4, Matrix4xX, MatrixXx4};
+use geometry::Cloud;
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix4xX, MatrixXx4};
 use rayon::prelude::*;
-use shape::{Point3, PointRows, Rows, Unity};
+use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::InterpError;
+use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::neighbours::{check_count, check_finite};
 
-/// Radial function, conditionally positive definite of order 2 in space: unique with a linear polynomial
-/// (Wendland 2005, theorems 8.16 and 8.17).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Radial function, positive definite in space with a linear polynomial beside it (Wendland 2005, theorems 8.5, 8.16 and
+/// 8.17), [`Radial::Gaussian`] and [`Radial::WendlandC2`] without one, too (theorems 6.10 and 9.13). Widths are in
+/// multiples of the cloud's mean spacing, the mean distance to a node's 14 nearest neighbours: units do not matter.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radial {
     /// `r^2 ln r`, the function commonly called thin plate. It minimises bending energy in the plane; in
     /// space, where that minimiser would be `r`, it is still a valid and smoother choice (C1 at the nodes,
@@ -19,23 +22,86 @@ pub enum Radial {
     ThinPlate,
     /// `r^3`: C2 at the nodes.
     Cubic,
+    /// `-sqrt(r^2 + c^2)` (Hardy 1971): smooth.
+    Multiquadric {
+        /// `c`, in spacings.
+        shape: f64,
+    },
+    /// `exp(-(r / c)^2)`: smooth.
+    Gaussian {
+        /// `c`, in spacings.
+        shape: f64,
+        /// With the linear polynomial; without it not even constants are exact.
+        polynomial: bool,
+    },
+    /// `(1 - q)^4 (4q + 1)`, `q = r / R` (Wendland 1995): C2, zero from `R` on.
+    WendlandC2 {
+        /// `R`, in spacings.
+        support: f64,
+        /// With the linear polynomial; without it not even constants are exact.
+        polynomial: bool,
+    },
 }
 
 impl Radial {
-    /// The function of the squared distance.
+    /// The function of the squared distance, with `inverse_square` that of its width.
     #[inline(always)]
-    fn eval(self, square: f64) -> f64 {
+    fn eval(self, square: f64, inverse_square: f64) -> f64 {
         match self {
             Radial::ThinPlate if square == 0.0 => 0.0,
             Radial::ThinPlate => 0.5 * square * square.ln(),
             Radial::Cubic => square * square.sqrt(),
+            Radial::Multiquadric { .. } => -(1.0 + square * inverse_square).sqrt(),
+            Radial::Gaussian { .. } => (-square * inverse_square).exp(),
+            Radial::WendlandC2 { .. } => {
+                let q = (square * inverse_square).sqrt();
+                let rest = (1.0 - q).max(0.0) * (1.0 - q).max(0.0);
+                rest * rest * (4.0 * q + 1.0)
+            }
         }
     }
 
-    fn name(self) -> &'static str {
+    /// Its derivative by the squared distance, which is bounded but for `r^2 ln r` at a node, where the gradient is zero.
+    #[inline(always)]
+    fn slope(self, square: f64, inverse_square: f64) -> f64 {
+        match self {
+            Radial::ThinPlate if square == 0.0 => 0.0,
+            Radial::ThinPlate => 0.5 * square.ln() + 0.5,
+            Radial::Cubic => 1.5 * square.sqrt(),
+            Radial::Multiquadric { .. } => -0.5 * inverse_square / (1.0 + square * inverse_square).sqrt(),
+            Radial::Gaussian { .. } => -inverse_square * (-square * inverse_square).exp(),
+            Radial::WendlandC2 { .. } => {
+                let rest = (1.0 - (square * inverse_square).sqrt()).max(0.0);
+                -10.0 * inverse_square * rest * rest * rest
+            }
+        }
+    }
+
+    /// The name used in scene files and tables.
+    pub fn name(self) -> &'static str {
         match self {
             Radial::ThinPlate => "thin-plate",
             Radial::Cubic => "cubic",
+            Radial::Multiquadric { .. } => "multiquadric",
+            Radial::Gaussian { .. } => "gaussian",
+            Radial::WendlandC2 { .. } => "wendland-c2",
+        }
+    }
+
+    /// True with the linear polynomial.
+    pub fn polynomial(self) -> bool {
+        match self {
+            Radial::Gaussian { polynomial, .. } | Radial::WendlandC2 { polynomial, .. } => polynomial,
+            Radial::ThinPlate | Radial::Cubic | Radial::Multiquadric { .. } => true,
+        }
+    }
+
+    /// What the width is called, and the width, in spacings.
+    fn width(self) -> Option<(&'static str, f64)> {
+        match self {
+            Radial::ThinPlate | Radial::Cubic => None,
+            Radial::Multiquadric { shape } | Radial::Gaussian { shape, .. } => Some(("shape", shape)),
+            Radial::WendlandC2 { support, .. } => Some(("support", support)),
         }
     }
 }
@@ -44,36 +110,36 @@ impl Radial {
 const MOST_ENTRIES: usize = 1 << 27;
 /// Targets per parallel task: fixed, so that the bits are the same at any thread count.
 const CHUNK: usize = 128;
-/// Thickness of a cloud relative to its half-extent below which it counts as flat.
-const FLAT: f64 = 1e-7;
 /// Smallest over largest pivot below which rows are noise between the closest nodes (at 1e-12 some 0.1 of a
 /// value; 1e-5 to 1e-2 in sound clouds of up to 2500 nodes).
 const SMALLEST_PIVOT: f64 = 1e-12;
+/// Largest miss at the nodes that is let pass of functions with a width, which may be too wide for any nodes: pivots alone do
+/// not tell it (multiquadrics eight spacings wide miss by 1e-4 at a ratio of 1e-9).
+const LARGEST_MISS: f64 = 1e-6;
+/// Nodes closer than this many spacings are to blame for a singular system, not the functions' width.
+const APART: f64 = 1e-2;
 
 /// `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with `u(x_i) = u_i` and `sum_i c_i = sum_i c_i x_i = 0`
-/// (Wendland 2005, chapter 8). Exact for linear fields; interpolates; every row is full.
+/// (Wendland 2005, chapter 8). Exact for linear fields with the polynomial `d`, for nothing without; interpolates; every row
+/// is full. Functions so wide that the system is singular to working precision are refused.
 ///
 /// Coordinates are shifted to the centre of the cloud and scaled by its half-extent. After one factorisation all
 /// targets are rows of two matrix products, 4 n^2 operations each.
 pub fn radial(nodes: &[Point3], radial: Radial, targets: &[Point3]) -> Result<PointRows, InterpError> {
-    check_finite(nodes, targets)?;
-    let scheme = radial.name();
-    check_count(scheme, nodes.len(), 4)?;
-    let (n, m) = (nodes.len(), targets.len());
-    let entries = n.saturating_mul(n.saturating_add(m));
-    if entries > MOST_ENTRIES {
-        let limit = MOST_ENTRIES;
-        return Err(InterpError::TooLarge { scheme, nodes: n, targets: m, entries, limit });
-    }
-    let system = System::new(scheme, nodes, radial)?;
-    let rows = Rows::new(
-        n,
-        (0..=m).map(|row| row * n).collect(),
-        (0..m).flat_map(|_| 0..n as u32).collect(),
-        system.table(targets),
-        Unity::Within(1e-9),
-    )?;
-    Ok(PointRows::new(targets.to_vec(), rows)?)
+    let system = System::checked(nodes, radial, targets, 1)?;
+    Ok(PointRows::new(targets.to_vec(), system.rows(targets)?)?)
+}
+
+/// [`radial`] with gradients (1/m).
+pub fn radial_gradients(
+    nodes: &[Point3],
+    radial: Radial,
+    targets: &[Point3],
+) -> Result<GradRows, InterpError> {
+    let system = System::checked(nodes, radial, targets, 4)?;
+    let [x, y, z] = [0, 1, 2].map(|axis| system.table(targets, Some(axis)));
+    let grads = x.into_iter().zip(y).zip(z).map(|((x, y), z)| Vector3::new(x, y, z) * system.scale).collect();
+    Ok(GradRows::new(targets.to_vec(), system.rows(targets)?, grads)?)
 }
 
 /// With `P` (n, 4) the polynomial at the nodes, `P = Y R`, `Pi = I - Y Y^T`, `phi` (n) and `p` (4) the
@@ -83,21 +149,51 @@ pub fn radial(nodes: &[Point3], radial: Radial, targets: &[Point3]) -> Result<Po
 ///
 /// `K` is positive definite (the bordered system of the textbook is not), so that its Cholesky pivots tell a
 /// singular cloud. `B p` alone carries every linear field, and the worse conditioned part is projected off
-/// them last, so that its rounding never reaches them.
+/// them last, so that its rounding never reaches them. Without the polynomial `w = Phi^-1 phi`.
 struct System {
     radial: Radial,
+    inverse_square: f64,
     centre: Point3,
     scale: f64,
     nodes: Vec<Point3>,
     l_inverse: DMatrix<f64>,
     /// A copy: the library's product with a transpose is a loop of dot products, three times slower.
     l_inverse_transposed: DMatrix<f64>,
+    tail: Option<Tail>,
+}
+
+/// The polynomial's part.
+struct Tail {
     phi_b: MatrixXx4<f64>,
     y: MatrixXx4<f64>,
     b: MatrixXx4<f64>,
 }
 
 impl System {
+    /// With all that a table of `tables` times the targets needs.
+    fn checked(
+        nodes: &[Point3],
+        radial: Radial,
+        targets: &[Point3],
+        tables: usize,
+    ) -> Result<System, InterpError> {
+        check_finite(nodes, targets)?;
+        let scheme = radial.name();
+        if let Some((what, value)) = radial.width()
+            && !(value > 0.0 && value.is_finite())
+        {
+            return Err(InterpError::BadParameter { what, value, allowed: "a positive number" });
+        }
+        check_count(scheme, nodes.len(), if radial.polynomial() { 4 } else { 2 })?;
+        let (n, m) = (nodes.len(), targets.len());
+        let entries = n.saturating_mul(n.saturating_add(m.saturating_mul(tables)));
+        if entries > MOST_ENTRIES {
+            let limit = MOST_ENTRIES;
+            return Err(InterpError::TooLarge { scheme, nodes: n, targets: m, entries, limit });
+        }
+        System::new(scheme, nodes, radial)
+    }
+
     fn new(scheme: &'static str, nodes: &[Point3], radial: Radial) -> Result<System, InterpError> {
         let n = nodes.len();
         let (centre, extent) = centre_and_half_extent(nodes);
@@ -113,75 +209,108 @@ impl System {
             return Err(coincident(0.0));
         }
         let thickness = thickness(&nodes);
-        if !(thickness > FLAT) {
+        if radial.polynomial() && !(thickness > FLAT) {
             return Err(InterpError::FlatCloud { scheme, thickness: thickness * extent, extent });
         }
+        let width = match radial.width() {
+            Some((what, width)) => Some((what, width, spacing(&nodes)?)),
+            None => None,
+        };
+        let inverse_square = width.map_or(1.0, |(_, width, spacing)| (width * spacing).powi(-2));
+        let singular = |pivot_ratio: f64, miss: f64| match width {
+            Some((what, width, spacing)) if square.sqrt() > APART * spacing => {
+                InterpError::TooWide { scheme, what, width, miss }
+            }
+            _ => coincident(pivot_ratio),
+        };
 
-        let (y, b) = polynomial(&nodes);
-        let phi = DMatrix::from_fn(n, n, |i, j| radial.eval((nodes[i] - nodes[j]).norm_squared()));
+        let phi =
+            DMatrix::from_fn(n, n, |i, j| radial.eval((nodes[i] - nodes[j]).norm_squared(), inverse_square));
         let mut k = phi.clone();
-        project_columns(&y, &mut k);
-        k.transpose_mut();
-        project_columns(&y, &mut k);
-        let mean = k.trace() / (n - 4).max(1) as f64;
-        let tau = if n > 4 { mean } else { 1.0 };
-        k.gemm(tau, &y, &y.transpose(), 1.0);
-        let factor = Cholesky::new(k).ok_or_else(|| coincident(0.0))?;
+        let tail = radial.polynomial().then(|| {
+            let (y, b) = polynomial(&nodes);
+            project_columns(&y, &mut k);
+            k.transpose_mut();
+            project_columns(&y, &mut k);
+            let mean = k.trace() / (n - 4).max(1) as f64;
+            let tau = if n > 4 { mean } else { 1.0 };
+            k.gemm(tau, &y, &y.transpose(), 1.0);
+            Tail { phi_b: phi * &b, y, b }
+        });
+        let factor = Cholesky::new(k.clone()).ok_or_else(|| singular(0.0, f64::INFINITY))?;
         let pivots = factor.l_dirty().diagonal().map(|l| l * l);
         let pivot_ratio = pivots.min() / pivots.max();
-        if !(pivot_ratio > SMALLEST_PIVOT) {
-            return Err(coincident(pivot_ratio));
-        }
         let mut l_inverse = DMatrix::identity(n, n);
         if !factor.l_dirty().solve_lower_triangular_mut(&mut l_inverse) {
-            return Err(coincident(pivot_ratio));
+            return Err(singular(pivot_ratio, f64::INFINITY));
         }
         let l_inverse_transposed = l_inverse.transpose();
-        let phi_b = phi * &b;
-        Ok(System { radial, centre, scale, l_inverse, l_inverse_transposed, phi_b, y, b, nodes })
+        let sign = DVector::from_fn(n, |i, _| if i % 2 == 0 { 1.0 } else { -1.0 });
+        let miss = (k * (&l_inverse_transposed * (&l_inverse * &sign)) - sign).amax();
+        if !(pivot_ratio > SMALLEST_PIVOT) || (width.is_some() && !(miss < LARGEST_MISS)) {
+            return Err(singular(pivot_ratio, miss));
+        }
+        Ok(System { radial, inverse_square, centre, scale, l_inverse, l_inverse_transposed, tail, nodes })
     }
 
-    /// All rows, one after another; parallel over chunks of targets, each of which makes its own rows.
-    fn table(&self, targets: &[Point3]) -> Vec<f64> {
+    fn rows(&self, targets: &[Point3]) -> Result<Rows, InterpError> {
+        let (n, m) = (self.nodes.len(), targets.len());
+        let unity = if self.tail.is_some() { Unity::Within(1e-9) } else { Unity::NotPromised };
+        let offsets = (0..=m).map(|row| row * n).collect();
+        let entries = (0..m).flat_map(|_| 0..n as u32).collect();
+        Ok(Rows::new(n, offsets, entries, self.table(targets, None), unity)?)
+    }
+
+    /// All rows, one after another, or their derivatives along an axis, in scaled coordinates; parallel over chunks of targets,
+    /// each of which makes its own rows.
+    fn table(&self, targets: &[Point3], axis: Option<usize>) -> Vec<f64> {
         let n = self.nodes.len();
         let mut table = vec![0.0; n * targets.len()];
         table.par_chunks_mut(CHUNK * n).zip(targets.par_chunks(CHUNK)).for_each(|(rows, targets)| {
-            rows.copy_from_slice(self.chunk(targets).as_slice());
+            rows.copy_from_slice(self.chunk(targets, axis).as_slice());
         });
         table
     }
 
     /// The rows of some targets as columns (n, targets).
-    fn chunk(&self, targets: &[Point3]) -> DMatrix<f64> {
+    fn chunk(&self, targets: &[Point3], axis: Option<usize>) -> DMatrix<f64> {
         let (n, m) = (self.nodes.len(), targets.len());
         let mut polynomial = Matrix4xX::zeros(m);
         let mut phi = DMatrix::zeros(n, m);
         for (t, target) in targets.iter().enumerate() {
             let x = Point3::from((target - self.centre) * self.scale);
-            polynomial.column_mut(t).copy_from_slice(&[1.0, x.x, x.y, x.z]);
+            let terms = match axis {
+                None => [1.0, x.x, x.y, x.z],
+                Some(axis) => [usize::MAX, 0, 1, 2].map(|term| f64::from(term == axis)),
+            };
+            polynomial.column_mut(t).copy_from_slice(&terms);
             for (value, node) in phi.column_mut(t).iter_mut().zip(&self.nodes) {
-                *value = self.radial.eval((x - node).norm_squared());
+                let (offset, width) = (x - node, self.inverse_square);
+                let square = offset.norm_squared();
+                *value = match axis {
+                    None => self.radial.eval(square, width),
+                    Some(axis) => 2.0 * offset[axis] * self.radial.slope(square, width),
+                };
             }
         }
-        phi.gemm(-1.0, &self.phi_b, &polynomial, 1.0);
+        if let Some(tail) = &self.tail {
+            phi.gemm(-1.0, &tail.phi_b, &polynomial, 1.0);
+        }
         // K^-1 as L^-T L^-1 and not as one matrix, whose rounding grows with the square of the condition: two
         // nodes a millionth of the extent apart spoil a smooth field by 1e-9 this way, and by 1e-3 the other.
         let mut rows = &self.l_inverse_transposed * (&self.l_inverse * phi);
-        project_columns(&self.y, &mut rows);
-        rows.gemm(1.0, &self.b, &polynomial, 1.0);
+        if let Some(tail) = &self.tail {
+            project_columns(&tail.y, &mut rows);
+            rows.gemm(1.0, &tail.b, &polynomial, 1.0);
+        }
         rows
     }
 }
 
-/// Centre of the bounding box and half its longest side, m.
-fn centre_and_half_extent(nodes: &[Point3]) -> (Point3, f64) {
-    let (mut low, mut high) = (nodes[0], nodes[0]);
-    for x in nodes {
-        low = low.inf(x);
-        high = high.sup(x);
-    }
-    let half = (high - low) * 0.5;
-    (low + half, half.max())
+/// Mean distance of a node to its nearest neighbours.
+fn spacing(nodes: &[Point3]) -> Result<f64, InterpError> {
+    let spacing = Cloud::from_points(nodes.to_vec())?.spacing;
+    Ok(spacing.iter().sum::<f64>() / spacing.len() as f64)
 }
 
 /// Squared distance and indices of the closest pair.
@@ -196,14 +325,6 @@ fn closest_pair(nodes: &[Point3]) -> (f64, usize, usize) {
         }
     }
     closest
-}
-
-/// Root-mean-square distance of the nodes from their best plane.
-fn thickness(nodes: &[Point3]) -> f64 {
-    let n = nodes.len() as f64;
-    let mean = nodes.iter().map(|x| x.coords).sum::<nalgebra::Vector3<f64>>() / n;
-    let moment: Matrix3<f64> = nodes.iter().map(|x| (x.coords - mean) * (x.coords - mean).transpose()).sum();
-    (moment / n).symmetric_eigenvalues().min().max(0.0).sqrt()
 }
 
 /// `Y` (n, 4) of `P = Y R` by modified Gram-Schmidt, twice over; and `B = Y R^-T`, for which `P^T B = I`.

@@ -1,7 +1,7 @@
 //! Numbers from elsewhere: worked by hand, from the textbook's own system, and known levels of error.
 
 use geometry::{Kidney, cloud};
-use interp::Scheme;
+use interp::{Radial, Scheme};
 use nalgebra::{DMatrix, Vector3};
 use shape::Point3;
 
@@ -52,18 +52,42 @@ fn radial_bases_solve_the_textbook_system() {
     let target = Point3::new(0.21, -0.13, 0.34);
     let thin_plate = |r: f64| if r == 0.0 { 0.0 } else { r * r * r.ln() };
     let cubic = |r: f64| r.powi(3);
-    let cases: [(Scheme, &dyn Fn(f64) -> f64); 2] =
-        [(Scheme::ThinPlate, &thin_plate), (Scheme::Cubic, &cubic)];
-    for (scheme, phi) in cases {
+    // The widths by the spacing: the mean distance to the 14 nearest.
+    let spacing = {
+        let mean = |x: &Point3| {
+            let mut all: Vec<f64> = nodes.iter().map(|y| (x - y).norm()).collect();
+            all.sort_by(f64::total_cmp);
+            all[1..15].iter().sum::<f64>() / 14.0
+        };
+        nodes.iter().map(mean).sum::<f64>() / nodes.len() as f64
+    };
+    let multiquadric = |r: f64| (r * r + (0.7 * spacing).powi(2)).sqrt();
+    let gaussian = |r: f64| (-(r / (0.8 * spacing)).powi(2)).exp();
+    let wendland = |r: f64| {
+        let q = r / (2.5 * spacing);
+        if q < 1.0 { (1.0 - q).powi(4) * (4.0 * q + 1.0) } else { 0.0 }
+    };
+    let cases: [(Radial, &dyn Fn(f64) -> f64); 7] = [
+        (Radial::ThinPlate, &thin_plate),
+        (Radial::Cubic, &cubic),
+        (Radial::Multiquadric { shape: 0.7 }, &multiquadric),
+        (Radial::Gaussian { shape: 0.8, polynomial: true }, &gaussian),
+        (Radial::Gaussian { shape: 0.8, polynomial: false }, &gaussian),
+        (Radial::WendlandC2 { support: 2.5, polynomial: true }, &wendland),
+        (Radial::WendlandC2 { support: 2.5, polynomial: false }, &wendland),
+    ];
+    for (radial, phi) in cases {
+        let scheme = Scheme::Radial(radial);
         let n = nodes.len();
+        let terms = if radial.polynomial() { 4 } else { 0 };
         let p = |x: &Point3, term: usize| if term == 0 { 1.0 } else { x[term - 1] };
-        let bordered = DMatrix::from_fn(n + 4, n + 4, |i, j| match (i < n, j < n) {
+        let bordered = DMatrix::from_fn(n + terms, n + terms, |i, j| match (i < n, j < n) {
             (true, true) => phi((nodes[i] - nodes[j]).norm()),
             (true, false) => p(&nodes[i], j - n),
             (false, true) => p(&nodes[j], i - n),
             (false, false) => 0.0,
         });
-        let at = DMatrix::from_fn(n + 4, 1, |i, _| {
+        let at = DMatrix::from_fn(n + terms, 1, |i, _| {
             if i < n { phi((target - nodes[i]).norm()) } else { p(&target, i - n) }
         });
         let expected = bordered.lu().solve(&at).unwrap();
@@ -98,7 +122,11 @@ fn inverse_distance_spoils_a_linear_field_on_the_kidney() {
         println!("inverse distance, {neighbours} neighbours, power {power}: {inverse_distance:.3} mm RMS");
         assert!((0.3..1.0).contains(&inverse_distance), "{neighbours}, {power}: {inverse_distance} mm");
     }
-    for scheme in [Scheme::ThinPlate, Scheme::Cubic, Scheme::MlsLinear { dilatation: 1.6 }] {
+    for scheme in [
+        Scheme::Radial(Radial::ThinPlate),
+        Scheme::Radial(Radial::Cubic),
+        Scheme::MlsLinear { dilatation: 1.6 },
+    ] {
         assert!(error(scheme) < 1e-11, "{scheme:?}: {} mm", error(scheme));
     }
 }

@@ -198,4 +198,19 @@ impl Rows {
             *out = sum;
         }
     }
+
+    /// The nodal forces that do the same work as forces at the rows' points: `f_I = sum_q N_I(x_q) f_q`, so that
+    /// `sum_I f_I . u_I = sum_q f_q . u(x_q)` for every nodal `u`. Total force is kept where rows sum to one, total moment
+    /// where they are exact for linear fields.
+    pub fn apply_transposed(&self, forces: &[Vector3]) -> Vec<Vector3> {
+        assert_eq!(forces.len(), self.len(), "one vector per row");
+        let mut nodal = vec![Vector3::zeros(); self.node_count];
+        for (row, force) in forces.iter().enumerate() {
+            let (nodes, values) = self.row(row);
+            for (&node, &value) in nodes.iter().zip(values) {
+                nodal[node as usize] += value * force;
+            }
+        }
+        nodal
+    }
 }

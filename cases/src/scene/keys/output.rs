@@ -37,6 +37,10 @@ pub(crate) struct TransferKeys {
     pub neighbours: Option<u32>,
     pub power: Option<f64>,
     pub dilatation: Option<f64>,
+    /// Width of multiquadrics and Gaussians, in mean spacings of the nodes
+    pub shape: Option<f64>,
+    /// Whether Gaussians and Wendland's functions have a linear polynomial beside them; they do unless given
+    pub polynomial: Option<bool>,
 }
 
 /// "reference-nodes", "probes", or the nodes of a mesh file

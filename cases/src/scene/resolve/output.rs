@@ -48,8 +48,16 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
         (
             "dilatation",
             keys.dilatation.is_some(),
-            takes(&[SchemeName::Shepard, SchemeName::MlsLinear, SchemeName::MlsQuadratic]),
+            takes(&[
+                SchemeName::Shepard,
+                SchemeName::MlsLinear,
+                SchemeName::MlsQuadratic,
+                SchemeName::MlsModified,
+                SchemeName::WendlandC2,
+            ]),
         ),
+        ("shape", keys.shape.is_some(), takes(&[SchemeName::Multiquadric, SchemeName::Gaussian])),
+        ("polynomial", keys.polynomial.is_some(), takes(&[SchemeName::Gaussian, SchemeName::WendlandC2])),
     ];
     for (name, given, taken) in given {
         let help = format!("{} takes no {name}: leave it out", keys.scheme.name());
@@ -58,7 +66,7 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
     if let Some(n) = keys.neighbours {
         report.require(n > 0, &at("neighbours"), "is zero", "give 1 or more");
     }
-    for (name, value) in [("power", keys.power), ("dilatation", keys.dilatation)] {
+    for (name, value) in [("power", keys.power), ("dilatation", keys.dilatation), ("shape", keys.shape)] {
         if let Some(value) = value {
             positive(value, &at(name), report);
         }
@@ -69,6 +77,8 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
         neighbours: keys.neighbours.map(|n| n as usize),
         power: keys.power,
         dilatation: keys.dilatation,
+        shape: keys.shape,
+        polynomial: keys.polynomial,
     }
 }
 

@@ -1,0 +1,81 @@
+//! Every transfer scheme by its name in a scene, with its settings.
+
+mod common;
+
+use cases::scene::{self, Scene, SchemeName};
+use common::BLOCK;
+use harness::group::Group;
+use harness::outcome::{Metric, Transfer};
+use harness::run::Repeats;
+use interp::Scheme;
+
+/// A cloud on the nodes of a mesh, its displacement carried to the given targets by the given schemes.
+fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
+    let cloud = r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]"#;
+    let list: Vec<String> =
+        schemes.iter().map(|s| format!("{{ to = \"{targets}\", scheme = {s} }}")).collect();
+    let text = format!(
+        "{}{cloud}\nreference = {{ method = \"tet4\", size = {{ cells = [5, 5, 3] }} }}\n[output]\n\
+         probes = [[\"9 mm\", \"11 mm\", \"7 mm\"], [\"41 mm\", \"11 mm\", \"7 mm\"]]\ntransfer = [{}]\n",
+        BLOCK.trim_end().trim_end_matches(']'),
+        list.join(", ")
+    );
+    let scene: Scene = scene::parse(&text, "transfer.toml").unwrap_or_else(|bad| panic!("{bad:?}"));
+    let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
+    let method = scene.methods.iter().find(|m| m.id == "efg").unwrap();
+    let run = group.run(&group.scenario(method.clone(), 0), false);
+    run.unwrap_or_else(|bad| panic!("{}", bad.failure)).transfers
+}
+
+fn value(metrics: &[Metric], name: &str) -> f64 {
+    metrics.iter().find(|m| m.name == name).unwrap_or_else(|| panic!("{name}")).value
+}
+
+#[test]
+fn every_scheme_runs_by_its_name() {
+    let named: Vec<SchemeName> =
+        SchemeName::ALL.into_iter().filter(|&name| name != SchemeName::Own).collect();
+    let known: Vec<&str> = Scheme::ALL.iter().map(|s| s.name()).collect();
+    assert_eq!(named.iter().map(|s| s.name()).collect::<Vec<_>>(), known);
+    let list: Vec<String> = known.iter().map(|name| format!("\"{name}\"")).collect();
+    let transfers = transfers("reference-nodes", &list);
+    assert_eq!(transfers.len(), known.len() + 1, "and the cloud's own rows");
+    for (transfer, scheme) in transfers.iter().zip(Scheme::ALL) {
+        assert_eq!(transfer.scheme, scheme.name());
+        let linear = value(&transfer.metrics, "linear-rms");
+        // The field is of 1e-3 m; what is not exact is off by 1e-5 and more on this cloud.
+        assert_eq!(linear < 1e-15, scheme.exact_degree() >= Some(1), "{scheme:?}: {linear:e} m");
+        assert!(value(&transfer.metrics, "rms") > 0.0);
+        assert_eq!(value(&transfer.metrics, "outside"), 0.0, "{scheme:?}");
+    }
+}
+
+#[test]
+fn settings_reach_the_schemes_and_the_records() {
+    let list = [
+        "\"mls-modified\", dilatation = 1.8",
+        "\"multiquadric\", shape = 0.5",
+        "\"gaussian\", shape = 0.9, polynomial = false",
+        "\"wendland-c2\", dilatation = 3",
+        "\"wendland-c2\", dilatation = 3, polynomial = false",
+        "\"natural-neighbour\"",
+    ];
+    let transfers = transfers("probes", &list.map(String::from));
+    let settings: Vec<&str> = transfers.iter().map(|t| t.parameters.as_str()).collect();
+    assert_eq!(
+        settings[..6],
+        [
+            "dilatation=1.8",
+            "shape=0.5",
+            "shape=0.9;polynomial=false",
+            "dilatation=3;polynomial=true",
+            "dilatation=3;polynomial=false",
+            "",
+        ]
+    );
+    let linear: Vec<bool> = transfers[..6].iter().map(|t| value(&t.metrics, "linear-rms") < 1e-15).collect();
+    assert_eq!(linear, [true, true, false, true, false, true]);
+    // The second probe is 1 mm beyond the body.
+    let outside: Vec<f64> = transfers[..6].iter().map(|t| value(&t.metrics, "outside")).collect();
+    assert_eq!(outside, [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+}

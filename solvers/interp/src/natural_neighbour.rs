@@ -1,0 +1,147 @@
+//! Natural neighbour interpolation.
+
+use rayon::prelude::*;
+use shape::{Point3, PointRows, Rows, Unity};
+
+use crate::delaunay::{Degenerate, Delaunay};
+use crate::frame::{FLAT, centre_and_half_extent, thickness};
+use crate::hull::{Hull, Place};
+use crate::neighbours::{check_count, check_finite};
+use crate::sibson::{Voronoi, Workspace};
+use crate::{InterpError, TransferInfo};
+
+const SCHEME: &str = "natural-neighbour";
+/// Targets per parallel task: fixed, so that the bits are the same at any thread count.
+const CHUNK: usize = 128;
+
+/// `u(x) = sum_i V_i u_i / sum_i V_i`, `V_i` the volume that the Voronoi cell of the target takes from the cell of node `i`
+/// (Sibson 1980, 1981). Exact for linear fields; interpolates; smooth (C1) but at the nodes, within the convex hull of
+/// the nodes. No parameter: the neighbours of a target are those that its cell touches.
+///
+/// Beyond the hull no cell is bounded. A target there (counted in [`TransferInfo::outside`]) takes the linear field that fits
+/// the natural neighbours of the closest point of the hull best, each weighted by its coordinate: still exact for
+/// linear fields, and continuous. The coordinates at the hull are those a millionth of the way to the cloud's middle
+/// beneath it. Where rounding spoils the volumes, the target takes the linear field that fits its natural neighbours best,
+/// all alike, and is counted in [`TransferInfo::fallbacks`].
+pub fn natural_neighbour(
+    nodes: &[Point3],
+    targets: &[Point3],
+) -> Result<(PointRows, TransferInfo), InterpError> {
+    check_finite(nodes, targets)?;
+    check_count(SCHEME, nodes.len(), 4)?;
+    let (centre, extent) = centre_and_half_extent(nodes);
+    let coincident = |first: u32, second: u32| InterpError::CoincidentNodes {
+        scheme: SCHEME,
+        first: first as usize,
+        second: second as usize,
+        distance: (nodes[first as usize] - nodes[second as usize]).norm(),
+        extent,
+        pivot_ratio: 0.0,
+    };
+    if extent == 0.0 {
+        return Err(coincident(0, 1));
+    }
+    let scaled = |x: &Point3| Point3::from((x - centre) / extent);
+    let cloud: Vec<Point3> = nodes.iter().map(scaled).collect();
+    let thickness = thickness(&cloud);
+    let flat = || InterpError::FlatCloud { scheme: SCHEME, thickness: thickness * extent, extent };
+    if !(thickness > FLAT) {
+        return Err(flat());
+    }
+    let mesh = Delaunay::new(&cloud).map_err(|degenerate| match degenerate {
+        Degenerate::Flat => flat(),
+        Degenerate::Coincident(first, second) => coincident(first, second),
+    })?;
+    let hull = Hull::new(&cloud, &mesh);
+    let voronoi = Voronoi::new(cloud, &mesh);
+
+    let mut batches: Vec<Batch> = Vec::new();
+    targets
+        .par_chunks(CHUNK)
+        .map(|chunk| Batch::new(&chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi))
+        .collect_into_vec(&mut batches);
+    let (mut offsets, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
+    let mut info = TransferInfo::default();
+    for batch in batches {
+        for length in batch.lengths {
+            offsets.push(offsets[offsets.len() - 1] + length);
+        }
+        entries.extend(batch.nodes);
+        values.extend(batch.values);
+        info.outside += batch.info.outside;
+        info.fallbacks += batch.info.fallbacks;
+    }
+    let rows = Rows::new(nodes.len(), offsets, entries, values, Unity::Within(1e-9))?;
+    Ok((PointRows::new(targets.to_vec(), rows)?, info))
+}
+
+/// Rows of one chunk of targets.
+#[derive(Default)]
+struct Batch {
+    lengths: Vec<usize>,
+    nodes: Vec<u32>,
+    values: Vec<f64>,
+    info: TransferInfo,
+}
+
+impl Batch {
+    /// The same arithmetic in the same order on either path, so the same bits; fused multiply-add, which would change them, is
+    /// left off.
+    fn new(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked; that is all the function requires.
+            return unsafe { Batch::new_avx2(targets, hull, voronoi) };
+        }
+        Batch::new_plain(targets, hull, voronoi)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn new_avx2(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        Batch::new_plain(targets, hull, voronoi)
+    }
+
+    #[inline(always)]
+    fn new_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+        let mut batch = Batch::default();
+        let mut at = Workspace::new(voronoi);
+        for x in targets {
+            let inner = match hull.place(x) {
+                Place::Inside => None,
+                Place::Near { inner, outside } => {
+                    batch.info.outside += usize::from(outside);
+                    Some(inner)
+                }
+            };
+            voronoi.coordinates(x, inner.as_ref(), &mut at);
+            batch.info.fallbacks += usize::from(at.fallback);
+            batch.lengths.push(at.nodes.len());
+            batch.nodes.extend_from_slice(&at.nodes);
+            batch.values.extend_from_slice(&at.values);
+        }
+        batch
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_registers_give_the_same_bits() {
+        let at = |i: usize, c: f64| (i as f64 * c).fract() * 2.0 - 1.0;
+        let points = |n: usize, scale: f64| -> Vec<Point3> {
+            (0..n).map(|i| Point3::new(at(i, 0.754_877), at(i, 0.569_84), at(i, 0.317_8)) * scale).collect()
+        };
+        let nodes = points(150, 1.0);
+        let mesh = Delaunay::new(&nodes).unwrap();
+        let (hull, voronoi) = (Hull::new(&nodes, &mesh), Voronoi::new(nodes, &mesh));
+        let targets = points(601, 1.1);
+        let (chosen, plain) =
+            (Batch::new(&targets, &hull, &voronoi), Batch::new_plain(&targets, &hull, &voronoi));
+        assert!((100..500).contains(&chosen.info.outside), "{:?}", chosen.info);
+        assert!(chosen.nodes == plain.nodes && chosen.values == plain.values);
+        assert_eq!(chosen.info, plain.info);
+    }
+}

@@ -1,0 +1,362 @@
+//! Sibson coordinates in a Delaunay mesh.
+//!
+//! A point put into the cloud takes from the Voronoi cell of each natural neighbour `i` the volume `V_i` (Sibson 1980).
+//! That is the cell before less the cell after, and a Voronoi cell is made of one share of every tetrahedron at its
+//! node: what is nearer to the node than the tetrahedron's other corners, cut along the perpendiculars from the
+//! circumcentre, with a sign. So `V_i` is the shares of the tetrahedra whose circumsphere holds the point, known before,
+//! less those of the tetrahedra that the point makes with the faces around them. No Voronoi cell is ever built.
+
+use nalgebra::Matrix3;
+use shape::{Point3, Vector3};
+
+use crate::circumcentre::circumcentre;
+use crate::delaunay::{Delaunay, FACES, NONE};
+use crate::hull::DEPTH;
+use crate::lanes::{LANES, Lanes, dot};
+
+/// A circumsphere holds a point up to half of this much of the tetrahedron's size beyond it. What is taken from a cell then is
+/// wrong by the third power of that, and a point that lattices put on many spheres is held by all of them, in spite of
+/// rounding.
+const CLOSED: f64 = 1e-9;
+/// Largest distance from a point to the mean of its neighbours, relative to the half-extent of the cloud, that is put right
+/// as rounding.
+const PRECISION: f64 = 1e-6;
+/// Smaller ones are left.
+const EXACT: f64 = 1e-14;
+/// Coordinates much below this count as little, those much above it alike, where a linear field is fitted: beneath the hull
+/// all but those of its own nodes are of the order of the depth.
+const FADE: f64 = DEPTH;
+
+/// A cloud of half-extent 1 about the origin, meshed, with all that does not depend on a target.
+pub(crate) struct Voronoi {
+    nodes: Vec<Point3>,
+    cells: Vec<Cell>,
+    faces: Vec<[Face; 4]>,
+}
+
+/// A tetrahedron.
+struct Cell {
+    corners: [u32; 4],
+    neighbours: [u32; 4],
+    /// First corner.
+    origin: Point3,
+    /// Circumcentre from there.
+    centre: Vector3,
+    /// [`CLOSED`] times size and circumradius.
+    reach: f64,
+    /// Three times the volume that is each corner's.
+    shares: [f64; 4],
+}
+
+/// A face, in the order of its corners in [`FACES`].
+struct Face {
+    /// Normal, twice the area long; the cell is on its positive side.
+    normal: Vector3,
+    /// Areas of the triangle that are each corner's, over `|normal|`: times a circumcentre's height along the normal, what
+    /// they make of three times a corner's share of the tetrahedron.
+    shares: [f64; 3],
+}
+
+/// What one target needs, reused from target to target.
+pub(crate) struct Workspace {
+    /// Natural neighbours.
+    pub(crate) nodes: Vec<u32>,
+    /// Their coordinates.
+    pub(crate) values: Vec<f64>,
+    /// Rounding spoilt the volumes: the coordinates are those of the linear field that fits the neighbours best.
+    pub(crate) fallback: bool,
+    weights: Vec<f64>,
+    volumes: Vec<f64>,
+    listed: Vec<bool>,
+    seen: Vec<u32>,
+    stamp: u32,
+    cavity: Vec<u32>,
+    rim: Vec<(u32, u32)>,
+    last: u32,
+}
+
+impl Workspace {
+    pub(crate) fn new(voronoi: &Voronoi) -> Workspace {
+        let (nodes, cells) = (voronoi.nodes.len(), voronoi.cells.len());
+        Workspace {
+            nodes: Vec::new(),
+            values: Vec::new(),
+            fallback: false,
+            weights: Vec::new(),
+            volumes: vec![0.0; nodes],
+            listed: vec![false; nodes],
+            seen: vec![0; cells],
+            stamp: 0,
+            cavity: Vec::new(),
+            rim: Vec::new(),
+            last: 0,
+        }
+    }
+}
+
+impl Voronoi {
+    /// Of nodes with the origin amid them and coordinates of the order of 1.
+    pub(crate) fn new(nodes: Vec<Point3>, mesh: &Delaunay) -> Voronoi {
+        let (mut cells, mut faces) =
+            (Vec::with_capacity(mesh.cells.len()), Vec::with_capacity(mesh.cells.len()));
+        for (&corners, &neighbours) in mesh.cells.iter().zip(&mesh.neighbours) {
+            let at = corners.map(|v| nodes[v as usize]);
+            let face: [Face; 4] = std::array::from_fn(|k| Face::new(FACES[k].map(|i| at[i])));
+            let centre = circumcentre(&at);
+            let mut shares = [0.0; 4];
+            for (face, corner) in face.iter().zip(FACES) {
+                let height = (centre - (at[corner[0]] - at[0])).dot(&face.normal);
+                for (&i, share) in corner.iter().zip(face.shares) {
+                    shares[i] += height * share;
+                }
+            }
+            let size = at.iter().map(|x| (x - at[0]).norm()).fold(0.0, f64::max);
+            let reach = CLOSED * size * centre.norm();
+            cells.push(Cell { corners, neighbours, origin: at[0], centre, reach, shares });
+            faces.push(face);
+        }
+        Voronoi { nodes, cells, faces }
+    }
+
+    /// The coordinates of a point within the hull, and of `inner` in its stead if that is given: the point then takes the
+    /// linear field that fits the neighbours of `inner` best.
+    #[inline(always)]
+    pub(crate) fn coordinates(&self, x: &Point3, inner: Option<&Point3>, at: &mut Workspace) {
+        let inside = inner.unwrap_or(x);
+        at.nodes.clear();
+        at.values.clear();
+        at.fallback = false;
+        let cell = self.locate(inside, at.last);
+        at.last = cell;
+        let corners = self.cells[cell as usize].corners;
+        if let Some(&node) = corners.iter().find(|&&v| self.nodes[v as usize] == *x) {
+            at.nodes.push(node);
+            at.values.push(1.0);
+            return;
+        }
+        self.open(inside, cell, at);
+        self.volumes(inside, at);
+        let total: f64 = at.values.iter().sum();
+        at.values.iter_mut().for_each(|v| *v /= total);
+        let gap = self.gap(inside, at);
+        // Written so that a NaN is no sound coordinate, either.
+        if !(gap.norm() < PRECISION) {
+            at.values.fill(1.0 / at.nodes.len() as f64);
+            at.fallback = true;
+        }
+        self.extend(x, at);
+    }
+
+    /// From the point to the mean of the neighbours by their coordinates: zero but for rounding (Sibson 1980).
+    #[inline(always)]
+    fn gap(&self, x: &Point3, at: &Workspace) -> Vector3 {
+        at.nodes.iter().zip(&at.values).map(|(&node, &value)| (self.nodes[node as usize] - x) * value).sum()
+    }
+
+    /// A cell whose circumsphere holds the point, by walking towards it.
+    #[inline(always)]
+    fn locate(&self, x: &Point3, start: u32) -> u32 {
+        let mut cell = start;
+        'walk: for _ in 0..self.cells.len() {
+            let Cell { corners, neighbours, .. } = &self.cells[cell as usize];
+            for (k, face) in self.faces[cell as usize].iter().enumerate() {
+                let on = &self.nodes[corners[FACES[k][0]] as usize];
+                if neighbours[k] != NONE && face.normal.dot(&(x - on)) < 0.0 {
+                    cell = neighbours[k];
+                    continue 'walk;
+                }
+            }
+            break;
+        }
+        // A flat cell may seem to hold any point of its plane, or turn the walk in a circle.
+        if self.cells[cell as usize].holds(x) {
+            return cell;
+        }
+        self.cells.iter().position(|cell| cell.holds(x)).map_or(cell, |cell| cell as u32)
+    }
+
+    /// Collects the cells whose circumsphere holds the point, and the rim of faces around them, all of which see the
+    /// point from within: of the two cells at a face it is on the side of the one whose sphere it is deeper in.
+    #[inline(always)]
+    fn open(&self, x: &Point3, start: u32, at: &mut Workspace) {
+        at.stamp = match at.stamp.checked_add(2) {
+            Some(stamp) => stamp,
+            None => {
+                at.seen.fill(0);
+                2
+            }
+        };
+        let (out, within) = (at.stamp, at.stamp + 1);
+        at.cavity.clear();
+        at.rim.clear();
+        at.cavity.push(start);
+        at.seen[start as usize] = within;
+        let mut next = 0;
+        while next < at.cavity.len() {
+            let cell = at.cavity[next];
+            next += 1;
+            for k in 0..4 {
+                let across = self.cells[cell as usize].neighbours[k];
+                if across == NONE {
+                    at.rim.push((cell, k as u32));
+                    continue;
+                }
+                let seen = &mut at.seen[across as usize];
+                if *seen == within {
+                    continue;
+                }
+                if *seen < out {
+                    *seen = if self.cells[across as usize].holds(x) { within } else { out };
+                }
+                if *seen == out {
+                    at.rim.push((cell, k as u32));
+                } else {
+                    at.cavity.push(across);
+                }
+            }
+        }
+    }
+
+    /// Three times the volumes that the point takes from its neighbours.
+    #[inline(always)]
+    fn volumes(&self, x: &Point3, at: &mut Workspace) {
+        for &cell in &at.cavity {
+            let Cell { corners, shares, .. } = &self.cells[cell as usize];
+            for (&node, share) in corners.iter().zip(shares) {
+                if !at.listed[node as usize] {
+                    at.listed[node as usize] = true;
+                    at.nodes.push(node);
+                }
+                at.volumes[node as usize] += share;
+            }
+        }
+        for group in at.rim.chunks(LANES) {
+            // Lanes beyond the last face repeat it, and are not read.
+            let mut tets = Tetrahedra::default();
+            let mut nodes = [[0; 3]; LANES];
+            for lane in 0..LANES {
+                let (cell, k) = group[lane.min(group.len() - 1)];
+                nodes[lane] = FACES[k as usize].map(|i| self.cells[cell as usize].corners[i]);
+                let corners = nodes[lane].map(|v| self.nodes[v as usize] - x);
+                tets.set(lane, &self.faces[cell as usize][k as usize], corners);
+            }
+            let shares = tets.shares();
+            for (lane, nodes) in nodes.iter().enumerate().take(group.len()) {
+                for (&node, share) in nodes.iter().zip(&shares) {
+                    at.volumes[node as usize] -= share.0[lane];
+                }
+            }
+        }
+        for &node in &at.nodes {
+            at.values.push(std::mem::take(&mut at.volumes[node as usize]));
+            at.listed[node as usize] = false;
+        }
+    }
+
+    /// Carries the coordinates on to a point apart from the mean of the neighbours, by the linear field that fits their values best,
+    /// each weighted by `omega_i = lambda_i / (lambda_i + FADE)`: `lambda_i + omega_i (x - sum_j lambda_j x_j) . M^-1 (x_i - m)`,
+    /// `m` and `M` mean and second moment of the neighbours so weighted. Twice, so that linear fields are exact to the last
+    /// digits however far the point is, and however rounding left the volumes.
+    ///
+    /// Sibson (1981) weights by `lambda_i / |x_i - x|^2`; on a hull that is almost flat this leaves the slope across it to
+    /// the neighbours just beneath, and weights of 37 at a tenth of the kidney beyond its hull, where these stay below 8.
+    fn extend(&self, x: &Point3, at: &mut Workspace) {
+        let Workspace { nodes, values, weights, .. } = at;
+        let offset = |i: u32| self.nodes[i as usize] - x;
+        weights.clear();
+        for _ in 0..2 {
+            let gap: Vector3 = nodes.iter().zip(&*values).map(|(&i, &value)| offset(i) * value).sum();
+            if gap.norm() < EXACT {
+                return;
+            }
+            if weights.is_empty() {
+                weights.extend(values.iter().map(|value| value.max(0.0) / (value.max(0.0) + FADE)));
+            }
+            let each = || nodes.iter().zip(&*weights);
+            let total: f64 = weights.iter().sum();
+            let mean = each().map(|(&i, &w)| offset(i) * w).sum::<Vector3>() / total;
+            let moment: Matrix3<f64> =
+                each().map(|(&i, &w)| (offset(i) - mean) * (offset(i) - mean).transpose() * w).sum();
+            let Some(inverse) = moment.try_inverse() else { return };
+            let missing = 1.0 - values.iter().sum::<f64>();
+            let slope = inverse * (gap + mean * missing);
+            for ((&node, weight), value) in nodes.iter().zip(&*weights).zip(&mut *values) {
+                *value += weight * (missing / total - slope.dot(&(offset(node) - mean)));
+            }
+        }
+    }
+}
+
+impl Cell {
+    /// The circumsphere holds the point: `|x - c|^2 <= R^2`, without the difference of two large squares.
+    #[inline(always)]
+    fn holds(&self, x: &Point3) -> bool {
+        let y = x - self.origin;
+        (y - 2.0 * self.centre).dot(&y) <= self.reach
+    }
+}
+
+impl Face {
+    fn new([a, b, c]: [Point3; 3]) -> Face {
+        // `orient3d` is positive on the side from which the corners turn clockwise.
+        let normal = (c - a).cross(&(b - a));
+        let square = normal.norm_squared();
+        let dots = [(b - a).dot(&(c - a)), (c - b).dot(&(a - b)), (a - c).dot(&(b - c))];
+        let sides = [(c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared()];
+        // The triangle's share of corner 0 is (|01|^2 cot 2 + |02|^2 cot 1) / 8, a cotangent the dot over |normal|.
+        let shares = std::array::from_fn(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            (sides[k] * dots[k] + sides[j] * dots[j]) / (8.0 * square)
+        });
+        Face { normal, shares }
+    }
+}
+
+/// The tetrahedra that four faces make with the origin, which is on their positive side.
+#[derive(Default)]
+struct Tetrahedra {
+    normal: [Lanes; 3],
+    shares: [Lanes; 3],
+    /// Of the faces, from the origin.
+    corners: [[Lanes; 3]; 3],
+}
+
+impl Tetrahedra {
+    #[inline(always)]
+    fn set(&mut self, lane: usize, face: &Face, corners: [Vector3; 3]) {
+        for i in 0..3 {
+            self.normal[i].0[lane] = face.normal[i];
+            self.shares[i].0[lane] = face.shares[i];
+            for axis in 0..3 {
+                self.corners[i][axis].0[lane] = corners[i][axis];
+            }
+        }
+    }
+
+    /// Three times the volumes that are the faces' corners'.
+    #[inline(always)]
+    fn shares(&self) -> [Lanes; 3] {
+        let [a, b, c] = &self.corners;
+        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+        let (ab, bc, ca) = (dot(a, b), dot(b, c), dot(c, a));
+        // Products of the normals b x c, c x a and a x b: cofactors of the matrix of products above.
+        let (naa, nbb, ncc) = (bb * cc - bc * bc, cc * aa - ca * ca, aa * bb - ab * ab);
+        let (nab, nbc, nca) = (bc * ca - ab * cc, ca * ab - bc * aa, ab * bc - ca * bb);
+        // Heights of the circumcentre over the four faces, times their normals, inwards.
+        let height = Lanes::all(0.0) - dot(&self.normal, a);
+        let scale = Lanes::all(0.5) / height;
+        let ha = (aa * naa + bb * nab + cc * nca) * scale;
+        let hb = (aa * nab + bb * nbb + cc * nbc) * scale;
+        let hc = (aa * nca + bb * nbc + cc * ncc) * scale;
+        let top = height - (ha + hb + hc);
+        let eight = Lanes::all(8.0);
+        let (ha, hb, hc) = (ha / (eight * naa), hb / (eight * nbb), hc / (eight * ncc));
+        // Share of a in the triangle (0, a, b): |b|^2 (|a|^2 + a.b) - 2 (a.b)^2 over 8 |a x b|.
+        let share = |p: Lanes, q: Lanes, pq: Lanes| q * (p + pq) - (pq + pq) * pq;
+        [
+            top * self.shares[0] + hb * share(aa, cc, ca) + hc * share(aa, bb, ab),
+            top * self.shares[1] + hc * share(bb, aa, ab) + ha * share(bb, cc, bc),
+            top * self.shares[2] + ha * share(cc, bb, bc) + hb * share(cc, aa, ca),
+        ]
+    }
+}
