@@ -101,7 +101,16 @@ fn six_for_every_integration_of_a_cloud() {
         let mls = Approximation::new(cloud.points.clone(), radii, kernel, Basis::Linear).unwrap();
         let (gauss, _) = efg::gauss_rows(&mls, &mesh, 4).unwrap();
         let (smoothed, _) = efg::smoothed_rows(&mls, &mesh, efg::Smoothing::Constant, 1).unwrap();
-        for (name, volume) in [("gauss", &gauss), ("cell-smoothed", &smoothed)] {
+        let (consistent, _) = efg::smoothed_rows(&mls, &mesh, efg::Smoothing::Linear, 6).unwrap();
+        let (nodal, _) = efg::node_smoothed_rows(&mls, &mesh, 0.0, 1).unwrap();
+        let (stabilised, _) = efg::node_smoothed_rows(&mls, &mesh, 0.05, 1).unwrap();
+        for (name, volume) in [
+            ("gauss", &gauss),
+            ("cell-smoothed", &smoothed),
+            ("cell-smoothed to second order", &consistent),
+            ("node-smoothed", &nodal),
+            ("node-smoothed, stabilised", &stabilised),
+        ] {
             let nodal = DilationGroups::nodal(volume).unwrap();
             for dilation in [None, Some(&nodal)] {
                 let name =

@@ -46,6 +46,13 @@ pub enum Integration {
         /// Points per triangular face.
         face_points: usize,
     },
+    /// Node smoothing: gradients at each vertex of the background, the mean of those of the cells around.
+    NodeSmoothed {
+        /// Share of the weight that the cells keep.
+        stabilisation: f64,
+        /// Points per triangular face.
+        face_points: usize,
+    },
 }
 
 /// How a cloud is held.
@@ -177,6 +184,15 @@ impl Discretisation {
         Ok(volume)
     }
 
+    /// Points in each cell, where the quadrature goes by cells of one kind: those of a cell stand together.
+    pub fn points_per_cell(&self, volume: &Volume) -> Option<usize> {
+        let by_cells = match self {
+            Discretisation::Fem(fem) => fem.mesh.uniform_kind().is_some(),
+            Discretisation::Efg(efg) => efg.by_cells(),
+        };
+        by_cells.then(|| volume.rows.weights().len() / self.mesh().cell_count())
+    }
+
     /// Values on facets, with the method's own surface rule.
     pub fn surface(&self, volume: &Volume, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
         match (self, &volume.approximation) {
@@ -196,7 +212,8 @@ impl Discretisation {
         match (self, &volume.approximation) {
             (Discretisation::Efg(efg), Some(approximation)) => {
                 let points = match efg.integration {
-                    Integration::CellSmoothed { face_points, .. } => face_points,
+                    Integration::CellSmoothed { face_points, .. }
+                    | Integration::NodeSmoothed { face_points, .. } => face_points,
                     _ => SurfaceRule::STANDARD.points(FaceKind::Tri3),
                 };
                 Ok(efg::surface_rows(approximation, &efg.background, &facets, points)?.0)
@@ -299,6 +316,12 @@ impl Efg {
                     efg::smoothed_rows(&approximation, &self.background, smoothing, face_points)?;
                 (rows, mls, of_regions(&self.background, |mesh| efg::smoothed_regions(mesh, smoothing)), None)
             }
+            Integration::NodeSmoothed { stabilisation, face_points } => {
+                let (rows, mls) =
+                    efg::node_smoothed_rows(&approximation, &self.background, stabilisation, face_points)?;
+                let regions = |mesh: &Mesh| efg::node_smoothed_regions(mesh, stabilisation);
+                (rows, mls, of_regions(&self.background, regions), None)
+            }
         };
         let groups = match self.dilation {
             Dilation::Standard => None,
@@ -316,8 +339,20 @@ impl Efg {
         Ok(Volume { rows, region, groups, pressure, approximation, mls, volume_error })
     }
 
-    /// One group per background cell: the points of a cell stand together, equally many in each.
+    /// Whether the points go by background cells: those of a cell stand together, equally many in each.
+    fn by_cells(&self) -> bool {
+        matches!(self.integration, Integration::Gauss { .. } | Integration::CellSmoothed { .. })
+    }
+
+    /// One group per background cell.
     fn cell_groups(&self, points: usize) -> Result<DilationGroups, Failure> {
+        if !self.by_cells() {
+            return Err(Failure::unavailable(
+                Key::Method("dilation"),
+                "wants points that go by background cells, which this integration's do not",
+                "take dilation = \"nodal-mean\", or rule = \"gauss\" or \"cell-smoothed\"",
+            ));
+        }
         let cells = self.background.cell_count();
         let each = points / cells;
         let offsets = (0..=cells).map(|c| c * each).collect();
@@ -328,7 +363,9 @@ impl Efg {
     /// rounding; 6 (degree 4) for other rules, whose boundary terms shall not be what limits them.
     pub fn face_points(&self) -> usize {
         match self.integration {
-            Integration::CellSmoothed { face_points, .. } => face_points,
+            Integration::CellSmoothed { face_points, .. } | Integration::NodeSmoothed { face_points, .. } => {
+                face_points
+            }
             _ => 6,
         }
     }
@@ -339,6 +376,9 @@ impl Efg {
         match self.integration {
             Integration::CellSmoothed { smoothing, face_points } => {
                 Ok(Some(efg::smoothed_trace(&self.background, facets, smoothing, face_points)?))
+            }
+            Integration::NodeSmoothed { stabilisation, face_points } => {
+                Ok(Some(efg::node_smoothed_trace(&self.background, facets, stabilisation, face_points)?))
             }
             _ => Ok(None),
         }

@@ -154,11 +154,7 @@ fn section(
     of_mesh: &[Vector3],
 ) -> Option<Section> {
     let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
-    mesh.uniform_kind()?;
-    let each = weights.len() / mesh.cell_count();
-    if each == 0 || each * mesh.cell_count() != weights.len() {
-        return None;
-    }
+    let each = method.points_per_cell(&prepared.volume)?;
     let right = tool.tool.along();
     let extent = extent(mesh);
     let across = |axis: &usize| extent[*axis] * (1.0 - right[*axis].powi(2));

@@ -185,5 +185,14 @@ fn integration(efg: &Efg) -> String {
                 "moving least squares at {face_points} points per face, smoothed to {gradients} gradients per cell"
             )
         }
+        Integration::NodeSmoothed { stabilisation, face_points } => {
+            let cells = match stabilisation {
+                0.0 => String::new(),
+                share => format!(", cells with {share} of the weight"),
+            };
+            format!(
+                "moving least squares at {face_points} points per face, smoothed to one gradient per vertex{cells}"
+            )
+        }
     }
 }

@@ -44,7 +44,10 @@ fn holds_inside(efg: &Efg, held: &Held, patch: &Patch) -> bool {
     }
     let points = match efg.integration {
         Integration::Gauss { points } => points,
-        Integration::CellSmoothed { .. } => 1,
+        Integration::CellSmoothed { smoothing, .. } => smoothing.points_per_cell(),
+        Integration::NodeSmoothed { .. } if efg.background.points().iter().any(inside) => return true,
+        Integration::NodeSmoothed { stabilisation: 0.0, .. } => return false,
+        Integration::NodeSmoothed { .. } => 1,
         // The clipped grid itself costs a test of every point; a region of the body that holds no centroid of a cell
         // cuts its boundary.
         Integration::Grid { .. } if !patch.cut.is_empty() => return true,

@@ -79,6 +79,9 @@ impl Scenario<'_> {
                         scene::Integration::CellSmoothed { order, face_points } => {
                             format!("cell-smoothed-{face_points}-order-{order}")
                         }
+                        scene::Integration::NodeSmoothed { stabilisation, face_points } => {
+                            format!("node-smoothed-{face_points}-stabilisation-{stabilisation}")
+                        }
                     },
                 ));
                 pairs.push((
@@ -274,10 +277,16 @@ impl Scenario<'_> {
                 smoothing: if order == 2 { efg::Smoothing::Linear } else { efg::Smoothing::Constant },
                 face_points,
             },
+            scene::Integration::NodeSmoothed { stabilisation, face_points } => {
+                Integration::NodeSmoothed { stabilisation, face_points }
+            }
         };
         let essential = match efg.essential {
             scene::Essential::Nitsche { factor } => {
-                let smoothed = matches!(integration, Integration::CellSmoothed { .. });
+                let smoothed = matches!(
+                    integration,
+                    Integration::CellSmoothed { .. } | Integration::NodeSmoothed { .. }
+                );
                 Essential::Nitsche(factor.unwrap_or(if smoothed { NITSCHE_SMOOTHED } else { NITSCHE }))
             }
             scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),

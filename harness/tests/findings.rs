@@ -371,6 +371,19 @@ const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "one dilation per cell with points at vertices",
+        base: &[],
+        edit: (
+            "integration = { rule = \"gauss\", points = 4 }",
+            "integration = { rule = \"node-smoothed\", stabilisation = 0 }\ndilation = \"element-mean\" #<",
+        ),
+        code: 3,
+        key: "method[1].dilation",
+        says: &["'element-mean' wants points that go by background cells", "\"nodal-mean\""],
+        stops: &["efg"],
+        ..SOUND
+    },
+    Case {
         name: "a cloud of an exact count in a mesh file",
         base: &[OF_FILE[0], OF_FILE[1], OF_FILE[3]],
         edit: ("nodes = 60", "nodes = 60 #<"),
@@ -468,6 +481,11 @@ fn a_plan_finds_empty_places_as_a_run_does() {
     assert_eq!(found, 6);
 }
 
+const SECOND_ORDER: &str = "{ rule = \"cell-smoothed\", order = 2 }\nbackground = { cells = [4, 4, 4] }";
+const NODAL: &str = "{ rule = \"node-smoothed\", stabilisation = 0 }\nbackground = { cells = [4, 4, 4] }";
+const STABILISED: &str =
+    "{ rule = \"node-smoothed\", stabilisation = 0.05 }\nbackground = { cells = [4, 4, 4] }";
+
 #[test]
 fn a_plan_holds_a_cloud_wherever_a_run_holds_it() {
     // No facet lies in a slab inside the body: points of the volume do, or nodes where multipliers hold those.
@@ -475,6 +493,12 @@ fn a_plan_holds_a_cloud_wherever_a_run_holds_it() {
         ("nitsche", "{ rule = \"gauss\", points = 4 }", "z >= 5 mm and z <= 12 mm", 0),
         ("penalty", "{ rule = \"cell-smoothed\", points = 1 }", "z >= 5 mm and z <= 12 mm", 0),
         ("penalty", "{ rule = \"grid\", points = 8 }", "z >= 5 mm and z <= 12 mm", 0),
+        // One of a cell's four points, but not its centroid.
+        ("penalty", SECOND_ORDER, "z >= 2.75 mm and z <= 3 mm", 0),
+        // Vertices at z = 0, 5, .. 20 mm; points of the cells between only where those have a share.
+        ("penalty", NODAL, "z >= 9.5 mm and z <= 10.5 mm", 0),
+        ("penalty", NODAL, "z >= 1 mm and z <= 4 mm", 2),
+        ("penalty", STABILISED, "z >= 1 mm and z <= 4 mm", 0),
         ("nitsche", "{ rule = \"gauss\", points = 4 }", "z > 9.999 mm and z < 9.9991 mm", 2),
         ("multipliers", "{ rule = \"gauss\", points = 4 }", "z > 9.999 mm and z < 9.9991 mm", 2),
     ] {

@@ -301,6 +301,13 @@ pub enum Integration {
         /// Points per face: 1, 3 or 6.
         face_points: usize,
     },
+    /// Smoothing over the quarters of the tetrahedra around each vertex of the background mesh.
+    NodeSmoothed {
+        /// Share of the weight that the tetrahedra keep, from 0 to below 1.
+        stabilisation: f64,
+        /// Points per face: 1, 3 or 6.
+        face_points: usize,
+    },
 }
 
 /// How prescribed displacements are imposed; a factor left out takes the default of the method.

@@ -330,6 +330,18 @@ const METHODS: &[Bad] = &[
         "method[2].integration.points",
         &["'3' is too coarse for order 2", "6 points"],
     ),
+    (
+        "rule = \"cell-smoothed\"",
+        "rule = \"node-smoothed\", stabilisation = 1 #<\n",
+        "method[2].integration.stabilisation",
+        &["'1' is no share of the weight", "\"cell-smoothed\""],
+    ),
+    (
+        "rule = \"cell-smoothed\"",
+        "rule = \"node-smoothed\", stabilisation = 0, points = 4 #<\n",
+        "method[2].integration.points",
+        &["1, 3 or 6"],
+    ),
     ("factor = 10", "factor = -10 #<\n", "method[1].essential.factor", &["'-10' is not positive"]),
     ("poisson = 0.45", "poisson = 0.5 #<", "material.poisson", &["'0.5'", "below 0.5", "0.4999"]),
     ("poisson = 0.45", "poisson = -1 #<", "material.poisson", &["'-1'", "above -1"]),

@@ -63,6 +63,26 @@ fn methods_keep_every_setting() {
 }
 
 #[test]
+fn smoothing_takes_its_points_and_its_share() {
+    for (rule, read) in [
+        ("\"cell-smoothed\", order = 2", Integration::CellSmoothed { order: 2, face_points: 6 }),
+        (
+            "\"node-smoothed\", stabilisation = 0",
+            Integration::NodeSmoothed { stabilisation: 0.0, face_points: 1 },
+        ),
+        (
+            "\"node-smoothed\", stabilisation = 0.05, points = 3",
+            Integration::NodeSmoothed { stabilisation: 0.05, face_points: 3 },
+        ),
+    ] {
+        let scene =
+            parse(&edited("\"cell-smoothed\"", rule), "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        let Family::Efg(efg) = &scene.methods[2].family else { panic!("efg") };
+        assert_eq!(efg.integration, read);
+    }
+}
+
+#[test]
 fn conditions_are_fields_over_space() {
     let scene = scene();
     let x = [0.01, 0.0, 0.02];

@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use efg::{Approximation, Basis, Kernel, Smoothing, Support, gauss_rows, smoothed_rows};
+use efg::{Approximation, Basis, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows, smoothed_rows};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, cloud_from_mesh};
 use nalgebra::{DMatrix, DVector};
@@ -115,6 +115,12 @@ fn prepare(criterion: &mut Criterion) {
     group.bench_function("gauss-4", |b| b.iter(|| gauss_rows(&make(), &background, 4).unwrap()));
     group.bench_function("cell-smoothed", |b| {
         b.iter(|| smoothed_rows(&make(), &background, Smoothing::Constant, 1).unwrap())
+    });
+    group.bench_function("cell-smoothed-order-2", |b| {
+        b.iter(|| smoothed_rows(&make(), &background, Smoothing::Linear, 6).unwrap())
+    });
+    group.bench_function("node-smoothed-stabilised", |b| {
+        b.iter(|| node_smoothed_rows(&make(), &background, 0.05, 1).unwrap())
     });
     group.finish();
 }

@@ -17,6 +17,7 @@ const CHUNK: usize = 128;
 const WAVE: usize = 4 * CHUNK;
 
 /// Rows of every cell of a mesh of tet4, P for each: values at its points, and the smoothed gradients there (1/m).
+#[derive(Default)]
 pub(crate) struct CellRows {
     pub offsets: Vec<usize>,
     /// Nodes of each row, ascending.
@@ -30,11 +31,17 @@ pub(crate) struct CellRows {
 
 /// Rows of one chunk of cells.
 #[derive(Default)]
-struct Batch {
+pub(crate) struct Batch {
     lengths: Vec<usize>,
     nodes: Vec<u32>,
     values: Vec<f64>,
     grads: Vec<Vector3>,
+}
+
+/// Values at further points, evaluated together with those of the cells: one call, one report.
+pub(crate) struct Beside {
+    at: PointRows,
+    first: usize,
 }
 
 /// What a cell is made of: the points of its faces and its own, as rows of one table.
@@ -56,6 +63,17 @@ impl CellRows {
         mesh: &Mesh,
         face_points: usize,
     ) -> Result<(CellRows, MlsInfo), EfgError> {
+        let (rows, _, info) = CellRows::with::<P>(approximation, mesh, face_points, &[])?;
+        Ok((rows, info))
+    }
+
+    /// The rows of the cells, and values at points beside them.
+    pub fn with<const P: usize>(
+        approximation: &Approximation,
+        mesh: &Mesh,
+        face_points: usize,
+        beside: &[Point3],
+    ) -> Result<(CellRows, Beside, MlsInfo), EfgError> {
         let rule = triangle_rule(face_points)?;
         let count = mesh.cell_count();
         let (mut volumes, mut inner) = (Vec::with_capacity(count), Vec::with_capacity(P * count));
@@ -73,12 +91,13 @@ impl CellRows {
             }
         }
         let faces = faces(mesh);
-        let mut points = Vec::with_capacity(faces.corners.len() * rule.len() + inner.len());
+        let mut points = Vec::with_capacity(faces.corners.len() * rule.len() + inner.len() + beside.len());
         for &corners in &faces.corners {
             triangle_points(mesh, corners, &rule, &mut points);
         }
         let first_inner = points.len();
         points.extend_from_slice(&inner);
+        points.extend_from_slice(beside);
         let (at, info) = approximation.point_rows(&points)?;
         let areas: Vec<Vector3> = faces.corners.iter().map(|&c| vector_area(mesh, c)).collect();
         let parts = Parts::<P> { mesh, faces, areas, rule, at, first_inner, volumes, basis: volume_basis() };
@@ -103,16 +122,19 @@ impl CellRows {
                 batch
             };
             let batches: Vec<Batch> = wave.par_chunks(CHUNK).map_init(sum, work).collect();
-            for batch in batches {
-                for length in batch.lengths {
-                    rows.offsets.push(rows.offsets[rows.offsets.len() - 1] + length);
-                }
-                rows.nodes.extend_from_slice(&batch.nodes);
-                rows.values.extend_from_slice(&batch.values);
-                rows.grads.extend_from_slice(&batch.grads);
-            }
+            batches.iter().for_each(|batch| rows.append(batch));
         }
-        Ok((rows, info))
+        let first = first_inner + rows.points.len();
+        Ok((rows, Beside { at: parts.at, first }, info))
+    }
+
+    pub fn append(&mut self, batch: &Batch) {
+        for length in &batch.lengths {
+            self.offsets.push(self.offsets[self.offsets.len() - 1] + length);
+        }
+        self.nodes.extend_from_slice(&batch.nodes);
+        self.values.extend_from_slice(&batch.values);
+        self.grads.extend_from_slice(&batch.grads);
     }
 }
 
@@ -201,7 +223,7 @@ pub(crate) fn local_corners(mesh: &Mesh, cell: usize, face: usize) -> [usize; 3]
 }
 
 /// A cell being summed, dense over the nodes with a list of those touched.
-struct Sum<const P: usize> {
+pub(crate) struct Sum<const P: usize> {
     values: Vec<[f64; P]>,
     /// Moments `integral grad~_I b_j / V`, 1/m.
     moments: Vec<[Vector3; P]>,
@@ -210,7 +232,7 @@ struct Sum<const P: usize> {
 }
 
 impl<const P: usize> Sum<P> {
-    fn new(nodes: usize) -> Sum<P> {
+    pub fn new(nodes: usize) -> Sum<P> {
         Sum {
             values: vec![[0.0; P]; nodes],
             moments: vec![[Vector3::zeros(); P]; nodes],
@@ -249,7 +271,7 @@ impl<const P: usize> Sum<P> {
     }
 
     /// Appends the rows of the cell's points, by ascending node, and clears.
-    fn drain_into(&mut self, basis: &[[f64; P]; P], batch: &mut Batch) {
+    pub fn drain_into(&mut self, basis: &[[f64; P]; P], batch: &mut Batch) {
         self.touched.sort_unstable();
         for (q, basis) in basis.iter().enumerate() {
             batch.lengths.push(self.touched.len());
@@ -267,6 +289,21 @@ impl<const P: usize> Sum<P> {
             (self.values[i], self.moments[i], self.seen[i]) = ([0.0; P], [Vector3::zeros(); P], false);
         }
         self.touched.clear();
+    }
+}
+
+impl Sum<1> {
+    /// Adds the constant gradients of a cell, `share` of them.
+    pub fn add_share(&mut self, cells: &CellRows, cell: usize, share: f64) {
+        for i in cells.offsets[cell]..cells.offsets[cell + 1] {
+            self.touch(cells.nodes[i]);
+            self.moments[cells.nodes[i] as usize][0] += cells.grads[i] * share;
+        }
+    }
+
+    /// Adds the values at a point beside the cells.
+    pub fn add_values(&mut self, beside: &Beside, point: usize) {
+        self.add_inner(&beside.at, beside.first + point, 0, &[Vector3::zeros()]);
     }
 }
 

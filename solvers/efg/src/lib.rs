@@ -29,6 +29,7 @@ mod info;
 mod kernel;
 mod ldlt;
 mod mls;
+mod node_smoothed;
 mod smoothed;
 mod support;
 
@@ -40,5 +41,6 @@ pub use gauss::{gauss_regions, gauss_rows};
 pub use grid::{GridInfo, grid_rows};
 pub use info::MlsInfo;
 pub use kernel::Kernel;
+pub use node_smoothed::{node_smoothed_regions, node_smoothed_rows, node_smoothed_trace};
 pub use smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
 pub use support::Support;

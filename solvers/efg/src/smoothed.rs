@@ -55,6 +55,12 @@ impl Smoothing {
 /// quadratic ones with `Linear`. A constant gradient per cell locks near incompressibility unless the dilation is
 /// projected. Sources: Chen, Wu, Yoon and You (2001), smoothing on the background's cells; Duan, Li, Zhang and
 /// Belytschko (2012), doi:10.1002/nme.4325, to second order.
+///
+/// `Linear` is variationally consistent integration in its symmetric form: the product of two linear fields is of the
+/// degree that four points integrate, so its four moments are the conditions `sum_g w_g (phi_I,a q + phi_I q,a) =
+/// integral_faces phi_I q n_a` for q in {1, x, y, z}, solved for the four corrected derivatives. The form of Chen, Hillman
+/// and Rueter (2013), doi:10.1002/nme.4512, corrects the test functions alone: the stiffness loses its symmetry, and with it
+/// the strain energy that dilation, Nitsche's supports and large strain are made of, and every point needs two tables.
 pub fn smoothed_rows(
     approximation: &Approximation,
     background: &Mesh,

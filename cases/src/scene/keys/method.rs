@@ -118,8 +118,12 @@ pub(crate) enum IntegrationKeys {
     Gauss { points: u32 },
     /// Gauss points in the cells of a grid, those outside the body left out
     Grid { points: u32, spacing: Option<Q<Length>> },
-    /// Conforming smoothing over tetrahedra, with points per face; order 2 goes with the quadratic basis and 6 points
+    /// Conforming smoothing over tetrahedra, with points per face; order 2 (6 points) is variationally consistent integration to
+    /// second order, and what the quadratic basis wants
     CellSmoothed { points: Option<u32>, order: Option<u32> },
+    /// Smoothing over the quarters of tetrahedra around each vertex, with points per face; stabilisation is the share of the
+    /// weight that the tetrahedra keep, 0 for none
+    NodeSmoothed { stabilisation: f64, points: Option<u32> },
 }
 
 /// How prescribed displacements are imposed

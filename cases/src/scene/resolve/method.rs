@@ -205,15 +205,24 @@ fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integra
                 "is too coarse for order 2",
                 "6 points per face are exact to the degree it needs",
             );
+            Integration::CellSmoothed { order, face_points: face_points(points, &at, report) }
+        }
+        IntegrationKeys::NodeSmoothed { stabilisation, points } => {
             report.require(
-                [1, 3, 6].contains(&points),
-                &at,
-                "is no face rule",
-                "points per face are 1, 3 or 6",
+                (0.0..1.0).contains(&stabilisation),
+                &format!("{key}.integration.stabilisation"),
+                "is no share of the weight",
+                "0 is none, 0.05 is usual; all of it is rule = \"cell-smoothed\"",
             );
-            Integration::CellSmoothed { order, face_points: points as usize }
+            let face_points = face_points(points.unwrap_or(1), &at, report);
+            Integration::NodeSmoothed { stabilisation, face_points }
         }
     }
+}
+
+fn face_points(points: u32, key: &str, report: &mut Report) -> usize {
+    report.require([1, 3, 6].contains(&points), key, "is no face rule", "points per face are 1, 3 or 6");
+    points as usize
 }
 
 fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {

@@ -1,0 +1,135 @@
+//! What the conforming rules promise, held against its own definition: Gauss's theorem over every cell and over the whole
+//! body, for jittered cells, in other units and far from the origin.
+
+mod common;
+
+use common::{dilatation, jittered_box, on_mesh};
+use efg::{Approximation, Basis, Kernel, Smoothing, node_smoothed_rows, smoothed_rows, surface_rows};
+use geometry::{CellKind, Facet, Mesh};
+use shape::{Point3, SurfaceRows, Vector3, VolumeRows};
+
+/// The box of the other tests, and the same in millimetres and a metre away.
+fn boxes() -> impl Iterator<Item = (&'static str, Mesh)> {
+    let places = [("in metres", 1.0, 0.0), ("in millimetres", 1e3, 0.0), ("a metre away", 1.0, 1.0)];
+    places.into_iter().map(|(name, scale, shift)| {
+        let mesh = jittered_box(CellKind::Tet4, 3);
+        (name, mesh.moved(|p| p * scale + Vector3::repeat(shift)).unwrap())
+    })
+}
+
+/// `sum_s w phi_I n q(x)` for every node.
+fn outflow(surface: &SurfaceRows, nodes: usize, q: impl Fn(&Point3) -> f64) -> Vec<Vector3> {
+    let mut sums = vec![Vector3::zeros(); nodes];
+    for (s, x) in surface.points().iter().enumerate() {
+        let flow = surface.normals()[s] * (surface.weights()[s] * q(x));
+        let (nodes, values) = surface.rows().row(s);
+        nodes.iter().zip(values).for_each(|(&n, v)| sums[n as usize] += flow * *v);
+    }
+    sums
+}
+
+/// Adds `w (grad~_I q + phi_I grad q)` at one point.
+fn add(sums: &mut [Vector3], volume: &VolumeRows, point: usize, q: f64, slope: Vector3) {
+    let (nodes, grads) = volume.row(point);
+    let values = volume.rows().row(point).1;
+    for ((&n, grad), value) in nodes.iter().zip(grads).zip(values) {
+        sums[n as usize] += (grad * q + slope * *value) * volume.weights()[point];
+    }
+}
+
+/// Largest difference over nodes, relative to the largest entry of the second.
+fn violation(inner: &[Vector3], outer: &[Vector3]) -> f64 {
+    let largest = outer.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    inner.iter().zip(outer).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
+}
+
+/// The four conditions that define consistent integration of second order, per cell, node and direction:
+/// `sum_g w (phi_I,a q + phi_I q,a) = integral_faces phi_I q n_a` for q in {1, x, y, z}, in either basis.
+#[test]
+fn linear_smoothing_meets_all_four_conditions_in_every_cell() {
+    for (place, mesh) in boxes() {
+        for basis in Basis::ALL {
+            let mls = on_mesh(&mesh, dilatation(basis), Kernel::CubicSpline, basis);
+            let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Linear, 6).unwrap();
+            assert_eq!(info.fallbacks(), 0);
+            let nodes = mls.nodes().len();
+            let mut worst = 0.0f64;
+            for cell in 0..mesh.cell_count() {
+                let faces: [Facet; 4] = std::array::from_fn(|f| Facet { cell: cell as u32, face: f as u8 });
+                let (surface, _) = surface_rows(&mls, &mesh, &faces, 6).unwrap();
+                let origin = volume.points()[4 * cell];
+                for axis in 0..4 {
+                    let q = |x: &Point3| if axis == 3 { 1.0 } else { (x - origin)[axis] };
+                    let slope = if axis == 3 { Vector3::zeros() } else { Vector3::ith(axis, 1.0) };
+                    let mut inner = vec![Vector3::zeros(); nodes];
+                    for g in 4 * cell..4 * (cell + 1) {
+                        add(&mut inner, &volume, g, q(&volume.points()[g]), slope);
+                    }
+                    worst = worst.max(violation(&inner, &outflow(&surface, nodes, q)));
+                }
+            }
+            // Rounding of positions a metre away is 1e-16 m of the 1e-2 m of a cell.
+            let bound = if place == "a metre away" { 1e-12 } else { 1e-14 };
+            assert!(worst < bound, "{place}, {}: {worst:e}", basis.name());
+        }
+    }
+}
+
+type Rule = fn(&Approximation, &Mesh, usize) -> VolumeRows;
+
+const RULES: [(&str, Rule); 4] = [
+    ("constant", |mls, mesh, points| smoothed_rows(mls, mesh, Smoothing::Constant, points).unwrap().0),
+    ("linear", |mls, mesh, points| smoothed_rows(mls, mesh, Smoothing::Linear, points).unwrap().0),
+    ("nodal", |mls, mesh, points| node_smoothed_rows(mls, mesh, 0.0, points).unwrap().0),
+    ("nodal, stabilised", |mls, mesh, points| node_smoothed_rows(mls, mesh, 0.05, points).unwrap().0),
+];
+
+/// `sum_q w grad~_I = integral_surface phi_I n` for every node: what linear patch tests need.
+#[test]
+fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
+    for (place, mesh) in boxes() {
+        for (basis, name, rule) in
+            Basis::ALL.into_iter().flat_map(|b| RULES.map(|(name, rule)| (b, name, rule)))
+        {
+            let mls = on_mesh(&mesh, dilatation(basis), Kernel::WendlandC2, basis);
+            let nodes = mls.nodes().len();
+            let off = |volume: &VolumeRows, face_points: usize| {
+                let mut inner = vec![Vector3::zeros(); nodes];
+                (0..volume.weights().len()).for_each(|q| add(&mut inner, volume, q, 1.0, Vector3::zeros()));
+                let (surface, _) = surface_rows(&mls, &mesh, &mesh.boundary(), face_points).unwrap();
+                violation(&inner, &outflow(&surface, nodes, |_| 1.0))
+            };
+            let volume = rule(&mls, &mesh, 6);
+            assert!(off(&volume, 6) < 1e-13, "{place}, {name}, {}: {:e}", basis.name(), off(&volume, 6));
+            // Other points on the boundary lose it.
+            assert!(off(&volume, 3) > 1e-4, "{place}, {name}");
+        }
+    }
+}
+
+/// The same body in other units and elsewhere: the same weights and gradients but for the unit.
+#[test]
+fn units_and_origin_do_not_matter() {
+    let all: Vec<(&str, Mesh)> = boxes().collect();
+    for (name, rule) in RULES {
+        let rows = |mesh: &Mesh| {
+            let mls = on_mesh(mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+            rule(&mls, mesh, 6)
+        };
+        let first = rows(&all[0].1);
+        for (place, mesh) in &all[1..] {
+            let scale: f64 = if *place == "in millimetres" { 1e3 } else { 1.0 };
+            let other = rows(mesh);
+            for q in 0..first.weights().len() {
+                let weight = other.weights()[q] / scale.powi(3);
+                assert!((weight / first.weights()[q] - 1.0).abs() < 1e-12, "{name} {place}: {weight:e}");
+                // A support's rim may pass on the other side of a point by rounding: compare values, not lists.
+                let mut dense = vec![Vector3::zeros(); 80];
+                first.row(q).0.iter().zip(first.row(q).1).for_each(|(&n, g)| dense[n as usize] += g);
+                other.row(q).0.iter().zip(other.row(q).1).for_each(|(&n, g)| dense[n as usize] -= g * scale);
+                let off = dense.iter().map(|g| g.norm()).fold(0.0, f64::max);
+                assert!(off * 0.01 < 1e-11, "{name} {place}: {off:e}");
+            }
+        }
+    }
+}
