@@ -8,7 +8,7 @@ use cases::scene::{self, ErrorKind, Scene, SceneError};
 use reports::{RunSet, Status};
 
 use crate::cli::{Cli, Command, Format, ReferenceArgs, RunArgs, VerifyArgs};
-use crate::group::{Group, case_name};
+use crate::group::{Extras, Group, case_name};
 use crate::json::RunObject;
 use crate::outcome::{Outcome, Unfinished};
 use crate::run::Repeats;
@@ -129,7 +129,9 @@ fn run(args: &RunArgs) -> u8 {
             // A static run may take minutes.
             eprintln!("{} ...", method.id);
         }
-        match group.run(&group.scenario(method.clone(), 0), args.out.is_some()) {
+        match group
+            .run(&group.scenario(method.clone(), 0), Extras { picture: args.out.is_some(), frames: true })
+        {
             Ok(outcome) => {
                 if args.format == Format::Json {
                     print_json(&RunObject::finished(&outcome));

@@ -31,6 +31,15 @@ pub struct Group<'a> {
     watch: Option<fn(&LoadStep)>,
 }
 
+/// What a run does beside its numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Keeps the surface displacement, for pictures.
+    pub picture: bool,
+    /// Runs the loop that the scene asks for (`[output] repeated`) after the first solution.
+    pub frames: bool,
+}
+
 /// The case name of a scene: its file's stem.
 pub fn case_name(scene: &Scene) -> String {
     Path::new(scene.file()).file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
@@ -123,6 +132,7 @@ impl<'a> Group<'a> {
             repeats: Repeats { most: 1, seconds: 0.0 },
             reference: None,
             beside: None,
+            repeated: None,
         };
         let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
             .map_err(|failure| scenario.locate(failure))?;
@@ -153,8 +163,8 @@ impl<'a> Group<'a> {
         self.reference_stalled.as_ref()
     }
 
-    /// Runs one method; `picture` keeps its surface displacement.
-    pub fn run(&self, scenario: &Scenario, picture: bool) -> Result<Outcome, Unfinished> {
+    /// Runs one method.
+    pub fn run(&self, scenario: &Scenario, extras: Extras) -> Result<Outcome, Unfinished> {
         let discretisation = scenario.discretise()?;
         let size = size(&discretisation);
         let setup = scenario.setup().map_err(|failure| Unfinished { failure, plan: Vec::new(), size })?;
@@ -163,10 +173,11 @@ impl<'a> Group<'a> {
             probes: &self.probes,
             targets: &self.targets,
             schemes: self.schemes_for(&discretisation),
-            picture,
+            picture: extras.picture,
             repeats: self.repeats,
             reference: self.reference.as_ref(),
             beside: self.beside.as_ref(),
+            repeated: self.scene.output.repeated.as_ref().filter(|_| extras.frames),
         };
         match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {
             Ok(mut solved) => {

@@ -22,7 +22,7 @@ pub struct RunObject<'a> {
     elements: u64,
     dofs: u64,
     metrics: BTreeMap<&'a str, Number>,
-    phases: BTreeMap<&'a str, f64>,
+    phases: BTreeMap<String, f64>,
     probes: Vec<ProbeObject>,
     /// Rigid tools at the end.
     tools: Vec<ToolObject<'a>>,
@@ -87,6 +87,13 @@ impl<'a> RunObject<'a> {
             .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
             .collect();
         metrics.insert("memory", Number { value: outcome.memory as f64, unit: "B" });
+        let frames = outcome.latencies.iter().flat_map(|latency| {
+            let times = latency.statistics().into_iter().filter(|(_, unit, _)| *unit == "s");
+            times.map(|(name, _, seconds)| match name {
+                "median" => (latency.phase.to_string(), seconds),
+                _ => (format!("{}-{name}", latency.phase), seconds),
+            })
+        });
         RunObject {
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
@@ -96,7 +103,7 @@ impl<'a> RunObject<'a> {
             elements: outcome.size.elements,
             dofs: outcome.size.dofs,
             metrics,
-            phases: outcome.phases.iter().map(|(name, s)| (*name, s.median)).collect(),
+            phases: outcome.phases.iter().map(|(name, s)| ((*name).into(), s.median)).chain(frames).collect(),
             probes: outcome
                 .probes
                 .iter()

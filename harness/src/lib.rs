@@ -33,6 +33,7 @@ pub mod prepare;
 pub mod provenance;
 pub mod reach;
 mod relaxation;
+pub mod repeated;
 pub mod run;
 pub mod scenario;
 pub mod setup;

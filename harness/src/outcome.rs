@@ -6,6 +6,7 @@ use reports::{PlanEntry, Record, SurfaceField};
 use serde::Serialize;
 
 use crate::Failure;
+use crate::repeated::Latency;
 use crate::timing::Summary;
 use crate::work::Work;
 
@@ -185,6 +186,8 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Seconds per phase; the last entry is the total.
     pub phases: Vec<(&'static str, Summary)>,
+    /// Seconds per frame of the loop after the first solution, where the scene asks for one.
+    pub latencies: Vec<Latency>,
     /// Most memory allocated at once in the run beyond its input, bytes.
     pub memory: u64,
     /// Probes, in the scene's order.
@@ -241,6 +244,10 @@ impl Outcome {
             self.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
         for (phase, summary) in &self.phases {
             records.extend(self.times(phase, summary));
+        }
+        for latency in &self.latencies {
+            let told = latency.statistics().into_iter();
+            records.extend(told.map(|(s, unit, value)| self.record("time", unit, latency.phase, s, value)));
         }
         records.push(self.record("memory", "B", "", "value", self.memory as f64));
         for transfer in &self.transfers {

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use cases::scene::Repeated;
 use geometry::{Point3, Vector3};
 use interp::Scheme;
 use mechanics::{SolveInfo, assemble};
@@ -18,6 +19,7 @@ use crate::outcome::{Identity, LoadStep, Outcome, Probe, Size, Stage};
 use crate::picture::{State, picture};
 use crate::prepare::{Prepared, prepare};
 use crate::relaxation;
+use crate::repeated::repeated;
 use crate::setup::Setup;
 use crate::statics::{self, Path};
 use crate::timing::Timings;
@@ -70,6 +72,8 @@ pub struct Asks<'a> {
     pub reference: Option<&'a Reference>,
     /// The method that every run is compared with beside the reference, if the scene names one.
     pub beside: Option<&'a Reference>,
+    /// The loop of frames after the first solution, if it is to run.
+    pub repeated: Option<&'a Repeated>,
 }
 
 /// A finished run with its nodal parameters.
@@ -189,6 +193,11 @@ pub fn run(
         Discretisation::Efg(_) => transfers(method, &prepared, &u, &at_end, &mut work)?,
         Discretisation::Fem(_) => Vec::new(),
     };
+    // A path that ended early has no loop.
+    let latencies = match asks.repeated.filter(|_| finished) {
+        Some(ask) => repeated(ask, method, setup, &prepared, (&u, last.as_ref()), asks, &mut metrics)?,
+        None => Vec::new(),
+    };
     let state = State { u: &u, pressure: &pressure, last: last.as_ref() };
     let field = if asks.picture { Some(picture(&identity, method, setup, &prepared, state)?) } else { None };
     let outcome = Outcome {
@@ -196,6 +205,7 @@ pub fn run(
         size,
         metrics,
         phases,
+        latencies,
         memory,
         probes,
         plan,
@@ -239,6 +249,7 @@ fn prepared_only(
         size: size(method, &prepared, 0),
         metrics,
         phases,
+        latencies: Vec::new(),
         memory,
         probes: Vec::new(),
         plan,

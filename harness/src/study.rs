@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use reports::{Check as Verdict, Record, RunSet, SurfaceField};
 
 use crate::cli::VerifyArgs;
-use crate::group::{Group, case_name, resize};
+use crate::group::{Extras, Group, case_name, resize};
 use crate::run::Repeats;
 use crate::stored::Stored;
 use crate::task::{self, TaskResult};
@@ -170,7 +170,12 @@ impl Plan {
                     group
                 });
                 let outcome = match group {
-                    Ok(group) => group.run(&group.scenario(task.method.clone(), task.level), task.picture),
+                    Ok(group) => {
+                        // Clouds of many seeds are of one kind: one loop is enough for them all.
+                        let frames = !args.quick && self.study.runs[task.run].seeds == 0;
+                        let extras = Extras { picture: task.picture, frames };
+                        group.run(&group.scenario(task.method.clone(), task.level), extras)
+                    }
                     Err(failure) => Err(failure.clone().into()),
                 };
                 let mut result = match outcome {

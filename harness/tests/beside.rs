@@ -4,7 +4,7 @@ mod common;
 
 use cases::scene::{self, Scene};
 use common::BLOCK;
-use harness::group::Group;
+use harness::group::{Extras, Group};
 use harness::outcome::{Metric, Outcome};
 use harness::run::Repeats;
 
@@ -16,7 +16,7 @@ fn outcomes(reference: &str) -> Vec<Outcome> {
     let text = format!("{}{CLOUD}reference = {reference}\n", BLOCK.trim_end().trim_end_matches(']'));
     let scene: Scene = scene::parse(&text, "beside.toml").unwrap();
     let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
-    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), false);
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), Extras::default());
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use cases::scene::{self, Scene};
 use common::{BLOCK, PRESSED, cases, inside, moving, write};
 use harness::cli::VerifyArgs;
-use harness::group::Group;
+use harness::group::{Extras, Group};
 use harness::outcome::Outcome;
 use harness::run::Repeats;
 use harness::study::Plan;
@@ -16,7 +16,7 @@ use harness::work::Work;
 
 fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
     let group = Group::new(scene, None, Repeats { most: repeats, seconds: 60.0 }).unwrap();
-    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), false);
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), Extras::default());
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }
 
@@ -110,7 +110,7 @@ fn a_plan_told_beforehand_is_that_of_the_run() {
         let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
         for method in scene.methods.iter().take(2) {
             let (told, size) = before.plan(&before.scenario(method.clone(), 0)).unwrap();
-            let outcome = group.run(&group.scenario(method.clone(), 0), false).unwrap();
+            let outcome = group.run(&group.scenario(method.clone(), 0), Extras::default()).unwrap();
             assert_eq!(told, outcome.plan, "{name}");
             assert_eq!((size.nodes, size.elements), (outcome.size.nodes, outcome.size.elements), "{name}");
         }

@@ -4,7 +4,7 @@ mod common;
 
 use cases::scene::{self, Scene, SchemeName};
 use common::BLOCK;
-use harness::group::Group;
+use harness::group::{Extras, Group};
 use harness::outcome::{Metric, Transfer};
 use harness::run::Repeats;
 use interp::Scheme;
@@ -23,7 +23,7 @@ fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
     let scene: Scene = scene::parse(&text, "transfer.toml").unwrap_or_else(|bad| panic!("{bad:?}"));
     let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
     let method = scene.methods.iter().find(|m| m.id == "efg").unwrap();
-    let run = group.run(&group.scenario(method.clone(), 0), false);
+    let run = group.run(&group.scenario(method.clone(), 0), Extras::default());
     run.unwrap_or_else(|bad| panic!("{}", bad.failure)).transfers
 }
 

@@ -7,6 +7,8 @@
 //!   have `statistic = "value"` and `phase = ""`;
 //! - times are `quantity = "time"`, `unit = "s"`, one row per `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`,
 //!   `total`; within `solve` a static path's `solve-to-limit`) and per `statistic` (`median`, `spread`, `min`);
+//! - a loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` (s), and `frames`,
+//!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it;
 //! - a transfer scheme is `family = "interp"`, `variant` its name, `method` the scheme's id and `nodes` the number of source
 //!   nodes; `parameters` names the source with `from=METHOD` or the field with `field=linear`;
 //! - what is told step by step has one row per step and quantity, with `phase = "step-N"` (N counts from 0): `closure` (m) or

@@ -15,6 +15,16 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     tools(scene, report);
     mixed(scene, report);
     unsolved(scene, report);
+    if scene.output.repeated.is_some() {
+        let at_rest = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static);
+        let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
+        report.require(
+            at_rest || scene.procedure.kind == ProcedureKind::Prepare,
+            "output.repeated",
+            "is of solutions at rest, not of motion",
+            help,
+        );
+    }
     if scene.procedure.duration.is_some() && timeless(scene) {
         let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
         report.add("procedure.duration", Problem::new("has nothing to last").help(help));
@@ -52,6 +62,7 @@ fn unsolved(scene: &Scene, report: &mut Report) {
         ("output.probes", !output.probes.is_empty()),
         ("output.transfer", !output.transfers.is_empty()),
         ("output.beside", output.beside.is_some()),
+        ("output.repeated", output.repeated.is_some()),
     ] {
         let help = "leave it out, or take [procedure] kind = \"linear\"";
         report.require(!given, key, "is of a displacement, and kind = \"prepare\" solves for none", help);

@@ -38,7 +38,7 @@ pub use method::{
 };
 pub use metric::{Metric, Needs};
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
-pub use output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};
+pub use output::{Bound, Check, Output, Reference, Repeated, SchemeName, Target, Transfer};
 pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
 pub use quantity::{Exponents, Quantity};
 pub use region::{Comparison, Region, Relation};

@@ -18,6 +18,21 @@ pub struct Output {
     pub transfers: Vec<Transfer>,
     /// Id of a method that every run is compared with at the targets, beside the reference.
     pub beside: Option<String>,
+    /// The loading repeated in frames.
+    pub repeated: Option<Repeated>,
+}
+
+/// A simulator's loop: the loading goes up and down, a frame at a time, prepared once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeated {
+    /// Frames in all.
+    pub frames: usize,
+    /// Frames of one way up and down.
+    pub cycle: usize,
+    /// Time after which no further frame is started, s.
+    pub within: f64,
+    /// Relative residual of a frame, where it is not the procedure's.
+    pub tolerance: Option<f64>,
 }
 
 /// A transfer of nodal displacements to other points.

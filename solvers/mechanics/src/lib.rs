@@ -26,6 +26,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod body;
+mod condense;
 mod constraint;
 mod contact;
 mod dilation;
@@ -46,6 +47,7 @@ mod support;
 mod weak;
 
 pub use body::Body;
+pub use condense::Condensed;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use contact::{
     ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Contacts, Distance,
@@ -70,7 +72,7 @@ pub use material::{
     volume_change,
 };
 pub use nonlinear::{
-    Dilation, Drive, DrivenTool, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError,
+    Dilation, Drive, DrivenTool, Frames, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError,
     StaticParams, StaticPath, StaticProblem, StaticWork, Step, ToolState, Worst, solve_static,
 };
 pub use pattern::BlockPattern;

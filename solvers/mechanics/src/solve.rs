@@ -1,5 +1,6 @@
 //! Factorisation and solution of an assembled problem.
 
+use crate::body::check_len;
 use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
 use crate::load::Load;
 use crate::problem::Assembled;
@@ -113,17 +114,29 @@ impl<'a> Assembled<'a> {
 impl Factored<'_> {
     /// The solution at `factor` times all given data: loads and prescribed displacements alike.
     pub fn solve(&self, factor: f64) -> Result<Solution, SolveError> {
-        self.solve_for(&self.problem.load, factor)
+        self.solve_for(&self.problem.load, factor, factor)
     }
 
     /// The solution under other loads with the same supports.
     pub fn solve_loads(&self, loads: &[Load]) -> Result<Solution, SolveError> {
         let force = self.problem.other_load(loads)?;
-        self.solve_for(&force, 1.0)
+        self.solve_for(&force, 1.0, 1.0)
     }
 
-    fn solve_for(&self, load: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
-        if !factor.is_finite() {
+    /// The solution under nodal forces (N) with supports at `factor` times what they prescribe.
+    pub fn solve_forces(&self, forces: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
+        check_len("nodal forces", forces.len(), self.node_count())?;
+        self.solve_for(forces, 1.0, factor)
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.problem.load.len()
+    }
+
+    /// At `part` times the load and `factor` times what supports prescribe.
+    fn solve_for(&self, load: &[Vector3], part: f64, factor: f64) -> Result<Solution, SolveError> {
+        if !(part.is_finite() && factor.is_finite()) {
             return Err(SolveError::NotFinite { what: "load factor", index: 0 });
         }
         let p = &self.problem;
@@ -134,7 +147,7 @@ impl Factored<'_> {
         let mut b = vec![0.0; self.factorization.dim()];
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
             let (i, a) = (dof / 3, dof % 3);
-            b[at] = factor * (load[i][a] + p.weak_load[i][a]) - held[i][a];
+            b[at] = part * load[i][a] + factor * p.weak_load[i][a] - held[i][a];
         }
         let free = b.len() - self.active.len();
         for (k, &(index, scale)) in self.active.iter().enumerate() {
@@ -146,7 +159,7 @@ impl Factored<'_> {
             u[dof / 3][dof % 3] = b[at];
         }
         if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
-            self.refine(forms, load, factor, &mut u)?;
+            self.refine(forms, load, (part, factor), &mut u)?;
         }
         let mut multipliers = vec![0.0; p.rows.len()];
         for (k, &(index, scale)) in self.active.iter().enumerate() {
@@ -162,16 +175,16 @@ impl Factored<'_> {
         Ok(Solution { u, multipliers, info })
     }
 
-    /// Two steps of refinement with the residual of the forms themselves.
+    /// Two steps of refinement with the residual of the forms themselves, at parts of the load and of what supports prescribe.
     fn refine(
         &self,
         forms: &crate::problem::Pointwise,
         load: &[Vector3],
-        factor: f64,
+        (part, factor): (f64, f64),
         u: &mut [Vector3],
     ) -> Result<(), SolveError> {
         for _ in 0..2 {
-            let mut residual: Vec<Vector3> = load.iter().map(|f| f * factor).collect();
+            let mut residual: Vec<Vector3> = load.iter().map(|f| f * part).collect();
             forms.subtract(u, factor, &mut residual);
             let mut b = vec![0.0; self.factorization.dim()];
             for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {

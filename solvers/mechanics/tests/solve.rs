@@ -184,3 +184,45 @@ proptest! {
         prop_assert!(gap(&sparse.u, &dense.u) < 1e-11);
     }
 }
+
+#[test]
+fn a_condensed_operator_gives_what_a_solve_gives() {
+    let block = Block::new(CellKind::Tet10, [3, 2, 2]);
+    let material = [soft()];
+    let body = block.body(&material);
+    let surface = block.surface(&["x-max"]);
+    let loaded = block.nodes_of(&["x-max"]);
+    let fixed = block.fix(&["x-min"], |x| Vector3::new(1e-3, 0.0, x.y * 0.02));
+    let all = block.mesh.points().len();
+    // The mean of the loaded face, and one node inside.
+    let part = 1.0 / loaded.len() as f64;
+    let outputs = shape::Rows::new(
+        all,
+        vec![0, loaded.len(), loaded.len() + 1],
+        loaded.iter().copied().chain([7]).collect(),
+        vec![part; loaded.len()].into_iter().chain([1.0]).collect(),
+        shape::Unity::NotPromised,
+    )
+    .unwrap();
+    // By elimination, and by rows with multipliers.
+    let rows: Vec<_> = (fixed.iter())
+        .map(|f| ConstraintRow { terms: vec![(f.node, f.axis, 2.0)], value: 2.0 * f.value })
+        .collect();
+    for (fixed, constraints) in [(fixed.as_slice(), [].as_slice()), (&[], rows.as_slice())] {
+        let problem = LinearProblem { body, loads: &[], fixed, constraints, weak: &[] };
+        let factored = assemble(&problem).unwrap().factor().unwrap();
+        let condensed = factored.condense(&outputs, &loaded).unwrap();
+        assert_eq!(condensed.len(), 9 * 2 * loaded.len());
+        let mut out = vec![Vector3::zeros(); 2];
+        for (frame, supports) in [1.0, 0.0, -0.7].into_iter().enumerate() {
+            let values = (surface.points().iter())
+                .map(|x| Vector3::new(3.0 - frame as f64, 40.0 * x.y, -2.0 * frame as f64))
+                .collect();
+            let forces = nodal_forces(body.volume, &[Load::Traction { surface: &surface, values }]).unwrap();
+            let direct = outputs.apply(&factored.solve_forces(&forces, supports).unwrap().u);
+            let on_face: Vec<Vector3> = loaded.iter().map(|&node| forces[node as usize]).collect();
+            condensed.apply(&on_face, supports, &mut out);
+            assert!(gap(&out, &direct) < 1e-11, "frame {frame}: {}", gap(&out, &direct));
+        }
+    }
+}

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::{Names, SizeKeys};
 use crate::scene::output::SchemeName;
-use crate::scene::units::{Length, Q, Unit};
+use crate::scene::units::{Length, Q, Time, Unit};
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -18,6 +18,22 @@ pub(crate) struct OutputKeys {
     /// A method of this scene that every run is compared with at the targets too, beside the reference: a published one whose
     /// own error is part of a published difference
     pub beside: Option<String>,
+    /// The loading played again and again after the first solution, as a simulator does, each frame timed
+    pub repeated: Option<RepeatedKeys>,
+}
+
+/// A simulator's loop: the loading goes up and down, a frame at a time, prepared once
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RepeatedKeys {
+    /// Frames in all; percentiles above 99 need 1000
+    pub frames: u32,
+    /// Frames of one way up and down; 120 unless given, 4 s at 30 Hz
+    pub cycle: Option<u32>,
+    /// Time after which no further frame is started; 10 s unless given
+    pub within: Option<Q<Time>>,
+    /// Relative residual to which a frame of Newton's method is solved; the procedure's tolerance unless given
+    pub tolerance: Option<f64>,
 }
 
 /// One transfer or several

@@ -7,7 +7,7 @@ use crate::names::suggest;
 use crate::scene::error::Problem;
 use crate::scene::keys::*;
 use crate::scene::metric::Metric;
-use crate::scene::output::{Bound, Check, Output, Reference, SchemeName, Target, Transfer};
+use crate::scene::output::{Bound, Check, Output, Reference, Repeated, SchemeName, Target, Transfer};
 use crate::scene::report::Report;
 use crate::scene::units::Dimension;
 
@@ -15,7 +15,9 @@ use super::method::size;
 use super::{MILLIMETRE, mesh_file, names, positive, raw};
 
 pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
-    let Some(keys) = keys else { return Output { probes: Vec::new(), transfers: Vec::new(), beside: None } };
+    let Some(keys) = keys else {
+        return Output { probes: Vec::new(), transfers: Vec::new(), beside: None, repeated: None };
+    };
     if let Some(probes) = &keys.probes {
         let help = "name a point, or leave the key out";
         report.require(!probes.is_empty(), "output.probes", "is empty", help);
@@ -29,7 +31,25 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
         }
     };
     let probes = keys.probes.unwrap_or_default().into_iter().map(raw).collect();
-    Output { transfers, probes, beside: keys.beside }
+    let repeated = keys.repeated.map(|keys| repeated(keys, report));
+    Output { transfers, probes, beside: keys.beside, repeated }
+}
+
+fn repeated(keys: RepeatedKeys, report: &mut Report) -> Repeated {
+    let (frames, cycle) = (keys.frames as usize, keys.cycle.unwrap_or(120) as usize);
+    report.require(
+        frames > 0,
+        "output.repeated.frames",
+        "is zero",
+        "give 1 or more, 1000 for a percentile of 99.9",
+    );
+    let help = "give an even number of frames, half of them for the way up";
+    report.require(cycle >= 2 && cycle % 2 == 0, "output.repeated.cycle", "is no way up and down", help);
+    let within = keys.within.map_or(10.0, |q| positive(q.0, "output.repeated.within", report));
+    if let Some(tolerance) = keys.tolerance {
+        positive(tolerance, "output.repeated.tolerance", report);
+    }
+    Repeated { frames, cycle, within, tolerance: keys.tolerance }
 }
 
 fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {

@@ -1,6 +1,7 @@
 //! Bodies under large displacements: internal energy with projected volume change, and statics by Newton's method.
 
 mod error;
+mod frames;
 mod in_time;
 mod newton;
 mod relaxing;
@@ -18,6 +19,7 @@ pub(crate) use relaxing::Memory;
 pub(crate) use system::SurfaceTable;
 
 pub use error::{Inverted, StaticError, Worst};
+pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
 pub use solid::{Dilation, Solid};
 pub use statics::{

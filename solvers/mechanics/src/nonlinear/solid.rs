@@ -397,11 +397,20 @@ impl Solid<'_> {
         of_pair: &[(f64, f64, Matrix3)],
     ) -> Vec<GroupHessian> {
         let weights = self.volume.weights();
+        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        let cof: Vec<Vec<Vector3>> = (0..weights.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|q| {
+                let cof = cofactor(self.law(q).is_small_strain(), &H[q]);
+                self.volume.row(q).1.iter().map(|g| cof * g).collect()
+            })
+            .collect();
         (0..groups.len())
             .into_par_iter()
             .map_init(
-                || vec![[Vector3::zeros(); 2]; self.node_count()],
-                |scratch, a| {
+                || (vec![[Vector3::zeros(); 2]; self.node_count()], vec![false; self.node_count()]),
+                |(scratch, seen), a| {
                     let (points, shares) = groups.group(a);
                     let volume = self.group_volume(groups, a);
                     let (mut nodes, mut k) = (Vec::new(), 0.0);
@@ -410,18 +419,19 @@ impl Solid<'_> {
                         let dv = share * weights[q];
                         let (_, stiffness, mixed) = &of_pair[at];
                         k += dv * stiffness;
-                        let cof = cofactor(self.law(q).is_small_strain(), &H[q]) * (dv / volume);
                         let mixed = mixed * dv;
                         let (row, grads) = self.volume.row(q);
-                        for (&node, g) in row.iter().zip(grads) {
-                            nodes.push(node);
+                        for ((&node, g), cof) in row.iter().zip(grads).zip(&cof[q]) {
+                            if !std::mem::replace(&mut seen[node as usize], true) {
+                                nodes.push(node);
+                            }
                             let [b, m] = &mut scratch[node as usize];
-                            *b += cof * g;
+                            *b += cof * (dv / volume);
                             *m += mixed * g;
                         }
                     }
                     nodes.sort_unstable();
-                    nodes.dedup();
+                    nodes.iter().for_each(|&n| seen[n as usize] = false);
                     let (b, m) = nodes
                         .iter()
                         .map(|&n| std::mem::replace(&mut scratch[n as usize], [Vector3::zeros(); 2]).into())

@@ -3,7 +3,7 @@
 use shape::SurfaceRows;
 
 use super::error::StaticError;
-use super::newton::{Descent, Iteration, Newton, NewtonParams, State};
+use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near};
 use super::solid::Solid;
 use crate::contact::{ContactCounts, ContactHistory, ContactSurface, Tool};
 use crate::{FixedDof, Load, Point3, Vector3};
@@ -188,24 +188,11 @@ pub fn solve_static(
         let time = if reaches { target } else { state.time + step };
         // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
         // a point, the last state is.
-        // Some tool driven by force does not touch yet.
-        let apart = (problem.tools.iter().enumerate()).any(|(k, tool)| {
-            matches!(tool.drive, Drive::Force(_)) && path.steps.last().is_none_or(|s| s.tools[k].active == 0)
-        });
-        let mut to = |descent| {
-            let step = newton.step(&state, before.as_ref(), time, params.augmentations, descent);
-            step.or_else(|error| {
-                let led = apart && matches!(descent, Descent::Smooth | Descent::Nearest);
-                let reached = led.then(|| newton.lead(&state, time, params.augmentations, descent));
-                reached.flatten().ok_or(error)
-            })
-        };
+        let mut to = |descent| newton.find(&state, before.as_ref(), time, params.augmentations, descent);
         let reached = if within.is_some_and(|within| time - state.time > within) {
             to(Descent::Smooth)
         } else {
-            let nearest = to(Descent::Nearest)
-                .or_else(|error| if state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) });
-            match nearest {
+            match near(!state.pressure.is_empty(), &mut to) {
                 // The limit point that is sought: on to where the body comes to rest.
                 Ok((_, done)) if within.is_some() && !done.stable => {
                     to(Descent::Down).map(|(reached, done)| (reached, Step { gave_way: true, ..done }))

@@ -114,3 +114,38 @@ fn first_contact_in_one_step() {
         }
     }
 }
+
+/// Frames of a simulator's loop, forwards and back, end where the path does; without friction they come back to nothing.
+#[test]
+fn frames_follow_the_path_both_ways() {
+    for method in [(CellKind::Hex8, Projection::Element), (CellKind::Tet10, Projection::Mixed)] {
+        let model = Model::block(method, [3, 2, 2]);
+        let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.49).unwrap());
+        let fixed = model.hold(&["z-min"], &[0, 1, 2], |_| Vector3::zeros());
+        let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
+        let contact = ContactSurface::new(&surface);
+        let touch = ContactLaw::frictionless(1e7).unwrap();
+        let at = Point3::new(0.022, 0.014, SIZE.z + 0.03);
+        let ball =
+            Tool::new(ToolShape::Sphere { radius: 0.03 }, at, Matrix3::identity(), -Vector3::z(), touch)
+                .unwrap();
+        let tools = [DrivenTool { tool: &ball, drive: Drive::Closure(4e-3) }];
+        let problem =
+            StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };
+        let params = steps(4);
+        let path = solve("path", &problem, &params);
+        let mut frames = Frames::new(&problem, &params).unwrap();
+        let largest = path.u.iter().map(Vector3::norm).fold(0.0, f64::max);
+        for part in [0.25, 0.5, 0.75, 1.0, 0.5, 1e-3, 0.8, 1.0] {
+            let step = frames.to(part).unwrap();
+            assert_eq!(step.time, part);
+            let gap =
+                frames.u().iter().zip(&path.u).map(|(u, v)| (u - v).norm()).fold(0.0, f64::max) / largest;
+            match part {
+                1.0 => assert!(gap < 1e-9, "{method:?}: {gap:e}"),
+                1e-3 => assert!((gap - 1.0).abs() < 0.01, "{method:?}: not back: {gap:e}"),
+                _ => assert!(gap > 0.1, "{method:?}: {gap:e} at {part}"),
+            }
+        }
+    }
+}

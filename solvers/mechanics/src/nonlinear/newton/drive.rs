@@ -81,16 +81,20 @@ impl Newton<'_> {
     /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are led by closure until
     /// each carries its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
     /// whose tangent says nothing of those to come: Newton's method goes from no contact to deep contact and back,
-    /// where a closure that is given is taken up by the body. `None` where that leads to no equilibrium either.
-    pub(crate) fn lead(
+    /// where a closure that is given is taken up by the body. `None` where all touch, or that leads to no equilibrium either.
+    pub(super) fn lead(
         &mut self,
         start: &State,
         time: f64,
         augmentations: usize,
         descent: Descent,
     ) -> Option<(State, Step)> {
-        let drives = self.problem.tools.iter().map(|t| t.drive);
-        self.led = drives.map(|drive| matches!(drive, Drive::Force(_))).collect();
+        let forced = |k: usize| matches!(self.problem.tools[k].drive, Drive::Force(_));
+        let tools = 0..self.problem.tools.len();
+        if !tools.clone().any(|k| forced(k) && self.approach(k, start, 0.0) > 0.0) {
+            return None;
+        }
+        self.led = tools.map(forced).collect();
         let reached = self.follow(start, time, augmentations, descent);
         self.led.fill(false);
         reached

@@ -131,6 +131,14 @@ pub(crate) enum Descent {
     Down,
 }
 
+/// The nearest equilibrium, with a pressure field by steps that are cut where full ones come to none.
+pub(crate) fn near<T>(
+    saddle: bool,
+    to: &mut impl FnMut(Descent) -> Result<T, StaticError>,
+) -> Result<T, StaticError> {
+    to(Descent::Nearest).or_else(|error| if saddle { to(Descent::Guarded) } else { Err(error) })
+}
+
 /// Iterations without a residual smaller by a tenth after which the nearest equilibrium is given up. Steps of the kidney
 /// between jaws that came through went up to 7 without; to go on to 40 took twice the time of the whole path.
 const PATIENCE: usize = 10;
@@ -240,6 +248,22 @@ impl<'a> Newton<'a> {
     /// The parts of loads, supports and drives at `time`.
     fn scales(&self, time: f64) -> Scales {
         self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
+    }
+
+    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, led by closure.
+    pub fn find(
+        &mut self,
+        start: &State,
+        before: Option<&State>,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Result<(State, Step), StaticError> {
+        let step = self.step(start, before, time, augmentations, descent);
+        step.or_else(|error| match descent {
+            Descent::Smooth | Descent::Nearest => self.lead(start, time, augmentations, descent).ok_or(error),
+            Descent::Guarded | Descent::Down => Err(error),
+        })
     }
 
     /// From `start` to equilibrium at `time`; `before` is the state before `start`, for extrapolation.
