@@ -5,7 +5,9 @@ use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::buckets::Buckets;
 use crate::info::Outcome;
-use crate::mls::{Ball, Workspace};
+use crate::lanes::LANES;
+use crate::mls::{Ball, Group};
+use crate::row_list::RowList;
 use crate::{Basis, EfgError, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
@@ -42,25 +44,30 @@ pub struct Approximation {
     buckets: Buckets,
 }
 
-/// Rows of one chunk of points.
+/// What becomes of one chunk of points.
 #[derive(Default)]
-struct Batch {
-    lengths: Vec<usize>,
-    nodes: Vec<u32>,
-    values: Vec<f64>,
-    grads: Vec<Vector3>,
+struct Chunk {
+    rows: RowList,
     outcomes: Vec<Outcome>,
-    workspace: Workspace,
+    /// Points by number of neighbours: those of a group are as long as the longest.
+    order: Vec<u32>,
+    group: Group,
 }
 
-impl Batch {
-    fn clear(&mut self) {
-        self.lengths.clear();
-        self.nodes.clear();
-        self.values.clear();
-        self.grads.clear();
-        self.outcomes.clear();
+/// One for each of eight nodes whose support covers the point, zero for the others.
+#[inline(always)]
+fn covered(balls: &[Ball], nodes: &[u32; LANES], x: &Point3) -> [u64; LANES] {
+    let (mut at, mut radius) = ([[0.0; LANES]; 3], [0.0; LANES]);
+    for l in 0..LANES {
+        let ball = balls[nodes[l] as usize];
+        (at[0][l], at[1][l], at[2][l], radius[l]) = (ball.at[0], ball.at[1], ball.at[2], ball.radius);
     }
+    let mut covered = [0; LANES];
+    for l in 0..LANES {
+        let ball = Ball { at: [at[0][l], at[1][l], at[2][l]], radius: radius[l] };
+        covered[l] = u64::from(ball.covers(x, 1.0));
+    }
+    covered
 }
 
 impl Approximation {
@@ -144,32 +151,25 @@ impl Approximation {
         // In waves that reuse their buffers: all chunks at once would touch twice the memory, and in a single call
         // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave.
         let wave = 4 * CHUNK * rayon::current_num_threads();
-        let mut batches: Vec<Batch> = Vec::new();
-        let mut offsets = Vec::with_capacity(points.len() + 1);
-        offsets.push(0);
+        let mut chunks: Vec<Chunk> = Vec::new();
         let entries = self.expected_entries(points);
-        let (mut nodes, mut values) = (Vec::with_capacity(entries), Vec::with_capacity(entries));
-        let mut grads = Vec::with_capacity(if GRAD { entries } else { 0 });
+        let mut rows = RowList::with_capacity(points.len(), entries, if GRAD { entries } else { 0 });
         let mut outcomes = Vec::with_capacity(points.len());
         for wave in points.chunks(wave) {
-            let chunks = wave.par_chunks(CHUNK);
-            batches.resize_with(chunks.len(), Batch::default);
-            let done: Vec<Result<(), EfgError>> = batches
+            let parts = wave.par_chunks(CHUNK);
+            chunks.resize_with(parts.len(), Chunk::default);
+            let done: Vec<Result<(), EfgError>> = chunks
                 .par_iter_mut()
-                .zip(chunks)
-                .map(|(batch, chunk)| self.batch::<GRAD>(chunk, batch))
+                .zip(parts)
+                .map(|(chunk, part)| self.fill::<GRAD>(part, chunk))
                 .collect();
-            for (done, batch) in done.into_iter().zip(&batches) {
+            for (done, chunk) in done.into_iter().zip(&chunks) {
                 done?;
-                for length in &batch.lengths {
-                    offsets.push(offsets[offsets.len() - 1] + length);
-                }
-                nodes.extend_from_slice(&batch.nodes);
-                values.extend_from_slice(&batch.values);
-                grads.extend_from_slice(&batch.grads);
-                outcomes.extend_from_slice(&batch.outcomes);
+                rows.append(&chunk.rows);
+                outcomes.extend_from_slice(&chunk.outcomes);
             }
         }
+        let RowList { offsets, nodes, values, grads } = rows;
         let rows = Rows::new(self.nodes.len(), offsets, nodes, values, UNITY)?;
         Ok((rows, grads, MlsInfo::new(&outcomes)))
     }
@@ -177,87 +177,152 @@ impl Approximation {
     /// Entries of a table by the neighbours of a few of its points, with a margin.
     fn expected_entries(&self, points: &[Point3]) -> usize {
         let step = (points.len() / SAMPLES).max(SPARING);
-        let mut at = Workspace::default();
-        let (mut sampled, mut found) = (0, 0);
+        let mut found = RowList::default();
         for x in points.iter().step_by(step) {
-            at.gather(x, self.buckets.candidates(x).iter().copied(), &self.balls, 1.0);
-            (sampled, found) = (sampled + 1, found + at.nodes.len());
+            self.find(x, &mut found);
         }
-        (MARGIN * found as f64 * points.len() as f64 / sampled.max(1) as f64) as usize
+        let sampled = (found.offsets.len() - 1).max(1);
+        (MARGIN * found.nodes.len() as f64 * points.len() as f64 / sampled as f64) as usize
     }
 
-    /// The same arithmetic in the same order on either path, so the same bits; wide registers take 0.8 of the time.
-    /// Fused multiply-add is left off on purpose: it would change last bits from machine to machine.
-    fn batch<const GRAD: bool>(&self, points: &[Point3], batch: &mut Batch) -> Result<(), EfgError> {
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked; that is all the function requires.
-            return unsafe { self.batch_avx2::<GRAD>(points, batch) };
+    /// Appends the nodes whose supports cover the point, as a row.
+    #[inline(always)]
+    fn find(&self, x: &Point3, rows: &mut RowList) {
+        let candidates = self.buckets.candidates(x);
+        let first = rows.nodes.len();
+        rows.nodes.resize(first + candidates.len(), 0);
+        let (found, balls) = (&mut rows.nodes[first..], &self.balls[..]);
+        // Written always, counted if covered: about half of the candidates are not, and a branch would be mispredicted.
+        let mut n = 0;
+        let (groups, rest) = candidates.as_chunks::<LANES>();
+        for nodes in groups {
+            let covered = covered(balls, nodes, x);
+            let (room, mut kept) = (&mut found[n..n + LANES], 0);
+            for l in 0..LANES {
+                // At most `l` are kept so far: the remainder is the number itself, and no place beyond the room.
+                room[kept % LANES] = nodes[l];
+                kept += covered[l] as usize;
+            }
+            n += kept;
         }
-        self.batch_plain::<GRAD>(points, batch)
+        for &node in rest {
+            found[n] = node;
+            n += usize::from(balls[node as usize].covers(x, 1.0));
+        }
+        rows.nodes.truncate(first + n);
+        rows.close();
+    }
+
+    /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off on
+    /// purpose: it would change last bits from machine to machine.
+    fn fill<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
+                // SAFETY: the processor has the features that the function requires, just checked; so below.
+                return unsafe { self.fill_avx512::<GRAD>(points, chunk) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { self.fill_avx2::<GRAD>(points, chunk) };
+            }
+        }
+        self.fill_plain::<GRAD>(points, chunk)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512dq")]
+    fn fill_avx512<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+        self.fill_plain::<GRAD>(points, chunk)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn batch_avx2<const GRAD: bool>(&self, points: &[Point3], batch: &mut Batch) -> Result<(), EfgError> {
-        self.batch_plain::<GRAD>(points, batch)
+    fn fill_avx2<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+        self.fill_plain::<GRAD>(points, chunk)
     }
 
     #[inline(always)]
-    fn batch_plain<const GRAD: bool>(&self, points: &[Point3], batch: &mut Batch) -> Result<(), EfgError> {
-        let mut workspace = std::mem::take(&mut batch.workspace);
-        batch.clear();
+    fn fill_plain<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+        let Chunk { rows, outcomes, order, group } = chunk;
+        rows.offsets.truncate(1);
+        rows.nodes.clear();
         for x in points {
-            let outcome = self.evaluate::<GRAD>(x, &mut workspace)?;
-            batch.lengths.push(workspace.nodes.len());
-            batch.nodes.extend_from_slice(&workspace.nodes);
-            batch.values.extend_from_slice(&workspace.values);
-            if GRAD {
-                batch.grads.extend_from_slice(&workspace.grads);
-            }
-            batch.outcomes.push(outcome);
+            self.find(x, rows);
         }
-        batch.workspace = workspace;
+        // What is left there is written over.
+        rows.values.resize(rows.nodes.len(), 0.0);
+        rows.grads.resize(if GRAD { rows.nodes.len() } else { 0 }, Vector3::zeros());
+        order.clear();
+        order.extend(0..points.len() as u32);
+        order.sort_unstable_by_key(|&q| (rows.range(q as usize).len(), q));
+        outcomes.clear();
+        outcomes.resize(points.len(), Outcome::default());
+        let mut failed = false;
+        for together in order.chunks(LANES) {
+            let nodes = |q: usize| &rows.nodes[rows.range(q)];
+            group.load(together.iter().map(|&q| (&points[q as usize], nodes(q as usize))), &self.balls, 1.0);
+            let conditions = self.fit::<GRAD>(self.basis, self.mu, group);
+            for (lane, &q) in together.iter().enumerate() {
+                let range = rows.range(q as usize);
+                let outcome = &mut outcomes[q as usize];
+                outcome.neighbours = range.len() as u32;
+                // An infinite condition marks a point for the ladder.
+                outcome.condition = conditions[lane].unwrap_or(f64::INFINITY);
+                failed |= conditions[lane].is_none();
+                let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };
+                group.store(lane, &mut rows.values[range], grads);
+            }
+        }
+        if failed { self.mend::<GRAD>(points, chunk) } else { Ok(()) }
+    }
+
+    /// Condition numbers of a group's fits, `None` where a fit failed or cannot be.
+    #[inline(always)]
+    fn fit<const GRAD: bool>(&self, basis: Basis, mu: f64, group: &mut Group) -> [Option<f64>; LANES] {
+        let mut conditions = match basis {
+            Basis::Linear => group.fit::<4, 10, 10, GRAD>(self.kernel, mu),
+            Basis::Quadratic => group.fit::<10, 35, 20, GRAD>(self.kernel, mu),
+        };
+        for (lane, condition) in conditions.iter_mut().enumerate() {
+            if mu == 0.0 && group.count(lane) < basis.terms() {
+                *condition = None;
+            }
+        }
+        conditions
+    }
+
+    /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
+    #[cold]
+    fn mend<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+        let plain = std::mem::take(&mut chunk.rows);
+        let rows = &mut chunk.rows;
+        for (q, x) in points.iter().enumerate() {
+            if chunk.outcomes[q].condition < f64::INFINITY {
+                let range = plain.range(q);
+                rows.nodes.extend_from_slice(&plain.nodes[range.clone()]);
+                rows.values.extend_from_slice(&plain.values[range.clone()]);
+                rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
+                rows.close();
+            } else {
+                chunk.outcomes[q] = self.climb::<GRAD>(x, &mut chunk.group, rows)?;
+            }
+        }
         Ok(())
     }
 
-    #[inline(always)]
-    fn evaluate<const GRAD: bool>(&self, x: &Point3, at: &mut Workspace) -> Result<Outcome, EfgError> {
-        at.gather(x, self.buckets.candidates(x).iter().copied(), &self.balls, 1.0);
-        let neighbours = at.nodes.len() as u32;
-        match self.fit::<GRAD>(self.basis, self.mu, at) {
-            Some(condition) => {
-                Ok(Outcome { neighbours, condition, enlarged: false, regularised: false, reduced: false })
-            }
-            None => self.climb::<GRAD>(x, at),
-        }
-    }
-
-    #[inline(always)]
-    fn fit<const GRAD: bool>(&self, basis: Basis, mu: f64, at: &mut Workspace) -> Option<f64> {
-        if mu == 0.0 && at.nodes.len() < basis.terms() {
-            return None;
-        }
-        match basis {
-            Basis::Linear => at.fit::<4, GRAD>(self.kernel, mu),
-            Basis::Quadratic => at.fit::<10, GRAD>(self.kernel, mu),
-        }
-    }
-
-    /// The ladder, for a point at which the plain fit failed.
-    #[cold]
-    fn climb<const GRAD: bool>(&self, x: &Point3, at: &mut Workspace) -> Result<Outcome, EfgError> {
+    /// The ladder, for a point at which the plain fit failed. Appends its row.
+    fn climb<const GRAD: bool>(
+        &self,
+        x: &Point3,
+        group: &mut Group,
+        rows: &mut RowList,
+    ) -> Result<Outcome, EfgError> {
         let needed = self.basis.terms();
         let enlargement = self.enlargement(x, 2 * needed);
-        at.gather(x, 0..self.balls.len() as u32, &self.balls, enlargement);
-        let found = at.nodes.len();
-        let mut outcome = Outcome {
-            neighbours: found as u32,
-            condition: 0.0,
-            enlarged: enlargement > 1.0,
-            regularised: false,
-            reduced: false,
-        };
+        let covers = |&node: &u32| self.balls[node as usize].covers(x, enlargement);
+        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
+        let found = nodes.len();
+        group.load(std::iter::once((x, &nodes[..])), &self.balls, enlargement);
         let rungs: &[(Basis, f64)] = match self.basis {
             Basis::Linear => &[(Basis::Linear, 0.0)],
             Basis::Quadratic => &[
@@ -267,11 +332,21 @@ impl Approximation {
             ],
         };
         for &(basis, mu) in rungs {
-            if let Some(condition) = self.fit::<GRAD>(basis, mu, at) {
-                outcome.condition = condition;
-                outcome.regularised = mu > self.mu;
-                outcome.reduced = basis != self.basis;
-                return Ok(outcome);
+            if let Some(condition) = self.fit::<GRAD>(basis, mu, group)[0] {
+                let first = rows.values.len();
+                rows.nodes.extend_from_slice(&nodes);
+                rows.close();
+                rows.values.resize(first + found, 0.0);
+                rows.grads.resize(if GRAD { first + found } else { 0 }, Vector3::zeros());
+                let grads = if GRAD { &mut rows.grads[first..] } else { &mut [] };
+                group.store(0, &mut rows.values[first..], grads);
+                return Ok(Outcome {
+                    neighbours: found as u32,
+                    condition,
+                    enlarged: enlargement > 1.0,
+                    regularised: mu > self.mu,
+                    reduced: basis != self.basis,
+                });
             }
         }
         let point = *x;
@@ -296,23 +371,57 @@ impl Approximation {
 mod tests {
     use super::*;
 
+    type Fill = fn(&Approximation, &[Point3], &mut Chunk) -> Result<(), EfgError>;
+
+    /// Every way to the same bits that this machine has.
+    fn paths() -> Vec<(&'static str, Fill)> {
+        let mut paths: Vec<(&'static str, Fill)> = vec![("chosen", Approximation::fill::<true>)];
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked.
+            paths.push(("avx2", |mls, points, chunk| unsafe { mls.fill_avx2::<true>(points, chunk) }));
+        }
+        paths
+    }
+
     #[test]
-    fn wide_registers_give_the_same_bits() {
+    fn wide_registers_and_the_company_in_a_group_leave_the_bits_alone() {
         let nodes: Vec<Point3> = (0..216)
             .map(|i| Point3::new((i % 6) as f64, (i / 6 % 6) as f64 + 0.1 * (i % 5) as f64, (i / 36) as f64))
             .collect();
-        let points: Vec<Point3> =
-            (0..64).map(|q| Point3::new(0.077, 0.053, 0.061) * q as f64 + Vector3::repeat(0.1)).collect();
+        // Every sixteenth point lies just beyond all supports, and climbs the ladder between others that do not.
+        let at = |q: usize| {
+            let x = Point3::new(0.077, 0.053, 0.061) * q as f64 + Vector3::repeat(0.1);
+            if q % 16 == 7 { Point3::new(7.7, x.y, x.z) } else { x }
+        };
+        let points: Vec<Point3> = (0..64).map(at).collect();
+        let radii: Vec<f64> = (0..216).map(|i| 2.6 + 0.01 * (i % 7) as f64).collect();
         for kernel in Kernel::ALL {
             for basis in Basis::ALL {
-                let mls = Approximation::new(nodes.clone(), vec![2.6; 216], kernel, basis).unwrap();
-                let (mut chosen, mut plain) = (Batch::default(), Batch::default());
-                mls.batch::<true>(&points, &mut chosen).unwrap();
-                mls.batch_plain::<true>(&points, &mut plain).unwrap();
-                let label = format!("{} {}", kernel.name(), basis.name());
-                assert!(chosen.values.len() > 640 && chosen.nodes == plain.nodes, "{label}");
-                assert!(chosen.values == plain.values && chosen.grads == plain.grads, "{label}");
-                assert_eq!(chosen.outcomes, plain.outcomes, "{label}");
+                let mls = Approximation::new(nodes.clone(), radii.clone(), kernel, basis).unwrap();
+                let mut plain = Chunk::default();
+                mls.fill_plain::<true>(&points, &mut plain).unwrap();
+                assert!(plain.rows.values.len() > 640);
+                assert!(plain.outcomes.iter().enumerate().all(|(q, o)| o.enlarged == (q % 16 == 7)));
+                let mut alone = Chunk::default();
+                let mut one_by_one = Chunk::default();
+                for x in &points {
+                    mls.fill_plain::<true>(&[*x], &mut alone).unwrap();
+                    one_by_one.rows.append(&alone.rows);
+                    one_by_one.outcomes.extend_from_slice(&alone.outcomes);
+                }
+                let mut others = vec![("one by one", one_by_one)];
+                for (path, fill) in paths() {
+                    let mut chunk = Chunk::default();
+                    fill(&mls, &points, &mut chunk).unwrap();
+                    others.push((path, chunk));
+                }
+                for (path, Chunk { rows, outcomes, .. }) in &others {
+                    let label = format!("{path} {} {}", kernel.name(), basis.name());
+                    assert!(rows.offsets == plain.rows.offsets && rows.nodes == plain.rows.nodes, "{label}");
+                    assert!(rows.values == plain.rows.values && rows.grads == plain.rows.grads, "{label}");
+                    assert_eq!(*outcomes, plain.outcomes, "{label}");
+                }
             }
         }
     }

@@ -8,6 +8,7 @@ use shape::{Point3, PointRows, Vector3};
 use crate::approximation::{MARGIN, SAMPLES, SPARING};
 use crate::cells::tet_measure;
 use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
+use crate::row_list::RowList;
 use crate::{Approximation, EfgError, MlsInfo};
 
 /// Cells per parallel task: fixed, so that results are the same bits at any thread count.
@@ -16,26 +17,13 @@ const CHUNK: usize = 128;
 /// Cells per wave and thread: their rows are kept twice while they are joined to the others.
 const WAVE: usize = 4 * CHUNK;
 
-/// Rows of every cell of a mesh of tet4, P for each: values at its points, and the smoothed gradients there (1/m).
+/// Rows of every cell of a mesh of tet4, P for each: values at its points, and the smoothed gradients there.
 #[derive(Default)]
 pub(crate) struct CellRows {
-    pub offsets: Vec<usize>,
-    /// Nodes of each row, ascending.
-    pub nodes: Vec<u32>,
-    pub values: Vec<f64>,
-    pub grads: Vec<Vector3>,
+    pub rows: RowList,
     /// Weights, m^3.
     pub weights: Vec<f64>,
     pub points: Vec<Point3>,
-}
-
-/// Rows of one chunk of cells.
-#[derive(Default)]
-pub(crate) struct Batch {
-    lengths: Vec<usize>,
-    nodes: Vec<u32>,
-    values: Vec<f64>,
-    grads: Vec<Vector3>,
 }
 
 /// Values at further points, evaluated together with those of the cells: one call, one report.
@@ -103,44 +91,28 @@ impl CellRows {
         let parts = Parts::<P> { mesh, faces, areas, rule, at, first_inner, volumes, basis: volume_basis() };
 
         let entries = parts.expected_entries(approximation.nodes().len());
-        let mut rows = CellRows {
-            offsets: Vec::with_capacity(P * count + 1),
-            nodes: Vec::with_capacity(entries),
-            values: Vec::with_capacity(entries),
-            grads: Vec::with_capacity(entries),
-            weights: parts.volumes.iter().flat_map(|v| [v / P as f64; P]).collect(),
-            points: inner,
-        };
-        rows.offsets.push(0);
+        let mut rows = RowList::with_capacity(P * count, entries, entries);
         let cells: Vec<usize> = (0..count).collect();
         for wave in cells.chunks(WAVE * rayon::current_num_threads()) {
             // A sum has a place for every node of the cloud: one for each chunk would make the whole quadratic.
             let sum = || Sum::<P>::new(approximation.nodes().len());
             let work = |sum: &mut Sum<P>, chunk: &[usize]| {
-                let mut batch = Batch::default();
+                let mut batch = RowList::default();
                 chunk.iter().for_each(|&cell| parts.add(cell, sum, &mut batch));
                 batch
             };
-            let batches: Vec<Batch> = wave.par_chunks(CHUNK).map_init(sum, work).collect();
+            let batches: Vec<RowList> = wave.par_chunks(CHUNK).map_init(sum, work).collect();
             batches.iter().for_each(|batch| rows.append(batch));
         }
-        let first = first_inner + rows.points.len();
-        Ok((rows, Beside { at: parts.at, first }, info))
-    }
-
-    pub fn append(&mut self, batch: &Batch) {
-        for length in &batch.lengths {
-            self.offsets.push(self.offsets[self.offsets.len() - 1] + length);
-        }
-        self.nodes.extend_from_slice(&batch.nodes);
-        self.values.extend_from_slice(&batch.values);
-        self.grads.extend_from_slice(&batch.grads);
+        let first = first_inner + inner.len();
+        let weights = parts.volumes.iter().flat_map(|v| [v / P as f64; P]).collect();
+        Ok((CellRows { rows, weights, points: inner }, Beside { at: parts.at, first }, info))
     }
 }
 
 impl<const P: usize> Parts<'_, P> {
     /// Appends the rows of a cell.
-    fn add(&self, cell: usize, sum: &mut Sum<P>, batch: &mut Batch) {
+    fn add(&self, cell: usize, sum: &mut Sum<P>, rows: &mut RowList) {
         for (face, &(number, sign)) in self.faces.of_cell[cell].iter().enumerate() {
             let flow = self.areas[number as usize] * (sign / self.volumes[cell]);
             let corners = local_corners(self.mesh, cell, face);
@@ -155,13 +127,13 @@ impl<const P: usize> Parts<'_, P> {
         for q in 0..P {
             sum.add_inner(&self.at, self.first_inner + P * cell + q, q, &slopes);
         }
-        sum.drain_into(&self.basis, batch);
+        sum.drain_into(&self.basis, rows);
     }
 
     /// Entries of all rows by those of a few cells, with a margin.
     fn expected_entries(&self, nodes: usize) -> usize {
         let count = self.volumes.len();
-        let (mut sum, mut batch) = (Sum::<P>::new(nodes), Batch::default());
+        let (mut sum, mut batch) = (Sum::<P>::new(nodes), RowList::default());
         let mut sampled = 0;
         for cell in (0..count).step_by((count / SAMPLES).max(SPARING)) {
             self.add(cell, &mut sum, &mut batch);
@@ -271,17 +243,17 @@ impl<const P: usize> Sum<P> {
     }
 
     /// Appends the rows of the cell's points, by ascending node, and clears.
-    pub fn drain_into(&mut self, basis: &[[f64; P]; P], batch: &mut Batch) {
+    pub fn drain_into(&mut self, basis: &[[f64; P]; P], rows: &mut RowList) {
         self.touched.sort_unstable();
         for (q, basis) in basis.iter().enumerate() {
-            batch.lengths.push(self.touched.len());
-            batch.nodes.extend_from_slice(&self.touched);
+            rows.nodes.extend_from_slice(&self.touched);
+            rows.close();
             for &node in &self.touched {
                 let i = node as usize;
                 let moments = self.moments[i];
                 let slopes = if P == 1 { moments } else { solve_moments(moments) };
-                batch.values.push(self.values[i][q]);
-                batch.grads.push(combine(&slopes, basis));
+                rows.values.push(self.values[i][q]);
+                rows.grads.push(combine(&slopes, basis));
             }
         }
         for &node in &self.touched {
@@ -295,9 +267,9 @@ impl<const P: usize> Sum<P> {
 impl Sum<1> {
     /// Adds the constant gradients of a cell, `share` of them.
     pub fn add_share(&mut self, cells: &CellRows, cell: usize, share: f64) {
-        for i in cells.offsets[cell]..cells.offsets[cell + 1] {
-            self.touch(cells.nodes[i]);
-            self.moments[cells.nodes[i] as usize][0] += cells.grads[i] * share;
+        for i in cells.rows.range(cell) {
+            self.touch(cells.rows.nodes[i]);
+            self.moments[cells.rows.nodes[i] as usize][0] += cells.rows.grads[i] * share;
         }
     }
 

@@ -25,7 +25,7 @@ pub struct MlsInfo {
 }
 
 /// One point's share of the report.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) neighbours: u32,
     pub(crate) condition: f64,

@@ -27,9 +27,11 @@ mod gauss;
 mod grid;
 mod info;
 mod kernel;
+mod lanes;
 mod ldlt;
 mod mls;
 mod node_smoothed;
+mod row_list;
 mod smoothed;
 mod support;
 

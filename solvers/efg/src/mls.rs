@@ -1,4 +1,4 @@
-//! Moving least squares at one point: moment matrix, one factorisation, value and gradient.
+//! Moving least squares at eight points at a time, one to a lane: moment matrix, one factorisation, value and gradient.
 //!
 //! With `p_I = p((x_I - x)/s)`, `A = sum_I w_I p_I p_I^T` and `c0 = A^-1 e0`, values are `phi_I = c0.p_I w_I`.
 //! Gradients hold the basis frozen at `x`: `c_a = A^-1 (e_a/s - A_,a c0)`, `phi_I,a = c_a.p_I w_I + c0.p_I w_I,a`,
@@ -6,49 +6,16 @@
 
 use shape::{Point3, Vector3};
 
-use crate::basis::terms;
+use crate::basis::{PRODUCT, monomials, terms};
 use crate::kernel::Kernel;
-use crate::ldlt::{Ldlt, norm};
-
-/// Neighbours are worked through in groups of this many; sums keep one partial sum per place in the group, so that
-/// their order, and with it the last bit, does not depend on the vector width of the machine.
-const LANES: usize = 4;
+use crate::lanes::{LANES, Lanes};
+use crate::ldlt::{Ldlt, Matrices, norm};
 
 /// Smallest pivot relative to its diagonal entry; rounding leaves 1e-16 where neighbours do not span the basis.
 const PIVOT_TOLERANCE: f64 = 1e-10;
 
-/// Largest error of reproduction of the basis at which a solution is accepted.
+/// Largest error of reproduction of the basis, in the 2-norm over its terms, at which a solution is accepted.
 const REPRODUCTION_TOLERANCE: f64 = 1e-9;
-
-/// Everything one point needs, reused from point to point: no allocation in the loop.
-#[derive(Default)]
-pub(crate) struct Workspace {
-    /// Neighbours by ascending index.
-    pub(crate) nodes: Vec<u32>,
-    /// `phi_I`, one per neighbour.
-    pub(crate) values: Vec<f64>,
-    /// `grad phi_I` (1/m), one per neighbour; filled only when asked for.
-    pub(crate) grads: Vec<Vector3>,
-    /// Scaled offsets `(x_I - x)/s` by axis; this and the lists below are padded to whole lanes with zero weight.
-    offset: [Vec<f64>; 3],
-    relative: Vec<f64>,
-    weight: Vec<f64>,
-    /// `dw/dq`; then `-(dw/dq) s/(q R^2)` (1/m), which times the scaled offset is the gradient of the weight.
-    slope: Vec<f64>,
-    /// `1/(q R^2)` (1/m^2), or zero at the node itself.
-    chain: Vec<f64>,
-    scale: f64,
-    staged: Vec<Staged>,
-}
-
-/// A candidate as first looked at.
-#[derive(Clone, Copy, Default)]
-struct Staged {
-    offset: [f64; 3],
-    square: f64,
-    radius: f64,
-    node: u32,
-}
 
 /// A node and its support, side by side in memory.
 #[derive(Clone, Copy)]
@@ -57,249 +24,327 @@ pub(crate) struct Ball {
     pub(crate) radius: f64,
 }
 
-impl Workspace {
-    /// Collects those candidates whose support, `enlargement` times its radius, covers `x`.
+impl Ball {
+    /// Whether the support, `enlargement` times its radius, covers a point.
     #[inline(always)]
-    pub(crate) fn gather(
-        &mut self,
-        x: &Point3,
-        candidates: impl ExactSizeIterator<Item = u32>,
-        balls: &[Ball],
-        enlargement: f64,
-    ) {
-        self.staged.resize(candidates.len(), Staged::default());
-        let mut n = 0;
-        for node in candidates {
-            let Ball { at, radius } = balls[node as usize];
-            let radius = radius * enlargement;
-            let offset = [at[0] - x.x, at[1] - x.y, at[2] - x.z];
-            let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
-            // Written always, counted if covered: about half of the candidates are not, and a branch would be mispredicted.
-            self.staged[n] = Staged { offset, square, radius, node };
-            n += usize::from(square < radius * radius);
-        }
-        let staged = &self.staged[..n];
-        let padded = n.next_multiple_of(LANES);
-        self.nodes.resize(n, 0);
-        for list in self.offset.iter_mut().chain([&mut self.relative, &mut self.chain]) {
-            list.resize(padded, 0.0);
-        }
-        let [ox, oy, oz] = &mut self.offset;
-        let (ox, oy, oz) = (&mut ox[..padded], &mut oy[..padded], &mut oz[..padded]);
-        let (nodes, relative, chain) =
-            (&mut self.nodes[..n], &mut self.relative[..padded], &mut self.chain[..padded]);
-        let mut scale = 0.0;
-        for s in staged {
-            scale = if s.radius > scale { s.radius } else { scale };
-        }
-        self.scale = scale;
-        let inverse = 1.0 / scale;
-        for (k, s) in staged.iter().enumerate() {
-            nodes[k] = s.node;
-            (ox[k], oy[k], oz[k]) = (s.offset[0] * inverse, s.offset[1] * inverse, s.offset[2] * inverse);
-            (relative[k], chain[k]) = (s.square, s.radius);
-        }
-        for k in n..padded {
-            (ox[k], oy[k], oz[k], relative[k], chain[k]) = (0.0, 0.0, 0.0, 1.0, 1.0);
-        }
-        for (relative, chain) in relative.iter_mut().zip(chain) {
-            let inverse_radius = 1.0 / *chain;
-            // Rounding must not lift q beyond 1, where kernels written for q < 1 need not vanish.
-            let q = (relative.sqrt() * inverse_radius).min(1.0);
-            *relative = q;
-            *chain = if q > 0.0 { inverse_radius * inverse_radius / q } else { 0.0 };
-        }
-    }
-
-    /// Fits the `M`-term basis over the neighbours gathered: values, and gradients if `GRAD`. `mu` regularises the
-    /// quadratic block: `A + mu A_00 diag(0, .., 0, 1, .., 1)`, free of scale, exact for linear fields at any `mu`
-    /// (Joldes et al. 2015, modified MLS). Returns the condition number of the matrix in the 1-norm, or `None`
-    /// if it is singular to working precision.
-    #[inline(always)]
-    pub(crate) fn fit<const M: usize, const GRAD: bool>(&mut self, kernel: Kernel, mu: f64) -> Option<f64> {
-        let n = self.nodes.len();
-        if n == 0 {
-            return None;
-        }
-        let padded = n.next_multiple_of(LANES);
-        self.weight.resize(padded, 0.0);
-        self.slope.resize(padded, 0.0);
-        kernel.eval_all(&self.relative[..n], &mut self.weight[..n], &mut self.slope[..n]);
-        self.weight[n..padded].fill(0.0);
-        self.slope[n..padded].fill(0.0);
-        let (weight, slope) = (&self.weight[..padded], &mut self.slope[..padded]);
-        let [ox, oy, oz] = &self.offset;
-        let (ox, oy, oz) = (&ox[..padded], &oy[..padded], &oz[..padded]);
-
-        let a = moment::<M>(weight, ox, oy, oz, mu);
-        let ldlt = Ldlt::new(&a, PIVOT_TOLERANCE)?;
-        let mut c0 = [[0.0]; M];
-        c0[0][0] = 1.0;
-        ldlt.solve(&mut c0);
-        let mut column = [0.0; M];
-        for i in 0..M {
-            column[i] = c0[i][0];
-        }
-        let c0 = column;
-        for i in 0..M {
-            let residual = (0..M).map(|j| a[i][j] * c0[j]).sum::<f64>() - f64::from(i == 0);
-            // A NaN must not pass.
-            if residual.abs().partial_cmp(&REPRODUCTION_TOLERANCE) != Some(std::cmp::Ordering::Less) {
-                return None;
-            }
-        }
-        let condition = norm(&a) * ldlt.inverse_norm();
-
-        self.values.resize(padded, 0.0);
-        let values = &mut self.values[..padded];
-        if !GRAD {
-            for k in 0..padded {
-                values[k] = weight[k] * dot(&c0, &terms([ox[k], oy[k], oz[k]]));
-            }
-            self.values.truncate(n);
-            return Some(condition);
-        }
-
-        // grad w_I = dw/dq (x - x_I)/(d R) = -(dw/dq) s/(q R^2) times the scaled offset.
-        for (slope, chain) in slope.iter_mut().zip(&self.chain) {
-            *slope *= -self.scale * chain;
-        }
-        let inverse = 1.0 / self.scale;
-        let mut ca = derivative_moment::<M>(slope, ox, oy, oz, &c0, mu);
-        for i in 0..M {
-            for axis in 0..3 {
-                ca[i][axis] = (if i == axis + 1 { inverse } else { 0.0 }) - ca[i][axis];
-            }
-        }
-        ldlt.solve(&mut ca);
-        self.grads.resize(padded, Vector3::zeros());
-        let grads = &mut self.grads[..padded];
-        for k in 0..padded {
-            let p = terms::<M>([ox[k], oy[k], oz[k]]);
-            let c = dot(&c0, &p);
-            values[k] = weight[k] * c;
-            let mut g = [0.0; 3];
-            for i in 0..M {
-                for axis in 0..3 {
-                    g[axis] += ca[i][axis] * p[i];
-                }
-            }
-            let along = slope[k] * c;
-            grads[k] = Vector3::new(
-                weight[k] * g[0] + along * ox[k],
-                weight[k] * g[1] + along * oy[k],
-                weight[k] * g[2] + along * oz[k],
-            );
-        }
-        self.values.truncate(n);
-        self.grads.truncate(n);
-        Some(condition)
+    pub(crate) fn covers(&self, x: &Point3, enlargement: f64) -> bool {
+        let offset = [self.at[0] - x.x, self.at[1] - x.y, self.at[2] - x.z];
+        let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+        let radius = self.radius * enlargement;
+        square < radius * radius
     }
 }
 
+/// The neighbours of eight points and what is made of them, entry `k` of every list for the `k`-th neighbour of every
+/// point. Reused from group to group: no allocation in the loop.
+#[derive(Default)]
+pub(crate) struct Group {
+    /// Neighbours of each point; lists are as long as the longest, with zero weight beyond a point's own.
+    counts: [usize; LANES],
+    /// Offsets `x_I - x` by axis, m; sums over them are scaled instead, once for all neighbours.
+    offset: Vec<[Lanes; 3]>,
+    /// Support radius (m), then `1/(d R)` (1/m^2), or zero at the node itself.
+    chain: Vec<Lanes>,
+    /// Relative distance `q = d/R`.
+    relative: Vec<Lanes>,
+    weight: Vec<Lanes>,
+    /// `dw/dq`; then `-(dw/dq)/(d R) c0.p_I` (1/m^2), which times the offset is the part of the gradient that the weight has.
+    slope: Vec<Lanes>,
+    /// `c0.p_I`.
+    fit: Vec<Lanes>,
+    values: Vec<Lanes>,
+    grads: Vec<[Lanes; 3]>,
+    /// `s`, the largest radius among a point's neighbours, m.
+    scale: Lanes,
+}
+
+impl Group {
+    /// Takes up to eight points with their neighbours, whose supports, `enlargement` times their radii, cover them.
+    #[inline(always)]
+    pub(crate) fn load<'a>(
+        &mut self,
+        points: impl Iterator<Item = (&'a Point3, &'a [u32])> + Clone,
+        balls: &[Ball],
+        enlargement: f64,
+    ) {
+        self.counts = [0; LANES];
+        for (count, (_, nodes)) in self.counts.iter_mut().zip(points.clone()) {
+            *count = nodes.len();
+        }
+        let longest = self.longest();
+        let lists = [&mut self.chain, &mut self.relative, &mut self.weight, &mut self.slope, &mut self.fit];
+        for list in lists.into_iter().chain([&mut self.values]) {
+            list.resize(longest, [0.0; LANES]);
+        }
+        for list in [&mut self.offset, &mut self.grads] {
+            list.resize(longest, [[0.0; LANES]; 3]);
+        }
+        let (offset, chain) = (&mut self.offset[..longest], &mut self.chain[..longest]);
+        let relative = &mut self.relative[..longest];
+        for (l, (x, nodes)) in points.enumerate() {
+            for ((&node, offset), radius) in nodes.iter().zip(&mut *offset).zip(&mut *chain) {
+                let ball = balls[node as usize];
+                for axis in 0..3 {
+                    offset[axis][l] = ball.at[axis] - x[axis];
+                }
+                radius[l] = ball.radius * enlargement;
+            }
+        }
+        for l in 0..LANES {
+            for k in self.counts[l]..longest {
+                (offset[k][0][l], offset[k][1][l], offset[k][2][l], chain[k][l]) = (0.0, 0.0, 0.0, 0.0);
+            }
+        }
+        let mut scale = [0.0; LANES];
+        for k in 0..longest {
+            let ([x, y, z], radius) = (offset[k], chain[k]);
+            let (mut inverse, mut q) = ([0.0; LANES], [0.0; LANES]);
+            for l in 0..LANES {
+                let r = radius[l];
+                scale[l] = if r > scale[l] { r } else { scale[l] };
+                let square = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
+                let product = square.sqrt() * r;
+                // A quotient of selected numbers: a selected quotient would be a branch.
+                let at_node = !(product > 0.0);
+                inverse[l] = if at_node { 0.0 } else { 1.0 } / if at_node { 1.0 } else { product };
+                // Rounding must not lift q beyond 1, where kernels written for q < 1 need not vanish.
+                q[l] = (square * inverse[l]).min(1.0);
+            }
+            (chain[k], relative[k]) = (inverse, q);
+        }
+        self.scale = scale;
+    }
+
+    /// Neighbours of one point.
+    pub(crate) fn count(&self, lane: usize) -> usize {
+        self.counts[lane]
+    }
+
+    fn longest(&self) -> usize {
+        self.counts.into_iter().fold(0, usize::max)
+    }
+
+    /// Fits the `M`-term basis over the neighbours loaded: values, and gradients if `GRAD`. `PRODUCTS` and `FLOWS`
+    /// count the monomials of twice and of one more than the degree of the basis. `mu` regularises the
+    /// quadratic block: `A + mu A_00 diag(0, .., 0, 1, .., 1)`, free of scale, exact for linear fields at any `mu`
+    /// (Joldes et al. 2015, modified MLS). Returns the condition number of each matrix in the 1-norm, or `None`
+    /// if it is singular to working precision.
+    #[inline(always)]
+    pub(crate) fn fit<const M: usize, const PRODUCTS: usize, const FLOWS: usize, const GRAD: bool>(
+        &mut self,
+        kernel: Kernel,
+        mu: f64,
+    ) -> [Option<f64>; LANES] {
+        let longest = self.longest();
+        self.weigh(kernel);
+        let weight = &self.weight[..longest];
+        let offset = &self.offset[..longest];
+
+        let mut sums = [[0.0; LANES]; PRODUCTS];
+        for k in 0..longest {
+            // Of local numbers the compiler knows that they do not overlap: else lanes are worked through one by one.
+            let (w, [x, y, z]) = (weight[k], offset[k]);
+            for l in 0..LANES {
+                add_to_lane(&mut sums, l, &monomials(w[l], [x[l], y[l], z[l]]));
+            }
+        }
+        let powers = powers::<M>(&self.scale);
+        let mut a = [[[0.0; LANES]; M]; M];
+        for i in 0..M {
+            for j in 0..M {
+                for l in 0..LANES {
+                    a[i][j][l] = sums[PRODUCT[i][j]][l] * (powers[i][l] * powers[j][l]);
+                }
+            }
+        }
+        for i in 4..M {
+            for l in 0..LANES {
+                a[i][i][l] += mu * a[0][0][l];
+            }
+        }
+        let ldlt = Ldlt::new(&a, PIVOT_TOLERANCE);
+        let mut c0 = [[[0.0; LANES]]; M];
+        c0[0][0] = [1.0; LANES];
+        ldlt.solve(&mut c0);
+        let condition = conditions(&a, &c0, &ldlt);
+        if GRAD {
+            self.with_gradients::<M, FLOWS>(&ldlt, &c0, &powers, mu);
+        } else {
+            let values = &mut self.values[..longest];
+            let c = scaled(&c0, &powers);
+            for k in 0..longest {
+                let (w, [x, y, z]) = (weight[k], offset[k]);
+                let mut value = [0.0; LANES];
+                for l in 0..LANES {
+                    value[l] = w[l] * dot(&c, 0, l, &terms([x[l], y[l], z[l]]));
+                }
+                values[k] = value;
+            }
+        }
+        condition
+    }
+
+    /// Weights and their slopes.
+    #[inline(always)]
+    fn weigh(&mut self, kernel: Kernel) {
+        let longest = self.longest();
+        kernel.eval_all(
+            self.relative[..longest].as_flattened(),
+            self.weight[..longest].as_flattened_mut(),
+            self.slope[..longest].as_flattened_mut(),
+        );
+        for l in 0..LANES {
+            for k in self.counts[l]..longest {
+                (self.weight[k][l], self.slope[k][l]) = (0.0, 0.0);
+            }
+        }
+    }
+
+    /// Values and gradients from the factors and `c0`.
+    #[inline(always)]
+    fn with_gradients<const M: usize, const FLOWS: usize>(
+        &mut self,
+        ldlt: &Ldlt<M>,
+        c0: &Matrices<M, 1>,
+        powers: &[Lanes; M],
+        mu: f64,
+    ) {
+        let longest = self.longest();
+        let (weight, chain) = (&self.weight[..longest], &self.chain[..longest]);
+        let (slope, fit, values) =
+            (&mut self.slope[..longest], &mut self.fit[..longest], &mut self.values[..longest]);
+        let offset = &self.offset[..longest];
+
+        let c = scaled(c0, powers);
+        // A_,a c0: the basis frozen, so that only the weights change with x; grad w_I = -(dw/dq)/(d R) (x_I - x).
+        let (mut sums, mut spread) = ([[0.0; LANES]; FLOWS], [[0.0; LANES]; 3]);
+        for k in 0..longest {
+            let (w, [x, y, z]) = (weight[k], offset[k]);
+            let (dw, inverse) = (slope[k], chain[k]);
+            let (mut of_point, mut value, mut flow) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for l in 0..LANES {
+                let at = [x[l], y[l], z[l]];
+                let fit = dot(&c, 0, l, &terms(at));
+                let g = -dw[l] * inverse[l];
+                of_point[l] = fit;
+                value[l] = w[l] * fit;
+                flow[l] = g * fit;
+                for axis in 0..3 {
+                    spread[axis][l] += g * at[axis];
+                }
+                add_to_lane(&mut sums, l, &monomials(flow[l], at));
+            }
+            (fit[k], values[k], slope[k]) = (of_point, value, flow);
+        }
+        let mut ca = [[[0.0; LANES]; 3]; M];
+        for i in 0..M {
+            for axis in 0..3 {
+                for l in 0..LANES {
+                    let extra = if i < 4 { 0.0 } else { mu * spread[axis][l] * c0[i][0][l] };
+                    let unit = if i == axis + 1 { powers[i][l] } else { 0.0 };
+                    ca[i][axis][l] = unit - (sums[PRODUCT[i][axis + 1]][l] * powers[i][l] + extra);
+                }
+            }
+        }
+        ldlt.solve(&mut ca);
+        let ca = scaled(&ca, powers);
+        let grads = &mut self.grads[..longest];
+        for k in 0..longest {
+            let (w, [x, y, z], flow) = (weight[k], offset[k], slope[k]);
+            let mut grad = [[0.0; LANES]; 3];
+            for l in 0..LANES {
+                let at = [x[l], y[l], z[l]];
+                let p = terms(at);
+                for axis in 0..3 {
+                    grad[axis][l] = w[l] * dot(&ca, axis, l, &p) + flow[l] * at[axis];
+                }
+            }
+            grads[k] = grad;
+        }
+    }
+
+    /// Writes one point's values, and its gradients (1/m) if there is room for them.
+    #[inline(always)]
+    pub(crate) fn store(&self, lane: usize, values: &mut [f64], grads: &mut [Vector3]) {
+        for (value, of_lanes) in values.iter_mut().zip(&self.values) {
+            *value = of_lanes[lane];
+        }
+        for (grad, [x, y, z]) in grads.iter_mut().zip(&self.grads) {
+            *grad = Vector3::new(x[lane], y[lane], z[lane]);
+        }
+    }
+}
+
+/// `s` to the minus degree of each term: what makes sums over offsets those over scaled offsets.
 #[inline(always)]
-fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
+fn powers<const M: usize>(scale: &Lanes) -> [Lanes; M] {
+    let mut powers = [[1.0; LANES]; M];
+    for i in 1..M {
+        for l in 0..LANES {
+            let inverse = 1.0 / scale[l];
+            powers[i][l] = if i < 4 { inverse } else { inverse * inverse };
+        }
+    }
+    powers
+}
+
+/// Every row times its power: coefficients of scaled offsets become those of offsets.
+#[inline(always)]
+fn scaled<const M: usize, const K: usize>(c: &Matrices<M, K>, powers: &[Lanes; M]) -> Matrices<M, K> {
+    let mut scaled = *c;
+    for i in 0..M {
+        for k in 0..K {
+            for l in 0..LANES {
+                scaled[i][k][l] *= powers[i][l];
+            }
+        }
+    }
+    scaled
+}
+
+/// One column in one lane times the terms.
+#[inline(always)]
+fn dot<const M: usize, const K: usize>(c: &Matrices<M, K>, column: usize, l: usize, p: &[f64; M]) -> f64 {
     let mut sum = 0.0;
     for i in 0..M {
-        sum += a[i] * b[i];
+        sum += c[i][column][l] * p[i];
     }
     sum
 }
 
-/// The terms at `LANES` neighbours, term by term.
 #[inline(always)]
-fn lane_terms<const M: usize>(x: &[f64], y: &[f64], z: &[f64]) -> [[f64; LANES]; M] {
-    let mut all = [[0.0; LANES]; M];
-    for lane in 0..LANES {
-        let p = terms::<M>([x[lane], y[lane], z[lane]]);
-        for i in 0..M {
-            all[i][lane] = p[i];
-        }
+fn add_to_lane<const N: usize>(sums: &mut [Lanes; N], l: usize, terms: &[f64; N]) {
+    for n in 0..N {
+        sums[n][l] += terms[n];
     }
-    all
 }
 
+/// Condition number of each matrix, or `None` where `c0` must not be used.
 #[inline(always)]
-fn lane_sum(lanes: &[f64; LANES]) -> f64 {
-    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
-}
-
-/// Moment matrix `A = sum w p p^T`, (M, M), dimensionless, regularised by `mu`.
-#[inline(always)]
-fn moment<const M: usize>(weight: &[f64], ox: &[f64], oy: &[f64], oz: &[f64], mu: f64) -> [[f64; M]; M] {
-    let mut sums = [[[0.0; LANES]; M]; M];
-    let groups = weight
-        .chunks_exact(LANES)
-        .zip(ox.chunks_exact(LANES))
-        .zip(oy.chunks_exact(LANES).zip(oz.chunks_exact(LANES)));
-    for ((w, x), (y, z)) in groups {
-        let p = lane_terms::<M>(x, y, z);
-        for i in 0..M {
-            for j in 0..=i {
-                for lane in 0..LANES {
-                    sums[i][j][lane] += w[lane] * p[i][lane] * p[j][lane];
-                }
-            }
-        }
-    }
-    let mut a = [[0.0; M]; M];
+fn conditions<const M: usize>(
+    a: &Matrices<M, M>,
+    c0: &Matrices<M, 1>,
+    ldlt: &Ldlt<M>,
+) -> [Option<f64>; LANES] {
+    let mut residual = [0.0; LANES];
     for i in 0..M {
-        for j in 0..=i {
-            a[i][j] = lane_sum(&sums[i][j]);
-            a[j][i] = a[i][j];
-        }
-    }
-    let extra = mu * a[0][0];
-    for i in 4..M {
-        a[i][i] += extra;
-    }
-    a
-}
-
-/// `A_,a c0` for the three axes, (M, 3), 1/m: the basis frozen, so that only the weights change with `x`.
-#[inline(always)]
-fn derivative_moment<const M: usize>(
-    slope: &[f64],
-    ox: &[f64],
-    oy: &[f64],
-    oz: &[f64],
-    c0: &[f64; M],
-    mu: f64,
-) -> [[f64; 3]; M] {
-    let mut sums = [[[0.0; LANES]; 3]; M];
-    let mut weight_sums = [[0.0; LANES]; 3];
-    let groups = slope
-        .chunks_exact(LANES)
-        .zip(ox.chunks_exact(LANES))
-        .zip(oy.chunks_exact(LANES).zip(oz.chunks_exact(LANES)));
-    for ((g, x), (y, z)) in groups {
-        let p = lane_terms::<M>(x, y, z);
-        let offset = [p[1], p[2], p[3]];
-        let mut fit = [0.0; LANES];
-        for i in 0..M {
-            for lane in 0..LANES {
-                fit[lane] += c0[i] * p[i][lane];
+        let mut row = [if i == 0 { -1.0 } else { 0.0 }; LANES];
+        for j in 0..M {
+            for l in 0..LANES {
+                row[l] += a[i][j][l] * c0[j][0][l];
             }
         }
-        for axis in 0..3 {
-            for lane in 0..LANES {
-                let change = g[lane] * offset[axis][lane];
-                weight_sums[axis][lane] += change;
-                for i in 0..M {
-                    sums[i][axis][lane] += change * fit[lane] * p[i][lane];
-                }
-            }
+        for l in 0..LANES {
+            // A NaN must not pass: a sum of squares keeps it, a maximum would not.
+            residual[l] += row[l] * row[l];
         }
     }
-    let mut r = [[0.0; 3]; M];
-    for axis in 0..3 {
-        for i in 0..M {
-            r[i][axis] = lane_sum(&sums[i][axis]);
-        }
-        let extra = mu * lane_sum(&weight_sums[axis]);
-        for i in 4..M {
-            r[i][axis] += extra * c0[i];
+    let (norm, inverse_norm) = (norm(a), ldlt.inverse_norm());
+    let mut conditions = [None; LANES];
+    for l in 0..LANES {
+        if ldlt.is_sound(l) && residual[l] < REPRODUCTION_TOLERANCE * REPRODUCTION_TOLERANCE {
+            conditions[l] = Some(norm[l] * inverse_norm[l]);
         }
     }
-    r
+    conditions
 }

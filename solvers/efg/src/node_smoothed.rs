@@ -5,9 +5,10 @@ use geometry::{Facet, Mesh};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, Rows, TraceRows, Unity, VolumeRows};
 
-use crate::cell_rows::{Batch, CellRows, Sum, face_basis, local_corners};
+use crate::cell_rows::{CellRows, Sum, face_basis, local_corners};
 use crate::cells::tet_measure;
 use crate::facets::{triangle_rule, vector_area};
+use crate::row_list::RowList;
 use crate::{Approximation, EfgError, MlsInfo};
 
 /// Vertices per parallel task: fixed, so that results are the same bits at any thread count.
@@ -47,7 +48,7 @@ pub fn node_smoothed_rows(
     let nodes = approximation.nodes().len();
     let sums = || Sum::<1>::new(nodes);
     let work = |sum: &mut Sum<1>, chunk: &[usize]| {
-        let mut batch = Batch::default();
+        let mut batch = RowList::default();
         for &domain in chunk {
             let volume = domains.volume(domain, &cells.weights);
             for &cell in domains.cells(domain) {
@@ -59,18 +60,18 @@ pub fn node_smoothed_rows(
         batch
     };
     let all: Vec<usize> = (0..domains.len()).collect();
-    let batches: Vec<Batch> = all.par_chunks(CHUNK).map_init(sums, work).collect();
+    let batches: Vec<RowList> = all.par_chunks(CHUNK).map_init(sums, work).collect();
     let of_vertices: Vec<f64> =
         all.iter().map(|&d| (1.0 - stabilisation) * domains.volume(d, &cells.weights)).collect();
     let mut rows = if stabilisation > 0.0 {
         CellRows { weights: cells.weights.iter().map(|v| stabilisation * v).collect(), ..cells }
     } else {
-        CellRows { offsets: vec![0], ..CellRows::default() }
+        CellRows::default()
     };
-    batches.iter().for_each(|batch| rows.append(batch));
+    batches.iter().for_each(|batch| rows.rows.append(batch));
     rows.weights.extend(of_vertices);
     rows.points.extend(at);
-    let CellRows { offsets, nodes: of_row, values, grads, weights, points } = rows;
+    let CellRows { rows: RowList { offsets, nodes: of_row, values, grads }, weights, points } = rows;
     let table = Rows::new(nodes, offsets, of_row, values, UNITY)?;
     Ok((VolumeRows::new(GradRows::new(points, table, grads)?, weights)?, info))
 }

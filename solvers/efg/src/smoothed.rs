@@ -7,6 +7,7 @@ use shape::{GradRows, Rows, TraceRows, Unity, VolumeRows};
 use crate::cell_rows::{CellRows, face_basis, local_corners, volume_basis};
 use crate::cells::tet_measure;
 use crate::facets::{triangle_rule, vector_area};
+use crate::row_list::RowList;
 use crate::{Approximation, EfgError, MlsInfo};
 
 /// The field of smoothed gradients inside a cell.
@@ -71,7 +72,7 @@ pub fn smoothed_rows(
         Smoothing::Constant => CellRows::new::<1>(approximation, background, face_points)?,
         Smoothing::Linear => CellRows::new::<4>(approximation, background, face_points)?,
     };
-    let CellRows { offsets, nodes, values, grads, weights, points } = rows;
+    let CellRows { rows: RowList { offsets, nodes, values, grads }, weights, points } = rows;
     let rows = Rows::new(approximation.nodes().len(), offsets, nodes, values, UNITY)?;
     Ok((VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?, info))
 }

@@ -116,17 +116,20 @@ impl Rows {
         let rows = Rows { node_count, offsets, nodes, values, uniform_len };
         for row in 0..rows.len() {
             let (nodes, values) = rows.row(row);
-            if let Some(&node) = nodes.iter().find(|&&n| n as usize >= node_count) {
+            // Sums first: a search for the offender would stop at every entry to look. Whatever is not finite makes the sum so.
+            let sum = sum_of(values);
+            let highest = nodes.iter().fold(0, |highest, &node| highest.max(node));
+            if !nodes.is_empty() && highest as usize >= node_count {
+                let node = nodes.iter().find(|&&n| n as usize >= node_count).map_or(highest, |&n| n);
                 return Err(ShapeError::NodeOutOfRange { row, node: node as usize, nodes: node_count });
             }
-            if !values.iter().all(|v| v.is_finite()) {
+            if !sum.is_finite() && !values.iter().all(|v| v.is_finite()) {
                 return Err(ShapeError::NotFinite { what: "value", row });
             }
-            if let Unity::Within(tolerance) = unity {
-                let sum: f64 = values.iter().sum();
-                if (sum - 1.0).abs() > tolerance {
-                    return Err(ShapeError::NotUnity { row, sum, tolerance });
-                }
+            if let Unity::Within(tolerance) = unity
+                && !((sum - 1.0).abs() <= tolerance)
+            {
+                return Err(ShapeError::NotUnity { row, sum, tolerance });
             }
         }
         Ok(rows)
@@ -213,4 +216,17 @@ impl Rows {
         }
         nodal
     }
+}
+
+/// Sum by four partial sums: one alone waits for every addition, four cycles of the processor each.
+fn sum_of(values: &[f64]) -> f64 {
+    let (groups, rest) = values.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for group in groups {
+        for (sum, value) in sums.iter_mut().zip(group) {
+            *sum += value;
+        }
+    }
+    let rest: f64 = rest.iter().sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
