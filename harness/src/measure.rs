@@ -6,7 +6,7 @@ use mechanics::{Body, Law};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::mean_pressure::cauchy;
-use crate::norms::{self, difference, exact_at, norms};
+use crate::norms::{self, difference, exact_at, norms, relative};
 use crate::outcome::{Metric, Probe};
 use crate::prepare::Prepared;
 use crate::run::{Asks, Solution};
@@ -58,9 +58,10 @@ pub(crate) fn measure(
     if let Some(against) = against {
         push_difference(metrics, "rms", &field, &against);
         push(metrics, "max-error", difference(&field, &against).max, "m");
-        let largest = against.iter().fold(0.0, |m: f64, u| m.max(u.norm()));
-        if largest > 0.0 {
-            push(metrics, "relative-max", difference(&field, &against).max / largest, "1");
+        if let Some(relative) = relative(&field, &against) {
+            push(metrics, "relative-rms", relative.rms, "1");
+            push(metrics, "relative-max", relative.max, "1");
+            push(metrics, "peak-error", relative.peak, "1");
         }
     }
     if let Some(beside) = asks.beside {

@@ -131,6 +131,29 @@ pub fn difference(a: &[Vector3], b: &[Vector3]) -> Difference {
     }
 }
 
+/// Errors of a field over the size of the one it is compared with, dimensionless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relative {
+    /// RMS of the difference's magnitude over that of the reference.
+    pub rms: f64,
+    /// Largest difference over the reference's largest magnitude.
+    pub max: f64,
+    /// Error of the largest magnitude, wherever each field has its own.
+    pub peak: f64,
+}
+
+/// Compares two fields at the same points; nothing where the reference vanishes.
+pub fn relative(a: &[Vector3], reference: &[Vector3]) -> Option<Relative> {
+    // A field's difference from nothing is its own size.
+    let size = |field: &[Vector3]| difference(field, &vec![Vector3::zeros(); field.len()]);
+    let (apart, own) = (difference(a, reference), size(reference));
+    (own.max > 0.0).then(|| Relative {
+        rms: apart.rms_magnitude / own.rms_magnitude,
+        max: apart.max / own.max,
+        peak: (size(a).max / own.max - 1.0).abs(),
+    })
+}
+
 /// The exact displacement at points.
 pub fn exact_at(exact: &dyn Exact, points: &[Point3]) -> Vec<Vector3> {
     points.iter().map(|x| exact.displacement(x)).collect()
@@ -147,6 +170,18 @@ mod tests {
         assert_eq!(d.rms, [0.5f64.sqrt(), 2.0f64.sqrt(), 0.0]);
         assert_eq!(d.rms_magnitude, 2.5f64.sqrt());
         assert_eq!(d.max, 2.0);
+    }
+
+    #[test]
+    fn a_relative_error_is_of_the_reference() {
+        let a = [Vector3::new(3.0, 0.0, 0.0), Vector3::new(0.0, 2.0, 0.0)];
+        let reference = [Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 4.0)];
+        let r = relative(&a, &reference).unwrap();
+        // Differences of 3 and sqrt(20) beside magnitudes of 0 and 4; the largest magnitude is 3 instead of 4.
+        assert!((r.rms - (29.0f64 / 16.0).sqrt()).abs() < 1e-15);
+        assert!((r.max - 20f64.sqrt() / 4.0).abs() < 1e-15);
+        assert_eq!(r.peak, 0.25);
+        assert_eq!(relative(&a, &[Vector3::zeros(); 2]), None);
     }
 
     #[test]

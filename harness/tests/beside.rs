@@ -35,6 +35,16 @@ fn beside_the_reference_itself_both_differences_are_one() {
         }
     }
     let efg = runs.iter().find(|r| r.identity.method == "efg").unwrap();
+    let tet4 = runs.iter().find(|r| r.identity.method == "tet4").unwrap();
+    for name in ["relative-rms", "relative-max", "peak-error"] {
+        assert_eq!(value(&tet4.metrics, name), 0.0, "{name}");
+    }
+    // The reference's largest displacement is that of tet4.
+    let of = |run: &Outcome, name: &str| value(&run.metrics, name);
+    let peak = (of(efg, "max") / of(tet4, "max") - 1.0).abs();
+    assert!(peak > 0.0 && (of(efg, "peak-error") - peak).abs() < 1e-12);
+    let largest = of(efg, "max-error") / of(tet4, "max");
+    assert!((of(efg, "relative-max") / largest - 1.0).abs() < 1e-12);
     let carried = &efg.transfers[0].metrics;
     for axis in ["-x", "-y", "-z", ""] {
         let of = |name: &str| value(carried, &format!("{name}{axis}"));

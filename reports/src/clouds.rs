@@ -40,9 +40,8 @@ pub(crate) struct Spread {
 impl Spread {
     /// Of the runs that carried all of their load; `None` without any.
     pub(crate) fn of(clouds: &[Run], quantity: &str) -> Option<Spread> {
-        let whole = |run: &&Run| run.value("load-carried").is_none_or(|load| load > 0.999_999);
         let mut values: Vec<f64> =
-            clouds.iter().filter(whole).filter_map(|run| run.value(quantity)).collect();
+            clouds.iter().filter(|run| run.whole()).filter_map(|run| run.value(quantity)).collect();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
         // Between the two nearest of the sorted values, as R does by default (Hyndman & Fan 1996, type 7).

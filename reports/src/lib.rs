@@ -8,6 +8,7 @@ mod error;
 mod figures;
 mod findings;
 mod frame;
+mod fronts;
 mod history;
 mod order;
 mod paper;

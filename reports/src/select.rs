@@ -59,6 +59,11 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// Whether it carried the whole load, as what knows no steps does.
+    pub(crate) fn whole(&self) -> bool {
+        self.value("load-carried").is_none_or(|load| load > 0.999_999)
+    }
+
     /// Peak memory in bytes, however it was summarised.
     pub(crate) fn memory(&self) -> Option<f64> {
         self.records.iter().find(|r| r.quantity == "memory").map(|r| r.value)

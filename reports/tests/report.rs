@@ -141,6 +141,7 @@ fn every_table_and_figure_appears_and_is_linked() {
         "orders",
         "grid-convergence",
         "timing",
+        "repeated",
         "transfer",
         "conditioning",
         "kidney",
@@ -156,6 +157,11 @@ fn every_table_and_figure_appears_and_is_linked() {
     }
     for figure in [
         "efficiency",
+        "efficiency-pressure",
+        "efficiency-force",
+        "efficiency-peak",
+        "efficiency-repeated",
+        "efficiency-repeated-force",
         "convergence-l2",
         "convergence-energy",
         "convergence-pressure",
@@ -206,7 +212,7 @@ fn findings_state_what_the_records_hold() {
     write_run(dir.path(), &common::study()).unwrap();
     let page = text(&render(dir.path(), dir.path()).unwrap().page);
     for sentence in [
-        "cantilever: hex20 reaches a relative L2 error of 1 % cheapest, 0.495 % in 1.27 ms (57 nodes); next is tet10, 1.9 times slower.",
+        "displacement 0.014 to 0.39 times, down to an error of 17.9 % (no EFG run is more accurate, FEM comes to 3.00 %)",
         "pure-bending: from ν = 0 to 0.495 the relative L2 error at the middle size more than doubles for tet4 (0.622 % to 15.6 %",
         // 3.20 ms against 23 s, and 0.56 * 8 ms against 10 s.
         "preparing EFG takes 3.20 ms here, 23.0 s in the publication, 7200 times as long",
@@ -229,7 +235,14 @@ fn what_was_not_recorded_is_not_claimed() {
     write_run(dir.path(), &set).unwrap();
     let rendered = render(dir.path(), dir.path()).unwrap();
     let page = text(&rendered.page);
-    for claim in ["Cheapest way", "times as long", "Transfer schemes", "Run time by phase", "surface-"] {
+    for claim in [
+        "Cheapest way",
+        "times as long",
+        "Repeated solves",
+        "Transfer schemes",
+        "Run time by phase",
+        "surface-",
+    ] {
         assert!(!page.contains(claim), "{claim}");
     }
     assert!(page.contains("Locking"));

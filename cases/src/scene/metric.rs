@@ -86,6 +86,18 @@ impl Metric {
             Needs::Reference,
             "largest error over the largest exact displacement",
         ),
+        metric(
+            "relative-rms",
+            Dimension::None,
+            Needs::Reference,
+            "root mean square error of the displacement over the root mean square of the reference's",
+        ),
+        metric(
+            "peak-error",
+            Dimension::None,
+            Needs::Reference,
+            "error of the largest displacement, wherever it is, over the reference's largest",
+        ),
         metric("l2", Dimension::None, Needs::Reference, "relative L2 error of the displacement"),
         metric("energy", Dimension::None, Needs::Reference, "relative error in the energy norm"),
         metric("stress", Dimension::None, Needs::Reference, "relative L2 error of the stress"),

@@ -1,147 +1,170 @@
 //! Run time against error: what the project is about.
 
-use super::axes::{Axis, Panel};
-use super::canvas::{Canvas, GREY};
-use super::grid::{Content, multiples};
+use super::axes::{Axis, Panel, TEXT};
+use super::canvas::{Anchor, Canvas, GREY};
+use super::grid::{Content, scattered};
 use super::style::{Style, find, styles};
 use super::{Figure, PAGE, chosen, continued, error_label, paged};
+use crate::fronts::{Clock, DEADLINES, FLOOR, QUESTIONS, Question, pareto, point};
 use crate::select::{Run, Series, kernels, labels, series};
 use crate::text::list;
 
 /// A series as `(label, meshfree, (seconds, error) pairs)`.
-type Line = (String, bool, Vec<(f64, f64)>);
-
-/// Relative errors below this are drawn at it: what is exact to rounding would squeeze all others into a corner.
-pub(super) const FLOOR: f64 = 1e-6;
+type Cluster = (String, bool, Vec<(f64, f64)>);
 
 /// Ends the title of a panel that compares kernels.
 const KERNELS: &str = ": kernels";
 
-/// A panel as `(title, error, lines)`.
-type Paned = (String, &'static str, Vec<Line>);
+/// A panel as `(title, error, clusters)`.
+type Paned = (String, &'static str, Vec<Cluster>);
 
-/// One panel per case: relative L2 error where there is one, RMS elsewhere; where many kernels are compared, a panel of their own.
+/// For each kind of time a figure per question, with a panel per case that answers it. A method looks the same in all of them.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
+    let asked = Clock::ALL.into_iter().flat_map(|clock| QUESTIONS.iter().map(move |q| (clock, q)));
+    let answered: Vec<_> = asked.map(|(clock, q)| (clock, q, panels(runs, q, clock))).collect();
+    let clusters = answered.iter().flat_map(|(_, _, panels)| panels).flat_map(|p| &p.2);
+    let styles = styles(&clusters.map(|c| (c.0.clone(), c.1)).collect::<Vec<_>>());
+    let pages = answered.iter().flat_map(|(clock, question, panels)| {
+        let pages = panels.chunks(PAGE).enumerate();
+        pages.map(move |(page, panels)| (*clock, *question, page, panels))
+    });
+    pages.map(|(clock, question, page, panels)| figure(question, clock, page, panels, &styles)).collect()
+}
+
+/// Where many kernels are compared, a panel of their own, once: for the displacement of a first solve.
+fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
     let (mut panels, mut compared) = (Vec::new(), Vec::new());
     for (title, group) in chosen(runs) {
+        let Some(error) = question.error(group) else { continue };
         let (usual, every) = kernels(&series(group));
         let names = labels(&usual.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
-        panels.extend(panel(title.clone(), &usual, &names));
-        let names: Vec<String> = every.iter().map(|s| s.is().variant.clone()).collect();
-        compared.extend(panel(format!("{title}{KERNELS}"), &every, &names));
+        panels.push((title.clone(), error, clusters(&usual, &names, error, clock)));
+        if clock == Clock::First && question.ending.is_empty() {
+            let names: Vec<String> = every.iter().map(|s| s.is().variant.clone()).collect();
+            compared.push((format!("{title}{KERNELS}"), error, clusters(&every, &names, error, clock)));
+        }
     }
     panels.extend(compared);
-    let styles =
-        styles(&panels.iter().flat_map(|p| p.2.iter().map(|l| (l.0.clone(), l.1))).collect::<Vec<_>>());
-    panels.chunks(PAGE).enumerate().map(|(page, panels)| figure(page, panels, &styles)).collect()
+    // One run alone is neither faster nor better than another.
+    panels.retain(|p| p.2.iter().map(|c| c.2.len()).sum::<usize>() > 1);
+    panels
 }
 
-fn panel(title: String, all: &[Series], names: &[String]) -> Option<Paned> {
-    let drawn = ["l2", "rms"].into_iter().map(|q| (q, lines(all, names, q)));
-    drawn.into_iter().find(|(_, lines)| !lines.is_empty()).map(|(q, lines)| (title, q, lines))
+fn clusters(all: &[Series], names: &[String], error: &str, clock: Clock) -> Vec<Cluster> {
+    let cluster = |(label, s): (&String, &Series)| {
+        let points = s.runs.iter().filter_map(|run| point(run, error, clock));
+        (label.clone(), s.is().family != "fem", points.map(|(t, e)| (t, e.max(FLOOR))).collect())
+    };
+    names.iter().zip(all).map(cluster).filter(|c: &Cluster| !c.2.is_empty()).collect()
 }
 
-fn lines(all: &[Series], names: &[String], quantity: &str) -> Vec<Line> {
-    let scale = if quantity == "rms" { 1e3 } else { 1.0 };
-    let least = if quantity == "rms" { 0.0 } else { FLOOR };
-    names
-        .iter()
-        .zip(all)
-        .map(|(label, s)| {
-            let point = |r: &Run| Some((r.total().filter(|t| *t > 0.0)?, r.value(quantity)?));
-            // An error of exactly nothing is the reference itself.
-            let points = s.runs.iter().filter_map(point).filter(|p| p.1 > 0.0);
-            (label.clone(), s.is().family != "fem", points.map(|p| (p.0, (p.1 * scale).max(least))).collect())
-        })
-        .filter(|line: &Line| !line.2.is_empty())
-        .collect()
-}
-
-fn figure(page: usize, panels: &[Paned], styles: &[Style]) -> Figure {
-    let own = |s: &&Style| panels.iter().any(|p| p.2.iter().any(|l| l.0 == s.label));
+fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styles: &[Style]) -> Figure {
+    let own = |s: &&Style| panels.iter().any(|p| p.2.iter().any(|c| c.0 == s.label));
     let styles: Vec<Style> = styles.iter().filter(own).cloned().collect();
-    let floored: Vec<String> = panels
-        .iter()
-        .filter(|p| p.1 == "l2" && p.2.iter().any(|l| l.2.iter().any(|p| p.1 <= FLOOR)))
-        .map(|p| p.0.clone())
-        .collect();
+    let contents = panels.iter().map(|panel| content(panel, clock, &styles)).collect();
+    let (name, title, time) = match clock {
+        Clock::First => ("efficiency", "Run time against error", "Median run time of all phases"),
+        Clock::Repeated => (
+            "efficiency-repeated",
+            "Time of a repeated solve against error",
+            "Time that 99 of 100 solves of a loop prepared once take at most",
+        ),
+    };
+    Figure {
+        name: paged(&format!("{name}{}", question.ending), page),
+        title: continued(&format!("{title}: {}", question.name), page),
+        caption: format!(
+            "{time} against the relative error of the {}, a marker for each run; the grey staircase is the Pareto front: no run \
+             drawn is both faster and more accurate",
+            question.name
+        ),
+        canvas: scattered(contents, &styles, &note(question, clock, panels)),
+    }
+}
+
+fn content<'a>((title, error, clusters): &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'a> {
+    let points = || clusters.iter().flat_map(|c| c.2.iter().copied());
+    let (scale, x) = match clock {
+        Clock::First => (1.0, Axis::log("run time, median [s]", points().map(|p| p.0))),
+        Clock::Repeated => {
+            let times = points().map(|p| p.0).chain(DEADLINES.map(|d| d.seconds));
+            (1e3, Axis::log("repeated solve, 99 % within [ms]", times.map(|t| 1e3 * t)))
+        }
+    };
+    Content {
+        title: title.clone(),
+        x,
+        y: Axis::log(error_label(error), decade(points().map(|p| p.1).collect()).into_iter()),
+        plot: Box::new(move |canvas, panel| {
+            let at = |p: &(f64, f64)| panel.at(scale * p.0, p.1);
+            let best = pareto(clusters.iter().flat_map(|c| c.2.iter().copied()), |p| *p);
+            front(canvas, panel, &best.iter().map(at).collect::<Vec<_>>());
+            if (panel.y.low()..panel.y.high()).contains(&0.01) {
+                let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, 0.01));
+                canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
+            }
+            if clock == Clock::Repeated {
+                deadlines(canvas, panel, scale);
+            }
+            for (label, _, points) in clusters {
+                if let Some(style) = find(styles, label) {
+                    points.iter().for_each(|p| style.mark(canvas, at(p)));
+                }
+            }
+        }),
+    }
+}
+
+/// Errors with as many around them as make a decade: closer ones would need digits that have no room beside an axis.
+fn decade(mut errors: Vec<f64>) -> Vec<f64> {
+    let low = errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = errors.iter().copied().fold(0.0, f64::max);
+    if high < 10.0 * low {
+        let middle = (low * high).sqrt();
+        errors.extend([middle / 10f64.sqrt(), middle * 10f64.sqrt()]);
+    }
+    errors
+}
+
+fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
     let mut note =
         "Grey staircase: Pareto front. Dashed: an error of 1 %. Down and to the left is better.".to_string();
+    if clock == Clock::Repeated {
+        let all = DEADLINES.map(|d| format!("{} ({})", d.name, d.what));
+        note += &format!(" Upright: a frame of {}.", list(&all));
+    }
+    if question.scalar {
+        note += " A single number can be right by chance, where its errors cancel.";
+    }
+    let low = |p: &&Paned| p.2.iter().any(|c| c.2.iter().any(|at| at.1 <= FLOOR));
+    let floored: Vec<String> = panels.iter().filter(low).map(|p| p.0.clone()).collect();
     if !floored.is_empty() {
         note += &format!(" Errors below 10⁻⁶ are drawn at 10⁻⁶ ({}).", list(&floored));
     }
     if panels.iter().any(|p| p.0.ends_with(KERNELS)) {
-        note += " Kernels: a line for each rule of integration.";
+        note += " Kernels: a marker for each size and rule of integration.";
     }
-    let contents = panels
-        .iter()
-        .map(|(title, quantity, lines)| {
-            let points = || lines.iter().flat_map(|l| l.2.iter());
-            let styles = &styles;
-            Content {
-                title: title.clone(),
-                x: Axis::log("run time, median [s]", points().map(|p| p.0)),
-                y: Axis::log(error_label(quantity), points().map(|p| p.1)),
-                plot: Box::new(move |canvas, panel| {
-                    front(canvas, panel, lines);
-                    if *quantity == "l2" && (panel.y.low()..panel.y.high()).contains(&0.01) {
-                        let (left, right) = (panel.at(panel.x.low(), 0.01), panel.at(panel.x.high(), 0.01));
-                        canvas.dashed(&[left, right], GREY, 0.7, &[3.0, 2.0]);
-                    }
-                    for (label, _, points) in lines {
-                        if let Some(style) = find(styles, label) {
-                            let at: Vec<_> = points.iter().map(|p| panel.at(p.0, p.1)).collect();
-                            style.curve(canvas, &at);
-                        }
-                    }
-                }),
-            }
-        })
-        .collect();
-    Figure {
-        name: paged("efficiency", page),
-        title: continued("Run time against error", page),
-        caption: "Median run time of all phases against error, each line one method from coarse to fine; \
-                  the grey staircase is the Pareto front: no run drawn is both faster and more accurate"
-            .into(),
-        canvas: multiples(contents, &styles, &note),
+    note
+}
+
+/// Upright lines where a frame must be done.
+fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64) {
+    let (_, top, _, bottom) = panel.frame;
+    for deadline in DEADLINES {
+        let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
+        canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
+        canvas.text((x - 3.0, top + 5.0), deadline.name, TEXT, GREY, Anchor::End);
     }
 }
 
-/// The runs that no other beats in both time and error, by rising time.
-pub(crate) fn pareto(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    let mut sorted: Vec<(f64, f64)> = points.collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut front: Vec<(f64, f64)> = Vec::new();
-    for point in sorted {
-        if front.last().is_none_or(|last| point.1 < last.1) {
-            front.push(point);
-        }
+/// Along the best runs, on paper: from the first time an error is reached to the next smaller one, and on.
+fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
+    let (Some(first), Some(last)) = (best.first(), best.last()) else { return };
+    let (_, top, right, _) = panel.frame;
+    let mut path = vec![(first.0, top), *first];
+    for pair in best.windows(2) {
+        path.extend([(pair[1].0, pair[0].1), pair[1]]);
     }
-    front
-}
-
-fn front(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
-    let front = pareto(lines.iter().flat_map(|l| l.2.iter().copied()));
-    let (Some(first), Some(last)) = (front.first(), front.last()) else { return };
-    let mut path = vec![panel.at(first.0, panel.y.high())];
-    for (i, point) in front.iter().enumerate() {
-        if i > 0 {
-            path.push(panel.at(point.0, front[i - 1].1));
-        }
-        path.push(panel.at(point.0, point.1));
-    }
-    path.push(panel.at(panel.x.high(), last.1));
+    path.push((right, last.1));
     canvas.line(&path, [0xb8, 0xb8, 0xb8], 3.0);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::pareto;
-
-    #[test]
-    fn the_front_drops_what_another_run_beats() {
-        let runs = [(3.0, 0.1), (1.0, 0.5), (2.0, 0.6), (2.5, 0.2), (4.0, 0.1)];
-        assert_eq!(pareto(runs.into_iter()), [(1.0, 0.5), (2.5, 0.2), (3.0, 0.1)]);
-    }
 }

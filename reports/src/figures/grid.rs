@@ -27,8 +27,17 @@ pub(crate) struct Content<'a> {
     pub(crate) plot: Plot<'a>,
 }
 
-/// Panels, two to a row, a legend and a note below.
+/// Panels of lines, two to a row, a legend and a note below.
 pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
+    drawn(panels, styles, note, true)
+}
+
+/// The same of markers alone.
+pub(crate) fn scattered(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
+    drawn(panels, styles, note, false)
+}
+
+fn drawn(panels: Vec<Content>, styles: &[Style], note: &str, lines: bool) -> Canvas {
     let columns = panels.len().clamp(1, 2);
     let rows = panels.len().div_ceil(columns);
     let whole = if columns == 1 { COLUMN } else { WIDTH };
@@ -44,7 +53,7 @@ pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> C
         (content.plot)(&mut canvas, &panel);
     }
     let bottom = 12.0 + STEP * rows as f64;
-    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, true);
+    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, lines);
     let foot = bottom + legend_height(styles, whole - 20.0) + 10.0;
     for (i, line) in notes.iter().enumerate() {
         canvas.text((12.0, foot + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);

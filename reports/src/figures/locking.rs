@@ -2,10 +2,11 @@
 
 use super::axes::Axis;
 use super::canvas::GREY;
-use super::efficiency::FLOOR;
+
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Figure, PAGE, continued, error_label, paged};
+use crate::fronts::FLOOR;
 use crate::select::{Run, groups, is_patch, labels};
 
 /// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.

@@ -59,7 +59,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
 }
 
 /// Solver runs of every case that isn't a patch test, titled, at the Poisson's ratios nearest 0.3 and 0.495.
-fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
+pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
     for case in groups(runs, |r| r.is.case.clone()) {
         let name = &case[0].is.case;
@@ -95,6 +95,9 @@ fn error_label(quantity: &str) -> &'static str {
         "l2" => "relative L2 error [1]",
         "energy" => "relative energy error [1]",
         "pressure" => "relative pressure error [1]",
+        "relative-rms" => "relative RMS error [1]",
+        "tool-force-error" => "relative force error [1]",
+        "peak-error" => "relative peak error [1]",
         _ => "RMS error [mm]",
     }
 }

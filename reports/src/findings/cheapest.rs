@@ -1,66 +1,198 @@
-//! Which method reaches one percent in the least time.
+//! Which method reaches an error in the least time.
 
-use super::cases;
+use crate::figures::chosen;
+use crate::fronts::{Clock, QUESTIONS, point};
 use crate::select::{Run, labels};
 use crate::text::{duration, list, percent, significant};
 
-/// One sentence for each case that at least two timed methods solved.
+/// Relative errors that a user may be content with.
+const TOLERANCES: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
+
+/// The displacement is told beside a single number where it is off by more than this many tolerances: it may be right by chance.
+const CHANCE: f64 = 3.0;
+
+/// A timed run with its error.
+struct Timed<'a, 'r> {
+    run: &'a Run<'r>,
+    label: &'a str,
+    seconds: f64,
+    error: f64,
+}
+
+impl Timed<'_, '_> {
+    fn is_fem(&self) -> bool {
+        self.run.is.family == "fem"
+    }
+}
+
+/// One sentence for each case, question and kind of time that at least two methods answer.
 pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
-    for (name, group) in cases(runs) {
-        let named: Vec<_> = group.iter().map(|r| (r.name(), r.is)).collect();
-        let labels = labels(&named);
-        let mut timed: Vec<(f64, f64, &str, u64)> = Vec::new();
-        for (run, label) in group.iter().zip(&labels) {
-            if let (Some(t), Some(e)) = (run.total(), run.value("l2")) {
-                timed.push((t, e, label, run.is.nodes));
+    for (case, group) in chosen(runs) {
+        let labels = labels(&group.iter().map(|r| (r.name(), r.is)).collect::<Vec<_>>());
+        let displacement = QUESTIONS[0].error(group);
+        for (clock, after) in Clock::ALL.into_iter().zip(["", ", solved again and again"]) {
+            for question in &QUESTIONS {
+                let Some(error) = question.error(group) else { continue };
+                let timed = |(run, label)| {
+                    let (seconds, error) = point(run, error, clock)?;
+                    Some(Timed { run, label, seconds, error })
+                };
+                let names = labels.iter().map(String::as_str);
+                let timed: Vec<Timed> = group.iter().zip(names).filter_map(timed).collect();
+                if timed.iter().any(|t| t.label != timed[0].label) {
+                    let beside = displacement.filter(|_| question.scalar);
+                    out.push(format!("{case}, {}{after}: {}.", question.name, answers(&timed, beside)));
+                }
             }
         }
-        let tried: Vec<&str> = timed.iter().fold(Vec::new(), |mut seen, t| {
-            if !seen.contains(&t.2) {
-                seen.push(t.2);
-            }
-            seen
-        });
-        if tried.len() < 2 {
-            continue;
-        }
-        timed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let good: Vec<_> = timed.iter().filter(|t| t.1 <= 0.01).collect();
-        let Some(best) = good.first() else {
-            let closest = timed.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-            out.extend(closest.map(|c| {
-                format!(
-                    "{name}: no run reaches a relative L2 error of 1 %; the closest is {} with {} in {} ({} nodes).",
-                    c.2,
-                    percent(c.1),
-                    duration(c.0),
-                    c.3
-                )
-            }));
-            continue;
-        };
-        let mut text = format!(
-            "{name}: {} reaches a relative L2 error of 1 % cheapest, {} in {} ({} nodes)",
-            best.2,
-            percent(best.1),
-            duration(best.0),
-            best.3
-        );
-        if let Some(next) = good.iter().find(|t| t.2 != best.2) {
-            text += &format!("; next is {}, {} times slower", next.2, significant(next.0 / best.0, 2));
-        }
-        let missed = tried
-            .iter()
-            .filter(|l| good.iter().all(|g| g.2 != **l))
-            .map(|l| l.to_string())
-            .collect::<Vec<_>>();
-        if !missed.is_empty() && missed.len() <= 6 {
-            text += &format!("; not reached by {} at the sizes run", list(&missed));
-        } else if !missed.is_empty() {
-            text += &format!("; not reached by {} of {} methods at the sizes run", missed.len(), tried.len());
-        }
-        out.push(text + ".");
     }
     out
+}
+
+/// What every tolerance takes, and which of them nobody reaches. `beside` is an error told where it is far larger.
+fn answers(timed: &[Timed], beside: Option<&str>) -> String {
+    let mut answers: Vec<(Vec<String>, String)> = Vec::new();
+    let mut missed = Vec::new();
+    for tolerance in TOLERANCES {
+        match answer(timed, tolerance, beside) {
+            None => missed.push(percent_of(tolerance)),
+            Some(text) => match answers.last_mut().filter(|last| last.1 == text) {
+                Some(same) => same.0.push(percent_of(tolerance)),
+                None => answers.push((vec![percent_of(tolerance)], text)),
+            },
+        }
+    }
+    let mut parts: Vec<String> =
+        answers.into_iter().map(|(reached, text)| format!("{} first by {text}", list(&reached))).collect();
+    let closest = timed.iter().min_by(|a, b| a.error.total_cmp(&b.error));
+    if let (Some(closest), false) = (closest, missed.is_empty()) {
+        let told = told(closest, closest.error, beside);
+        parts.push(format!(
+            "nobody reaches {}, the closest is {told} with {}",
+            list(&missed),
+            percent(closest.error)
+        ));
+    }
+    parts.join("; ")
+}
+
+/// The cheapest within a tolerance, and where elements and clouds compete the best of the others.
+fn answer(timed: &[Timed], tolerance: f64, beside: Option<&str>) -> Option<String> {
+    let cheapest = |fits: &dyn Fn(&Timed) -> bool| {
+        let good = timed.iter().filter(|t| t.error <= tolerance && fits(t));
+        good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    };
+    let best = cheapest(&|_| true)?;
+    let mut text = told(best, tolerance, beside);
+    let other = |t: &Timed| t.is_fem() != best.is_fem();
+    if timed.iter().any(other) {
+        let family = if best.is_fem() { "EFG" } else { "FEM" };
+        text += &match cheapest(&other) {
+            None => format!(", by no {family}"),
+            Some(next) => format!(
+                ", by {family} with {}, {} times as long",
+                told(next, tolerance, beside),
+                significant(next.seconds / best.seconds, 2)
+            ),
+        };
+    }
+    Some(text)
+}
+
+fn told(timed: &Timed, tolerance: f64, beside: Option<&str>) -> String {
+    let off = beside.and_then(|error| timed.run.value(error)).filter(|e| *e > CHANCE * tolerance);
+    let off = off.map_or(String::new(), |e| format!(", displacement off by {}", percent(e)));
+    format!("{} in {} ({} nodes{off})", timed.label, duration(timed.seconds), timed.run.is.nodes)
+}
+
+/// A tolerance has no digits to spare.
+fn percent_of(tolerance: f64) -> String {
+    format!("{} %", significant(100.0 * tolerance, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cheapest;
+    use crate::fronts::tests::{record, run};
+    use crate::record::Record;
+    use crate::select::runs;
+
+    fn jaws(errors: &[(&str, &str, u64, f64, f64)], name: &str) -> Vec<Record> {
+        errors
+            .iter()
+            .flat_map(|&(id, family, nodes, t, e)| run((id, family), nodes, t, &[(name, e)]))
+            .collect()
+    }
+
+    #[test]
+    fn every_tolerance_has_the_best_of_both_families_or_nobody() {
+        let records = jaws(
+            &[
+                ("hex20", "fem", 100, 0.002, 0.05),
+                ("hex20", "fem", 900, 0.04, 0.02),
+                ("tet4", "fem", 500, 0.01, 0.09),
+                ("efg", "efg", 83, 0.001, 0.3),
+                ("efg", "efg", 332, 0.02, 0.04),
+                ("efg", "efg", 1331, 0.5, 0.006),
+            ],
+            "relative-rms",
+        );
+        assert_eq!(
+            cheapest(&runs(&records)),
+            [
+                "kidney-jaws, displacement: 10 % first by hex20 in 2.00 ms (100 nodes), by EFG with efg in 20.0 ms (332 nodes), 10 times as \
+              long; 3 % first by hex20 in 40.0 ms (900 nodes), by EFG with efg in 500 ms (1331 nodes), 12 times as long; 1 % first by \
+              efg in 500 ms (1331 nodes), by no FEM; nobody reaches 0.3 %, the closest is efg in 500 ms (1331 nodes) with 0.600 %."
+            ]
+        );
+    }
+
+    #[test]
+    fn tolerances_of_one_answer_share_it_and_an_absent_family_is_not_missed() {
+        let elements = [("hex20", "fem", 100, 0.002, 0.001), ("tet4", "fem", 100, 0.001, 0.2)];
+        assert_eq!(
+            cheapest(&runs(&jaws(&elements, "pressure"))),
+            ["kidney-jaws, pressure: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 2.00 ms (100 nodes)."]
+        );
+        // One method has nothing to be cheaper than, and the reference itself is none.
+        assert!(cheapest(&runs(&jaws(&elements[..1], "pressure"))).is_empty());
+        let itself = [elements[0], ("tet10", "fem", 100, 0.001, 0.0)];
+        assert!(cheapest(&runs(&jaws(&itself, "pressure"))).is_empty());
+    }
+
+    #[test]
+    fn a_number_right_by_chance_is_told_with_its_field() {
+        let both = |force, rms| [("tool-force-error", force), ("relative-rms", rms)];
+        let records = [
+            run(("efg", "efg"), 83, 1.0, &both(0.02, 0.4)),
+            run(("tet4", "fem"), 100, 2.0, &both(0.05, 0.2)),
+        ]
+        .concat();
+        let found = cheapest(&runs(&records));
+        assert_eq!(found.len(), 2);
+        assert_eq!(
+            found[1],
+            "kidney-jaws, jaw force: 10 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by FEM with tet4 in 2.00 s \
+             (100 nodes), 2.0 times as long; 3 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by no FEM; nobody \
+             reaches 1 % and 0.3 %, the closest is efg in 1.00 s (83 nodes, displacement off by 40.0 %) with 2.00 %."
+        );
+    }
+
+    #[test]
+    fn repeated_solves_are_told_apart_by_their_own_times() {
+        let methods = [("hex20", "fem", 100, 0.002, 0.001), ("tet4", "fem", 100, 0.001, 0.002)];
+        let mut records = jaws(&methods, "l2");
+        for (method, t) in [("hex20", 1e-4), ("tet4", 2e-4)] {
+            records.push(record(("kidney-jaws", method, "fem"), 100, ("time", "repeated:p99"), t));
+            records.push(record(("kidney-jaws", method, "fem"), 100, ("time", "repeated:median"), 0.5 * t));
+        }
+        assert_eq!(
+            cheapest(&runs(&records)),
+            [
+                "kidney-jaws, displacement: 10 %, 3 %, 1 % and 0.3 % first by tet4 in 1.00 ms (100 nodes).",
+                "kidney-jaws, displacement, solved again and again: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 100 µs (100 nodes)."
+            ]
+        );
+    }
 }

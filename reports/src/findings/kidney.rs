@@ -50,7 +50,7 @@ fn directions(run: &Run, quantity: &str) -> Option<[f64; 3]> {
 /// Largest displacements at the whole load, with what part of the published ones they are.
 fn maxima(pairs: &[Pair]) -> Vec<String> {
     let mut out = Vec::new();
-    for pair in pairs.iter().filter(|p| p.paper.quantity == "max-x" && whole(p.run)) {
+    for pair in pairs.iter().filter(|p| p.paper.quantity == "max-x" && p.run.whole()) {
         let of = |axis: &str| {
             let quantity = format!("max-{axis}");
             pairs.iter().find(|p| {
@@ -79,11 +79,6 @@ fn maxima(pairs: &[Pair]) -> Vec<String> {
         ));
     }
     out
-}
-
-/// Whether a run carried the whole load.
-fn whole(run: &Run) -> bool {
-    run.value("load-carried").is_none_or(|load| load > 1.0 - 1e-9)
 }
 
 /// What the RMS difference of cloud and elements is made of.
@@ -161,7 +156,7 @@ fn limits(runs: &[Run]) -> Vec<String> {
 
 /// The same method at the same force, quasi-static and at the end of a ramp.
 fn ramps(runs: &[Run]) -> Vec<String> {
-    let paper = || runs.iter().filter(|r| is_paper(&r.is.case) && r.is.family == "fem" && whole(r));
+    let paper = || runs.iter().filter(|r| is_paper(&r.is.case) && r.is.family == "fem" && r.whole());
     let mut out = Vec::new();
     for ramp in paper().filter(|r| r.value("time-steps").is_some()) {
         let still = |r: &Run| r.value("newton-iterations").is_some() && r.value("time-steps").is_none();

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod cheapest;
+mod claim;
 mod kidney;
 mod outcome;
 mod placement;
@@ -20,7 +21,10 @@ pub(crate) struct Topic {
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
     let topics = [
-        Topic { title: "Cheapest way to one percent", sentences: cheapest::cheapest(&solved) },
+        Topic {
+            title: "Cheapest way to an error",
+            sentences: [cheapest::cheapest(&solved), claim::claim(&solved)].concat(),
+        },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
         Topic { title: "Node placement", sentences: placement::placement(clouds) },

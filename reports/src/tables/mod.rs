@@ -8,6 +8,7 @@ mod kidney;
 mod orders;
 mod outcome;
 mod placement;
+mod repeated;
 mod timing;
 mod transfer;
 
@@ -29,6 +30,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         orders::observed(runs),
         orders::convergence_index(runs),
         timing::phases(runs),
+        repeated::repeated(runs),
         cost::cost(runs),
         transfer::schemes(runs),
         conditioning::conditioning(runs),

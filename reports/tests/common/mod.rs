@@ -99,6 +99,7 @@ fn solid(set: &mut RunSet, case: &str, ratios: &[f64], size: f64) {
                 push(set, &run, "pressure", "1", 30.0 * l2 * lock);
                 push(set, &run, "tip", "1", 1.0 - 0.9 * l2);
                 push(set, &run, "max", "m", 5e-3 * (1.0 - 0.7 * l2));
+                push(set, &run, "peak-error", "1", 0.7 * l2);
                 for (axis, share) in [("rms-x", 0.4), ("rms-y", 0.3), ("rms-z", 0.86), ("rms", 1.0)] {
                     push(set, &run, axis, "m", share * l2 * 3e-3);
                 }
@@ -184,6 +185,19 @@ fn kidney(set: &mut RunSet) {
                 push(set, &run, &format!("rms-{axis}"), "m", rms * error);
             }
             push(set, &run, "rms", "m", 2.47 * error);
+            push(set, &run, "relative-rms", "1", 600.0 * error);
+            push(set, &run, "tool-force-error", "1", 200.0 * error);
+            push(set, &run, "tool-force-error-2", "1", 210.0 * error);
+            for (statistic, part) in [("median", 0.06), ("p99", 0.08), ("p99.9", 0.2)] {
+                set.records.push(Record {
+                    quantity: "time".into(),
+                    unit: "s".into(),
+                    phase: "repeated".into(),
+                    statistic: statistic.into(),
+                    value: part * time,
+                    ..run.clone()
+                });
+            }
             push_times(
                 set,
                 &run,

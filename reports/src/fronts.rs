@@ -1,0 +1,189 @@
+//! Run time against error: what is asked of a run, what its time is, and the runs that no other beats in both.
+
+use crate::select::Run;
+
+/// Relative errors below this count as it: what is exact to rounding would squeeze all others into a corner.
+pub(crate) const FLOOR: f64 = 1e-6;
+
+/// What a user wants right.
+pub(crate) struct Question {
+    /// Ends the names of its figures; empty for the first.
+    pub(crate) ending: &'static str,
+    /// In a sentence.
+    pub(crate) name: &'static str,
+    /// Relative errors that tell it, the best first. A case is asked by one of them.
+    errors: &'static [&'static str],
+    /// Whether a single number is asked for, which can be right by chance, and not a field.
+    pub(crate) scalar: bool,
+}
+
+/// Whether a method has the field right, its pressure, what a tool feels and how far the tissue gives way.
+pub(crate) const QUESTIONS: [Question; 4] = [
+    Question { ending: "", name: "displacement", errors: &["l2", "relative-rms"], scalar: false },
+    Question { ending: "-pressure", name: "pressure", errors: &["pressure"], scalar: false },
+    Question { ending: "-force", name: "jaw force", errors: &["tool-force-error"], scalar: true },
+    Question { ending: "-peak", name: "peak displacement", errors: &["peak-error"], scalar: true },
+];
+
+impl Question {
+    /// The error by which a case answers, where any of its runs has one.
+    ///
+    /// A tool driven by force carries it with every method, up to the tolerance of Newton's: that answers nothing.
+    pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static str> {
+        let found = |quantity: &str| {
+            let least = if quantity == "tool-force-error" { FLOOR } else { 0.0 };
+            runs.iter().filter_map(|run| worst(run, quantity)).any(|e| e > least)
+        };
+        self.errors.iter().copied().find(|quantity| found(quantity))
+    }
+}
+
+/// A plain value, of several tools (`NAME`, `NAME-2`, ...) the largest.
+fn worst(run: &Run, quantity: &str) -> Option<f64> {
+    let first = run.value(quantity)?;
+    Some((2..).map_while(|tool| run.value(&format!("{quantity}-{tool}"))).fold(first, f64::max))
+}
+
+/// Two kinds of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// A scene solved once, everything included: the median over repeats.
+    First,
+    /// One solve of a simulator's loop, prepared before: what 99 of 100 take at most.
+    Repeated,
+}
+
+impl Clock {
+    pub(crate) const ALL: [Clock; 2] = [Clock::First, Clock::Repeated];
+
+    fn seconds(self, run: &Run) -> Option<f64> {
+        match self {
+            Clock::First => run.total(),
+            Clock::Repeated => run.time("repeated", "p99"),
+        }
+    }
+}
+
+/// What a simulator's loop has time for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline {
+    /// Its rate.
+    pub(crate) name: &'static str,
+    /// What needs it.
+    pub(crate) what: &'static str,
+    /// Its period.
+    pub(crate) seconds: f64,
+}
+
+/// Motion looks continuous from some 30 pictures a second on; a stiff touch feels steady from some 1000 forces a second on.
+pub(crate) const DEADLINES: [Deadline; 2] = [
+    Deadline { name: "1 kHz", what: "haptic", seconds: 1e-3 },
+    Deadline { name: "30 Hz", what: "visual", seconds: 1.0 / 30.0 },
+];
+
+/// `(seconds, relative error)` of a run that carried all of its load. An error of exactly nothing is the reference itself.
+pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
+    let (time, error) = (clock.seconds(run)?, worst(run, quantity)?);
+    (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
+}
+
+/// The runs that no other beats in both time and error, by rising time.
+pub(crate) fn pareto<T>(runs: impl IntoIterator<Item = T>, at: impl Fn(&T) -> (f64, f64)) -> Vec<T> {
+    let mut sorted: Vec<T> = runs.into_iter().collect();
+    sorted.sort_by(|a, b| {
+        let (a, b) = (at(a), at(b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let mut least = f64::INFINITY;
+    sorted.retain(|run| {
+        let error = at(run).1;
+        let better = error < least;
+        least = least.min(error);
+        better
+    });
+    sorted
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::record::Record;
+    use crate::select::runs;
+
+    /// One number of one run, its phase before a colon and its statistic after one: `time`, `total:median`.
+    pub(crate) fn record(
+        (case, method, family): (&str, &str, &str),
+        nodes: u64,
+        (quantity, of): (&str, &str),
+        value: f64,
+    ) -> Record {
+        let (phase, statistic) = of.split_once(':').unwrap_or(("", "value"));
+        Record {
+            case: case.into(),
+            method: method.into(),
+            family: family.into(),
+            variant: method.into(),
+            parameters: String::new(),
+            poisson: 0.495,
+            level: 0,
+            nodes,
+            elements: 0,
+            points: 0,
+            dofs: 3 * nodes,
+            spacing: (nodes as f64).powf(-1.0 / 3.0),
+            seed: 0,
+            quantity: quantity.into(),
+            unit: "1".into(),
+            phase: phase.into(),
+            statistic: statistic.into(),
+            value,
+        }
+    }
+
+    /// A run of `kidney-jaws`: its nodes stand for its size, its time in seconds, and an error by name.
+    pub(crate) fn run(is: (&str, &str), nodes: u64, seconds: f64, errors: &[(&str, f64)]) -> Vec<Record> {
+        let of = ("kidney-jaws", is.0, is.1);
+        let mut records = vec![record(of, nodes, ("time", "total:median"), seconds)];
+        records.extend(errors.iter().map(|(name, value)| record(of, nodes, (name, ""), *value)));
+        records
+    }
+
+    #[test]
+    fn the_front_drops_what_another_run_beats() {
+        let runs = [(3.0, 0.1), (1.0, 0.5), (2.0, 0.6), (2.5, 0.2), (4.0, 0.1)];
+        assert_eq!(pareto(runs, |r| *r), [(1.0, 0.5), (2.5, 0.2), (3.0, 0.1)]);
+    }
+
+    #[test]
+    fn a_case_answers_by_the_best_error_it_has() {
+        let asked = |errors: &[(&str, f64)]| {
+            let records = run(("tet4", "fem"), 100, 1.0, errors);
+            let runs = runs(&records);
+            QUESTIONS.each_ref().map(|question| question.error(&runs))
+        };
+        let all = [("relative-rms", 0.1), ("l2", 0.2), ("pressure", 0.3), ("peak-error", 0.4)];
+        assert_eq!(asked(&all), [Some("l2"), Some("pressure"), None, Some("peak-error")]);
+        assert_eq!(asked(&all[..1])[0], Some("relative-rms"));
+        // The reference itself, alone, answers nothing; nor does a force that was given.
+        assert_eq!(asked(&[("relative-rms", 0.0), ("tool-force-error", 4e-11)]), [None; 4]);
+        assert_eq!(
+            asked(&[("tool-force-error", 0.0), ("tool-force-error-2", 0.02)])[2],
+            Some("tool-force-error")
+        );
+    }
+
+    #[test]
+    fn a_run_counts_if_it_was_timed_and_carried_its_load() {
+        let point = |errors: &[(&str, f64)], clock| {
+            let mut records = run(("tet4", "fem"), 100, 2.0, errors);
+            records.push(record(("kidney-jaws", "tet4", "fem"), 100, ("time", "repeated:p99"), 0.02));
+            super::point(&runs(&records)[0], "tool-force-error", clock)
+        };
+        let two = [("tool-force-error", 0.02), ("tool-force-error-2", 0.03)];
+        assert_eq!(point(&two, Clock::First), Some((2.0, 0.03)));
+        assert_eq!(point(&two, Clock::Repeated), Some((0.02, 0.03)));
+        assert_eq!(point(&[two[0], ("load-carried", 0.6)], Clock::First), None);
+        assert_eq!(point(&[two[0], ("load-carried", 1.0)], Clock::First), Some((2.0, 0.02)));
+        assert_eq!(point(&[("tool-force-error", 0.0)], Clock::First), None);
+    }
+}

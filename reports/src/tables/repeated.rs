@@ -1,0 +1,89 @@
+//! Solves of a simulator's loop, prepared once: whether they keep up with the eye and with the hand.
+
+use super::{labelled, millimetres as milliseconds};
+use crate::fronts::DEADLINES;
+use crate::select::Run;
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+use crate::text::ratio;
+
+/// Every run that was solved again and again.
+pub(super) fn repeated(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "repeated",
+        "Repeated solves",
+        "Time of one solve of a loop prepared once: the median, and what 99 % and 99.9 % of all take at most; frames per second at p99, and \
+         whether each of two rates holds there, that of haptics and that of pictures",
+        &[
+            ("case", Words),
+            ("ν [1]", Number),
+            ("method", Words),
+            ("nodes", Number),
+            ("unknowns", Number),
+            ("median [ms]", Number),
+            ("p99 [ms]", Number),
+            ("p99.9 [ms]", Number),
+            ("frames per second", Number),
+            (DEADLINES[0].name, Words),
+            (DEADLINES[1].name, Words),
+        ],
+    );
+    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    for (run, label) in labelled(&solved) {
+        let times = ["median", "p99", "p99.9"].map(|s| run.time("repeated", s));
+        if times.iter().all(Option::is_none) {
+            continue;
+        }
+        let [median, p99, p999] = times;
+        let holds = DEADLINES.map(|d| p99.map_or("—", |t| if t <= d.seconds { "yes" } else { "no" }));
+        let poisson = ratio(run.is.poisson);
+        table.row(&[
+            Cell::Text(&run.is.case),
+            Cell::Text(&poisson),
+            Cell::Text(&label),
+            Cell::Count(run.is.nodes),
+            Cell::Count(run.is.dofs),
+            Cell::Digits(milliseconds(median), 3),
+            Cell::Digits(milliseconds(p99), 3),
+            Cell::Digits(milliseconds(p999), 3),
+            Cell::Digits(p99.filter(|t| *t > 0.0).map(|t| 1.0 / t), 3),
+            Cell::Text(holds[0]),
+            Cell::Text(holds[1]),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::repeated;
+    use crate::fronts::tests::record;
+    use crate::select::runs;
+
+    #[test]
+    fn a_rate_holds_where_p99_is_within_its_period() {
+        let of = ["median", "p99", "p99.9"].map(|s| format!("repeated:{s}"));
+        let mut records = Vec::new();
+        for (method, times) in
+            [("quick", [6e-4, 1e-3, 4e-3]), ("seen", [9e-4, 0.02, 0.05]), ("slow", [0.03, 0.04, 0.04])]
+        {
+            let times = of.iter().zip(times);
+            let is = ("kidney", method, "fem");
+            records.extend(times.map(|(of, t)| record(is, 100, ("time", of.as_str()), t)));
+        }
+        // A run without a loop has no row; what was not measured is not judged.
+        records.push(record(("kidney", "once", "fem"), 100, ("time", "total:median"), 1.0));
+        records.push(record(("kidney", "unknown", "fem"), 100, ("time", "repeated:median"), 1e-4));
+        let table = repeated(&runs(&records));
+        let rows: Vec<String> = table.shown().iter().map(|row| row[2..].join(" ")).collect();
+        assert_eq!(
+            rows,
+            [
+                "quick 100 300 0.600 1.00 4.00 1000 yes yes",
+                "seen 100 300 0.900 20.0 50.0 50.0 no yes",
+                "slow 100 300 30.0 40.0 40.0 25.0 no no",
+                "unknown 100 300 0.100 — — — — —",
+            ]
+        );
+    }
+}
