@@ -3,8 +3,8 @@
 //! All values are SI (lengths in metres, times in seconds); millimetres appear only when a table or a figure is drawn.
 //!
 //! Conventions the tables and figures rely on:
-//! - errors (`rms-*`, `l2`, `energy`, `pressure`, `max-error*`) and plain outcomes (`max-*`, `tip`, `strain-energy`)
-//!   have `statistic = "value"` and `phase = ""`;
+//! - errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`, `tool-force-error`) and plain
+//!   outcomes (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and `phase = ""`;
 //! - times are `quantity = "time"`, `unit = "s"`, one row per `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`,
 //!   `total`; within `solve` a static path's `solve-to-limit`) and per `statistic` (`median`, `spread`, `min`);
 //! - a loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` (s), and `frames`,
@@ -59,9 +59,9 @@ pub struct Record {
     pub quantity: String,
     /// SI unit as text: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
     pub unit: String,
-    /// `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `step-N`, or empty where no phase applies.
+    /// `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`, `step-N`, or empty where no phase applies.
     pub phase: String,
-    /// `value`, `median`, `spread` (interquartile range), `min`, or the ends `low` and `high` of an uncertainty.
+    /// `value`, `median`, `spread` (interquartile range), `min`, `p99` and `p99.9` (quantiles), or the ends `low` and `high` of an uncertainty.
     pub statistic: String,
     /// The number, in `unit`; always finite.
     pub value: f64,

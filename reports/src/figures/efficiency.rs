@@ -1,7 +1,7 @@
 //! Run time against error: what the project is about.
 
 use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Anchor, Canvas, GREY};
+use super::canvas::{Canvas, GREY};
 use super::grid::{Content, scattered};
 use super::style::{Style, find, styles};
 use super::{Figure, PAGE, chosen, continued, error_label, paged};
@@ -131,7 +131,7 @@ fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
         "Grey staircase: Pareto front. Dashed: an error of 1 %. Down and to the left is better.".to_string();
     if clock == Clock::Repeated {
         let all = DEADLINES.map(|d| format!("{} ({})", d.name, d.what));
-        note += &format!(" Upright: a frame of {}.", list(&all));
+        note += &format!(" Upright: the periods of {}.", list(&all));
     }
     if question.scalar {
         note += " A single number can be right by chance, where its errors cancel.";
@@ -153,7 +153,8 @@ fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64) {
     for deadline in DEADLINES {
         let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
         canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
-        canvas.text((x - 3.0, top + 5.0), deadline.name, TEXT, GREY, Anchor::End);
+        // Along its line: beside it there is no room where that is near an end of the axis.
+        canvas.upright((x + 6.0, bottom - 18.0), deadline.name, TEXT);
     }
 }
 
