@@ -96,7 +96,7 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
             r#"neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [10, 1, 1] }"#,
             1e-11,
         ),
-        ("flat", r#"neighbours = 20, factor = 1.5, size = { cells = [40, 2, 2] }"#, 1e-9),
+        ("flat", r#"neighbours = 20, factor = 1.5, size = { cells = [36, 2, 2] }"#, 1e-9),
     ] {
         let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(cloud)), "--format", "json"]);
         assert_eq!(done.code, 0, "{name}: {}", done.stderr);
@@ -111,11 +111,15 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let told: Value = serde_json::from_str(&done.stdout).unwrap();
     assert!(told["metrics"]["fallbacks-enlarged"]["value"].as_f64().unwrap() > 0.0, "{told}");
-    // Round supports over cells of 50:1 see their neighbours in planes: what the solver can't hold is no result.
-    let thin =
-        patch(r#"neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#);
-    let done = tissuebench(&["run", &write(&dir, "patch.toml", &thin)]);
-    assert_fails(&done, 3, "after the solve (limit 1e-8)");
+    // Round supports over flat cells, of 50:1 and of 12:1, see their neighbours in planes: what the solver can't hold is no
+    // result. At 18:1 it happens to hold (above).
+    for thin in [
+        r#"neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
+        r#"neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
+    ] {
+        let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(thin))]);
+        assert_fails(&done, 3, "after the solve (limit 1e-8)");
+    }
     // The nodes are those of a mesh, whose cells may turn inside out.
     let wild =
         patch(r#"dilatation = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.45, seed = 7 }"#);
