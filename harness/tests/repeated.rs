@@ -31,12 +31,7 @@ fn a_condensed_operator_answers_as_a_solve_does() {
 #[test]
 fn frames_of_a_static_path_come_to_its_end() {
     let scene = std::fs::read_to_string(common::cases("plates.toml")).unwrap();
-    let scene = scene.replacen("[output]", "[output]\nrepeated = { frames = 30, cycle = 8 }", 1);
-    let scene = if scene.contains("repeated") {
-        scene
-    } else {
-        scene + "\n[output]\nrepeated = { frames = 30, cycle = 8 }\n"
-    };
+    let scene = scene + "\n[output]\nrepeated = { frames = 30, cycle = 8 }\n";
     let dir = tempfile::tempdir().unwrap();
     let (path, out) = (write(&dir, "plates.toml", &scene), common::inside(&dir, "out"));
     let done = tissuebench(&["run", &path, "--method", "hex8", "--out", &out]);
