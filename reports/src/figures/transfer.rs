@@ -34,7 +34,9 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     .into_iter()
     .find(|(q, _, _)| runs.iter().any(|r| r.value(q).is_some()))?;
     let scheme = |r: &Run| {
-        let own = |p: &&str| !p.is_empty() && !p.starts_with("from=") && !p.starts_with("field=");
+        // The kernel is that of the method whose field is carried.
+        let other = ["from=", "field=", "kernel="];
+        let own = |p: &&str| !p.is_empty() && !other.iter().any(|o| p.starts_with(o));
         let settings: Vec<String> =
             r.is.parameters.split(';').filter(own).map(|p| p.replace('=', " ")).collect();
         if settings.is_empty() {
@@ -50,7 +52,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     let largest = raw.iter().copied().fold(0.0, f64::max).max(1e-9);
     let floor = 10f64.powf((largest * 1e-3).log10().floor());
     let values: Vec<f64> = raw.iter().map(|v| v.max(floor)).collect();
-    let left = 14.0 + names.iter().map(|n| text_width(n, TEXT)).fold(40.0, f64::max).min(250.0);
+    let left = 14.0 + names.iter().map(|n| text_width(n, TEXT)).fold(40.0, f64::max);
     let bottom = 26.0 + LINE * names.len() as f64;
     let below = 34.0 + legend_height(&styles, WIDTH - 20.0);
     let floored = raw.iter().any(|v| *v < floor);
@@ -87,8 +89,8 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
         name: format!("transfer-{}", slug(case)),
         title: format!("Transfer schemes compared, {case}"),
         caption: "Error of the displacement at the target points after each scheme carried it there: of a prescribed field it is the transfer's own, \
-                  of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone. Sources \
-                  whose records contradict each other are left out"
+                  of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone. Several \
+                  markers of one source in a row are its kernels and numbers of nodes. Sources whose records contradict each other are left out"
             .into(),
         canvas,
     })

@@ -97,7 +97,7 @@ impl Kinematics {
 /// `x - ln(1 + x)`, without the cancellation near 0.
 ///
 /// With `s = x / (2 + x)`: `ln(1 + x) = 2 atanh s = 2 (s + s^3/3 + ...)` and `x - 2 s = x s`.
-pub(super) fn less_ln_1p(x: f64) -> f64 {
+pub(crate) fn less_ln_1p(x: f64) -> f64 {
     if x.abs() > 0.25 {
         return x - x.ln_1p();
     }

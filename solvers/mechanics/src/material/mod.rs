@@ -24,6 +24,7 @@ mod viscoelastic;
 
 pub use error::MaterialError;
 pub use hencky::Hencky;
+pub(crate) use kinematics::less_ln_1p;
 pub use kinematics::volume_change;
 pub use law::Law;
 pub use linear::LinearElastic;

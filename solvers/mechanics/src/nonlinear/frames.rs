@@ -5,7 +5,8 @@ use super::newton::{Descent, Newton, State, near};
 use super::statics::{StaticParams, StaticProblem, Step};
 use crate::Vector3;
 
-/// Equilibria in frames: each starts from the last, forwards or backwards along the loading.
+/// Equilibria in frames: each starts from the last, forwards or backwards along the loading. Residuals are relative to the
+/// largest forces so far: where tools lift off, the digits of a force near zero are no use to a simulator.
 pub struct Frames<'a> {
     newton: Newton<'a>,
     state: State,
@@ -35,6 +36,7 @@ impl<'a> Frames<'a> {
             let mut way = |descent| newton.find(state, before, target, self.augmentations, descent);
             match near(!state.pressure.is_empty(), &mut way).or_else(|_| way(Descent::Down)) {
                 Ok((reached, step)) => {
+                    self.newton.keep_scale();
                     self.before = Some(std::mem::replace(&mut self.state, reached));
                     if target == time {
                         return Ok(step);

@@ -2,9 +2,12 @@
 
 mod error;
 mod frames;
+mod groups;
 mod in_time;
 mod newton;
 mod relaxing;
+mod separated;
+mod shared;
 mod solid;
 mod sorted;
 mod split;

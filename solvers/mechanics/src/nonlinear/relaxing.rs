@@ -7,7 +7,8 @@
 
 use rayon::prelude::*;
 
-use super::solid::{Hessian, Internal, Pairs};
+use super::groups::Pairs;
+use super::solid::{Hessian, Internal};
 use super::split::{Split, cofactor, flat};
 use super::{Dilation, Solid, StaticError};
 use crate::material::{Law, Prony, PronyStep, Tangent};

@@ -5,6 +5,8 @@
 use rayon::prelude::*;
 use shape::{DilationGroups, Rows, VolumeRows};
 
+use super::groups::Pairs;
+use super::shared::{GroupHessian, Shared};
 use super::split::{Split, add_dilation_hessian, cofactor, dilation, dilation_at_pressure};
 use super::{Inverted, StaticError};
 use crate::material::{Law, Material, Tangent};
@@ -56,63 +58,6 @@ pub(crate) struct Hessian {
     pub groups: Vec<GroupHessian>,
     /// Per point with a pressure field: `w d2/(dF dp)` (3, 3), m^3, and `-w d2/dp2`, m^3/Pa.
     pub pressure: Vec<(Matrix3, f64)>,
-}
-
-/// The share of one dilation group in the second derivatives; rows by ascending node.
-pub(crate) struct GroupHessian {
-    /// `dJ_a / du`, 1/m.
-    pub b: Vec<Vector3>,
-    /// `d2 psi / dF d theta` carried to the nodes, N.
-    pub m: Vec<Vector3>,
-    /// `d2 psi / d theta2` over the group, J.
-    pub k: f64,
-}
-
-/// For each point its (group, place in the flat pair list, share): the transpose of the groups.
-pub(crate) struct Pairs {
-    offsets: Vec<usize>,
-    /// (group, share), point by point.
-    of_point: Vec<(u32, f64)>,
-    /// For each entry of the groups' own list its place in `of_point`.
-    place: Vec<usize>,
-    group_offsets: Vec<usize>,
-}
-
-impl Pairs {
-    pub fn new(groups: &DilationGroups) -> Pairs {
-        let points = groups.point_count();
-        let mut offsets = vec![0usize; points + 1];
-        let mut group_offsets = vec![0];
-        for a in 0..groups.len() {
-            groups.group(a).0.iter().for_each(|&q| offsets[q as usize + 1] += 1);
-            group_offsets.push(group_offsets[a] + groups.group(a).0.len());
-        }
-        for q in 0..points {
-            offsets[q + 1] += offsets[q];
-        }
-        let mut next = offsets.clone();
-        let mut of_point = vec![(0, 0.0); offsets[points]];
-        let mut place = Vec::with_capacity(of_point.len());
-        for a in 0..groups.len() {
-            let (members, shares) = groups.group(a);
-            for (&q, &share) in members.iter().zip(shares) {
-                let at = &mut next[q as usize];
-                of_point[*at] = (a as u32, share);
-                place.push(*at);
-                *at += 1;
-            }
-        }
-        Pairs { offsets, of_point, place, group_offsets }
-    }
-
-    pub fn of(&self, q: usize) -> &[(u32, f64)] {
-        &self.of_point[self.offsets[q]..self.offsets[q + 1]]
-    }
-
-    /// Places in the pair list of a group's entries.
-    fn places(&self, group: usize) -> &[usize] {
-        &self.place[self.group_offsets[group]..self.group_offsets[group + 1]]
-    }
 }
 
 /// Displacement gradient and `J - 1` of each point.
@@ -176,53 +121,6 @@ impl Solid<'_> {
         Ok(Kinematics { H, J1, smallest })
     }
 
-    /// `J_a - 1` of each group.
-    pub(super) fn group_dilations(&self, groups: &DilationGroups, J1: &[f64]) -> Result<Vec<f64>, Inverted> {
-        let weights = self.volume.weights();
-        (0..groups.len())
-            .into_par_iter()
-            .with_min_len(32)
-            .map(|a| {
-                let (points, shares) = groups.group(a);
-                let (mut volume, mut sum) = (0.0, 0.0);
-                for (&q, share) in points.iter().zip(shares) {
-                    let dv = share * weights[q as usize];
-                    volume += dv;
-                    sum += dv * J1[q as usize];
-                }
-                let mean = sum / volume;
-                let q = points[0] as usize;
-                // Shares of quadratic or meshless bases may be negative: a mean of positive J's need not be positive.
-                if mean > -1.0 || self.law(q).is_small_strain() {
-                    Ok(mean)
-                } else {
-                    Err(Inverted { point: q, det: 1.0 + mean })
-                }
-            })
-            .collect()
-    }
-
-    fn group_volume(&self, groups: &DilationGroups, a: usize) -> f64 {
-        let (points, shares) = groups.group(a);
-        points.iter().zip(shares).map(|(&q, s)| s * self.volume.weights()[q as usize]).sum()
-    }
-
-    /// `sum_q share w value / V_a`, with one value per pair.
-    fn group_mean(&self, groups: &DilationGroups, pairs: &Pairs, value: &[f64]) -> Vec<f64> {
-        let weights = self.volume.weights();
-        (0..groups.len())
-            .into_par_iter()
-            .with_min_len(32)
-            .map(|a| {
-                let (points, shares) = groups.group(a);
-                let sum: f64 = (points.iter().zip(shares).zip(pairs.places(a)))
-                    .map(|((&q, s), &at)| s * weights[q as usize] * value[at])
-                    .sum();
-                sum / self.group_volume(groups, a)
-            })
-            .collect()
-    }
-
     /// `theta - 1` at a point of the mixed method.
     pub(super) fn mixed_dilation(&self, q: usize, H: &Matrix3, J1: f64, p: f64) -> Result<f64, StaticError> {
         let law = self.law(q);
@@ -252,7 +150,8 @@ impl Solid<'_> {
         u: &[Vector3],
         p: &[f64],
     ) -> Result<Internal, StaticError> {
-        let Kinematics { H, J1, smallest } = self.kinematics(u)?;
+        let kinematics = self.kinematics(u)?;
+        let Kinematics { H, J1, smallest } = &kinematics;
         let weights = self.volume.weights();
         let points = 0..weights.len();
         let mut misfit = Vec::new();
@@ -266,35 +165,7 @@ impl Solid<'_> {
                 })
                 .unzip(),
             Dilation::Groups(groups) => {
-                let pairs = pairs.expect("groups have pairs");
-                let theta = self.group_dilations(groups, &J1)?;
-                let each: Vec<(Matrix3, f64, Vec<f64>)> = points
-                    .into_par_iter()
-                    .with_min_len(64)
-                    .map(|q| {
-                        let law = self.law(q);
-                        let (mut P, mut energy) = (Matrix3::zeros(), 0.0);
-                        let mut mean_stress = Vec::with_capacity(pairs.of(q).len());
-                        for &(a, share) in pairs.of(q) {
-                            let split = Split::new(law, &H[q], J1[q], theta[a as usize]);
-                            let first = split.first(law);
-                            P += first.by_F * share;
-                            energy += split.energy(law) * share;
-                            mean_stress.push(first.by_theta);
-                        }
-                        (P, energy * weights[q], mean_stress)
-                    })
-                    .collect();
-                let by_pair: Vec<f64> = each.iter().flat_map(|e| e.2.iter().copied()).collect();
-                let pressure = self.group_mean(groups, pairs, &by_pair);
-                each.into_par_iter()
-                    .enumerate()
-                    .map(|(q, (P, energy, _))| {
-                        let p: f64 = pairs.of(q).iter().map(|&(a, s)| s * pressure[a as usize]).sum();
-                        let cof = cofactor(self.law(q).is_small_strain(), &H[q]);
-                        ((P + cof * p) * weights[q], energy)
-                    })
-                    .unzip()
+                Shared::new(self, groups, pairs.expect("groups have pairs"), &kinematics)?.stress()
             }
             Dilation::Mixed(rows) => {
                 let p = self.pressures(rows, p);
@@ -315,7 +186,7 @@ impl Solid<'_> {
                 each.into_iter().map(|e| (e.0, e.1)).unzip()
             }
         };
-        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest })
+        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: *smallest })
     }
 
     /// Second derivatives at nodal parameters `u` (and pressures `p`).
@@ -325,7 +196,8 @@ impl Solid<'_> {
         u: &[Vector3],
         p: &[f64],
     ) -> Result<Hessian, StaticError> {
-        let Kinematics { H, J1, .. } = self.kinematics(u)?;
+        let kinematics = self.kinematics(u)?;
+        let Kinematics { H, J1, .. } = &kinematics;
         let weights = self.volume.weights();
         let points = (0..weights.len()).into_par_iter().with_min_len(64);
         let none = (Vec::new(), Vec::new());
@@ -336,34 +208,8 @@ impl Solid<'_> {
             }
             Dilation::Groups(groups) => {
                 let pairs = pairs.expect("groups have pairs");
-                let theta = self.group_dilations(groups, &J1)?;
-                type Each = (Tangent, Vec<(f64, f64, Matrix3)>);
-                let each: Vec<Each> = points
-                    .map(|q| {
-                        let law = self.law(q);
-                        let mut D = Tangent::zeros();
-                        let mut of_pair = Vec::with_capacity(pairs.of(q).len());
-                        for &(a, share) in pairs.of(q) {
-                            let (first, second) =
-                                Split::new(law, &H[q], J1[q], theta[a as usize]).second(law);
-                            D += second.by_FF * share;
-                            of_pair.push((first.by_theta, second.by_theta_theta, second.by_F_theta));
-                        }
-                        (D, of_pair)
-                    })
-                    .collect();
-                let of_pair: Vec<(f64, f64, Matrix3)> =
-                    each.iter().flat_map(|e| e.1.iter().copied()).collect();
-                let by_theta: Vec<f64> = of_pair.iter().map(|o| o.0).collect();
-                let pressure = self.group_mean(groups, pairs, &by_theta);
-                let point = (each.into_par_iter().enumerate())
-                    .map(|(q, (mut D, _))| {
-                        let p: f64 = pairs.of(q).iter().map(|&(a, s)| s * pressure[a as usize]).sum();
-                        add_dilation_hessian(self.law(q).is_small_strain(), &H[q], p, &mut D);
-                        D * weights[q]
-                    })
-                    .collect();
-                (point, self.group_hessians(groups, pairs, &H, &of_pair), none.1)
+                let (point, groups) = Shared::new(self, groups, pairs, &kinematics)?.hessian();
+                (point, groups, none.1)
             }
             Dilation::Mixed(rows) => {
                 let p = self.pressures(rows, p);
@@ -387,58 +233,5 @@ impl Solid<'_> {
             }
         };
         Ok(Hessian { point, groups, pressure })
-    }
-
-    fn group_hessians(
-        &self,
-        groups: &DilationGroups,
-        pairs: &Pairs,
-        H: &[Matrix3],
-        of_pair: &[(f64, f64, Matrix3)],
-    ) -> Vec<GroupHessian> {
-        let weights = self.volume.weights();
-        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
-        let cof: Vec<Vec<Vector3>> = (0..weights.len())
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|q| {
-                let cof = cofactor(self.law(q).is_small_strain(), &H[q]);
-                self.volume.row(q).1.iter().map(|g| cof * g).collect()
-            })
-            .collect();
-        (0..groups.len())
-            .into_par_iter()
-            .map_init(
-                || (vec![[Vector3::zeros(); 2]; self.node_count()], vec![false; self.node_count()]),
-                |(scratch, seen), a| {
-                    let (points, shares) = groups.group(a);
-                    let volume = self.group_volume(groups, a);
-                    let (mut nodes, mut k) = (Vec::new(), 0.0);
-                    for ((&q, share), &at) in points.iter().zip(shares).zip(pairs.places(a)) {
-                        let q = q as usize;
-                        let dv = share * weights[q];
-                        let (_, stiffness, mixed) = &of_pair[at];
-                        k += dv * stiffness;
-                        let mixed = mixed * dv;
-                        let (row, grads) = self.volume.row(q);
-                        for ((&node, g), cof) in row.iter().zip(grads).zip(&cof[q]) {
-                            if !std::mem::replace(&mut seen[node as usize], true) {
-                                nodes.push(node);
-                            }
-                            let [b, m] = &mut scratch[node as usize];
-                            *b += cof * (dv / volume);
-                            *m += mixed * g;
-                        }
-                    }
-                    nodes.sort_unstable();
-                    nodes.iter().for_each(|&n| seen[n as usize] = false);
-                    let (b, m) = nodes
-                        .iter()
-                        .map(|&n| std::mem::replace(&mut scratch[n as usize], [Vector3::zeros(); 2]).into())
-                        .unzip();
-                    GroupHessian { b, m, k }
-                },
-            )
-            .collect()
     }
 }

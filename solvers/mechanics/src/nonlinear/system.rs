@@ -3,7 +3,8 @@
 
 use rayon::prelude::*;
 
-use super::solid::{Hessian, Internal, Pairs};
+use super::groups::Pairs;
+use super::solid::{Hessian, Internal};
 use super::sorted::Sorted;
 use super::{Dilation, Solid};
 use crate::linear_solver::Symmetric;

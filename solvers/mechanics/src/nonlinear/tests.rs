@@ -6,11 +6,16 @@ use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use shape::{DilationGroups, Rows, VolumeRows};
 
+use super::separated::Volumetric;
+use super::shared::Shared;
 use super::solid::{Dilation, Solid};
 use super::split::{Split, dilation, flat};
 use super::system::System;
 use crate::material::{Law, Material};
-use crate::{LinearElastic, Matrix3, NeoHookean, NeoHookeanIsochoric, Point3, SaintVenantKirchhoff, Vector3};
+use crate::{
+    Hencky, LinearElastic, Matrix3, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, Point3,
+    SaintVenantKirchhoff, Vector3,
+};
 
 const YOUNG: f64 = 20e3;
 const POISSON: f64 = 0.45;
@@ -73,6 +78,42 @@ fn split_at_its_own_dilation_is_the_law() {
         let first = split.first(&law);
         let whole = first.by_F + super::split::cofactor(law.is_small_strain(), &H) * first.by_theta;
         assert!((whole - law.stress(&H)).norm() < 1e-13 * YOUNG, "{}", law.name());
+    }
+}
+
+/// Central differences of `A`, `U` and their slopes, and the energy of the parts against that of the law.
+#[test]
+fn laws_part_into_shape_and_volume() {
+    let h = 1e-6;
+    let mut parting = laws();
+    parting.extend([
+        Law::Hencky(Hencky::new(YOUNG, POISSON).unwrap()),
+        Law::MooneyRivlin(MooneyRivlin::from_young(YOUNG, POISSON, 0.3).unwrap()),
+        Law::Ogden(Ogden::new(&[(1.3e4, 1.5), (-2e3, -2.5)], 7e4).unwrap()),
+    ]);
+    let H = gradient();
+    for law in parting {
+        let J1 = dilation(law.is_small_strain(), &H);
+        let shape = Split::new(&law, &H, J1, 0.0);
+        for theta1 in [-0.4, 1e-9, 0.27] {
+            let at = |theta1: f64| Volumetric::new(&law, theta1);
+            let Some(parts) = at(theta1) else {
+                assert_eq!(law.name(), "saint-venant-kirchhoff");
+                continue;
+            };
+            let whole = Split::new(&law, &H, J1, theta1);
+            let sum = parts.A[0] * shape.energy(&law) + parts.U[0];
+            assert!((sum - whole.energy(&law)).abs() < 1e-13 * YOUNG, "{} {theta1}", law.name());
+            let stress = shape.first(&law).by_F * parts.A[0];
+            assert!((stress - whole.first(&law).by_F).norm() < 1e-13 * YOUNG, "{} {theta1}", law.name());
+            let (up, down) = (at(theta1 + h).unwrap(), at(theta1 - h).unwrap());
+            for d in 0..2 {
+                let slope = (up.A[d] - down.A[d]) / (2.0 * h);
+                assert!((slope - parts.A[d + 1]).abs() < 1e-8, "{} A {d} {theta1}", law.name());
+                let slope = (up.U[d] - down.U[d]) / (2.0 * h);
+                assert!((slope - parts.U[d + 1]).abs() < 1e-7 * YOUNG, "{} U {d} {theta1}", law.name());
+            }
+        }
     }
 }
 
@@ -169,6 +210,41 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
                 let error = norm(&|k| (up.1[k] - down.1[k]) / (2.0 * h) + product[k]);
                 let size = norm(&|k| product[k]);
                 assert!(error <= 1e-7 * size, "{name}: {error:e} of {size:e}");
+            }
+        }
+    }
+}
+
+/// Where a law parts, points are summed before groups: the same but for rounding, as sums go in another order.
+#[test]
+fn laws_that_part_give_what_pairs_give() {
+    let case = case();
+    let u = field(case.volume.rows().node_count(), 0.1);
+    for law in laws() {
+        let laws = [law];
+        for groups in [&case.element, &case.nodal] {
+            let dilation = Dilation::Groups(groups);
+            let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation };
+            let (pairs, kinematics) = (solid.pairs().unwrap(), solid.kinematics(&u).unwrap());
+            let shared = || Shared::new(&solid, groups, &pairs, &kinematics).unwrap();
+            let close = |a: f64, b: f64, what: &str| {
+                assert!((a - b).abs() < 1e-12 * YOUNG, "{} {what}: {a} {b}", laws[0].name());
+            };
+            let ((P, energy), (P_plain, energy_plain)) = (shared().stress(), shared().plain().stress());
+            for q in 0..P.len() {
+                close(energy[q], energy_plain[q], "energy");
+                close((P[q] - P_plain[q]).norm(), 0.0, "stress");
+            }
+            let ((D, by_group), (D_plain, plain_by_group)) = (shared().hessian(), shared().plain().hessian());
+            for q in 0..D.len() {
+                close((D[q] - D_plain[q]).norm(), 0.0, "tangent");
+            }
+            for (a, b) in by_group.iter().zip(&plain_by_group) {
+                close(a.k, b.k, "k");
+                for k in 0..a.b.len() {
+                    close((a.b[k] - b.b[k]).norm() * YOUNG, 0.0, "b");
+                    close((a.m[k] - b.m[k]).norm(), 0.0, "m");
+                }
             }
         }
     }

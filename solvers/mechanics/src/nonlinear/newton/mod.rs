@@ -105,8 +105,10 @@ pub(crate) struct Newton<'a> {
     volume: f64,
     terms: Option<TimeTerms>,
     ended: Option<Ended>,
-    /// Largest forces so far in real time, N: what swings passes through states without any.
+    /// Largest forces so far in real time and in loops, N: what swings passes through states without any.
     peak: f64,
+    /// Forces at the end of the last step, N.
+    reached: f64,
     /// Where a tangent that is not definite leads.
     descent: Descent,
     /// Whether the last tangent was not definite.
@@ -206,6 +208,7 @@ impl<'a> Newton<'a> {
             terms: None,
             ended: None,
             peak: 0.0,
+            reached: 0.0,
             descent: Descent::Nearest,
             indefinite: false,
             forcing: 1e-7,
@@ -232,6 +235,11 @@ impl<'a> Newton<'a> {
         let ended = self.ended.take().expect("a step in real time has ended");
         self.peak = self.peak.max(ended.size());
         ended
+    }
+
+    /// Residuals are relative to no less than the forces at the end of the last step from now on.
+    pub fn keep_scale(&mut self) {
+        self.peak = self.peak.max(self.reached);
     }
 
     /// Prescribed value at the end of the ramp by degree of freedom.
@@ -317,6 +325,7 @@ impl<'a> Newton<'a> {
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
             }
         }
+        self.reached = balance.scale;
         self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))
             .map(|(contacts, &closure)| match contacts {

@@ -1,0 +1,251 @@
+#![allow(non_snake_case)] // F, H, J, P as in the formulas
+//! Stresses and tangents of points that share their volume change: the energy `sum over (a, q) of share w psi(F_q, J_a)`.
+//!
+//! By point where the law parts into shape and volume ([`Volumetric`]), else by every pair of group and point.
+
+use rayon::prelude::*;
+use shape::DilationGroups;
+
+use super::Inverted;
+use super::groups::Pairs;
+use super::separated::Volumetric;
+use super::solid::{Kinematics, Solid};
+use super::split::{Split, add_dilation_hessian, cofactor};
+use crate::material::Tangent;
+use crate::{Matrix3, Vector3};
+
+/// The share of one dilation group in the second derivatives; rows by ascending node.
+pub(crate) struct GroupHessian {
+    /// `dJ_a / du`, 1/m.
+    pub b: Vec<Vector3>,
+    /// `d2 psi / dF d theta` carried to the nodes, N.
+    pub m: Vec<Vector3>,
+    /// `d2 psi / d theta2` over the group, J.
+    pub k: f64,
+}
+
+/// A solid at a displacement, with the dilations its points share.
+pub(super) struct Shared<'a> {
+    solid: &'a Solid<'a>,
+    groups: &'a DilationGroups,
+    pairs: &'a Pairs,
+    kinematics: &'a Kinematics,
+    /// `J_a - 1` of each group.
+    theta: Vec<f64>,
+    /// Of each group, where the one law of the body parts.
+    parts: Option<Vec<Volumetric>>,
+}
+
+/// What the tangent of one point leaves for its groups.
+struct PairSecond {
+    by_theta: f64,
+    by_theta_theta: f64,
+    by_F_theta: Matrix3,
+}
+
+impl<'a> Shared<'a> {
+    pub fn new(
+        solid: &'a Solid<'a>,
+        groups: &'a DilationGroups,
+        pairs: &'a Pairs,
+        kinematics: &'a Kinematics,
+    ) -> Result<Shared<'a>, Inverted> {
+        let theta = solid.group_dilations(groups, &kinematics.J1)?;
+        let parts = match solid.laws {
+            [law] => theta.iter().map(|&theta| Volumetric::new(law, theta)).collect(),
+            _ => None,
+        };
+        Ok(Shared { solid, groups, pairs, kinematics, theta, parts })
+    }
+
+    /// The plain loop, which the one by point is held against.
+    #[cfg(test)]
+    pub fn plain(mut self) -> Shared<'a> {
+        self.parts = None;
+        self
+    }
+
+    /// `w P` and the energy of every point, J.
+    pub fn stress(&self) -> (Vec<Matrix3>, Vec<f64>) {
+        match &self.parts {
+            Some(parts) => self.stress_by_point(parts),
+            None => self.stress_by_pair(),
+        }
+    }
+
+    /// `w d2/dF2` of every point, J, and what every group adds.
+    pub fn hessian(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        match &self.parts {
+            Some(parts) => self.hessian_by_point(parts),
+            None => self.hessian_by_pair(),
+        }
+    }
+
+    /// `F_q` through the dilation `theta`.
+    fn split(&self, q: usize, theta1: f64) -> Split {
+        Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.J1[q], theta1)
+    }
+
+    fn cofactor(&self, q: usize) -> Matrix3 {
+        cofactor(self.solid.law(q).is_small_strain(), &self.kinematics.H[q])
+    }
+
+    /// `sum_a share value_a` of a point.
+    fn at_point(&self, q: usize, of_group: impl Fn(usize) -> f64) -> f64 {
+        self.pairs.of(q).iter().map(|&(a, share)| share * of_group(a as usize)).sum()
+    }
+
+    /// `value` of every point.
+    fn points<T: Send>(&self, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        (0..self.kinematics.H.len()).into_par_iter().with_min_len(64).map(value).collect()
+    }
+
+    fn stress_by_point(&self, parts: &[Volumetric]) -> (Vec<Matrix3>, Vec<f64>) {
+        let weights = self.solid.volume.weights();
+        let shape: Vec<(Matrix3, f64)> = self.points(|q| {
+            let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+            (split.first(law).by_F, split.energy(law))
+        });
+        let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].1);
+        let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
+        self.points(|q| {
+            let (P, energy) = &shape[q];
+            let scale = self.at_point(q, |a| parts[a].A[0]);
+            let stress = P * scale + self.cofactor(q) * self.at_point(q, |a| pressure[a]);
+            (stress * weights[q], (energy * scale + self.at_point(q, |a| parts[a].U[0])) * weights[q])
+        })
+        .into_iter()
+        .unzip()
+    }
+
+    fn stress_by_pair(&self) -> (Vec<Matrix3>, Vec<f64>) {
+        let weights = self.solid.volume.weights();
+        let each: Vec<(Matrix3, f64, Vec<f64>)> = self.points(|q| {
+            let law = self.solid.law(q);
+            let (mut P, mut energy) = (Matrix3::zeros(), 0.0);
+            let mut mean_stress = Vec::with_capacity(self.pairs.of(q).len());
+            for &(a, share) in self.pairs.of(q) {
+                let split = self.split(q, self.theta[a as usize]);
+                let first = split.first(law);
+                P += first.by_F * share;
+                energy += split.energy(law) * share;
+                mean_stress.push(first.by_theta);
+            }
+            (P, energy, mean_stress)
+        });
+        let by_pair: Vec<f64> = each.iter().flat_map(|e| e.2.iter().copied()).collect();
+        let pressure = self.solid.group_mean(self.groups, self.pairs, |_, at| by_pair[at]);
+        self.points(|q| {
+            let (P, energy, _) = &each[q];
+            let stress = P + self.cofactor(q) * self.at_point(q, |a| pressure[a]);
+            (stress * weights[q], energy * weights[q])
+        })
+        .into_iter()
+        .unzip()
+    }
+
+    fn hessian_by_point(&self, parts: &[Volumetric]) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        let shape: Vec<(f64, Matrix3, Tangent)> = self.points(|q| {
+            let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+            let (first, second) = split.second(law);
+            (split.energy(law), first.by_F, second.by_FF * self.at_point(q, |a| parts[a].A[0]))
+        });
+        let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
+        let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
+        let point = self.point_tangents(&pressure, |q| shape[q].2);
+        // P grad N of every neighbour, the same for all groups of a point.
+        let carried: Vec<Vec<Vector3>> =
+            self.points(|q| self.solid.volume.row(q).1.iter().map(|g| shape[q].1 * g).collect());
+        let groups = self.group_hessians(
+            |a| self.solid.group_volume(self.groups, a) * (parts[a].A[2] * energy[a] + parts[a].U[2]),
+            |a, q, _, k, _| carried[q][k] * parts[a].A[1],
+        );
+        (point, groups)
+    }
+
+    fn hessian_by_pair(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        let weights = self.solid.volume.weights();
+        let each: Vec<(Tangent, Vec<PairSecond>)> = self.points(|q| {
+            let law = self.solid.law(q);
+            let mut D = Tangent::zeros();
+            let mut of_pair = Vec::with_capacity(self.pairs.of(q).len());
+            for &(a, share) in self.pairs.of(q) {
+                let (first, second) = self.split(q, self.theta[a as usize]).second(law);
+                D += second.by_FF * share;
+                let by_theta = first.by_theta;
+                let (by_theta_theta, by_F_theta) = (second.by_theta_theta, second.by_F_theta);
+                of_pair.push(PairSecond { by_theta, by_theta_theta, by_F_theta });
+            }
+            (D, of_pair)
+        });
+        let of_pair: Vec<&PairSecond> = each.iter().flat_map(|e| &e.1).collect();
+        let pressure = self.solid.group_mean(self.groups, self.pairs, |_, at| of_pair[at].by_theta);
+        let point = self.point_tangents(&pressure, |q| each[q].0);
+        let stiffness = |a: usize| {
+            let (points, shares) = self.groups.group(a);
+            (points.iter().zip(shares).zip(self.pairs.places(a)))
+                .map(|((&q, s), &at)| s * weights[q as usize] * of_pair[at].by_theta_theta)
+                .sum()
+        };
+        (point, self.group_hessians(stiffness, |_, _, at, _, g| of_pair[at].by_F_theta * g))
+    }
+
+    /// `w D` with what the change of J itself adds.
+    fn point_tangents(
+        &self,
+        pressure: &[f64],
+        by_FF: impl Fn(usize) -> Tangent + Sync + Send,
+    ) -> Vec<Tangent> {
+        self.points(|q| {
+            let (p, mut D) = (self.at_point(q, |a| pressure[a]), by_FF(q));
+            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, &mut D);
+            D * self.solid.volume.weights()[q]
+        })
+    }
+
+    /// By the stiffness of a group, and `d2 psi / dF d theta` times the gradient of a neighbour: by group, point, place
+    /// in the pair list, place in the point's row and gradient.
+    fn group_hessians(
+        &self,
+        stiffness: impl Fn(usize) -> f64 + Sync + Send,
+        mixed: impl Fn(usize, usize, usize, usize, &Vector3) -> Vector3 + Sync + Send,
+    ) -> Vec<GroupHessian> {
+        let (volume, nodes) = (self.solid.volume, self.solid.node_count());
+        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        let cof: Vec<Vec<Vector3>> = self.points(|q| {
+            let cof = self.cofactor(q);
+            volume.row(q).1.iter().map(|g| cof * g).collect()
+        });
+        (0..self.groups.len())
+            .into_par_iter()
+            .map_init(
+                || (vec![[Vector3::zeros(); 2]; nodes], vec![false; nodes]),
+                |(scratch, seen), a| {
+                    let (points, shares) = self.groups.group(a);
+                    let whole = self.solid.group_volume(self.groups, a);
+                    let mut touched = Vec::new();
+                    for ((&q, share), &at) in points.iter().zip(shares).zip(self.pairs.places(a)) {
+                        let q = q as usize;
+                        let dv = share * volume.weights()[q];
+                        let (row, grads) = volume.row(q);
+                        for (k, (&node, g)) in row.iter().zip(grads).enumerate() {
+                            if !std::mem::replace(&mut seen[node as usize], true) {
+                                touched.push(node);
+                            }
+                            let [b, m] = &mut scratch[node as usize];
+                            *b += cof[q][k] * (dv / whole);
+                            *m += mixed(a, q, at, k, g) * dv;
+                        }
+                    }
+                    touched.sort_unstable();
+                    touched.iter().for_each(|&n| seen[n as usize] = false);
+                    let (b, m) = touched
+                        .iter()
+                        .map(|&n| std::mem::replace(&mut scratch[n as usize], [Vector3::zeros(); 2]).into())
+                        .unzip();
+                    GroupHessian { b, m, k: stiffness(a) }
+                },
+            )
+            .collect()
+    }
+}
