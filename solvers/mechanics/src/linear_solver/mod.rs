@@ -1,6 +1,6 @@
 //! Direct solution of symmetric systems: the only module that knows faer and METIS.
 //!
-//! Factorisations are sequential, so that the bits of a result do not depend on the number of threads. Every solve
+//! The bits of a result do not depend on the number of threads, which only large factorisations take. Every solve
 //! ends with its residual.
 
 mod dense;
