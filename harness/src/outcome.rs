@@ -167,9 +167,9 @@ pub struct Transfer {
     pub parameters: String,
     /// Errors and counts.
     pub metrics: Vec<Metric>,
-    /// Seconds to build the table and to apply it.
+    /// Seconds to build the table and to pack it for repeated use.
     pub build: Summary,
-    /// Seconds to apply it to one field.
+    /// Seconds to apply the packed table to one field.
     pub apply: Summary,
     /// Number of targets.
     pub targets: usize,

@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
 use interp::Scheme;
-use shape::Vector3;
+use shape::{RowBlocks, Vector3};
 use std::hint::black_box;
 
 fn transfer(criterion: &mut Criterion) {
@@ -19,10 +19,14 @@ fn transfer(criterion: &mut Criterion) {
         let build = || scheme.rows(nodes, mesh, &targets).expect("a sound cloud");
         group.bench_function(format!("build/{}", scheme.name()), |b| b.iter(|| black_box(build())));
         let (rows, _) = build();
+        group.bench_function(format!("pack/{}", scheme.name()), |b| {
+            b.iter(|| RowBlocks::new(black_box(rows.rows())))
+        });
+        let blocks = RowBlocks::new(rows.rows());
         let field: Vec<Vector3> = nodes.iter().map(|x| 0.1 * x.coords).collect();
         let mut out = vec![Vector3::zeros(); targets.len()];
         group.bench_function(format!("apply/{}", scheme.name()), |b| {
-            b.iter(|| rows.rows().apply_into(black_box(&field), &mut out))
+            b.iter(|| blocks.apply_into(black_box(&field), &mut out))
         });
     }
     group.finish();

@@ -6,11 +6,13 @@
 //!
 //! Compressed rows in flat arrays; positions and gradients in the reference configuration; SI units.
 
+mod blocks;
 mod dilation;
 mod rows;
 mod tables;
 mod trace;
 
+pub use blocks::RowBlocks;
 pub use dilation::DilationGroups;
 pub use rows::{Rows, ShapeError, Unity};
 pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};

@@ -1,0 +1,259 @@
+//! Rows by eights, for tables applied again and again.
+
+use crate::{Rows, Vector3};
+
+/// Eight f64 fill one AVX-512 register or two of AVX2.
+const LANES: usize = 8;
+
+/// A table packed for repeated products: rows that share most of their nodes side by side, eight to a block, each block over the
+/// nodes that any of its rows names, with zeros where a row does not (register blocks; Im, Yelick and Vuduc 2004).
+///
+/// A nodal vector is loaded once for eight rows, and no sum waits for another. Every row's sum runs by ascending node in a
+/// lane of its own, multiply and add apart, so that bits are those of [`Rows::apply`] on a table whose rows ascend, on any
+/// machine.
+///
+/// ```
+/// use shape::{RowBlocks, Rows, Unity, Vector3};
+/// # fn main() -> Result<(), shape::ShapeError> {
+/// let rows = Rows::new(3, vec![0, 2, 4], vec![0, 1, 1, 2], vec![0.5, 0.5, 0.25, 0.75], Unity::Within(0.0))?;
+/// let (blocks, u) = (RowBlocks::new(&rows), [Vector3::x(), Vector3::y(), Vector3::z()]);
+/// let mut field = [Vector3::zeros(); 2];
+/// blocks.apply_into(&u, &mut field);
+/// assert_eq!(field[..], rows.apply(&u));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowBlocks {
+    node_count: usize,
+    /// Rows in the order of their lanes; the last block may have lanes to spare.
+    order: Vec<u32>,
+    /// Of each block among `nodes` and `values`, blocks + 1 entries.
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    values: Vec<[f64; LANES]>,
+}
+
+impl RowBlocks {
+    /// Packs a table, in the time of four to ten of [`Rows::apply_into`]: to be applied more often than that.
+    pub fn new(rows: &Rows) -> RowBlocks {
+        let order = alike(rows);
+        let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
+        let mut named = Named::new(rows.node_count());
+        for block in order.chunks(LANES) {
+            let first = nodes.len();
+            for &row in block {
+                named.add(rows.row(row as usize).0);
+            }
+            named.drain_into(&mut nodes);
+            values.resize(nodes.len(), [0.0; LANES]);
+            let of_block = &mut values[first..];
+            for (lane, &row) in block.iter().enumerate() {
+                let (nodes, values) = rows.row(row as usize);
+                for (&node, &value) in nodes.iter().zip(values) {
+                    of_block[named.place(node)][lane] += value;
+                }
+            }
+            offsets.push(nodes.len());
+        }
+        RowBlocks { node_count: rows.node_count(), order, offsets, nodes, values }
+    }
+
+    /// Number of rows (points).
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// The field with nodal parameters `u` at every row's point, `u(x_q) = sum_I N_I(x_q) u_I`, into a caller's buffer: nothing
+    /// is allocated.
+    pub fn apply_into(&self, u: &[Vector3], field: &mut [Vector3]) {
+        assert_eq!(u.len(), self.node_count, "one vector per node");
+        assert_eq!(field.len(), self.len(), "one vector per row");
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::is_x86_feature_detected!("avx512f") {
+                // SAFETY: the processor has the feature that the function requires, just checked; so below.
+                return unsafe { self.apply_avx512(u, field) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { self.apply_avx2(u, field) };
+            }
+        }
+        self.apply_plain(u, field)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f")]
+    fn apply_avx512(&self, u: &[Vector3], field: &mut [Vector3]) {
+        self.apply_plain(u, field)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn apply_avx2(&self, u: &[Vector3], field: &mut [Vector3]) {
+        self.apply_plain(u, field)
+    }
+
+    #[inline(always)]
+    fn apply_plain(&self, u: &[Vector3], field: &mut [Vector3]) {
+        for (block, rows) in self.offsets.windows(2).zip(self.order.chunks(LANES)) {
+            let mut sums = [[0.0; LANES]; 3];
+            for (&node, values) in self.nodes[block[0]..block[1]].iter().zip(&self.values[block[0]..block[1]])
+            {
+                let (values, u) = (*values, u[node as usize]);
+                for axis in 0..3 {
+                    for l in 0..LANES {
+                        sums[axis][l] += values[l] * u[axis];
+                    }
+                }
+            }
+            scatter(&sums, rows, field);
+        }
+    }
+}
+
+/// Writes the vectors of a block. Apart, lest the compiler pair x and y of a row already in the sums: twice the time.
+#[inline(never)]
+fn scatter([x, y, z]: &[[f64; LANES]; 3], rows: &[u32], field: &mut [Vector3]) {
+    for (l, &row) in rows.iter().enumerate() {
+        field[row as usize] = Vector3::new(x[l], y[l], z[l]);
+    }
+}
+
+/// Rows in an order that puts alike ones together: by their two largest values' nodes, where a table has more columns than
+/// a row has entries.
+fn alike(rows: &Rows) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+    if rows.uniform_len() != Some(rows.node_count()) {
+        order.sort_by_cached_key(|&row| {
+            let (nodes, values) = rows.row(row as usize);
+            let (mut first, mut second) = ((f64::NEG_INFINITY, 0), (f64::NEG_INFINITY, 0));
+            for (&node, &value) in nodes.iter().zip(values) {
+                if value > second.0 {
+                    second = (value, node);
+                    if value > first.0 {
+                        (first, second) = (second, first);
+                    }
+                }
+            }
+            (first.1, second.1)
+        });
+    }
+    order
+}
+
+/// The nodes that a block names, as a set of bits, and the place of each among them.
+struct Named {
+    bits: Vec<u64>,
+    /// Words of `bits` that are not all zero lie between these.
+    span: (usize, usize),
+    places: Vec<u32>,
+}
+
+impl Named {
+    fn new(node_count: usize) -> Named {
+        Named { bits: vec![0; node_count.div_ceil(64)], span: (usize::MAX, 0), places: vec![0; node_count] }
+    }
+
+    fn add(&mut self, nodes: &[u32]) {
+        for &node in nodes {
+            let word = node as usize / 64;
+            self.bits[word] |= 1 << (node % 64);
+            self.span = (self.span.0.min(word), self.span.1.max(word + 1));
+        }
+    }
+
+    /// Appends the nodes, ascending, and forgets them, but for their places.
+    fn drain_into(&mut self, nodes: &mut Vec<u32>) {
+        let first = nodes.len();
+        let (low, high) = std::mem::replace(&mut self.span, (usize::MAX, 0));
+        for word in low..high {
+            let mut bits = std::mem::take(&mut self.bits[word]);
+            while bits != 0 {
+                let node = 64 * word as u32 + bits.trailing_zeros();
+                self.places[node as usize] = (nodes.len() - first) as u32;
+                nodes.push(node);
+                bits &= bits - 1;
+            }
+        }
+    }
+
+    fn place(&self, node: u32) -> usize {
+        self.places[node as usize] as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unity;
+
+    /// `count` rows over 83 nodes, of every length up to a full one.
+    fn table(count: usize) -> Rows {
+        let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
+        for row in 0..count {
+            let every = 1 + row % 11;
+            for node in (row % 7..83).step_by(every).take(row % 90) {
+                nodes.push(node as u32);
+                values.push((0.7 * (row * node) as f64 + row as f64).sin());
+            }
+            offsets.push(nodes.len());
+        }
+        Rows::new(83, offsets, nodes, values, Unity::NotPromised).unwrap()
+    }
+
+    type Apply = fn(&RowBlocks, &[Vector3], &mut [Vector3]);
+
+    /// Every way to the same bits that this machine has.
+    fn paths() -> Vec<(&'static str, Apply)> {
+        let mut paths: Vec<(&'static str, Apply)> =
+            vec![("plain", RowBlocks::apply_plain), ("chosen", RowBlocks::apply_into)];
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked.
+            paths.push(("avx2", |blocks, u, field| unsafe { blocks.apply_avx2(u, field) }));
+        }
+        paths
+    }
+
+    #[test]
+    fn blocks_give_the_bits_of_rows_on_every_path() {
+        let u: Vec<Vector3> = (0..83).map(|i| Vector3::new(i as f64, 1.0, -0.3).map(f64::cos)).collect();
+        // Whole blocks, lanes to spare, no rows at all.
+        for count in [0, 1, 7, 8, 200, 1331] {
+            let rows = table(count);
+            let blocks = RowBlocks::new(&rows);
+            assert_eq!((blocks.len(), blocks.is_empty()), (count, count == 0));
+            for (path, apply) in paths() {
+                let mut field = vec![Vector3::repeat(f64::NAN); count];
+                apply(&blocks, &u, &mut field);
+                assert!(field == rows.apply(&u), "{path} {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_node_named_twice_counts_twice_and_nodes_may_come_in_any_order() {
+        let (nodes, values) = (vec![4, 70, 4, 70, 4], vec![0.25, 0.5, 0.25, 0.125, 0.875]);
+        let rows = Rows::new(71, vec![0, 3, 5], nodes, values, Unity::Within(0.0)).unwrap();
+        let u: Vec<Vector3> = (0..71).map(|i| Vector3::repeat(i as f64)).collect();
+        let mut field = [Vector3::zeros(); 2];
+        RowBlocks::new(&rows).apply_into(&u, &mut field);
+        assert_eq!(field, [Vector3::repeat(37.0), Vector3::repeat(12.25)]);
+    }
+
+    #[test]
+    fn alike_rows_share_a_block() {
+        // Sixteen rows of two nodes each, of either kind by turns: two blocks of two nodes.
+        let nodes = (0..16).flat_map(|row| if row % 2 == 0 { [3, 9] } else { [5, 6] }).collect();
+        let offsets = (0..=16).map(|row| 2 * row).collect();
+        let rows = Rows::new(10, offsets, nodes, [0.75, 0.25].repeat(16), Unity::Within(0.0)).unwrap();
+        let blocks = RowBlocks::new(&rows);
+        assert_eq!((&blocks.nodes[..], &blocks.offsets[..]), (&[3, 9, 5, 6][..], &[0, 2, 4][..]));
+    }
+}
