@@ -1,6 +1,7 @@
 //! One method on one body: nodes, cells, and the tables they fill. From here on finite elements and meshless clouds
 //! look the same.
 
+use cases::scene::ConstraintRows;
 use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
@@ -64,6 +65,8 @@ pub enum Essential {
     Penalty(f64),
     /// Lagrange multipliers on the surface.
     Multipliers,
+    /// Elimination of one constraint per node of the surface.
+    Elimination(ConstraintRows),
 }
 
 /// Finite elements on a mesh.

@@ -37,6 +37,7 @@ pub mod repeated;
 pub mod run;
 pub mod scenario;
 pub mod setup;
+mod share;
 pub mod statics;
 pub mod stored;
 pub mod study;

@@ -140,7 +140,10 @@ impl Scenario<'_> {
             SolveError::NotCoercive { .. } => {
                 finding(ErrorKind::NotRun, essential, text, "{ method = \"nitsche\", factor = ... }")
             }
-            SolveError::Inconsistent { .. } | SolveError::BadWeak { .. } | SolveError::ZeroPivot => {
+            SolveError::Inconsistent { .. }
+            | SolveError::Dependent { .. }
+            | SolveError::BadWeak { .. }
+            | SolveError::ZeroPivot => {
                 finding(ErrorKind::NotRun, if cloud { essential } else { supports(self.scene) }, text, "")
             }
             SolveError::NotPositiveDefinite | SolveError::OrphanNode { .. } if cloud => finding(

@@ -85,6 +85,10 @@ pub(crate) fn measure(
     }
     if let Some(info) = &solution.info {
         push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
+        if info.eliminated + info.dropped > 0 {
+            push(metrics, "constraints-eliminated", info.eliminated as f64, "1");
+            push(metrics, "constraints-dropped", info.dropped as f64, "1");
+        }
     }
     let resultant = prepared.resultant();
     for (axis, name) in ["load-x", "load-y", "load-z"].into_iter().enumerate() {

@@ -1,5 +1,7 @@
 //! The plan of a run: the stages it needs, the stages it does not, and why.
 
+use cases::scene::ConstraintRows;
+
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Integration};
 use crate::in_time::InTimeParams;
 use crate::outcome::Stage;
@@ -96,18 +98,21 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             },
         },
     );
-    add(
-        "supports by elimination",
-        cloud.is_none() && !setup.held.is_empty(),
-        match cloud {
-            _ if setup.held.is_empty() => "no support in the scene".into(),
-            None => "the basis is Kronecker: nodal parameters are displacements".into(),
-            Some(_) => "nodal parameters are not displacements".into(),
-        },
-    );
+    let (eliminated, why) = match cloud.map(|efg| efg.essential) {
+        _ if setup.held.is_empty() => (false, "no support in the scene"),
+        None => (true, "the basis is Kronecker: nodal parameters are displacements"),
+        Some(Essential::Elimination(ConstraintRows::Means)) => {
+            (true, "mean displacements of the shares of nodes, by pivoted rows")
+        }
+        Some(Essential::Elimination(ConstraintRows::Points)) => {
+            (true, "displacements at points, by pivoted rows")
+        }
+        Some(_) => (false, "nodal parameters are not displacements"),
+    };
+    add("supports by elimination", eliminated, why.into());
     let weak = match cloud.map(|efg| efg.essential) {
         _ if setup.held.is_empty() => (false, "no support in the scene".into()),
-        None => (false, "supports are eliminated".into()),
+        None | Some(Essential::Elimination(_)) => (false, "supports are eliminated".into()),
         Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
         Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
         Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),

@@ -1,9 +1,11 @@
 //! The prepare phase: every table that assembly reads, for one method on one body under one setup.
 
+use cases::scene::ConstraintRows;
 use geometry::quadrature;
 use geometry::{Mesh, Point3, Vector3};
 use mechanics::{
-    Body, ConstraintRow, FixedDof, HeldSurface, LinearProblem, Load, Weak, WeakSupport, multiplier_rows,
+    Assembled, Body, ConstraintRow, Factored, FixedDof, HeldSurface, LinearProblem, Load, SolveError, Weak,
+    WeakSupport, multiplier_rows,
 };
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
 
@@ -12,6 +14,7 @@ use crate::discretise::{Discretisation, Efg, Essential, Volume};
 use crate::error::Key;
 use crate::place::{self, CutTriangle, Place, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
+use crate::share::{mean_rows, on_facets, shares};
 use crate::work::Work;
 
 /// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
@@ -51,6 +54,8 @@ pub struct Prepared {
     body_force: Vec<Vec<Vector3>>,
     fixed: Vec<FixedDof>,
     constraints: Vec<ConstraintRow>,
+    /// Whether the constraints are eliminated, not enforced by multipliers.
+    eliminates: bool,
     weak: Vec<OwnedWeak>,
     held: Vec<OwnedHeld>,
     /// Where tools may touch; `None` without tools.
@@ -68,6 +73,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
         body_force: Vec::new(),
         fixed: Vec::new(),
         constraints: Vec::new(),
+        eliminates: matches!(method, Discretisation::Efg(efg) if matches!(efg.essential, Essential::Elimination(_))),
         weak: Vec::new(),
         held: Vec::new(),
         contact: None,
@@ -83,7 +89,8 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     }
     work.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
     work.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
-    work.multiplier_rows += prepared.constraints.len() as u64;
+    let constraints = prepared.constraints.len() as u64;
+    *(if prepared.eliminates { &mut work.eliminated_rows } else { &mut work.multiplier_rows }) += constraints;
     work.fixed_dofs += prepared.fixed.len() as u64;
     if setup.statics.is_some() || setup.in_time.is_some() {
         prepared.hold_by_penalty(setup)?;
@@ -159,6 +166,11 @@ impl Prepared {
             dilation: self.volume.groups.as_ref(),
         };
         LinearProblem { body, loads, fixed: &self.fixed, constraints: &self.constraints, weak }
+    }
+
+    /// Factors the assembled problem as the method holds the body.
+    pub fn factor<'a>(&self, assembled: Assembled<'a>) -> Result<Factored<'a>, SolveError> {
+        if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
 
     /// Resultant of all surface loads and body forces, N.
@@ -247,6 +259,23 @@ impl Prepared {
                     self.constraints.extend(multiplier_rows(&surface, basis.rows(), held.axes, &values)?);
                 }
             }
+            Essential::Elimination(rows) => {
+                if !patch.whole.is_empty() {
+                    let surface = method.surface(&self.volume, &patch.whole)?;
+                    let shares = shares(&efg.cloud.points, &surface);
+                    match rows {
+                        ConstraintRows::Means => {
+                            let values = at(held, surface.points())?;
+                            self.constraints.extend(mean_rows(&surface, &shares, held.axes, &values));
+                        }
+                        ConstraintRows::Points => {
+                            let points = on_facets(&efg.cloud.points, &shares, &efg.background, &patch.whole);
+                            let (rows, _) = method.at_points(&self.volume, &points)?;
+                            self.constraints.extend(collocated(&rows, held.axes, &at(held, &points)?));
+                        }
+                    }
+                }
+            }
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
                     let flux = method.flux(&self.volume, &patch.whole)?;
@@ -263,7 +292,7 @@ impl Prepared {
         }
         match efg.essential {
             // Volume points outnumber what a cloud can follow; its own nodes do not.
-            Essential::Multipliers if matches!(held.place, Place::Where(_)) => {
+            Essential::Multipliers | Essential::Elimination(_) if matches!(held.place, Place::Where(_)) => {
                 let tolerance = tolerance(&efg.background);
                 let inside = efg.cloud.points.iter().filter(|x| place::holds(&held.place, x, tolerance));
                 let nodes: Vec<Point3> = inside.copied().collect();
@@ -271,7 +300,7 @@ impl Prepared {
                 let values = at(held, &nodes)?;
                 self.constraints.extend(collocated(&rows, held.axes, &values));
             }
-            Essential::Multipliers => {}
+            Essential::Multipliers | Essential::Elimination(_) => {}
             Essential::Nitsche(factor) | Essential::Penalty(factor) => {
                 if let Some(flux) = self.clamped_volume(efg, held)? {
                     self.hold_flux(efg, held, flux, Weak::Penalty { factor }, None)?;

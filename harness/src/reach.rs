@@ -39,7 +39,7 @@ fn holds_inside(efg: &Efg, held: &Held, patch: &Patch) -> bool {
     }
     let tolerance = tolerance(&efg.background);
     let inside = |x: &Point3| place::holds(&held.place, x, tolerance);
-    if efg.essential == Essential::Multipliers {
+    if matches!(efg.essential, Essential::Multipliers | Essential::Elimination(_)) {
         return efg.cloud.points.iter().any(inside);
     }
     let points = match efg.integration {

@@ -103,7 +103,7 @@ fn linear(
 ) -> Result<Vec<Latency>, Failure> {
     let (loads, weak) = (prepared.loads(), prepared.weak());
     let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
-    let factored = assemble(&problem)?.factor()?;
+    let factored = prepared.factor(assemble(&problem)?)?;
     let unit: Vec<Vec<Vector3>> = (loads.iter())
         .map(|load| nodal_forces(&prepared.volume.rows, std::slice::from_ref(load)))
         .collect::<Result<_, _>>()?;

@@ -306,7 +306,7 @@ fn solve_once(
         let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
         let assembled = timings.time("assemble", || assemble(&problem))?;
         work.assemblies += 1;
-        let factored = timings.time("factor", || assembled.factor())?;
+        let factored = timings.time("factor", || prepared.factor(assembled))?;
         work.factorisations += 1;
         let mechanics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
         work.solves += 1;

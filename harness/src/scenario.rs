@@ -90,6 +90,7 @@ impl Scenario<'_> {
                         scene::Essential::Nitsche { .. } => "nitsche".into(),
                         scene::Essential::Penalty { .. } => "penalty".into(),
                         scene::Essential::Multipliers => "multipliers".into(),
+                        scene::Essential::Elimination { rows } => format!("elimination-{}", rows.name()),
                     },
                 ));
                 let seed = match &efg.cloud {
@@ -291,6 +292,7 @@ impl Scenario<'_> {
             }
             scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
             scene::Essential::Multipliers => Essential::Multipliers,
+            scene::Essential::Elimination { rows } => Essential::Elimination(rows),
         };
         Ok(Efg {
             background: self.with_regions(background)?,

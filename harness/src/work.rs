@@ -23,6 +23,8 @@ pub struct Work {
     pub flux_rows: u64,
     /// Constraint rows with multipliers.
     pub multiplier_rows: u64,
+    /// Constraint rows to eliminate.
+    pub eliminated_rows: u64,
     /// Degrees of freedom eliminated.
     pub fixed_dofs: u64,
     /// Surface points at which tools may touch.
@@ -65,7 +67,7 @@ impl Work {
             "time steps" => self.time_steps,
             "dynamic relaxation" => self.relaxation_steps,
             "stiffness" => self.assemblies,
-            "supports by elimination" => self.fixed_dofs,
+            "supports by elimination" => self.fixed_dofs + self.eliminated_rows,
             "weak supports" => self.flux_rows + self.multiplier_rows,
             "factorisation" => self.factorisations,
             "Newton iterations" => self.newton_iterations,
@@ -88,6 +90,7 @@ impl AddAssign for Work {
         self.surface_rows += other.surface_rows;
         self.flux_rows += other.flux_rows;
         self.multiplier_rows += other.multiplier_rows;
+        self.eliminated_rows += other.eliminated_rows;
         self.fixed_dofs += other.fixed_dofs;
         self.contact_points += other.contact_points;
         self.friction_points += other.friction_points;

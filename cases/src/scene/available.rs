@@ -66,6 +66,7 @@ impl Scene {
                         Essential::Penalty { .. } => continue,
                         Essential::Nitsche { .. } => "Nitsche's method",
                         Essential::Multipliers => "a support by multipliers",
+                        Essential::Elimination { .. } => "a support of a cloud by elimination",
                     };
                     let article = if implicit { "an" } else { "a" };
                     let what = format!("{what} in {article} {} procedure", kind.name());

@@ -325,4 +325,29 @@ pub enum Essential {
     },
     /// Lagrange multipliers.
     Multipliers,
+    /// Exact elimination of constraint rows.
+    Elimination {
+        /// What the rows say.
+        rows: ConstraintRows,
+    },
+}
+
+/// What the eliminated rows of a held surface say, one for each node whose share of the surface this is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConstraintRows {
+    /// The mean displacement over the share is the prescribed one's.
+    Means,
+    /// The displacement at the point of the surface nearest to the node is the prescribed one.
+    Points,
+}
+
+impl ConstraintRows {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            ConstraintRows::Means => "means",
+            ConstraintRows::Points => "points",
+        }
+    }
 }

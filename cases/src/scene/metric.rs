@@ -176,6 +176,12 @@ impl Metric {
             Needs::Run,
             "points at which the approximation had to fall back",
         ),
+        metric(
+            "constraints-dropped",
+            Dimension::None,
+            Needs::Run,
+            "rows of eliminated supports that follow from the others",
+        ),
         metric("time-prepare", Dimension::Time, Needs::Run, "seconds for search and shape functions"),
         metric("time-assemble", Dimension::Time, Needs::Run, "seconds to assemble"),
         metric("time-factor", Dimension::Time, Needs::Run, "seconds to factor"),

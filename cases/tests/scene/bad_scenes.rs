@@ -133,6 +133,18 @@ const KEYS: &[Bad] = &[
         &["did you mean 'multipliers'?"],
     ),
     (
+        "essential = \"multipliers\"",
+        "essential = { method = \"multipliers\", rows = \"points\" } #<",
+        "method[2].essential.rows",
+        &["goes with elimination only", "leave it out"],
+    ),
+    (
+        "essential = \"multipliers\"",
+        "essential = { method = \"elimination\", factor = 4 } #<",
+        "method[2].essential.factor",
+        &["goes with nitsche and penalty only"],
+    ),
+    (
         "scheme = \"inverse-distance\",",
         "scheme = \"inverse distance\", #<\n",
         "output.transfer.scheme",

@@ -234,6 +234,12 @@ fn what_waits_for_later_is_read_and_then_named() {
             "a support by multipliers in a static procedure is not available yet",
         ),
         (
+            static_and("essential = \"penalty\"", "essential = \"elimination\""),
+            "elimination",
+            "method[2].essential",
+            "a support of a cloud by elimination in a static procedure is not available yet",
+        ),
+        (
             static_and(
                 "integration = { rule = \"cell-smoothed\" }",
                 "integration = { rule = \"cell-smoothed\" }\ndilation = \"mixed\"",

@@ -1,4 +1,4 @@
-//! General linear constraints `sum_k c_k u_k = g`, enforced by Lagrange multipliers.
+//! General linear constraints `sum_k c_k u_k = g`, enforced by Lagrange multipliers or eliminated.
 
 use shape::{Rows, SurfaceRows};
 
@@ -63,6 +63,19 @@ pub fn multiplier_rows(
 pub(crate) struct Row {
     pub terms: Vec<(usize, f64)>,
     pub value: f64,
+}
+
+impl Row {
+    /// The terms at prescribed values.
+    pub fn held_part(&self, prescribed: &[Option<f64>]) -> f64 {
+        self.terms.iter().filter_map(|&(dof, c)| prescribed[dof].map(|v| c * v)).sum()
+    }
+
+    /// The row over what is not prescribed.
+    pub fn without(&self, prescribed: &[Option<f64>]) -> Row {
+        let terms = self.terms.iter().filter(|t| prescribed[t.0].is_none()).copied().collect();
+        Row { terms, value: self.value - self.held_part(prescribed) }
+    }
 }
 
 /// Checks and sorts the rows.

@@ -71,6 +71,14 @@ pub enum SolveError {
         /// Value less the sum of fixed terms.
         gap: f64,
     },
+    /// A constraint row that follows from the others, which ask for another value.
+    #[error("constraint row {row} depends on the others, which miss its value by {gap:e}")]
+    Dependent {
+        /// Row index.
+        row: usize,
+        /// The row's combination with the others on the prescribed values.
+        gap: f64,
+    },
     /// A parameter of a weak support that must be positive.
     #[error("weak support {support}: {what} is {value}; it must be positive and finite")]
     BadWeak {

@@ -21,7 +21,7 @@ pub struct LinearProblem<'a> {
     pub loads: &'a [Load<'a>],
     /// Nodal parameters held at values, eliminated exactly.
     pub fixed: &'a [FixedDof],
-    /// General linear constraints, by Lagrange multipliers.
+    /// General linear constraints, by Lagrange multipliers or eliminated, as the problem is factored.
     pub constraints: &'a [ConstraintRow],
     /// Surfaces held weakly.
     pub weak: &'a [WeakSupport<'a>],
@@ -40,7 +40,7 @@ pub struct Assembled<'a> {
     pub(crate) rows: Vec<constraint::Row>,
     /// Smallest Nitsche factor, if any support is of that kind.
     pub(crate) gamma: Option<f64>,
-    /// The forms themselves, kept where supports are weak: see [`Pointwise`].
+    /// The forms themselves, kept where supports are weak or constraint rows: see [`Pointwise`].
     pub(crate) pointwise: Option<Pointwise>,
 }
 
@@ -122,7 +122,7 @@ pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveE
         Weak::Penalty { .. } => None,
     });
     let gamma = gammas.reduce(f64::min);
-    let pointwise = (!weak.is_empty()).then(|| {
+    let pointwise = (!weak.is_empty() || !rows.is_empty()).then(|| {
         let mut volume = vec![(points, points_of)];
         volume.extend(groups.zip(groups_of));
         Pointwise { volume, weak }

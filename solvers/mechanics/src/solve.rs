@@ -4,6 +4,7 @@ use crate::body::check_len;
 use crate::linear_solver::{self, DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
 use crate::load::Load;
 use crate::problem::Assembled;
+use crate::reduction::Reduction;
 use crate::{SolveError, Stiffness, Vector3};
 
 /// What a solve did.
@@ -13,6 +14,10 @@ pub struct SolveInfo {
     pub dofs: usize,
     /// Lagrange multipliers among them.
     pub multipliers: usize,
+    /// Constraint rows that were eliminated.
+    pub eliminated: usize,
+    /// Constraint rows that were to be eliminated and follow from the others.
+    pub dropped: usize,
     /// Numbers stored in the factor.
     pub factor_nonzeros: usize,
     /// Relative residual `|b - A x| / |b|` of the reduced system.
@@ -27,7 +32,7 @@ pub struct Solution {
     /// Nodal parameters, m; displacements only where the basis is Kronecker.
     pub u: Vec<Vector3>,
     /// One multiplier per constraint row: the force (N per unit of coefficient) with which the row acts against the
-    /// body, `K u + sum_k lambda_k c_k = f`. Zero for rows without a free term.
+    /// body, `K u + sum_k lambda_k c_k = f`. Zero for rows without a free term and for dropped ones.
     pub multipliers: Vec<f64>,
     /// What the solve did.
     pub info: SolveInfo,
@@ -37,13 +42,10 @@ pub struct Solution {
 pub struct Factored<'a> {
     problem: Assembled<'a>,
     factorization: Factorization,
-    /// Place of each degree of freedom among the unknowns, `HELD` if prescribed.
-    place: Vec<usize>,
+    reduction: Reduction,
     /// Constraint rows that keep a free term: index, and the scale by which they were multiplied.
     active: Vec<(usize, f64)>,
 }
-
-const HELD: usize = usize::MAX;
 
 impl<'a> Assembled<'a> {
     /// Eliminates the prescribed degrees of freedom, appends the constraint rows and factors: Cholesky without
@@ -55,15 +57,28 @@ impl<'a> Assembled<'a> {
     /// As [`Assembled::factor`] with the size (unknowns) up to which the dense factorisation serves: for comparing
     /// the two.
     pub fn factor_with(self, dense_limit: usize) -> Result<Factored<'a>, SolveError> {
-        let mut place = vec![HELD; self.prescribed.len()];
-        let mut free = 0;
-        for dof in 0..place.len() {
-            if self.prescribed[dof].is_none() {
-                place[dof] = free;
-                free += 1;
-            }
-        }
-        let (matrix, active) = self.reduced(&place, free)?;
+        let reduction = Reduction::new(&self.prescribed, &[])?;
+        let mut matrix = reduction.matrix(&self.stiffness);
+        let active = self.append_rows(&mut matrix, &reduction.place)?;
+        self.factored(reduction, matrix, active, dense_limit)
+    }
+
+    /// Eliminates the constraint rows too, so that the matrix stays positive definite: each independent row gives one of
+    /// its parameters away to the others, what depends on other rows is dropped and counted. Parameters in rows that
+    /// hang together are all coupled: the factor grows with the square of their number.
+    pub fn factor_eliminated(self) -> Result<Factored<'a>, SolveError> {
+        let reduction = Reduction::new(&self.prescribed, &self.rows)?;
+        let matrix = reduction.matrix(&self.stiffness);
+        self.factored(reduction, matrix, Vec::new(), DENSE_LIMIT)
+    }
+
+    fn factored(
+        self,
+        reduction: Reduction,
+        matrix: Symmetric,
+        active: Vec<(usize, f64)>,
+        dense_limit: usize,
+    ) -> Result<Factored<'a>, SolveError> {
         let factorization = linear_solver::factor(matrix, dense_limit).map_err(|error| match error {
             FactorError::Other(error) => error,
             FactorError::NotDefinite => match self.gamma {
@@ -71,19 +86,19 @@ impl<'a> Assembled<'a> {
                 None => SolveError::NotPositiveDefinite,
             },
         })?;
-        Ok(Factored { problem: self, factorization, place, active })
+        Ok(Factored { problem: self, factorization, reduction, active })
     }
 
-    /// The matrix over the free degrees of freedom and the constraint rows with a free term (with their scales).
-    fn reduced(&self, place: &[usize], free: usize) -> Result<(Symmetric, Vec<(usize, f64)>), SolveError> {
-        let mut m = Symmetric::displacements(&self.stiffness, place, free);
-        let largest = (0..free).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
+    /// Appends the constraint rows with a free term to the matrix over the unknowns, and tells which with what scale.
+    fn append_rows(&self, m: &mut Symmetric, place: &[usize]) -> Result<Vec<(usize, f64)>, SolveError> {
+        const HELD: usize = usize::MAX;
+        let largest = (0..m.dim()).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
         let mut active = Vec::new();
         for (index, row) in self.rows.iter().enumerate() {
             let terms = || row.terms.iter().filter(|t| place[t.0] != HELD);
             let size = terms().fold(0.0f64, |s, t| s.max(t.1.abs()));
             if size == 0.0 {
-                let gap = row.value - self.held_part(row);
+                let gap = row.value - row.held_part(&self.prescribed);
                 let scale = row.terms.iter().fold(row.value.abs(), |s, t| s.max(t.1.abs()));
                 if gap.abs() > 1e-12 * scale {
                     return Err(SolveError::Inconsistent { row: index, gap });
@@ -102,12 +117,7 @@ impl<'a> Assembled<'a> {
             m.vertices.push(m.offsets.len() - 1);
             active.push((index, scale));
         }
-        Ok((m, active))
-    }
-
-    /// The terms of a row at their prescribed values.
-    fn held_part(&self, row: &crate::constraint::Row) -> f64 {
-        row.terms.iter().filter_map(|&(dof, c)| self.prescribed[dof].map(|v| c * v)).sum()
+        Ok(active)
     }
 }
 
@@ -140,24 +150,19 @@ impl Factored<'_> {
             return Err(SolveError::NotFinite { what: "load factor", index: 0 });
         }
         let p = &self.problem;
-        let mut u: Vec<Vector3> = (0..load.len())
-            .map(|i| Vector3::from_fn(|a, _| p.prescribed[3 * i + a].unwrap_or(0.0) * factor))
-            .collect();
+        let mut u = self.reduction.held(factor);
         let held = p.stiffness.multiply(&u);
+        let forces: Vec<Vector3> =
+            (0..load.len()).map(|i| load[i] * part + p.weak_load[i] * factor - held[i]).collect();
         let mut b = vec![0.0; self.factorization.dim()];
-        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
-            let (i, a) = (dof / 3, dof % 3);
-            b[at] = part * load[i][a] + factor * p.weak_load[i][a] - held[i][a];
-        }
-        let free = b.len() - self.active.len();
+        self.reduction.fold(&forces, &mut b);
+        let free = self.reduction.free;
         for (k, &(index, scale)) in self.active.iter().enumerate() {
             let row = &p.rows[index];
-            b[free + k] = factor * scale * (row.value - p.held_part(row));
+            b[free + k] = factor * scale * (row.value - row.held_part(&p.prescribed));
         }
         let residual = self.factorization.solve(&mut b)?;
-        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
-            u[dof / 3][dof % 3] = b[at];
-        }
+        self.reduction.expand(&b, &mut u);
         if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
             self.refine(forms, load, (part, factor), &mut u)?;
         }
@@ -165,9 +170,12 @@ impl Factored<'_> {
         for (k, &(index, scale)) in self.active.iter().enumerate() {
             multipliers[index] = scale * b[free + k];
         }
+        self.add_forces_of_eliminated(&u, load, (part, factor), &mut multipliers);
         let info = SolveInfo {
             dofs: b.len(),
             multipliers: self.active.len(),
+            eliminated: self.reduction.eliminated(),
+            dropped: self.reduction.dropped,
             factor_nonzeros: self.factorization.nonzeros(),
             residual,
             path: self.factorization.path(),
@@ -187,15 +195,33 @@ impl Factored<'_> {
             let mut residual: Vec<Vector3> = load.iter().map(|f| f * part).collect();
             forms.subtract(u, factor, &mut residual);
             let mut b = vec![0.0; self.factorization.dim()];
-            for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
-                b[at] = residual[dof / 3][dof % 3];
-            }
+            self.reduction.fold(&residual, &mut b);
             self.factorization.solve(&mut b)?;
-            for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
-                u[dof / 3][dof % 3] += b[at];
-            }
+            self.reduction.expand(&b, u);
         }
         Ok(())
+    }
+
+    /// Multipliers of eliminated rows: `E^T (f - K u)` at the parameters they gave away.
+    fn add_forces_of_eliminated(
+        &self,
+        u: &[Vector3],
+        load: &[Vector3],
+        (part, factor): (f64, f64),
+        multipliers: &mut [f64],
+    ) {
+        if self.reduction.blocks.is_empty() {
+            return;
+        }
+        let p = &self.problem;
+        let inner = p.stiffness.multiply(u);
+        for block in &self.reduction.blocks {
+            for (&dof, inverse) in block.pivots.iter().zip(block.inverse.chunks_exact(block.rows.len())) {
+                let (i, a) = (dof / 3, dof % 3);
+                let force = part * load[i][a] + factor * p.weak_load[i][a] - inner[i][a];
+                block.rows.iter().zip(inverse).for_each(|(&row, e)| multipliers[row] += e * force);
+            }
+        }
     }
 
     /// Forces (N) that the eliminated supports exert on the nodes at nodal parameters `u` under `factor` times the
@@ -212,10 +238,8 @@ impl Factored<'_> {
                 out[dof / 3][dof % 3] += lambda * c;
             }
         }
-        for (dof, &at) in self.place.iter().enumerate() {
-            if at != HELD {
-                out[dof / 3][dof % 3] = 0.0;
-            }
+        for (dof, _) in p.prescribed.iter().enumerate().filter(|(_, held)| held.is_none()) {
+            out[dof / 3][dof % 3] = 0.0;
         }
         out
     }

@@ -92,6 +92,60 @@ fn constraint_rows_equal_elimination() {
     assert!(none.iter().all(|r| r.norm() == 0.0));
 }
 
+/// Rows that share parameters, given away by pivots: the same equilibrium as by multipliers, with the same forces, without
+/// a saddle; repeated rows are dropped, and told.
+#[test]
+fn eliminated_rows_equal_multipliers() {
+    let block = Block::new(CellKind::Tet4, [4, 3, 3]);
+    let material = [LinearElastic::new(20e3, 0.45).unwrap()];
+    let body = block.body(&material);
+    let surface = block.surface(&["x-max"]);
+    let values = vec![Vector3::new(0.0, 30.0, 40.0); surface.weights().len()];
+    let loads = [Load::Traction { surface: &surface, values }];
+    let held = block.surface(&["x-min"]);
+    let values: Vec<Vector3> = held.points().iter().map(|x| Vector3::new(0.0, 1e-3, x.y * 0.1)).collect();
+    let rows = multiplier_rows(&held, held.rows(), [true; 3], &values).unwrap();
+    // A parameter of the rows held besides.
+    let fixed = [FixedDof { node: rows[0].terms[0].0, axis: 1, value: 1e-3 }];
+    let problem = |constraints| LinearProblem { body, loads: &loads, fixed: &fixed, constraints, weak: &[] };
+    let with_multipliers = assemble(&problem(&rows)).unwrap().factor().unwrap();
+    let eliminated = assemble(&problem(&rows)).unwrap().factor_eliminated().unwrap();
+    for factor in [1.0, -0.3] {
+        let (a, b) = (eliminated.solve(factor).unwrap(), with_multipliers.solve(factor).unwrap());
+        assert_eq!((a.info.multipliers, a.info.eliminated), (0, rows.len() - a.info.dropped));
+        assert!(a.info.path.name().ends_with("llt"), "{}", a.info.path.name());
+        assert!(gap(&a.u, &b.u) < 1e-11, "{:e}", gap(&a.u, &b.u));
+        for row in &rows {
+            let sum: f64 = row.terms.iter().map(|&(n, a_, c)| c * a.u[n as usize][a_ as usize]).sum();
+            let size: f64 = row.terms.iter().map(|t| t.2.abs()).sum();
+            assert!((sum - factor * row.value).abs() < 1e-15 * size, "{sum:e} {:e}", row.value);
+        }
+        let forces = |multipliers: &[f64]| -> Vec<Vector3> {
+            let mut forces = vec![Vector3::zeros(); block.mesh.points().len()];
+            for (row, lambda) in rows.iter().zip(multipliers) {
+                row.terms.iter().for_each(|&(n, axis, c)| forces[n as usize][axis as usize] += lambda * c);
+            }
+            // With its support there are many ways to share that one.
+            forces[fixed[0].node as usize][fixed[0].axis as usize] = 0.0;
+            forces
+        };
+        assert!(gap(&forces(&a.multipliers), &forces(&b.multipliers)) < 1e-9);
+    }
+    let twice: Vec<_> = rows.iter().chain(&rows).cloned().collect();
+    let solution = assemble(&problem(&twice)).unwrap().factor_eliminated().unwrap().solve(1.0).unwrap();
+    let once = eliminated.solve(1.0).unwrap();
+    assert_eq!(solution.info.dropped, once.info.dropped + rows.len());
+    assert!(gap(&solution.u, &once.u) < 1e-12);
+    // One lost row is felt.
+    let lost = assemble(&problem(&rows[1..])).unwrap().factor_eliminated().unwrap().solve(1.0).unwrap();
+    assert!(gap(&lost.u, &once.u) > 1e-3, "{:e}", gap(&lost.u, &once.u));
+    // Twice with two values: no displacement does both.
+    let mut torn = twice.clone();
+    torn.last_mut().unwrap().value += 1e-9;
+    let refused = assemble(&problem(&torn)).unwrap().factor_eliminated().err();
+    assert!(matches!(refused, Some(SolveError::Dependent { .. })), "{refused:?}");
+}
+
 /// A tie between two free nodes, and one between a free and a held node.
 #[test]
 fn a_row_between_two_nodes_holds() {
@@ -106,11 +160,15 @@ fn a_row_between_two_nodes_holds() {
     let tie = |a, b, value| ConstraintRow { terms: vec![(a, 0, 1.0), (b, 0, -1.0)], value };
     let ties = [tie(a, b, 1e-3), tie(b, held, 5e-4)];
     let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &ties, weak: &[] };
-    let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
-    let (ua, ub) = (solution.u[a as usize].x, solution.u[b as usize].x);
-    assert!((ub - 2.5e-3).abs() < 1e-14, "{ub}");
-    assert!((ua - ub - 1e-3).abs() < 1e-14, "{ua} {ub}");
-    assert!(solution.multipliers[0].abs() > 1e-6);
+    let by_multipliers = assemble(&problem).unwrap().factor().unwrap();
+    let by_elimination = assemble(&problem).unwrap().factor_eliminated().unwrap();
+    for factored in [by_multipliers, by_elimination] {
+        let solution = factored.solve(1.0).unwrap();
+        let (ua, ub) = (solution.u[a as usize].x, solution.u[b as usize].x);
+        assert!((ub - 2.5e-3).abs() < 1e-14, "{ub}");
+        assert!((ua - ub - 1e-3).abs() < 1e-14, "{ua} {ub}");
+        assert!(solution.multipliers[0].abs() > 1e-6);
+    }
 }
 
 #[test]
@@ -123,9 +181,13 @@ fn all_held_needs_no_system() {
     let rows = [ConstraintRow { terms: vec![(first.node, first.axis, 2.0)], value: 2.0 * first.value }];
     let body = block.body(&material);
     let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &rows, weak: &[] };
-    let solution = assemble(&problem).unwrap().factor().unwrap().solve(0.5).unwrap();
-    assert!(block.error(&solution.u, |x| common::affine(x) * 0.5) < 1e-15);
-    assert_eq!((solution.info.dofs, solution.info.path.name()), (0, "none"));
+    let by_multipliers = assemble(&problem).unwrap().factor().unwrap();
+    let by_elimination = assemble(&problem).unwrap().factor_eliminated().unwrap();
+    for factored in [by_multipliers, by_elimination] {
+        let solution = factored.solve(0.5).unwrap();
+        assert!(block.error(&solution.u, |x| common::affine(x) * 0.5) < 1e-15);
+        assert_eq!((solution.info.dofs, solution.info.path.name()), (0, "none"));
+    }
 }
 
 #[test]

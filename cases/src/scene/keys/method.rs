@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{Basis, Dilation, Element, KernelName};
+use crate::scene::method::{Basis, ConstraintRows, Dilation, Element, KernelName};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 
@@ -134,12 +134,13 @@ pub(crate) enum EssentialKeys {
     Table(EssentialTable),
 }
 
-#[derive(Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum EssentialName {
     Nitsche,
     Penalty,
     Multipliers,
+    Elimination,
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -148,4 +149,7 @@ pub(crate) struct EssentialTable {
     pub method: EssentialName,
     /// Stabilisation or penalty factor
     pub factor: Option<f64>,
+    /// What eliminated rows say, one for each node of the held surface: the mean displacement over its share (unless given)
+    /// or that at its point
+    pub rows: Option<ConstraintRows>,
 }

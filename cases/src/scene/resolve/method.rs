@@ -44,7 +44,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let support = support(keys.dilatation, keys.neighbours, keys.factor, keys.basis, key, report);
     let kernel = kernel(keys.kernel, &at("kernel"), report);
     let integration = integration(keys.integration, key, report);
-    let essential = essential(keys.essential, &at("essential.factor"), report);
+    let essential = essential(keys.essential, &at("essential"), report);
     let (cloud, support, background) = (cloud?, support?, background.map_or(Some(None), |b| b.map(Some))?);
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
     let efg = Efg { cloud, kernel, support, basis: keys.basis, integration, essential, dilation, background };
@@ -226,20 +226,24 @@ fn face_points(points: u32, key: &str, report: &mut Report) -> usize {
 }
 
 fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {
-    let (name, factor) = match keys {
-        EssentialKeys::Name(name) => (name, None),
-        EssentialKeys::Table(table) => (table.method, table.factor),
+    let (name, factor, rows) = match keys {
+        EssentialKeys::Name(name) => (name, None, None),
+        EssentialKeys::Table(table) => (table.method, table.factor, table.rows),
     };
+    let at = |name: &str| format!("{key}.{name}");
     if let Some(factor) = factor {
-        positive(factor, key, report);
+        positive(factor, &at("factor"), report);
     }
+    let weak = matches!(name, EssentialName::Nitsche | EssentialName::Penalty);
+    let help = "leave it out";
+    report.require(factor.is_none() || weak, &at("factor"), "goes with nitsche and penalty only", help);
+    let eliminated = name == EssentialName::Elimination;
+    report.require(rows.is_none() || eliminated, &at("rows"), "goes with elimination only", help);
     match name {
         EssentialName::Nitsche => Essential::Nitsche { factor },
         EssentialName::Penalty => Essential::Penalty { factor },
-        EssentialName::Multipliers => {
-            report.require(factor.is_none(), key, "goes with nitsche and penalty only", "leave it out");
-            Essential::Multipliers
-        }
+        EssentialName::Multipliers => Essential::Multipliers,
+        EssentialName::Elimination => Essential::Elimination { rows: rows.unwrap_or(ConstraintRows::Means) },
     }
 }
 
