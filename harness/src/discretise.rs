@@ -93,6 +93,8 @@ pub struct Efg {
     pub basis: Basis,
     /// Supports.
     pub support: Support,
+    /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
+    pub followed: Option<Mesh>,
     /// Integration.
     pub integration: Integration,
     /// Essential conditions.
@@ -285,9 +287,17 @@ const ERROR_POINTS: usize = 14;
 
 impl Efg {
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
-        let radii = self.support.radii(&self.cloud.points, &self.cloud.spacing)?;
-        work.support_radii += radii.len() as u64;
-        let approximation = Approximation::new(self.cloud.points.clone(), radii, self.kernel, self.basis)?;
+        let nodes = self.cloud.points.clone();
+        work.support_radii += nodes.len() as u64;
+        let approximation = match &self.followed {
+            Some(mesh) => {
+                Approximation::stretched(nodes, self.support.ellipsoids(mesh)?, self.kernel, self.basis)?
+            }
+            None => {
+                let radii = self.support.radii(&nodes, &self.cloud.spacing)?;
+                Approximation::new(nodes, radii, self.kernel, self.basis)?
+            }
+        };
         let (rows, mls, region, volume_error) = match self.integration {
             Integration::Gauss { points } => {
                 let (rows, mls) = efg::gauss_rows(&approximation, &self.background, points)?;

@@ -56,6 +56,9 @@ impl Scenario<'_> {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
                 (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
             }
+            EfgError::FlatCells { .. } => {
+                (ErrorKind::NotRun, Key::Method("support"), "take support = \"round\", or another mesh")
+            }
             EfgError::BadRadius { .. } => {
                 (ErrorKind::NotRun, support, "a node needs another one at a distance")
             }

@@ -34,7 +34,11 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     };
     match cloud {
         Some(efg) => {
-            add("supports", true, format!("radius and neighbours of {} nodes", efg.cloud.points.len()));
+            let supports = match efg.followed {
+                Some(_) => "ellipsoids that follow the cells, and neighbours",
+                None => "radius and neighbours",
+            };
+            add("supports", true, format!("{supports} of {} nodes", efg.cloud.points.len()));
             add("shape functions", true, integration(efg));
         }
         None => {

@@ -68,6 +68,9 @@ impl Scenario<'_> {
                         pairs.push(("factor", factor.to_string()));
                     }
                 }
+                if efg.support_shape == scene::SupportShape::Adapted {
+                    pairs.push(("support", efg.support_shape.name().into()));
+                }
                 pairs.push((
                     "integration",
                     match efg.integration {
@@ -261,6 +264,7 @@ impl Scenario<'_> {
                 (cloud, body::mesh(&self.scene.body, CellKind::Tet4, &size, None)?)
             }
         };
+        let followed = (efg.support_shape == scene::SupportShape::Adapted).then(|| default.clone());
         let background = match &efg.background {
             Some(size) => {
                 body::mesh(&self.scene.body, CellKind::Tet4, size, None).map_err(Failure::of_background)?
@@ -307,6 +311,7 @@ impl Scenario<'_> {
                 scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
                 scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
             },
+            followed,
             integration,
             essential,
             dilation: dilation(efg.dilation),

@@ -84,7 +84,8 @@ method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", basis = "lin
 fn hard_clouds_keep_the_affine_field_or_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     // The affine field is within rounding on any cloud that has shape functions. Where all nodes of a support are nearly in a
-    // plane, gradients are as large as the inverse of its thickness: so is their rounding.
+    // plane, gradients are as large as the inverse of its thickness: so is their rounding;
+    // ellipsoids that follow the cells are as good as balls over cubes.
     for (name, cloud, most) in [
         (
             "jitter",
@@ -97,6 +98,17 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
             1e-11,
         ),
         ("flat", r#"neighbours = 20, factor = 1.5, size = { cells = [36, 2, 2] }"#, 1e-9),
+        (
+            "steep, adapted",
+            r#"support = "adapted", neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
+            1e-12,
+        ),
+        ("flat, adapted", r#"support = "adapted", dilatation = 1.6, size = { cells = [40, 2, 2] }"#, 1e-12),
+        (
+            "less flat, adapted",
+            r#"support = "adapted", neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
+            1e-12,
+        ),
     ] {
         let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(cloud)), "--format", "json"]);
         assert_eq!(done.code, 0, "{name}: {}", done.stderr);
@@ -104,6 +116,8 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
         let error = told["metrics"]["l2"]["value"].as_f64().unwrap();
         eprintln!("{name}: {error:e}, {}", told["metrics"]["fallbacks"]);
         assert!(error < most, "{name}: {error:e}");
+        let stress = told["metrics"]["stress"]["value"].as_f64().unwrap();
+        assert!(!cloud.contains("adapted") || stress < 1e-12, "{name}: {stress:e}");
     }
     // Too small a support is enlarged at every point, and counted; one that can reach no neighbour is refused.
     let tight = patch(r#"neighbours = 4, factor = 1.01, size = { cells = [5, 5, 5] }"#);

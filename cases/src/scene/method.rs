@@ -49,6 +49,8 @@ pub struct Efg {
     pub kernel: Kernel,
     /// Support radius.
     pub support: SupportRule,
+    /// Balls, or ellipsoids that follow the cells of the mesh the cloud is taken from.
+    pub support_shape: SupportShape,
     /// Polynomial basis.
     pub basis: Basis,
     /// Integration rule.
@@ -258,6 +260,30 @@ pub enum SupportRule {
         /// Factor on its distance.
         factor: f64,
     },
+}
+
+/// What a node's support looks like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SupportShape {
+    /// A ball.
+    #[default]
+    Round,
+    /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic.
+    Adapted,
+}
+
+impl SupportShape {
+    /// Both, in the order they are listed.
+    pub const ALL: [SupportShape; 2] = [SupportShape::Round, SupportShape::Adapted];
+
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            SupportShape::Round => "round",
+            SupportShape::Adapted => "adapted",
+        }
+    }
 }
 
 /// Polynomial bases.

@@ -8,7 +8,7 @@ use crate::info::Outcome;
 use crate::lanes::LANES;
 use crate::mls::{Ball, Group};
 use crate::row_list::RowList;
-use crate::{Basis, EfgError, Kernel, MlsInfo, support};
+use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
@@ -30,13 +30,15 @@ const REGULARISATION: f64 = 1e-7;
 
 /// Moving-least-squares shape functions over a cloud of nodes, each with a support radius of its own.
 ///
-/// Node `I` counts at `x` if `|x - x_I| < R_I`. Where the neighbours do not determine the basis, a ladder is
+/// Node `I` counts at `x` if `|x - x_I| < R_I`, or within its [`Ellipsoid`]. Where the neighbours do not determine the basis, a ladder is
 /// climbed and every rung counted in [`MlsInfo`]: enlarge all supports seen from that point (to 1.4 times the
 /// `2m`-th neighbour's relative distance, at most 3 times); regularise the quadratic block; fall back from the
 /// quadratic basis to the linear one. The linear basis gives way to nothing: a point it fails at is an error.
 pub struct Approximation {
     nodes: Vec<Point3>,
     balls: Vec<Ball>,
+    /// Supports that follow the cloud, within those balls; empty where the balls are the supports.
+    ellipsoids: Vec<Ellipsoid>,
     kernel: Kernel,
     basis: Basis,
     /// Regularisation of the quadratic block, relative to the sum of the weights.
@@ -96,7 +98,19 @@ impl Approximation {
         let balls =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&nodes, &radii);
-        Ok(Approximation { nodes, balls, kernel, basis, mu: 0.0, buckets })
+        Ok(Approximation { nodes, balls, ellipsoids: Vec::new(), kernel, basis, mu: 0.0, buckets })
+    }
+
+    /// As [`Approximation::new`], with supports that follow the cloud, one per node.
+    pub fn stretched(
+        nodes: Vec<Point3>,
+        ellipsoids: Vec<Ellipsoid>,
+        kernel: Kernel,
+        basis: Basis,
+    ) -> Result<Approximation, EfgError> {
+        let around = ellipsoids.iter().map(Ellipsoid::radius).collect();
+        let approximation = Approximation::new(nodes, around, kernel, basis)?;
+        Ok(Approximation { ellipsoids, ..approximation })
     }
 
     /// With the quadratic block of the moment matrix regularised at every point, by `mu` times the sum of the weights (modified
@@ -115,7 +129,7 @@ impl Approximation {
         &self.nodes
     }
 
-    /// Support radius of one node, m.
+    /// Support radius of one node, m; of an ellipsoid the longest semi-axis.
     pub fn radius(&self, node: usize) -> f64 {
         self.balls[node].radius
     }
@@ -209,8 +223,30 @@ impl Approximation {
             found[n] = node;
             n += usize::from(balls[node as usize].covers(x, 1.0));
         }
+        if !self.ellipsoids.is_empty() {
+            n = self.within_ellipsoids(x, &mut found[..n]);
+        }
         rows.nodes.truncate(first + n);
         rows.close();
+    }
+
+    /// Moves the nodes whose ellipsoids cover the point to the front and counts them.
+    fn within_ellipsoids(&self, x: &Point3, nodes: &mut [u32]) -> usize {
+        let mut n = 0;
+        for k in 0..nodes.len() {
+            nodes[n] = nodes[k];
+            n += usize::from(self.relative(nodes[k], x) < 1.0);
+        }
+        n
+    }
+
+    /// Distance of a point from a node over what the node's support reaches in its direction.
+    fn relative(&self, node: u32, x: &Point3) -> f64 {
+        let e = self.nodes[node as usize] - x;
+        match self.ellipsoids.get(node as usize) {
+            Some(ellipsoid) => ellipsoid.square(e.into()).max(0.0).sqrt(),
+            None => e.norm() / self.balls[node as usize].radius,
+        }
     }
 
     /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off on
@@ -260,7 +296,8 @@ impl Approximation {
         let mut failed = false;
         for together in order.chunks(LANES) {
             let nodes = |q: usize| &rows.nodes[rows.range(q)];
-            group.load(together.iter().map(|&q| (&points[q as usize], nodes(q as usize))), &self.balls, 1.0);
+            let together_with = together.iter().map(|&q| (&points[q as usize], nodes(q as usize)));
+            group.load(together_with, &self.balls, &self.ellipsoids, 1.0);
             let conditions = self.fit::<GRAD>(self.basis, self.mu, group);
             for (lane, &q) in together.iter().enumerate() {
                 let range = rows.range(q as usize);
@@ -319,10 +356,13 @@ impl Approximation {
     ) -> Result<Outcome, EfgError> {
         let needed = self.basis.terms();
         let enlargement = self.enlargement(x, 2 * needed);
-        let covers = |&node: &u32| self.balls[node as usize].covers(x, enlargement);
+        let covers = |&node: &u32| match self.ellipsoids.is_empty() {
+            true => self.balls[node as usize].covers(x, enlargement),
+            false => self.relative(node, x) < enlargement,
+        };
         let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
         let found = nodes.len();
-        group.load(std::iter::once((x, &nodes[..])), &self.balls, enlargement);
+        group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
         let rungs: &[(Basis, f64)] = match self.basis {
             Basis::Linear => &[(Basis::Linear, 0.0)],
             Basis::Quadratic => &[
@@ -359,8 +399,7 @@ impl Approximation {
 
     /// Factor on all support radii by which `count` nodes (all, if there are fewer) cover `x` comfortably.
     fn enlargement(&self, x: &Point3, count: usize) -> f64 {
-        let mut ratios: Vec<f64> =
-            self.nodes.iter().zip(&self.balls).map(|(p, ball)| (p - x).norm() / ball.radius).collect();
+        let mut ratios: Vec<f64> = (0..self.nodes.len() as u32).map(|node| self.relative(node, x)).collect();
         let last = count.min(ratios.len()) - 1;
         let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
         (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)

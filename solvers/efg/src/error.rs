@@ -38,6 +38,14 @@ pub enum EfgError {
         /// Its radius, m.
         radius: f64,
     },
+    /// A node without cells, or with flat ones.
+    #[error(
+        "the cells around node {node} are flat, or there are none; a support that follows them needs cells with a volume"
+    )]
+    FlatCells {
+        /// Node index.
+        node: usize,
+    },
     /// A parameter outside its range.
     #[error("{what} is {value}; {allowed} is needed")]
     BadParameter {

@@ -21,6 +21,7 @@ mod basis;
 mod buckets;
 mod cell_rows;
 mod cells;
+mod ellipsoid;
 mod error;
 mod facets;
 mod gauss;
@@ -37,6 +38,7 @@ mod support;
 
 pub use approximation::Approximation;
 pub use basis::Basis;
+pub use ellipsoid::Ellipsoid;
 pub use error::EfgError;
 pub use facets::{flux_rows, surface_rows};
 pub use gauss::{gauss_regions, gauss_rows};

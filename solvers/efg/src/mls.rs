@@ -6,6 +6,7 @@
 
 use shape::{Point3, Vector3};
 
+use crate::Ellipsoid;
 use crate::basis::{PRODUCT, monomials, terms};
 use crate::kernel::Kernel;
 use crate::lanes::{LANES, Lanes};
@@ -43,12 +44,17 @@ pub(crate) struct Group {
     counts: [usize; LANES],
     /// Offsets `x_I - x` by axis, m; sums over them are scaled instead, once for all neighbours.
     offset: Vec<[Lanes; 3]>,
-    /// Support radius (m), then `1/(d R)` (1/m^2), or zero at the node itself.
+    /// Whether supports are ellipsoids.
+    stretched: bool,
+    /// `M_I (x_I - x)` of ellipsoids, 1/m: along it the relative distance changes.
+    normal: Vec<[Lanes; 3]>,
+    /// Support radius (m), then `1/(d R)` (1/m^2), of an ellipsoid `1/q`, or zero at the node itself.
     chain: Vec<Lanes>,
     /// Relative distance `q = d/R`.
     relative: Vec<Lanes>,
     weight: Vec<Lanes>,
-    /// `dw/dq`; then `-(dw/dq)/(d R) c0.p_I` (1/m^2), which times the offset is the part of the gradient that the weight has.
+    /// `dw/dq`; then `-(dw/dq)/(d R) c0.p_I` (1/m^2), which times the offset is the part of the gradient that the weight has; of
+    /// an ellipsoid `-(dw/dq)/q c0.p_I`, which times the normal is.
     slope: Vec<Lanes>,
     /// `c0.p_I`.
     fit: Vec<Lanes>,
@@ -59,12 +65,14 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// Takes up to eight points with their neighbours, whose supports, `enlargement` times their radii, cover them.
+    /// Takes up to eight points with their neighbours, whose supports, `enlargement` times their radii, cover them; `ellipsoids`
+    /// is empty where these are the balls.
     #[inline(always)]
     pub(crate) fn load<'a>(
         &mut self,
         points: impl Iterator<Item = (&'a Point3, &'a [u32])> + Clone,
         balls: &[Ball],
+        ellipsoids: &[Ellipsoid],
         enlargement: f64,
     ) {
         self.counts = [0; LANES];
@@ -81,7 +89,7 @@ impl Group {
         }
         let (offset, chain) = (&mut self.offset[..longest], &mut self.chain[..longest]);
         let relative = &mut self.relative[..longest];
-        for (l, (x, nodes)) in points.enumerate() {
+        for (l, (x, nodes)) in points.clone().enumerate() {
             for ((&node, offset), radius) in nodes.iter().zip(&mut *offset).zip(&mut *chain) {
                 let ball = balls[node as usize];
                 for axis in 0..3 {
@@ -113,6 +121,43 @@ impl Group {
             (chain[k], relative[k]) = (inverse, q);
         }
         self.scale = scale;
+        self.stretched = !ellipsoids.is_empty();
+        if self.stretched {
+            self.stretch(points, ellipsoids, enlargement);
+        }
+    }
+
+    /// Relative distances and their directions in the metrics of ellipsoids.
+    #[inline(always)]
+    fn stretch<'a>(
+        &mut self,
+        points: impl Iterator<Item = (&'a Point3, &'a [u32])>,
+        ellipsoids: &[Ellipsoid],
+        enlargement: f64,
+    ) {
+        let longest = self.longest();
+        self.normal.resize(longest, [[0.0; LANES]; 3]);
+        let shrunk = 1.0 / (enlargement * enlargement);
+        for (l, (_, nodes)) in points.enumerate() {
+            for ((&node, offset), normal) in nodes.iter().zip(&self.offset).zip(&mut self.normal) {
+                let along = ellipsoids[node as usize].normal([offset[0][l], offset[1][l], offset[2][l]]);
+                for axis in 0..3 {
+                    normal[axis][l] = along[axis] * shrunk;
+                }
+            }
+        }
+        for k in 0..longest {
+            let ([x, y, z], [nx, ny, nz]) = (self.offset[k], self.normal[k]);
+            let (mut inverse, mut q) = ([0.0; LANES], [0.0; LANES]);
+            for l in 0..LANES {
+                let square = nx[l] * x[l] + ny[l] * y[l] + nz[l] * z[l];
+                let root = square.max(0.0).sqrt();
+                let at_node = !(root > 0.0);
+                inverse[l] = if at_node { 0.0 } else { 1.0 } / if at_node { 1.0 } else { root };
+                q[l] = root.min(1.0);
+            }
+            (self.chain[k], self.relative[k]) = (inverse, q);
+        }
     }
 
     /// Neighbours of one point.
@@ -207,12 +252,49 @@ impl Group {
         mu: f64,
     ) {
         let longest = self.longest();
+        let c = scaled(c0, powers);
+        let (flows, spread) =
+            if self.stretched { self.stretched_flows(&c) } else { self.flows::<M, FLOWS>(&c) };
+        let mut ca = [[[0.0; LANES]; 3]; M];
+        for i in 0..M {
+            for axis in 0..3 {
+                for l in 0..LANES {
+                    let extra = if i < 4 { 0.0 } else { mu * spread[axis][l] * c0[i][0][l] };
+                    let unit = if i == axis + 1 { powers[i][l] } else { 0.0 };
+                    ca[i][axis][l] = unit - (flows[i][axis][l] * powers[i][l] + extra);
+                }
+            }
+        }
+        ldlt.solve(&mut ca);
+        let ca = scaled(&ca, powers);
+        let (weight, slope, offset) =
+            (&self.weight[..longest], &self.slope[..longest], &self.offset[..longest]);
+        let direction = if self.stretched { &self.normal[..longest] } else { offset };
+        let grads = &mut self.grads[..longest];
+        for k in 0..longest {
+            let (w, [x, y, z], flow, along) = (weight[k], offset[k], slope[k], direction[k]);
+            let mut grad = [[0.0; LANES]; 3];
+            for l in 0..LANES {
+                let p = terms([x[l], y[l], z[l]]);
+                for axis in 0..3 {
+                    grad[axis][l] = w[l] * dot(&ca, axis, l, &p) + flow[l] * along[axis][l];
+                }
+            }
+            grads[k] = grad;
+        }
+    }
+
+    /// Values, and how the moment matrix changes with the point times `c0`, by term and axis; `spread` is that of `A_00` alone.
+    #[inline(always)]
+    fn flows<const M: usize, const FLOWS: usize>(
+        &mut self,
+        c: &Matrices<M, 1>,
+    ) -> (Matrices<M, 3>, [Lanes; 3]) {
+        let longest = self.longest();
         let (weight, chain) = (&self.weight[..longest], &self.chain[..longest]);
         let (slope, fit, values) =
             (&mut self.slope[..longest], &mut self.fit[..longest], &mut self.values[..longest]);
         let offset = &self.offset[..longest];
-
-        let c = scaled(c0, powers);
         // A_,a c0: the basis frozen, so that only the weights change with x; grad w_I = -(dw/dq)/(d R) (x_I - x).
         let (mut sums, mut spread) = ([[0.0; LANES]; FLOWS], [[0.0; LANES]; 3]);
         for k in 0..longest {
@@ -233,31 +315,41 @@ impl Group {
             }
             (fit[k], values[k], slope[k]) = (of_point, value, flow);
         }
-        let mut ca = [[[0.0; LANES]; 3]; M];
+        let mut flows = [[[0.0; LANES]; 3]; M];
         for i in 0..M {
             for axis in 0..3 {
-                for l in 0..LANES {
-                    let extra = if i < 4 { 0.0 } else { mu * spread[axis][l] * c0[i][0][l] };
-                    let unit = if i == axis + 1 { powers[i][l] } else { 0.0 };
-                    ca[i][axis][l] = unit - (sums[PRODUCT[i][axis + 1]][l] * powers[i][l] + extra);
-                }
+                flows[i][axis] = sums[PRODUCT[i][axis + 1]];
             }
         }
-        ldlt.solve(&mut ca);
-        let ca = scaled(&ca, powers);
-        let grads = &mut self.grads[..longest];
+        (flows, spread)
+    }
+
+    /// As [`Group::flows`] where weights change along the normals of ellipsoids: sums of their own, as a normal is no monomial.
+    #[inline(always)]
+    fn stretched_flows<const M: usize>(&mut self, c: &Matrices<M, 1>) -> (Matrices<M, 3>, [Lanes; 3]) {
+        let longest = self.longest();
+        let (mut flows, mut spread) = ([[[0.0; LANES]; 3]; M], [[0.0; LANES]; 3]);
         for k in 0..longest {
-            let (w, [x, y, z], flow) = (weight[k], offset[k], slope[k]);
-            let mut grad = [[0.0; LANES]; 3];
+            let (w, [x, y, z], normal) = (self.weight[k], self.offset[k], self.normal[k]);
+            let (dw, inverse) = (self.slope[k], self.chain[k]);
+            let (mut of_point, mut value, mut flow) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
             for l in 0..LANES {
-                let at = [x[l], y[l], z[l]];
-                let p = terms(at);
+                let p = terms([x[l], y[l], z[l]]);
+                let fit = dot(c, 0, l, &p);
+                let g = -dw[l] * inverse[l];
+                of_point[l] = fit;
+                value[l] = w[l] * fit;
+                flow[l] = g * fit;
                 for axis in 0..3 {
-                    grad[axis][l] = w[l] * dot(&ca, axis, l, &p) + flow[l] * at[axis];
+                    spread[axis][l] += g * normal[axis][l];
+                    for i in 0..M {
+                        flows[i][axis][l] += flow[l] * normal[axis][l] * p[i];
+                    }
                 }
             }
-            grads[k] = grad;
+            (self.fit[k], self.values[k], self.slope[k]) = (of_point, value, flow);
         }
+        (flows, spread)
     }
 
     /// Writes one point's values, and its gradients (1/m) if there is room for them.

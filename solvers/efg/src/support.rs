@@ -26,14 +26,7 @@ pub enum Support {
 impl Support {
     /// Radii (m), one per node. `spacing` (m, one per node) is the cloud's; [`Support::Neighbours`] ignores it.
     pub fn radii(self, nodes: &[Point3], spacing: &[f64]) -> Result<Vec<f64>, EfgError> {
-        if let Some(node) = nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
-            return Err(EfgError::NotFinite { node });
-        }
-        let (Support::Dilatation { factor } | Support::Neighbours { factor, .. }) = self;
-        if !(factor > 0.0 && factor.is_finite()) {
-            let what = "support factor";
-            return Err(EfgError::BadParameter { what, value: factor, allowed: "a positive number" });
-        }
+        self.check(nodes)?;
         let radii: Vec<f64> = match self {
             Support::Dilatation { factor } => {
                 if spacing.len() != nodes.len() {
@@ -43,13 +36,6 @@ impl Support {
                 spacing.iter().map(|h| factor * h).collect()
             }
             Support::Neighbours { count, factor } => {
-                if count == 0 {
-                    let (what, value) = ("neighbour count", 0.0);
-                    return Err(EfgError::BadParameter { what, value, allowed: "1 or more" });
-                }
-                if count >= nodes.len() {
-                    return Err(EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 });
-                }
                 let nodes_missing = |_| EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 };
                 let search = Search::new(nodes).map_err(nodes_missing)?;
                 kth_distances(nodes, &search, count).into_iter().map(|d| factor * d).collect()
@@ -57,6 +43,28 @@ impl Support {
         };
         check(&radii)?;
         Ok(radii)
+    }
+
+    /// Refuses parameters and nodes that make no support.
+    pub(crate) fn check(self, nodes: &[Point3]) -> Result<(), EfgError> {
+        if let Some(node) = nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            return Err(EfgError::NotFinite { node });
+        }
+        let (Support::Dilatation { factor } | Support::Neighbours { factor, .. }) = self;
+        if !(factor > 0.0 && factor.is_finite()) {
+            let what = "support factor";
+            return Err(EfgError::BadParameter { what, value: factor, allowed: "a positive number" });
+        }
+        match self {
+            Support::Neighbours { count: 0, .. } => {
+                let (what, value) = ("neighbour count", 0.0);
+                Err(EfgError::BadParameter { what, value, allowed: "1 or more" })
+            }
+            Support::Neighbours { count, .. } if count >= nodes.len() => {
+                Err(EfgError::TooFewNodes { found: nodes.len(), needed: count + 1 })
+            }
+            _ => Ok(()),
+        }
     }
 }
 

@@ -50,6 +50,21 @@ impl Cloud {
 /// The nodes of a mesh, spacing = mean length of the edges that meet at each. In quadratic cells an edge counts as
 /// its two halves. A node that no cell uses gets the spacing 0.
 pub fn cloud_from_mesh(mesh: &Mesh) -> Cloud {
+    let points = mesh.points();
+    let (mut total, mut count) = (vec![0.0; points.len()], vec![0u32; points.len()]);
+    for (a, b) in edges(mesh) {
+        let length = nalgebra::distance(&points[a as usize], &points[b as usize]);
+        for node in [a as usize, b as usize] {
+            total[node] += length;
+            count[node] += 1;
+        }
+    }
+    let spacing = total.iter().zip(&count).map(|(t, &n)| t / f64::from(n.max(1))).collect();
+    Cloud { points: points.to_vec(), spacing }
+}
+
+/// Every edge of the mesh once, by ascending nodes, the lower one first. In quadratic cells an edge counts as its two halves.
+pub fn edges(mesh: &Mesh) -> Vec<(u32, u32)> {
     let mut edges: Vec<(u32, u32)> = Vec::new();
     for cell in 0..mesh.cell_count() {
         let (kind, nodes) = (mesh.kind(cell), mesh.cell(cell));
@@ -66,15 +81,5 @@ pub fn cloud_from_mesh(mesh: &Mesh) -> Cloud {
     }
     edges.sort_unstable();
     edges.dedup();
-    let points = mesh.points();
-    let (mut total, mut count) = (vec![0.0; points.len()], vec![0u32; points.len()]);
-    for (a, b) in edges {
-        let length = nalgebra::distance(&points[a as usize], &points[b as usize]);
-        for node in [a as usize, b as usize] {
-            total[node] += length;
-            count[node] += 1;
-        }
-    }
-    let spacing = total.iter().zip(&count).map(|(t, &n)| t / f64::from(n.max(1))).collect();
-    Cloud { points: points.to_vec(), spacing }
+    edges
 }

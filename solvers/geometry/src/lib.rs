@@ -29,7 +29,7 @@ mod search;
 pub mod shapes;
 
 pub use cell::{CellKind, FaceKind};
-pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh};
+pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh, edges};
 pub use isoparametric::HEX_CORNERS;
 pub use locate::{LocateError, Location, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{Basis, ConstraintRows, Dilation, Element, KernelName};
+use crate::scene::method::{Basis, ConstraintRows, Dilation, Element, KernelName, SupportShape};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 
@@ -75,6 +75,8 @@ pub(crate) struct EfgKeys {
     /// Support radius over the distance to this neighbour
     pub neighbours: Option<u32>,
     pub factor: Option<f64>,
+    /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
+    pub support: Option<SupportShape>,
     pub basis: Basis,
     pub integration: IntegrationKeys,
     pub essential: EssentialKeys,

@@ -40,14 +40,25 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
         seed: keys.seed,
         jitter,
     };
+    let of_mesh = layout.size.is_some();
     let cloud = cloud(layout, key, report);
     let support = support(keys.dilatation, keys.neighbours, keys.factor, keys.basis, key, report);
+    let support_shape = keys.support.unwrap_or_default();
+    let help = "take the nodes of a mesh: size = { level = 2 }";
+    report.require(
+        support_shape == SupportShape::Round || of_mesh,
+        &at("support"),
+        "follows the cells around each node, and the nodes of this cloud have none",
+        help,
+    );
     let kernel = kernel(keys.kernel, &at("kernel"), report);
     let integration = integration(keys.integration, key, report);
     let essential = essential(keys.essential, &at("essential"), report);
     let (cloud, support, background) = (cloud?, support?, background.map_or(Some(None), |b| b.map(Some))?);
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
-    let efg = Efg { cloud, kernel, support, basis: keys.basis, integration, essential, dilation, background };
+    let basis = keys.basis;
+    let efg =
+        Efg { cloud, kernel, support, support_shape, basis, integration, essential, dilation, background };
     Some(Method { id: keys.id, family: Family::Efg(efg) })
 }
 
