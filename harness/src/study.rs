@@ -309,20 +309,23 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
     Stored::load(scene, path).map(|s| s.records(&case_name(scene), poisson)).unwrap_or_default()
 }
 
-/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times Poisson's ratios.
+/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times dilatations, times seeds, times
+/// Poisson's ratios.
 fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
     // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
     let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
-    let picture = organ && run.kernels.is_empty() && run.nodes.is_empty() && run.seeds == 0;
+    let varied = !(run.kernels.is_empty() && run.dilatations.is_empty() && run.nodes.is_empty());
+    let picture = organ && !varied && run.seeds == 0;
     for &poisson in &ratios {
         for method in &scene.methods {
             if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
                 continue;
             }
             for (level, sized) in sizes(run, method) {
-                for method in kernels(run, sized).into_iter().flat_map(|method| seeds(run, method)) {
+                let shaped = kernels(run, sized).into_iter().flat_map(|method| dilatations(run, method));
+                for method in shaped.flat_map(|method| seeds(run, method)) {
                     // The scene's own cloud may have been asked for before.
                     let same = |t: &Task| (t.scene, t.poisson) == (at, poisson) && t.method == method;
                     if run.seeds == 0 || !tasks.iter().any(same) {
@@ -361,17 +364,29 @@ fn own_level(method: &scene::Method) -> u32 {
     if let Size::Level(level) = size { *level } else { 0 }
 }
 
-/// The method with each kernel that the run table names, its id followed by the kernel's name where there are several.
+/// The method with each kernel that the run table names.
 fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    each(&run.kernels, method, |efg, &name| {
+        efg.kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
+    })
+}
+
+/// The method with each dilatation that the run table names.
+fn dilatations(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    each(&run.dilatations, method, |efg, &factor| efg.support = scene::SupportRule::Dilatation(factor))
+}
+
+/// A cloud changed by each of `values`; the method as it is where there are none, or where it is no cloud.
+fn each<T>(values: &[T], method: scene::Method, change: impl Fn(&mut scene::Efg, &T)) -> Vec<scene::Method> {
     let scene::Family::Efg(efg) = &method.family else { return vec![method] };
-    if run.kernels.is_empty() {
+    if values.is_empty() {
         return vec![method];
     }
-    run.kernels
+    values
         .iter()
-        .map(|&name| {
+        .map(|value| {
             let mut efg = efg.clone();
-            efg.kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
+            change(&mut efg, value);
             scene::Method { id: method.id.clone(), family: scene::Family::Efg(efg) }
         })
         .collect()

@@ -25,7 +25,8 @@ pub struct Study {
     pub runs: Vec<Run>,
 }
 
-/// One scene with what is varied of it: methods times levels (or node counts) times kernels times seeds times Poisson's ratios.
+/// One scene with what is varied of it: methods times levels (or node counts) times kernels times dilatations times seeds times
+/// Poisson's ratios.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The scene file.
@@ -40,6 +41,8 @@ pub struct Run {
     pub nodes: Vec<usize>,
     /// Kernels of clouds; their own where empty.
     pub kernels: Vec<KernelName>,
+    /// Dilatations of clouds; their own supports where empty.
+    pub dilatations: Vec<f64>,
     /// Clouds of the seeds 1 to this in place of their own; 0 for their own. How far a result depends on where nodes happen
     /// to stand is their spread: the scene's checks, which are of its own cloud, are not asked of them.
     pub seeds: u64,
@@ -79,6 +82,9 @@ pub(crate) struct RunKeys {
     /// Kernels of clouds
     #[serde(default)]
     pub kernels: Vec<KernelName>,
+    /// Dilatations of clouds
+    #[serde(default)]
+    pub dilatations: Vec<f64>,
     /// Clouds of this many seeds, from 1 on, in place of their own
     #[serde(default)]
     pub seeds: u32,
@@ -127,6 +133,9 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     report.require(sound, &at("poisson"), "holds a number that is no Poisson's ratio", help);
     let sound = keys.nodes.iter().all(|n| *n >= 4);
     report.require(sound, &at("nodes"), "holds a number that is no cloud", "give 4 nodes or more");
+    let sound = keys.dilatations.iter().all(|d| (1.0..=10.0).contains(d));
+    let help = "1 to 10, as in a method; 1.2 to 3 is usual";
+    report.require(sound, &at("dilatations"), "holds a number that is no dilatation", help);
     let sound = keys.seeds != 1 && keys.seeds <= 10_000;
     report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
@@ -138,6 +147,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         poisson: keys.poisson,
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
         kernels: keys.kernels,
+        dilatations: keys.dilatations,
         seeds: keys.seeds.into(),
         quick: keys.quick,
         checks: checks(keys.check, &at("check"), report),
@@ -164,7 +174,11 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     }
     let chosen = |m: &&Method| run.methods.is_empty() || run.methods.contains(&m.id);
     let clouds = scene.methods.iter().filter(chosen).any(|m| matches!(m.family, Family::Efg(_)));
-    for (name, given) in [("nodes", !run.nodes.is_empty()), ("kernels", !run.kernels.is_empty())] {
+    for (name, given) in [
+        ("nodes", !run.nodes.is_empty()),
+        ("kernels", !run.kernels.is_empty()),
+        ("dilatations", !run.dilatations.is_empty()),
+    ] {
         let help = "element-free Galerkin methods have them";
         report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
     }

@@ -32,6 +32,16 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["'cubic' is not known"],
     ),
     (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\ndilatations = [1.2, 0.5] #<",
+        "run[0].dilatations",
+        &["no dilatation", "1.2 to 3"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet10\"]\ndilatations = [1.2] #<",
+        "run[0].dilatations",
+        &["has no method to vary"],
+    ),
+    (
         "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet11\"] #<",
         "run[0].methods",
         &["'tet11' is not a method", "did you mean 'tet10'?"],
