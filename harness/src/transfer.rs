@@ -110,7 +110,7 @@ fn timed<T, E: Into<Failure>>(
 ) -> Result<(T, Timings), Failure> {
     let mut timings = Timings::default();
     let begin = Instant::now();
-    let mut make = || {
+    let mut make = || -> Result<(T, RowBlocks), E> {
         let table = build()?;
         let blocks = RowBlocks::new(rows(&table));
         Ok((table, blocks))
