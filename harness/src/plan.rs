@@ -32,7 +32,8 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     };
     let (refines, why) = match cloud.map(|efg| &efg.refine) {
         Some(Some(refine)) => {
-            (true, format!("{} times, by the error of the gradients, each after a solution", refine.steps))
+            let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
+            (true, format!("{times} by the error of the gradients, each after a solution"))
         }
         Some(None) => (false, "the cloud stays as it is".into()),
         None => (false, "the mesh stays as it is".into()),

@@ -306,7 +306,7 @@ impl Group {
             let (mut of_point, mut value, mut flow) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
             for l in 0..LANES {
                 let at = [x[l], y[l], z[l]];
-                let fit = dot(&c, 0, l, &terms(at));
+                let fit = dot(c, 0, l, &terms(at));
                 let g = -dw[l] * inverse[l];
                 of_point[l] = fit;
                 value[l] = w[l] * fit;
