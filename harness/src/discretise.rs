@@ -98,7 +98,7 @@ pub struct Efg {
     /// Supports.
     pub support: Support,
     /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
-    pub followed: Option<Mesh>,
+    pub followed: Option<Box<Mesh>>,
     /// Integration.
     pub integration: Integration,
     /// Essential conditions.

@@ -290,7 +290,7 @@ impl Scenario<'_> {
             }
             _ => None,
         };
-        let followed = cells.filter(|_| efg.support_shape == scene::SupportShape::Adapted);
+        let followed = cells.filter(|_| efg.support_shape == scene::SupportShape::Adapted).map(Box::new);
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let integration = match efg.integration {
             scene::Integration::Gauss { points } => Integration::Gauss { points },
