@@ -1,5 +1,7 @@
 //! The scene's body as a mesh of the size asked for, or as a closed form for clouds.
 
+use std::sync::Arc;
+
 use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
     self, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh, kidney_mesh,
@@ -23,14 +25,14 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
 }
 
 /// The body in closed form; `None` for a mesh file and for parts cut off at planes of symmetry.
-pub fn shape(body: &Body) -> Option<Box<dyn Shape + Send + Sync>> {
+pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     match *body {
-        Body::Box { min, max } => Some(Box::new(Cuboid { min: min.into(), max: max.into() })),
-        Body::Cylinder { radius, height } => Some(Box::new(Cylinder { radius, height })),
-        Body::Ball { radius } => Some(Box::new(Ball { radius })),
-        Body::SphereShell { inner, outer, octant: false } => Some(Box::new(SphereShell { inner, outer })),
+        Body::Box { min, max } => Some(Arc::new(Cuboid { min: min.into(), max: max.into() })),
+        Body::Cylinder { radius, height } => Some(Arc::new(Cylinder { radius, height })),
+        Body::Ball { radius } => Some(Arc::new(Ball { radius })),
+        Body::SphereShell { inner, outer, octant: false } => Some(Arc::new(SphereShell { inner, outer })),
         Body::SphereShell { octant: true, .. } | Body::Kidney { half: true } | Body::File(_) => None,
-        Body::Kidney { half: false } => Some(Box::new(Kidney)),
+        Body::Kidney { half: false } => Some(Arc::new(Kidney)),
     }
 }
 

@@ -1,6 +1,8 @@
 //! One method on one body: nodes, cells, and the tables they fill. From here on finite elements and meshless clouds
 //! look the same.
 
+use std::sync::Arc;
+
 use cases::scene::ConstraintRows;
 use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
@@ -10,6 +12,7 @@ use shape::{DilationGroups, FluxRows, GradRows, PointRows, Rows, SurfaceRows, Tr
 
 use crate::Failure;
 use crate::error::Key;
+use crate::refine::Refine;
 use crate::work::Work;
 
 /// Which quadrature points share a dilation.
@@ -70,6 +73,7 @@ pub enum Essential {
 }
 
 /// Finite elements on a mesh.
+#[derive(Clone)]
 pub struct Fem {
     /// The mesh; its nodes are the method's.
     pub mesh: Mesh,
@@ -80,13 +84,16 @@ pub struct Fem {
 }
 
 /// Element-free Galerkin on a cloud.
+#[derive(Clone)]
 pub struct Efg {
     /// The nodes with their spacing.
     pub cloud: Cloud,
     /// Linear tetrahedra that fill the body.
     pub background: Mesh,
     /// The body in closed form, where it has one.
-    pub shape: Option<Box<dyn Shape + Send + Sync>>,
+    pub shape: Option<Arc<dyn Shape + Send + Sync>>,
+    /// How the cloud follows an error, if it does.
+    pub refine: Option<Refine>,
     /// Kernel.
     pub kernel: Kernel,
     /// Basis.
@@ -94,7 +101,7 @@ pub struct Efg {
     /// Supports.
     pub support: Support,
     /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
-    pub followed: Option<Mesh>,
+    pub followed: Option<Box<Mesh>>,
     /// Integration.
     pub integration: Integration,
     /// Essential conditions.
@@ -104,6 +111,7 @@ pub struct Efg {
 }
 
 /// One method on one body.
+#[derive(Clone)]
 pub enum Discretisation {
     /// Finite elements.
     Fem(Fem),

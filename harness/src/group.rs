@@ -218,9 +218,12 @@ pub fn resize(method: &mut scene::Method, size: &Size) {
     match &mut method.family {
         Family::Fem(fem) => fem.size = size.clone(),
         Family::Efg(efg) => match (&mut efg.cloud, size) {
-            (scene::Cloud::Uniform { nodes, .. } | scene::Cloud::Graded { nodes, .. }, Size::Nodes(n)) => {
-                *nodes = *n
-            }
+            (
+                scene::Cloud::Uniform { nodes, .. }
+                | scene::Cloud::Graded { nodes, .. }
+                | scene::Cloud::Refined { nodes, .. },
+                Size::Nodes(n),
+            ) => *nodes = *n,
             (scene::Cloud::Mesh { size: old, .. }, _) => *old = size.clone(),
             (cloud, _) => *cloud = scene::Cloud::Mesh { size: size.clone(), jitter: None },
         },

@@ -5,8 +5,9 @@
 //! [`outcome::Outcome`] of records. Nothing here draws; nothing in `reports` solves.
 
 pub mod body;
-pub mod check;
+mod check;
 pub mod cli;
+mod cloud_file;
 pub mod command;
 mod course;
 pub mod discretise;
@@ -32,6 +33,7 @@ pub mod plan;
 pub mod prepare;
 pub mod provenance;
 pub mod reach;
+pub mod refine;
 mod relaxation;
 pub mod repeated;
 pub mod run;

@@ -17,6 +17,7 @@ pub fn print() {
         [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex20].map(Element::name).join(", ")
     );
     println!("kernels     {}", KernelName::ALL.map(KernelName::name).join(", "));
+    println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
     println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
     println!("transfer    {}", SchemeName::ALL.map(SchemeName::name).join(", "));
     println!("exact solutions, with their parameters");

@@ -32,6 +32,15 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         Discretisation::Fem(fem) => (fem.dilation, None),
         Discretisation::Efg(efg) => (efg.dilation, Some(efg)),
     };
+    let (refines, why) = match cloud.map(|efg| &efg.refine) {
+        Some(Some(refine)) => {
+            let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
+            (true, format!("{times} by the error of the gradients, each after a solution"))
+        }
+        Some(None) => (false, "the cloud stays as it is".into()),
+        None => (false, "the mesh stays as it is".into()),
+    };
+    add("refinement", refines, why);
     match cloud {
         Some(efg) => {
             let supports = match efg.followed {

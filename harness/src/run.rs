@@ -9,7 +9,7 @@ use mechanics::{SolveInfo, assemble};
 
 use crate::Failure;
 use crate::course::history;
-use crate::discretise::Discretisation;
+use crate::discretise::{Discretisation, Efg};
 use crate::explicit;
 use crate::in_time;
 use crate::measure::{measure, of_tables, probes, push};
@@ -18,6 +18,7 @@ use crate::motion::Motion;
 use crate::outcome::{Identity, LoadStep, Outcome, Probe, Size, Stage};
 use crate::picture::{State, picture};
 use crate::prepare::{Prepared, prepare};
+use crate::refine::refined;
 use crate::relaxation;
 use crate::repeated::repeated;
 use crate::setup::Setup;
@@ -84,6 +85,8 @@ pub struct Solved {
     pub prepared: Prepared,
     /// Nodal parameters, m.
     pub u: Vec<Vector3>,
+    /// The method on the cloud that it ended with, where that follows an error.
+    pub refined: Option<Discretisation>,
 }
 
 /// What a procedure came to.
@@ -121,7 +124,8 @@ pub fn run(
         drop(once);
         once = solve_once(method, setup, &mut timings)?;
     }
-    let (prepared, mut solution, mut work) = once;
+    let Once { refined, prepared, mut solution, mut work } = once;
+    let method = refined.as_ref().unwrap_or(method);
     let memory = baseline.peak();
     if setup.prepare_only {
         return Ok(prepared_only(identity, plan, method, prepared, (timings, memory, work)));
@@ -219,7 +223,7 @@ pub fn run(
         stalled,
         relaxed: relaxed_from,
     };
-    Ok(Solved { outcome, prepared, u })
+    Ok(Solved { outcome, prepared, u, refined })
 }
 
 fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
@@ -263,56 +267,84 @@ fn prepared_only(
         stalled: None,
         relaxed: None,
     };
-    Solved { outcome, prepared, u: Vec::new() }
+    Solved { outcome, prepared, u: Vec::new(), refined: None }
 }
 
-fn solve_once(
+/// What a pass over a run leaves.
+struct Once {
+    refined: Option<Discretisation>,
+    prepared: Prepared,
+    solution: Solution,
+    work: Work,
+}
+
+fn solve_once(method: &Discretisation, setup: &Setup, timings: &mut Timings) -> Result<Once, Failure> {
+    let mut work = Work::default();
+    let refined = match method {
+        Discretisation::Efg(Efg { refine: Some(_), .. }) => {
+            timings.time("refine", || refined(method, setup, &mut work))?
+        }
+        _ => None,
+    };
+    let (prepared, solution) = solve(refined.as_ref().unwrap_or(method), setup, timings, &mut work)?;
+    Ok(Once { refined, prepared, solution, work })
+}
+
+fn solve(
     method: &Discretisation,
     setup: &Setup,
     timings: &mut Timings,
-) -> Result<(Prepared, Solution, Work), Failure> {
-    let mut work = Work::default();
-    let prepared = timings.time("prepare", || prepare(method, setup, &mut work))?;
+    work: &mut Work,
+) -> Result<(Prepared, Solution), Failure> {
+    let prepared = timings.time("prepare", || prepare(method, setup, work))?;
     if setup.prepare_only {
         let solution =
             Solution { u: Vec::new(), dofs: 0, residual: 0.0, info: None, path: None, motion: None };
-        return Ok((prepared, solution, work));
+        return Ok((prepared, solution));
     }
     if let Some(params) = &setup.statics {
-        let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, &mut work))?;
+        let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, work))?;
         if path.limit.is_some() {
             timings.book("solve-to-limit", path.to_limit);
         }
         let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
         let solution = Solution { u, dofs, residual, info: None, path: Some(path), motion: None };
-        return Ok((prepared, solution, work));
+        return Ok((prepared, solution));
     }
     let motion = match (&setup.explicit, &setup.in_time) {
-        (Some(params), _) => {
-            Some(timings.time("solve", || explicit::solve(setup, params, &prepared, &mut work))?)
-        }
+        (Some(params), _) => Some(timings.time("solve", || explicit::solve(setup, params, &prepared, work))?),
         (_, Some(params)) => {
-            Some(timings.time("solve", || in_time::solve(method, setup, params, &prepared, &mut work))?)
+            Some(timings.time("solve", || in_time::solve(method, setup, params, &prepared, work))?)
         }
         (None, None) => None,
     };
     if let Some(motion) = motion {
         let (u, dofs) = (motion.u.clone(), motion.dofs);
         let solution = Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion) };
-        return Ok((prepared, solution, work));
+        return Ok((prepared, solution));
     }
-    let solution = {
-        let (loads, weak) = (prepared.loads(), prepared.weak());
-        let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
-        let assembled = timings.time("assemble", || assemble(&problem))?;
-        work.assemblies += 1;
-        let factored = timings.time("factor", || prepared.factor(assembled))?;
-        work.factorisations += 1;
-        let mechanics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
-        work.solves += 1;
-        Solution { u, dofs: info.dofs, residual: info.residual, info: Some(info), path: None, motion: None }
-    };
-    Ok((prepared, solution, work))
+    let mechanics::Solution { u, info, .. } = solve_linear(method, setup, &prepared, timings, work)?;
+    let (dofs, residual) = (info.dofs, info.residual);
+    Ok((prepared, Solution { u, dofs, residual, info: Some(info), path: None, motion: None }))
+}
+
+/// Assembles, factors and solves once.
+pub(crate) fn solve_linear(
+    method: &Discretisation,
+    setup: &Setup,
+    prepared: &Prepared,
+    timings: &mut Timings,
+    work: &mut Work,
+) -> Result<mechanics::Solution, Failure> {
+    let (loads, weak) = (prepared.loads(), prepared.weak());
+    let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
+    let assembled = timings.time("assemble", || assemble(&problem))?;
+    work.assemblies += 1;
+    let factored = timings.time("factor", || prepared.factor(assembled))?;
+    work.factorisations += 1;
+    let solution = timings.time("solve", || factored.solve(1.0))?;
+    work.solves += 1;
+    Ok(solution)
 }
 
 /// Displacement (m) at the targets, and how many of these lie outside; at the method's own nodes without targets. There
@@ -348,7 +380,8 @@ fn displacement(
 
 /// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.
 pub fn reference(method: Discretisation, solved: Solved, targets: &[Point3]) -> Result<Reference, Failure> {
-    let Solved { outcome, prepared, u } = solved;
+    let Solved { outcome, prepared, u, refined } = solved;
+    let method = refined.unwrap_or(method);
     let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
         Ok(method.at_points(&prepared.volume, points)?.0.rows().apply(&u))
     };

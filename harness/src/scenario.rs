@@ -13,9 +13,10 @@ use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
+use crate::refine::Refine;
 use crate::setup::{Acting, Applied, Held, Setup};
 use crate::tools::tools;
-use crate::{Failure, body, law};
+use crate::{Failure, body, cloud_file, law};
 
 /// Stabilisation of Nitsche's method with smoothed gradients where the scene gives none: times (lambda + 2 mu) / h with h
 /// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
@@ -71,6 +72,9 @@ impl Scenario<'_> {
                 if efg.support_shape == scene::SupportShape::Adapted {
                     pairs.push(("support", efg.support_shape.name().into()));
                 }
+                if let scene::Cloud::Refined { refine, .. } = efg.cloud {
+                    pairs.push(("refine", format!("gradient-error-{}-ratio-{}", refine.steps, refine.ratio)));
+                }
                 pairs.push((
                     "integration",
                     match efg.integration {
@@ -98,7 +102,10 @@ impl Scenario<'_> {
                 ));
                 let seed = match &efg.cloud {
                     scene::Cloud::Mesh { jitter, .. } => jitter.map_or(0, |j| j.seed),
-                    scene::Cloud::Uniform { seed, .. } | scene::Cloud::Graded { seed, .. } => *seed,
+                    scene::Cloud::File { .. } => 0,
+                    scene::Cloud::Uniform { seed, .. }
+                    | scene::Cloud::Graded { seed, .. }
+                    | scene::Cloud::Refined { seed, .. } => *seed,
                 };
                 ("efg", efg.kernel.name.name().to_string(), seed)
             }
@@ -246,31 +253,45 @@ impl Scenario<'_> {
                 )
             })
         };
-        let (cloud, default) = match &efg.cloud {
+        let cells_of = |size: &scene::Size| body::mesh(&self.scene.body, CellKind::Tet4, size, None);
+        let background = |count: usize| match &efg.background {
+            Some(size) => cells_of(size).map_err(Failure::of_background),
+            None => cells_of(&scene::Size::Nodes(count)),
+        };
+        let (cloud, background, cells) = match &efg.cloud {
             scene::Cloud::Mesh { size, jitter } => {
                 let mesh = body::mesh(&self.scene.body, CellKind::Tet4, size, *jitter)?;
-                (cloud_from_mesh(&mesh), mesh)
+                let background = match &efg.background {
+                    Some(size) => cells_of(size).map_err(Failure::of_background)?,
+                    None => mesh.clone(),
+                };
+                (cloud_from_mesh(&mesh), background, Some(mesh))
             }
-            scene::Cloud::Uniform { nodes, seed } => {
+            scene::Cloud::File { file, nodes } => {
+                let read = cloud_file::read(file, *nodes)?;
+                let background = background(read.cloud.points.len())?;
+                read.within(shape.as_deref(), &background)?;
+                (read.cloud, background, read.mesh)
+            }
+            scene::Cloud::Uniform { nodes, seed } | scene::Cloud::Refined { nodes, seed, .. } => {
                 let cloud = cloud(need_shape()?, *nodes, *seed, &[]).map_err(bad)?;
-                let size = scene::Size::Nodes(*nodes);
-                (cloud, body::mesh(&self.scene.body, CellKind::Tet4, &size, None)?)
+                (cloud, background(*nodes)?, None)
             }
             scene::Cloud::Graded { nodes, seed, towards } => {
                 let shape = need_shape()?;
                 let refinement = crate::grading::refinement(shape, towards)?;
                 let cloud = cloud(shape, *nodes, *seed, &[refinement]).map_err(bad)?;
-                let size = scene::Size::Nodes(*nodes);
-                (cloud, body::mesh(&self.scene.body, CellKind::Tet4, &size, None)?)
+                (cloud, background(*nodes)?, None)
             }
         };
-        let followed = (efg.support_shape == scene::SupportShape::Adapted).then(|| default.clone());
-        let background = match &efg.background {
-            Some(size) => {
-                body::mesh(&self.scene.body, CellKind::Tet4, size, None).map_err(Failure::of_background)?
+        let refine = match (&efg.cloud, &shape) {
+            (scene::Cloud::Refined { seed, refine, .. }, Some(shape)) => {
+                let (scene::Refine { steps, ratio }, shape) = (*refine, shape.clone());
+                Some(Refine { steps, ratio, seed: *seed, shape })
             }
-            None => default,
+            _ => None,
         };
+        let followed = cells.filter(|_| efg.support_shape == scene::SupportShape::Adapted).map(Box::new);
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let integration = match efg.integration {
             scene::Integration::Gauss { points } => Integration::Gauss { points },
@@ -312,6 +333,7 @@ impl Scenario<'_> {
                 scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
             },
             followed,
+            refine,
             integration,
             essential,
             dilation: dilation(efg.dilation),

@@ -358,7 +358,12 @@ fn own_level(method: &scene::Method) -> u32 {
         scene::Family::Fem(fem) => &fem.size,
         scene::Family::Efg(efg) => match &efg.cloud {
             scene::Cloud::Mesh { size, .. } => size,
-            scene::Cloud::Uniform { .. } | scene::Cloud::Graded { .. } => return 0,
+            scene::Cloud::Uniform { .. }
+            | scene::Cloud::Graded { .. }
+            | scene::Cloud::Refined { .. }
+            | scene::Cloud::File { .. } => {
+                return 0;
+            }
         },
     };
     if let Size::Level(level) = size { *level } else { 0 }
@@ -433,8 +438,10 @@ fn files(scene: &Scene) -> Vec<PathBuf> {
             scene::Family::Fem(fem) => found.extend(of_size(&fem.size)),
             scene::Family::Efg(efg) => {
                 found.extend(efg.background.as_ref().and_then(of_size));
-                if let scene::Cloud::Mesh { size, .. } = &efg.cloud {
-                    found.extend(of_size(size));
+                match &efg.cloud {
+                    scene::Cloud::Mesh { size, .. } => found.extend(of_size(size)),
+                    scene::Cloud::File { file, .. } => found.push(file.path.clone()),
+                    _ => {}
                 }
             }
         }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 /// The phases every run is told in, in order.
-pub const PHASES: [&str; 5] = ["prepare", "assemble", "factor", "solve", "transfer"];
+pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
 
 /// Seconds spent per phase, one entry per repeat.
 #[derive(Clone, Debug, Default)]

@@ -7,6 +7,8 @@ use serde::Serialize;
 /// Counts of one pass over a run; repeats for timings do the same again and are not added up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Work {
+    /// Clouds placed anew by an error, each after a solution that is not counted below.
+    pub refinements: u64,
     /// Support radii of nodes found.
     pub support_radii: u64,
     /// Shape function rows with gradients at integration points.
@@ -59,6 +61,7 @@ impl Work {
     /// What a stage of a [plan](crate::plan) left; `None` for a stage that no code here can run yet.
     pub fn of(&self, stage: &str) -> Option<u64> {
         Some(match stage {
+            "refinement" => self.refinements,
             "supports" => self.support_radii,
             "shape functions" => self.volume_rows,
             "volumetric projection" => self.dilation_groups + self.pressure_parameters,
@@ -82,6 +85,7 @@ impl Work {
 
 impl AddAssign for Work {
     fn add_assign(&mut self, other: Work) {
+        self.refinements += other.refinements;
         self.support_radii += other.support_radii;
         self.volume_rows += other.volume_rows;
         self.dilation_groups += other.dilation_groups;

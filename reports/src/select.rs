@@ -53,7 +53,7 @@ impl<'a> Run<'a> {
     /// Median time of the whole run: its `total`, or else the sum of its phases.
     pub(crate) fn total(&self) -> Option<f64> {
         self.time("total", "median").or_else(|| {
-            let phases = ["prepare", "assemble", "factor", "solve", "transfer"];
+            let phases = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
             let times: Vec<f64> = phases.iter().filter_map(|p| self.time(p, "median")).collect();
             (!times.is_empty()).then(|| times.iter().sum())
         })

@@ -2,7 +2,7 @@
 
 use super::error::Problem;
 use super::field::{Prescribed, ScalarField, VectorField};
-use super::method::{Dilation, Element, Family};
+use super::method::{Cloud, Dilation, Efg, Element, Family};
 use super::model::{LoadKind, Material, Relaxation, Scene};
 use super::output::Reference;
 use super::procedure::ProcedureKind;
@@ -15,6 +15,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     tools(scene, report);
     mixed(scene, report);
     unsolved(scene, report);
+    refined(scene, report);
     if scene.output.repeated.is_some() {
         let at_rest = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static);
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
@@ -48,6 +49,19 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             let problem = format!("is no time for support[{i}] to move in");
             report.add("procedure.over", Problem::new(problem).help(help));
         }
+    }
+}
+
+/// A cloud that follows an error is solved for again and again.
+fn refined(scene: &Scene, report: &mut Report) {
+    for (i, method) in scene.methods.iter().enumerate() {
+        let Family::Efg(Efg { cloud: Cloud::Refined { .. }, .. }) = &method.family else { continue };
+        report.require(
+            scene.procedure.kind == ProcedureKind::Linear,
+            &format!("method[{i}].cloud.refine"),
+            "wants a solution at every step, which only a linear procedure is cheap enough for",
+            "take [procedure] kind = \"linear\", or leave refine out",
+        );
     }
 }
 

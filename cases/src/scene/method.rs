@@ -132,13 +132,22 @@ pub enum Size {
     File(MeshFile),
 }
 
-/// A mesh file.
+/// A file of a mesh or of positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// Path, relative ones taken from the folder of the scene.
     pub path: PathBuf,
     /// Metres per unit of its numbers.
     pub unit: f64,
+}
+
+/// A cloud that follows an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refine {
+    /// Clouds after the first, which is uniform.
+    pub steps: usize,
+    /// Coarsest over finest spacing at most.
+    pub ratio: f64,
 }
 
 /// Random displacement of inner nodes.
@@ -167,6 +176,22 @@ pub enum Cloud {
         /// Seed of the generator.
         seed: u64,
     },
+    /// The nodes of a file.
+    File {
+        /// Lines of x, y, z, or a Gmsh file.
+        file: MeshFile,
+        /// How many nodes the scene says it has.
+        nodes: Option<usize>,
+    },
+    /// Denser where the gradients of the solution before differ most from recovered ones, of an exact count.
+    Refined {
+        /// Number of nodes.
+        nodes: usize,
+        /// Seed of the generator.
+        seed: u64,
+        /// How often.
+        refine: Refine,
+    },
     /// Denser towards a region, of an exact count.
     Graded {
         /// Number of nodes.
@@ -185,8 +210,10 @@ impl Method {
         let Family::Efg(efg) = &mut method.family else { return None };
         match &mut efg.cloud {
             Cloud::Mesh { jitter: Some(jitter), .. } => jitter.seed = new,
-            Cloud::Mesh { jitter: None, .. } => return None,
-            Cloud::Uniform { seed, .. } | Cloud::Graded { seed, .. } => *seed = new,
+            Cloud::Mesh { jitter: None, .. } | Cloud::File { .. } => return None,
+            Cloud::Uniform { seed, .. } | Cloud::Graded { seed, .. } | Cloud::Refined { seed, .. } => {
+                *seed = new
+            }
         }
         Some(method)
     }

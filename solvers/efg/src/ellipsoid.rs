@@ -48,7 +48,7 @@ impl Ellipsoid {
         n[0] * e[0] + n[1] * e[1] + n[2] * e[2]
     }
 
-    /// Of half the size where lengths in `metric` (1/m^2) are 1 at `length`; `widest` is the longest semi-axis of its unit ball, m.
+    /// The ball of radius `length` in `metric` (1/m^2), whose unit ball has the longest semi-axis `widest` (m).
     fn new(metric: &Matrix3<f64>, widest: f64, length: f64) -> Ellipsoid {
         let m = metric / (length * length);
         let metric = [m[(0, 0)], m[(1, 1)], m[(2, 2)], m[(0, 1)], m[(1, 2)], m[(2, 0)]];

@@ -2,8 +2,12 @@
 
 mod farthest;
 mod generate;
+mod read;
+mod sizes;
 
-pub use generate::{CloudError, Refinement, cloud};
+pub use generate::{CloudError, Refinement, cloud, cloud_of_sizes};
+pub use read::{PointFile, PointFileError, PointProblem, read_points};
+pub use sizes::Sizes;
 
 use crate::{Mesh, Point3, Search};
 

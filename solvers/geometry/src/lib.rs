@@ -29,7 +29,10 @@ mod search;
 pub mod shapes;
 
 pub use cell::{CellKind, FaceKind};
-pub use cloud::{Cloud, CloudError, Refinement, cloud, cloud_from_mesh, edges};
+pub use cloud::{
+    Cloud, CloudError, PointFile, PointFileError, PointProblem, Refinement, Sizes, cloud, cloud_from_mesh,
+    cloud_of_sizes, edges, read_points,
+};
 pub use isoparametric::HEX_CORNERS;
 pub use locate::{LocateError, Location, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};

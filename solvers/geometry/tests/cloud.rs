@@ -3,7 +3,8 @@
 use geometry::generate::{box_mesh, raise_order};
 use geometry::shapes::{Ball, Cuboid, Cylinder, Shape, SphereShell};
 use geometry::{
-    CellKind, Cloud, CloudError, Kidney, Point3, Refinement, Search, Vector3, cloud, cloud_from_mesh,
+    CellKind, Cloud, CloudError, Kidney, Point3, Refinement, Search, Sizes, Vector3, cloud, cloud_from_mesh,
+    cloud_of_sizes,
 };
 
 fn shapes() -> Vec<(&'static str, Box<dyn Shape>)> {
@@ -242,4 +243,26 @@ fn surface_samples_divide_by_area() {
         // Four standard deviations of 20 000 draws.
         assert!((found - exact).abs() < 0.0142, "{found} for {exact}");
     }
+}
+
+#[test]
+fn sizes_spend_the_nodes_where_the_error_is() {
+    let body = Cuboid { min: Point3::origin(), max: Point3::new(1.0, 1.0, 1.0) };
+    let even = cloud(&body, 400, 1, &[]).unwrap();
+    // An error a hundred times as large in one corner as elsewhere, and one that is the same everywhere.
+    let corner: Vec<f64> =
+        even.points.iter().map(|p| if p.coords.norm() < 0.4 { 1.0 } else { 0.01 }).collect();
+    let refined = |error: &[f64], ratio: f64| {
+        let sizes = Sizes::new(&even, error, ratio).unwrap();
+        assert!(sizes.finest() >= 1.0 / ratio * (1.0 - 1e-12));
+        let made = cloud_of_sizes(&body, 400, 1, &sizes).unwrap();
+        assert_eq!(made, cloud_of_sizes(&body, 400, 1, &sizes).unwrap());
+        assert_eq!(made.points.len(), 400);
+        made.points.iter().filter(|p| p.coords.norm() < 0.4).count()
+    };
+    let before = even.points.iter().filter(|p| p.coords.norm() < 0.4).count();
+    assert!(refined(&corner, 3.0) > 2 * before, "{before}, {}", refined(&corner, 3.0));
+    // A ratio of 1 leaves no choice.
+    assert!(refined(&corner, 1.0).abs_diff(before) <= before / 3, "{before}, {}", refined(&corner, 1.0));
+    assert!(refined(&vec![0.0; 400], 3.0).abs_diff(before) <= before / 2);
 }

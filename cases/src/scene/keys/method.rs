@@ -63,7 +63,8 @@ pub(crate) struct EfgKeys {
     pub nodes: Option<u32>,
     /// Size of the mesh whose nodes form the cloud; or nodes
     pub size: Option<SizeKeys>,
-    pub cloud: Option<CloudName>,
+    /// By name, or a table of a file or of an error
+    pub cloud: Option<CloudKeys>,
     /// Regions that a graded cloud is denser in
     pub graded_towards: Option<Region>,
     /// Of a uniform or graded cloud
@@ -83,6 +84,43 @@ pub(crate) struct EfgKeys {
     pub dilation: Option<Dilation>,
     /// Size of the mesh to integrate over
     pub background: Option<SizeKeys>,
+}
+
+/// A cloud by name, or where its nodes are from
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum CloudKeys {
+    Name(CloudName),
+    Table(CloudTable),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CloudTable {
+    /// Lines of x, y, z between commas, with or without column names, or a Gmsh file (.msh)
+    pub file: Option<String>,
+    /// Unit of the numbers in the file
+    pub unit: Option<Unit<Length>>,
+    /// Denser where an error is
+    pub refine: Option<RefineKeys>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RefineKeys {
+    pub by: Indicator,
+    /// How often the cloud is made anew; 2 unless given
+    pub steps: Option<u32>,
+    /// Coarsest over finest spacing at most; 3 unless given
+    pub ratio: Option<f64>,
+}
+
+/// What is taken for the error
+#[derive(Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Indicator {
+    /// Displacement gradients against recovered ones
+    GradientError,
 }
 
 #[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]

@@ -32,21 +32,33 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let at = |name: &str| format!("{key}.{name}");
     let background = keys.background.map(|b| size(b, &at("background"), report));
     let jitter = jitter(keys.jitter, key, report);
+    let (name, table) = match keys.cloud {
+        Some(CloudKeys::Name(name)) => (Some(name), None),
+        Some(CloudKeys::Table(table)) => (None, Some(table)),
+        None => (None, None),
+    };
+    let source = table.and_then(|table| source(table, key, report));
+    let file = match &source {
+        Some(Source::File(file)) => Some(file),
+        _ => None,
+    };
+    let with_cells = keys.size.is_some()
+        || file.is_some_and(|f| f.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh")));
     let layout = Layout {
         nodes: keys.nodes.map(|n| count(n, &at("nodes"), report)),
         size: keys.size.map(|s| size(s, &at("size"), report)),
-        name: keys.cloud,
+        name,
+        source,
         towards: keys.graded_towards,
         seed: keys.seed,
         jitter,
     };
-    let of_mesh = layout.size.is_some();
     let cloud = cloud(layout, key, report);
     let support = support(keys.dilatation, keys.neighbours, keys.factor, keys.basis, key, report);
     let support_shape = keys.support.unwrap_or_default();
     let help = "take the nodes of a mesh: size = { level = 2 }";
     report.require(
-        support_shape == SupportShape::Round || of_mesh,
+        support_shape == SupportShape::Round || with_cells,
         &at("support"),
         "follows the cells around each node, and the nodes of this cloud have none",
         help,
@@ -67,9 +79,41 @@ struct Layout {
     nodes: Option<usize>,
     size: Option<Option<Size>>,
     name: Option<CloudName>,
+    source: Option<Source>,
     towards: Option<Region>,
     seed: Option<u64>,
     jitter: Option<Jitter>,
+}
+
+/// What a cloud's table is.
+enum Source {
+    File(MeshFile),
+    Refine(Refine),
+}
+
+fn source(table: CloudTable, key: &str, report: &mut Report) -> Option<Source> {
+    let at = |name: &str| format!("{key}.cloud.{name}");
+    match (table.file, table.unit, table.refine) {
+        (Some(file), Some(unit), None) => Some(Source::File(mesh_file(&file, unit.0, &at("file"), report))),
+        (Some(_), None, None) => {
+            report.missing(&at("unit"), "say what the numbers of the file are in: unit = \"mm\"");
+            None
+        }
+        (None, None, Some(RefineKeys { by: Indicator::GradientError, steps, ratio })) => {
+            let (steps, ratio) = (steps.unwrap_or(2), ratio.unwrap_or(3.0));
+            let sound = (1..=10).contains(&steps);
+            report.require(sound, &at("refine.steps"), "is no number of steps", "give 1 to 10; 2 is usual");
+            let sound = (1.0..=10.0).contains(&ratio);
+            report.require(sound, &at("refine.ratio"), "is no ratio", "give 1 to 10; 3 is usual");
+            Some(Source::Refine(Refine { steps: steps as usize, ratio }))
+        }
+        _ => {
+            let help =
+                "give { file = \"nodes.csv\", unit = \"mm\" }, or { refine = { by = \"gradient-error\" } }";
+            report.add(&format!("{key}.cloud"), Problem::new("is not one cloud").help(help));
+            None
+        }
+    }
 }
 
 fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
@@ -82,8 +126,23 @@ fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
         problem,
         "it moves the nodes of a mesh: give size",
     );
-    report.require(!of_mesh || layout.seed.is_none(), &at("seed"), problem, "the nodes of a mesh need none");
+    let given = of_mesh || matches!(layout.source, Some(Source::File(_)));
+    report.require(!given || layout.seed.is_none(), &at("seed"), problem, "nodes that are given need none");
     let seed = layout.seed.unwrap_or(1);
+    if let Some(source) = layout.source {
+        let help = "cloud = { ... } is the whole cloud; nodes = 83 beside it is how many it has";
+        for (name, stray) in [("size", of_mesh), ("graded_towards", layout.towards.is_some())] {
+            report.require(!stray, &at(name), "does not go with this cloud", help);
+        }
+        return match (source, layout.nodes) {
+            (Source::File(file), nodes) => Some(Cloud::File { file, nodes }),
+            (Source::Refine(refine), Some(nodes)) => Some(Cloud::Refined { nodes, seed, refine }),
+            (Source::Refine(_), None) => {
+                report.missing(&at("nodes"), "give nodes = 332, how many there are after every step");
+                None
+            }
+        };
+    }
     match (layout.nodes, layout.size, layout.name, layout.towards) {
         (None, Some(size), None | Some(CloudName::Mesh), None) => {
             Some(Cloud::Mesh { size: size?, jitter: layout.jitter })

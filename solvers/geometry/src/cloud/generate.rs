@@ -1,6 +1,6 @@
 //! Clouds of an exact number of nodes in a closed-form body.
 
-use super::{Cloud, farthest::Farthest};
+use super::{Cloud, Sizes, farthest::Farthest};
 use crate::random::Uniform;
 use crate::search::{Search, SearchError};
 use crate::shapes::Shape;
@@ -94,12 +94,34 @@ pub fn cloud(
     seed: u64,
     refinements: &[Refinement],
 ) -> Result<Cloud, CloudError> {
-    check(shape, n, refinements)?;
+    check(shape, n)?;
+    check_refinements(refinements)?;
+    let finest = refinements.iter().fold(1.0, |s: f64, r| s.min(1.0 / r.ratio));
+    generate(shape, n, seed, finest, |p| target_size(refinements, p))
+}
+
+/// As [`cloud`], with nodes as close as `sizes` has it.
+pub fn cloud_of_sizes(
+    shape: &(impl Shape + ?Sized),
+    n: usize,
+    seed: u64,
+    sizes: &Sizes,
+) -> Result<Cloud, CloudError> {
+    check(shape, n)?;
+    generate(shape, n, seed, sizes.finest(), |p| sizes.at(p))
+}
+
+/// `size`: target spacing over the coarsest, from `finest` to 1.
+fn generate(
+    shape: &(impl Shape + ?Sized),
+    n: usize,
+    seed: u64,
+    finest: f64,
+    size: impl Fn(&Point3) -> f64 + Copy,
+) -> Result<Cloud, CloudError> {
     let mut random = Uniform::new(seed);
     let mut unit = || random.unit();
     let count = CANDIDATES_PER_NODE * n;
-    let size = |p: &Point3| target_size(refinements, p);
-    let finest = refinements.iter().fold(1.0, |s: f64, r| s.min(1.0 / r.ratio));
 
     // Candidates as dense as the nodes shall be: drawn uniformly, kept with the chance (finest / size)^dimension.
     let mut draw =
@@ -207,7 +229,7 @@ fn target_size(refinements: &[Refinement], p: &Point3) -> f64 {
     })
 }
 
-fn check(shape: &(impl Shape + ?Sized), n: usize, refinements: &[Refinement]) -> Result<(), CloudError> {
+fn check(shape: &(impl Shape + ?Sized), n: usize) -> Result<(), CloudError> {
     if n < FEWEST {
         return Err(CloudError::TooFew { nodes: n, least: FEWEST });
     }
@@ -219,6 +241,10 @@ fn check(shape: &(impl Shape + ?Sized), n: usize, refinements: &[Refinement]) ->
     if !extent.iter().all(|&e| e > 0.0 && e.is_finite()) {
         return Err(CloudError::NoExtent { x: extent.x, y: extent.y, z: extent.z });
     }
+    Ok(())
+}
+
+fn check_refinements(refinements: &[Refinement]) -> Result<(), CloudError> {
     for (index, r) in refinements.iter().enumerate() {
         let bad = |what, found, needed| Err(CloudError::Refinement { index, what, found, needed });
         if let Some(&c) = r.centre.coords.iter().find(|c| !c.is_finite()) {

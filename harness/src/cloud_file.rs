@@ -1,0 +1,124 @@
+//! A cloud from a file: its nodes, and whether body and scene agree with them.
+
+use std::collections::HashMap;
+
+use cases::scene::MeshFile;
+use geometry::shapes::Shape;
+use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, locate, msh, read_points};
+
+use crate::Failure;
+use crate::error::Key;
+
+/// A node this far beyond the surface, over the diagonal of the body, is taken to lie on it: what six digits of text leave.
+const ON_SURFACE: f64 = 1e-6;
+
+/// The nodes of a file, and its cells where it is a mesh.
+pub struct Read {
+    /// Nodes and their spacing.
+    pub cloud: Cloud,
+    /// The mesh, where the file has one.
+    pub mesh: Option<Mesh>,
+    /// Line of each node, where the file has no cells.
+    lines: Vec<usize>,
+}
+
+impl Read {
+    /// Where the file has a node.
+    fn place(&self, node: usize) -> String {
+        self.lines.get(node).map_or(format!("node {node}"), |line| format!("line {line}"))
+    }
+
+    /// Refuses nodes outside of the body, in closed form where there is one, else the cells to integrate over.
+    pub fn within(
+        &self,
+        shape: Option<&(dyn Shape + Send + Sync)>,
+        background: &Mesh,
+    ) -> Result<(), Failure> {
+        let [low, high] = match shape {
+            Some(shape) => shape.bounds(),
+            None => {
+                let first = background.points()[0];
+                let all = background.points().iter();
+                all.fold([first, first], |[low, high], p| [low.inf(p), high.sup(p)])
+            }
+        };
+        let beyond: Vec<f64> = match shape {
+            Some(shape) => self.cloud.points.iter().map(|p| beyond(shape, p)).collect(),
+            None => {
+                let found = locate(background, &self.cloud.points).map_err(|bad| {
+                    Failure::input(FILE, format!("can't be held against the body: {bad}"), "")
+                })?;
+                found.iter().map(|location| location.outside).collect()
+            }
+        };
+        let outside = |d: &f64| *d > ON_SURFACE * (high - low).norm();
+        let count = beyond.iter().filter(|d| outside(d)).count();
+        let farthest = (0..beyond.len()).max_by(|&a, &b| beyond[a].total_cmp(&beyond[b]));
+        match farthest {
+            Some(node) if count > 0 => {
+                let problem = format!(
+                    "has {count} of {} nodes outside of the body, {} the farthest, by {:.3e} m",
+                    beyond.len(),
+                    self.place(node),
+                    beyond[node]
+                );
+                let help = format!("the body spans {low} to {high} m; check the file's unit and origin");
+                Err(Failure::input(FILE, problem, &help))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+const FILE: Key = Key::Method("cloud.file");
+
+/// Distance of a point beyond the surface, m; 0 inside.
+fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
+    if shape.inside(p) { 0.0 } else { (shape.project_to_surface(p) - p).norm() }
+}
+
+/// Reads the nodes of a `.msh` file or of lines `x, y, z`; `nodes` is how many the scene says there are.
+pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
+    let is_mesh = file.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh"));
+    let (points, lines, mesh) = if is_mesh {
+        let mesh = msh::read(&file.path, file.unit).map_err(|bad| {
+            Failure::input(FILE, format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file")
+        })?;
+        (mesh.points().to_vec(), Vec::new(), Some(mesh))
+    } else {
+        let read = read_points(&file.path, file.unit).map_err(|bad| {
+            Failure::input(FILE, format!("can't be read: {bad}"), "give x, y, z per line, between commas")
+        })?;
+        (read.points, read.lines, None)
+    };
+    if let Some(wanted) = nodes.filter(|&n| n != points.len()) {
+        let problem = format!("disagrees with {}, which holds {} nodes", file.path.display(), points.len());
+        let help =
+            format!("give nodes = {}, or leave it out: {wanted} is not what the file has", points.len());
+        return Err(Failure::input(Key::Method("nodes"), problem, &help));
+    }
+    // The spacing is only known of a cloud without duplicates.
+    let nothing = Cloud { points: Vec::new(), spacing: Vec::new() };
+    let unspaced = Read { cloud: nothing, mesh, lines };
+    if let Some([first, second]) = duplicate(&points) {
+        let problem =
+            format!("has {} and {} in the same place", unspaced.place(first), unspaced.place(second));
+        return Err(Failure::input(FILE, problem, "a node of a cloud counts once: leave one of them out"));
+    }
+    let cloud = match &unspaced.mesh {
+        Some(mesh) => cloud_from_mesh(mesh),
+        None => Cloud::from_points(points)
+            .map_err(|bad| Failure::input(FILE, format!("makes no cloud: {bad}"), ""))?,
+    };
+    Ok(Read { cloud, ..unspaced })
+}
+
+/// The first node that stands where one before it does.
+fn duplicate(points: &[Point3]) -> Option<[usize; 2]> {
+    let mut seen = HashMap::with_capacity(points.len());
+    points.iter().enumerate().find_map(|(node, p)| {
+        // A sum makes a positive zero of a negative one.
+        let bits = [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits());
+        seen.insert(bits, node).map(|first| [first, node])
+    })
+}

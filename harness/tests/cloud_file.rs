@@ -1,0 +1,71 @@
+//! Clouds from files: the same answer as from the nodes themselves, or a refusal with numbers.
+
+mod common;
+
+use common::{assert_fails, tissuebench, write};
+use serde_json::Value;
+
+/// A patch test by a cloud.
+fn scene(cloud: &str) -> String {
+    format!(
+        r#"title = "A block in an affine field"
+body = {{ shape = "box", size = ["30 mm", "20 mm", "20 mm"] }}
+material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
+support = [{{ on = "surface", move = "exact" }}]
+reference = {{ exact = "affine" }}
+method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = {{ rule = "cell-smoothed", points = 1 }}, essential = "nitsche", {cloud} }}]
+"#
+    )
+}
+
+/// 4 x 3 x 3 nodes, in mm.
+fn nodes() -> String {
+    let at = |n: usize| format!("{},{},{}\n", 10 * (n / 9), 10 * (n / 3 % 3), 10 * (n % 3));
+    (0..36).map(at).collect()
+}
+
+#[test]
+fn a_file_of_nodes_is_a_cloud() {
+    let dir = tempfile::tempdir().unwrap();
+    write(&dir, "nodes.csv", &format!("x,y,z\n{}", nodes()));
+    for cloud in [
+        r#"nodes = 36, cloud = { file = "nodes.csv", unit = "mm" }"#,
+        r#"cloud = { file = "nodes.csv", unit = "mm" }"#,
+    ] {
+        let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene(cloud)), "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let told: Value = serde_json::from_str(&done.stdout).unwrap();
+        assert!(told["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-12, "{told}");
+        assert_eq!(told["nodes"], 36, "{told}");
+    }
+}
+
+#[test]
+fn what_disagrees_is_refused_with_numbers() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = |cloud: &str, text: &str, said: &str| {
+        write(&dir, "nodes.csv", text);
+        let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene(cloud))]);
+        assert_fails(&done, 2, said);
+    };
+    let file = r#"cloud = { file = "nodes.csv", unit = "mm" }"#;
+    let sound = nodes();
+    refused(&format!("nodes = 35, {file}"), &sound, "nodes.csv, which holds 36 nodes");
+    refused(file, &format!("{sound}1,nan,2\n"), "nodes.csv:37: column 2 is nan, which is not finite");
+    refused(file, &format!("{sound}1,2\n"), "nodes.csv:37: column 3 is missing");
+    refused(file, &format!("{sound}10,-0,20\n"), "has line 12 and line 37 in the same place");
+    refused(
+        file,
+        &format!("{sound}1,2,21\n0,25,0\n"),
+        "has 2 of 38 nodes outside of the body, line 38 the farthest, by 5.000e-3 m",
+    );
+    refused(
+        r#"cloud = { file = "nodes.csv", unit = "cm" }"#,
+        &sound,
+        "has 35 of 36 nodes outside of the body",
+    );
+    refused(r#"cloud = { file = "nodes.csv" }"#, &sound, "unit");
+    refused(r#"cloud = { file = "none.csv", unit = "mm" }"#, &sound, "can't be found");
+    refused(&format!("{file}, seed = 3"), &sound, "nodes that are given need none");
+    refused(&format!("{file}, support = \"adapted\""), &sound, "the nodes of this cloud have none");
+}

@@ -1,0 +1,79 @@
+//! How far a cloud's gradients are from recovered ones.
+//!
+//! At every node the displacement gradients at the points its support covers are fitted by a linear field, least squares weighted
+//! by `w_q phi_I(x_q)`; between nodes the fits are blended by the shape functions. What the gradients differ by from that is an
+//! error indicator: Zienkiewicz & Zhu (1992), patches of a cloud in place of those of elements.
+
+use nalgebra::{Matrix4, SMatrix};
+use rayon::prelude::*;
+use shape::{Matrix3, Point3, Vector3, VolumeRows};
+
+/// Coefficients of a linear field of displacement gradients: 1, x, y, z by the nine components.
+type Fit = SMatrix<f64, 4, 9>;
+
+/// Error of the displacement gradient at each node, root mean square over the points its support covers, from nodal parameters
+/// `u` (m).
+pub fn gradient_error(volume: &VolumeRows, u: &[Vector3], nodes: &[Point3]) -> Vec<f64> {
+    let gradients: Vec<Matrix3> = volume.at().displacement_gradients(u);
+    let points = volume.points();
+    let of_nodes = covered(volume, nodes.len());
+    let fits: Vec<Option<Fit>> =
+        nodes.par_iter().zip(&of_nodes).map(|(at, rows)| fit(at, rows, points, &gradients)).collect();
+    let squares: Vec<f64> = (0..points.len())
+        .into_par_iter()
+        .map(|q| {
+            let (row, values) = volume.rows().row(q);
+            let (mut recovered, mut total) = (Matrix3::zeros(), 0.0);
+            for (&node, &phi) in row.iter().zip(values) {
+                if let Some(fit) = &fits[node as usize] {
+                    recovered += phi * at_offset(fit, &(points[q] - nodes[node as usize]));
+                    total += phi;
+                }
+            }
+            if total > 0.5 { (recovered / total - gradients[q]).norm_squared() } else { 0.0 }
+        })
+        .collect();
+    let mean = |rows: &Vec<(u32, f64)>| {
+        let (sum, weight) =
+            rows.iter().fold((0.0, 0.0), |(s, t), &(q, w)| (s + w * squares[q as usize], t + w));
+        if weight > 0.0 { (sum / weight).sqrt() } else { 0.0 }
+    };
+    of_nodes.iter().map(mean).collect()
+}
+
+/// The points in each node's support with their weights `w_q phi_I(x_q)`; a quadratic basis has negative values, which weigh nothing.
+fn covered(volume: &VolumeRows, nodes: usize) -> Vec<Vec<(u32, f64)>> {
+    let mut of_nodes = vec![Vec::new(); nodes];
+    for (q, w) in volume.weights().iter().enumerate() {
+        let (row, values) = volume.rows().row(q);
+        for (&node, &phi) in row.iter().zip(values).filter(|(_, phi)| **phi > 0.0) {
+            of_nodes[node as usize].push((q as u32, w * phi));
+        }
+    }
+    of_nodes
+}
+
+/// `None` where the points do not determine a linear field.
+fn fit(at: &Point3, rows: &[(u32, f64)], points: &[Point3], gradients: &[Matrix3]) -> Option<Fit> {
+    let reach = rows.iter().map(|&(q, _)| (points[q as usize] - at).norm()).fold(0.0, f64::max);
+    let (mut moment, mut right) = (Matrix4::zeros(), Fit::zeros());
+    for &(q, w) in rows {
+        let s = (points[q as usize] - at) / reach;
+        let p = nalgebra::Vector4::new(1.0, s.x, s.y, s.z);
+        let gradient = SMatrix::<f64, 1, 9>::from_iterator(gradients[q as usize].iter().copied());
+        moment += w * p * p.transpose();
+        right += w * p * gradient;
+    }
+    let scale = moment[(0, 0)];
+    let factors = (moment / scale).cholesky().filter(|l| l.l_dirty().diagonal().min() > 1e-4)?;
+    let mut fit = factors.solve(&(right / scale));
+    for axis in 1..4 {
+        fit.row_mut(axis).unscale_mut(reach);
+    }
+    Some(fit)
+}
+
+fn at_offset(fit: &Fit, e: &Vector3) -> Matrix3 {
+    let row = fit.row(0) + e.x * fit.row(1) + e.y * fit.row(2) + e.z * fit.row(3);
+    Matrix3::from_iterator(row.iter().copied())
+}
