@@ -2,7 +2,7 @@
 //! look the same.
 
 use cases::scene::ConstraintRows;
-use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
+use efg::{Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
@@ -69,6 +69,41 @@ pub enum Essential {
     Elimination(ConstraintRows),
 }
 
+/// The shape functions of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Functions {
+    /// Moving least squares.
+    MovingLeastSquares {
+        /// Kernel.
+        kernel: Kernel,
+        /// Basis.
+        basis: Basis,
+        /// Supports.
+        support: Support,
+    },
+    /// Local maximum entropy with this `beta h^2`.
+    MaximumEntropy {
+        /// Locality.
+        gamma: f64,
+    },
+}
+
+impl Functions {
+    /// Shape functions over a cloud.
+    fn over(self, cloud: &Cloud) -> Result<Approximation, EfgError> {
+        let nodes = cloud.points.clone();
+        match self {
+            Functions::MovingLeastSquares { kernel, basis, support } => {
+                let radii = support.radii(&nodes, &cloud.spacing)?;
+                Approximation::new(nodes, radii, kernel, basis)
+            }
+            Functions::MaximumEntropy { gamma } => {
+                Approximation::maximum_entropy(nodes, &cloud.spacing, gamma)
+            }
+        }
+    }
+}
+
 /// Finite elements on a mesh.
 pub struct Fem {
     /// The mesh; its nodes are the method's.
@@ -87,12 +122,8 @@ pub struct Efg {
     pub background: Mesh,
     /// The body in closed form, where it has one.
     pub shape: Option<Box<dyn Shape + Send + Sync>>,
-    /// Kernel.
-    pub kernel: Kernel,
-    /// Basis.
-    pub basis: Basis,
-    /// Supports.
-    pub support: Support,
+    /// Shape functions.
+    pub functions: Functions,
     /// Integration.
     pub integration: Integration,
     /// Essential conditions.
@@ -285,9 +316,8 @@ const ERROR_POINTS: usize = 14;
 
 impl Efg {
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
-        let radii = self.support.radii(&self.cloud.points, &self.cloud.spacing)?;
-        work.support_radii += radii.len() as u64;
-        let approximation = Approximation::new(self.cloud.points.clone(), radii, self.kernel, self.basis)?;
+        let approximation = self.functions.over(&self.cloud)?;
+        work.support_radii += self.cloud.points.len() as u64;
         let (rows, mls, region, volume_error) = match self.integration {
             Integration::Gauss { points } => {
                 let (rows, mls) = efg::gauss_rows(&approximation, &self.background, points)?;

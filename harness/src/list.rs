@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cases::exact::{exact_names, exact_parameters};
-use cases::scene::{Element, KernelName, Metric, SchemeName};
+use cases::scene::{Basis, Element, KernelName, Metric, SchemeName};
 use reports::{Check, Status};
 
 use crate::outcome::{Outcome, Stage};
@@ -17,6 +17,8 @@ pub fn print() {
         [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex20].map(Element::name).join(", ")
     );
     println!("kernels     {}", KernelName::ALL.map(KernelName::name).join(", "));
+    println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
+    println!("essential   nitsche, penalty, multipliers, elimination");
     println!("transfer    {}", SchemeName::ALL.map(SchemeName::name).join(", "));
     println!("exact solutions, with their parameters");
     for name in exact_names() {

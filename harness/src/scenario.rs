@@ -7,7 +7,7 @@ use cases::scene::{
 use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::{Law, LinearElastic, NewtonParams, Prony, StaticParams, TimeParams};
 
-use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration};
 use crate::error::Key;
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
@@ -60,14 +60,23 @@ impl Scenario<'_> {
             }
             Family::Efg(efg) => {
                 pairs.push(("dilation", efg.dilation.name().into()));
-                pairs.push(("basis", efg.basis.name().into()));
-                match efg.support {
-                    scene::SupportRule::Dilatation(factor) => pairs.push(("dilatation", factor.to_string())),
-                    scene::SupportRule::Neighbours { k, factor } => {
-                        pairs.push(("neighbours", k.to_string()));
-                        pairs.push(("factor", factor.to_string()));
+                pairs.push(("basis", efg.functions.basis().into()));
+                let variant = match efg.functions {
+                    scene::Functions::MovingLeastSquares { kernel, support, .. } => {
+                        match support {
+                            scene::SupportRule::Dilatation(d) => pairs.push(("dilatation", d.to_string())),
+                            scene::SupportRule::Neighbours { k, factor } => {
+                                pairs.push(("neighbours", k.to_string()));
+                                pairs.push(("factor", factor.to_string()));
+                            }
+                        }
+                        kernel.name.name()
                     }
-                }
+                    scene::Functions::MaximumEntropy { gamma } => {
+                        pairs.push(("gamma", gamma.to_string()));
+                        efg.functions.basis()
+                    }
+                };
                 pairs.push((
                     "integration",
                     match efg.integration {
@@ -97,7 +106,7 @@ impl Scenario<'_> {
                     scene::Cloud::Mesh { jitter, .. } => jitter.map_or(0, |j| j.seed),
                     scene::Cloud::Uniform { seed, .. } | scene::Cloud::Graded { seed, .. } => *seed,
                 };
-                ("efg", efg.kernel.name.name().to_string(), seed)
+                ("efg", variant.to_string(), seed)
             }
         };
         let law = self.scene.material.name();
@@ -298,15 +307,7 @@ impl Scenario<'_> {
             background: self.with_regions(background)?,
             cloud,
             shape,
-            kernel: kernel(efg.kernel)?,
-            basis: match efg.basis {
-                scene::Basis::Linear => efg::Basis::Linear,
-                scene::Basis::Quadratic => efg::Basis::Quadratic,
-            },
-            support: match efg.support {
-                scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
-                scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
-            },
+            functions: functions(efg.functions)?,
             integration,
             essential,
             dilation: dilation(efg.dilation),
@@ -476,6 +477,24 @@ fn dilation(dilation: scene::Dilation) -> Dilation {
         scene::Dilation::NodalMean => Dilation::Nodal,
         scene::Dilation::Mixed => Dilation::Mixed,
     }
+}
+
+/// The shape functions that a scene names.
+fn functions(functions: scene::Functions) -> Result<Functions, Failure> {
+    Ok(match functions {
+        scene::Functions::MovingLeastSquares { kernel, support, basis } => Functions::MovingLeastSquares {
+            kernel: self::kernel(kernel)?,
+            basis: match basis {
+                scene::Basis::Linear => efg::Basis::Linear,
+                scene::Basis::Quadratic => efg::Basis::Quadratic,
+            },
+            support: match support {
+                scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
+                scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
+            },
+        },
+        scene::Functions::MaximumEntropy { gamma } => Functions::MaximumEntropy { gamma },
+    })
 }
 
 fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {

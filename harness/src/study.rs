@@ -364,6 +364,9 @@ fn own_level(method: &scene::Method) -> u32 {
 /// The method with each kernel that the run table names, its id followed by the kernel's name where there are several.
 fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     let scene::Family::Efg(efg) = &method.family else { return vec![method] };
+    let scene::Functions::MovingLeastSquares { support, basis, .. } = efg.functions else {
+        return vec![method];
+    };
     if run.kernels.is_empty() {
         return vec![method];
     }
@@ -371,7 +374,8 @@ fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
         .iter()
         .map(|&name| {
             let mut efg = efg.clone();
-            efg.kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
+            let kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
+            efg.functions = scene::Functions::MovingLeastSquares { kernel, support, basis };
             scene::Method { id: method.id.clone(), family: scene::Family::Efg(efg) }
         })
         .collect()

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{Basis, ConstraintRows, Dilation, Element, KernelName};
+use crate::scene::method::{ConstraintRows, Dilation, Element, KernelName};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 
@@ -69,18 +69,29 @@ pub(crate) struct EfgKeys {
     /// Of a uniform or graded cloud
     pub seed: Option<u64>,
     pub jitter: Option<JitterKeys>,
-    pub kernel: KernelKeys,
+    /// Not with basis = "maximum-entropy"
+    pub kernel: Option<KernelKeys>,
     /// Support radius over the local spacing; or neighbours and factor
     pub dilatation: Option<f64>,
     /// Support radius over the distance to this neighbour
     pub neighbours: Option<u32>,
     pub factor: Option<f64>,
-    pub basis: Basis,
+    pub basis: BasisName,
+    /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
+    pub gamma: Option<f64>,
     pub integration: IntegrationKeys,
     pub essential: EssentialKeys,
     pub dilation: Option<Dilation>,
     /// Size of the mesh to integrate over
     pub background: Option<SizeKeys>,
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum BasisName {
+    Linear,
+    Quadratic,
+    MaximumEntropy,
 }
 
 #[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
