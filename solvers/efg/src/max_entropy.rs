@@ -141,18 +141,25 @@ impl Neighbours {
             }
         }
         let largest = largest.into_iter().fold(NEVER, f64::max);
+        // One loop over the lanes for each sum: all ten in one loop stay single numbers.
         let mut sums = [[0.0; LANES]; 10];
-        for (r, weight) in self.offset.iter().zip(&mut self.weight) {
+        for ([x, y, z], weight) in self.offset.iter().zip(&mut self.weight) {
+            let mut w = [0.0; LANES];
             for l in 0..LANES {
-                let w = exp(weight[l] - largest);
-                weight[l] = w;
-                let [x, y, z] = [r[0][l], r[1][l], r[2][l]];
-                let (wx, wy, wz) = (w * x, w * y, w * z);
-                let terms = [w, wx, wy, wz, wx * x, wx * y, wx * z, wy * y, wy * z, wz * z];
-                for (sum, term) in sums.iter_mut().zip(terms) {
-                    sum[l] += term;
-                }
+                w[l] = exp(weight[l] - largest);
             }
+            *weight = w;
+            let (wx, wy, wz) = (product(&w, x), product(&w, y), product(&w, z));
+            add(&mut sums[0], &w);
+            add(&mut sums[1], &wx);
+            add(&mut sums[2], &wy);
+            add(&mut sums[3], &wz);
+            add(&mut sums[4], &product(&wx, x));
+            add(&mut sums[5], &product(&wx, y));
+            add(&mut sums[6], &product(&wx, z));
+            add(&mut sums[7], &product(&wy, y));
+            add(&mut sums[8], &product(&wy, z));
+            add(&mut sums[9], &product(&wz, z));
         }
         let [total, x, y, z, xx, xy, xz, yy, yz, zz] = sums.map(|s| s.iter().sum::<f64>());
         State {
@@ -259,6 +266,22 @@ impl Neighbours {
             *grad = (s - mean - slope * r) * (p / self.scale);
         }
         Some(())
+    }
+}
+
+#[inline(always)]
+fn product(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        out[l] = a[l] * b[l];
+    }
+    out
+}
+
+#[inline(always)]
+fn add(sum: &mut Lanes, term: &Lanes) {
+    for l in 0..LANES {
+        sum[l] += term[l];
     }
 }
 
