@@ -12,6 +12,8 @@
 //! Measured beside busy neighbours, the least of 20 000: 0.40 us (linear) and 1.0 us (quadratic), 4 and 3 times the arithmetic.
 //! Of the linear point about a quarter is the search, which keeps every second candidate, a quarter the way of neighbours into
 //! lanes and of values out of them, one number at a time, and a fifth the joining of chunks into one checked table.
+//! Functions of maximum entropy take 4.3 us at 89 neighbours (gamma = 1.8) and 2.4 us at 27 (gamma = 4) beside 0.44 us of the linear
+//! point at 24: 48 ns for each neighbour, 18 there, since each step of Newton's method comes by all of them.
 //! Not covered: search structures of millions of nodes, other kernels.
 
 use std::hint::black_box;

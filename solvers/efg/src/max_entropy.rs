@@ -20,7 +20,7 @@ use crate::lanes::{LANES, Lanes};
 pub(crate) const CUT: f64 = 1e-6;
 /// What is left of `sum_a p_a r_a`, in units of the mean `1/sqrt(beta)`: rounding leaves 1e-16.
 const TOLERANCE: f64 = 1e-14;
-/// Newton's method takes 4 to 6 steps inside, and one more for each factor e nearer to a face.
+/// Newton's method converges in a few steps inside, and takes about one more for each factor e nearer to a face.
 const ITERATIONS: usize = 60;
 /// From this step on the point may lie on a face.
 const PATIENCE: usize = 6;
@@ -249,21 +249,39 @@ impl Neighbours {
     #[inline(always)]
     fn gradients(&self, state: &State, grads: &mut [Vector3]) -> Option<()> {
         let inverse = state.spread.try_inverse()?;
-        let (mut mean, mut product) = (Vector3::zeros(), Matrix3::zeros());
-        let node = |k: usize| {
-            let (g, l) = (k / LANES, k % LANES);
-            let r = Vector3::new(self.offset[g][0][l], self.offset[g][1][l], self.offset[g][2][l]);
-            (r, r * (-2.0 * self.beta[g][l]), self.weight[g][l] / state.total)
-        };
-        for k in 0..self.count {
-            let (r, s, p) = node(k);
-            mean += s * p;
-            product += r * (s * p).transpose();
+        // sum w beta r and sum w beta r r^T.
+        let mut sums = [[0.0; LANES]; 9];
+        for (([x, y, z], weight), beta) in self.offset.iter().zip(&self.weight).zip(&self.beta) {
+            let w = product(weight, beta);
+            let (wx, wy, wz) = (product(&w, x), product(&w, y), product(&w, z));
+            add(&mut sums[0], &wx);
+            add(&mut sums[1], &wy);
+            add(&mut sums[2], &wz);
+            add(&mut sums[3], &product(&wx, x));
+            add(&mut sums[4], &product(&wx, y));
+            add(&mut sums[5], &product(&wx, z));
+            add(&mut sums[6], &product(&wy, y));
+            add(&mut sums[7], &product(&wy, z));
+            add(&mut sums[8], &product(&wz, z));
         }
-        let slope = (Matrix3::identity() + product).transpose() * inverse;
-        for (k, grad) in grads.iter_mut().enumerate() {
-            let (r, s, p) = node(k);
-            *grad = (s - mean - slope * r) * (p / self.scale);
+        let [x, y, z, xx, xy, xz, yy, yz, zz] = sums.map(|s| s.iter().sum::<f64>() * (-2.0 / state.total));
+        let (mean, moment) = (Vector3::new(x, y, z), Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+        let slope = (Matrix3::identity() + moment).transpose() * inverse;
+        let part = 1.0 / (state.total * self.scale);
+        for (g, grads) in grads.chunks_mut(LANES).enumerate() {
+            let ([x, y, z], weight, beta) = (&self.offset[g], &self.weight[g], &self.beta[g]);
+            let mut along = [[0.0; LANES]; 3];
+            for (axis, along) in along.iter_mut().enumerate() {
+                let own = &self.offset[g][axis];
+                let (a, b, c, m) = (slope[(axis, 0)], slope[(axis, 1)], slope[(axis, 2)], mean[axis]);
+                for l in 0..LANES {
+                    let s = -2.0 * beta[l] * own[l] - m;
+                    along[l] = (s - (a * x[l] + b * y[l] + c * z[l])) * (weight[l] * part);
+                }
+            }
+            for (l, grad) in grads.iter_mut().enumerate() {
+                *grad = Vector3::new(along[0][l], along[1][l], along[2][l]);
+            }
         }
         Some(())
     }
