@@ -83,15 +83,19 @@ impl Neighbours {
         grads: &mut [Vector3],
     ) -> Result<f64, NoPoint> {
         self.load(x, nodes.clone());
-        let (state, on_face) = self.solve()?;
+        let (state, span) = self.solve()?;
         for (k, value) in values.iter_mut().enumerate() {
             *value = self.weight[k / LANES][k % LANES] / state.total;
         }
-        let mut condition = condition(&state.spread);
+        // Of `J` in the face where the point lies on one.
+        let across = Matrix3::identity() - span;
+        let trace = state.spread.trace();
+        let size = if trace > IN_FACE { trace } else { 1.0 };
+        let mut condition = condition(&(span * state.spread * span + across * size));
         if GRAD {
-            let state = match on_face {
-                false => state,
-                true => {
+            let state = match across == Matrix3::zeros() {
+                true => state,
+                false => {
                     let mean = nodes.clone().map(|(at, _)| at).sum::<Vector3>() / self.count as f64;
                     self.load(&(x + (mean - x.coords) * INWARD), nodes);
                     let (inside, _) = self.solve()?;
@@ -171,23 +175,23 @@ impl Neighbours {
         }
     }
 
-    /// `lambda`, and whether the point lies on a face.
+    /// `lambda`, and the projection on the face that the point lies on, the identity if on none.
     #[inline(always)]
-    fn solve(&mut self) -> Result<(State, bool), NoPoint> {
+    fn solve(&mut self) -> Result<(State, Matrix3), NoPoint> {
         let mut state = self.moments(Vector3::zeros());
         // Projection on the face that the point lies on: on the whole space, until one is found.
         let mut span = Matrix3::identity();
-        let (mut on_face, mut nearest) = (false, f64::INFINITY);
+        let mut nearest = f64::INFINITY;
         for iteration in 0..ITERATIONS {
             let gap = span * state.gap;
             if gap.norm() < TOLERANCE {
-                return Ok((state, on_face));
+                return Ok((state, span));
             }
             nearest = nearest.min(state.gap.norm());
             if iteration >= PATIENCE
                 && let Some(face) = self.face(&state, &span)
             {
-                (span, on_face) = (face, true);
+                span = face;
                 state = self.moments(span * state.lambda);
                 continue;
             }
@@ -206,7 +210,7 @@ impl Neighbours {
             // Rounding alone is left.
             if gap.norm() < 1e3 * TOLERANCE && !((span * next.gap).norm() < 0.5 * gap.norm()) {
                 let state = self.moments(state.lambda);
-                return Ok((state, on_face));
+                return Ok((state, span));
             }
             state = next;
         }

@@ -116,6 +116,7 @@ fn inner_nodes_vanish_on_faces() {
             let functions = Approximation::maximum_entropy(nodes, &cloud.spacing, gamma).unwrap();
             let points: Vec<Point3> = boundary().iter().map(|p| turn * p).collect();
             let (rows, _) = functions.grad_rows(&points).unwrap();
+            assert!(functions.point_rows(&points).unwrap().1.condition_max < 1e9);
             for (q, x) in boundary().iter().enumerate() {
                 for (&node, &p) in rows.rows().row(q).0.iter().zip(rows.rows().row(q).1) {
                     let y = cloud.points[node as usize];
