@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use cases::scene::ConstraintRows;
-use efg::{Approximation, Basis, Kernel, MlsInfo, Smoothing, Support};
+use efg::{Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, FaceKind, Facet, Mesh, Point3};
@@ -72,6 +72,44 @@ pub enum Essential {
     Elimination(ConstraintRows),
 }
 
+/// The shape functions of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Functions {
+    /// Moving least squares.
+    MovingLeastSquares {
+        /// Kernel.
+        kernel: Kernel,
+        /// Basis.
+        basis: Basis,
+        /// Supports.
+        support: Support,
+    },
+    /// Local maximum entropy with this `beta h^2`.
+    MaximumEntropy {
+        /// Locality.
+        gamma: f64,
+    },
+}
+
+impl Functions {
+    /// Shape functions over a cloud; their supports follow the cells of `followed`, where that is given.
+    fn over(self, cloud: &Cloud, followed: Option<&Mesh>) -> Result<Approximation, EfgError> {
+        let nodes = cloud.points.clone();
+        match self {
+            Functions::MovingLeastSquares { kernel, basis, support } => match followed {
+                Some(mesh) => Approximation::stretched(nodes, support.ellipsoids(mesh)?, kernel, basis),
+                None => {
+                    let radii = support.radii(&nodes, &cloud.spacing)?;
+                    Approximation::new(nodes, radii, kernel, basis)
+                }
+            },
+            Functions::MaximumEntropy { gamma } => {
+                Approximation::maximum_entropy(nodes, &cloud.spacing, gamma)
+            }
+        }
+    }
+}
+
 /// Finite elements on a mesh.
 #[derive(Clone)]
 pub struct Fem {
@@ -94,14 +132,10 @@ pub struct Efg {
     pub shape: Option<Arc<dyn Shape + Send + Sync>>,
     /// How the cloud follows an error, if it does.
     pub refine: Option<Refine>,
-    /// Kernel.
-    pub kernel: Kernel,
-    /// Basis.
-    pub basis: Basis,
-    /// Supports.
-    pub support: Support,
     /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
     pub followed: Option<Box<Mesh>>,
+    /// Shape functions.
+    pub functions: Functions,
     /// Integration.
     pub integration: Integration,
     /// Essential conditions.
@@ -295,17 +329,8 @@ const ERROR_POINTS: usize = 14;
 
 impl Efg {
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
-        let nodes = self.cloud.points.clone();
-        work.support_radii += nodes.len() as u64;
-        let approximation = match &self.followed {
-            Some(mesh) => {
-                Approximation::stretched(nodes, self.support.ellipsoids(mesh)?, self.kernel, self.basis)?
-            }
-            None => {
-                let radii = self.support.radii(&nodes, &self.cloud.spacing)?;
-                Approximation::new(nodes, radii, self.kernel, self.basis)?
-            }
-        };
+        let approximation = self.functions.over(&self.cloud, self.followed.as_deref())?;
+        work.support_radii += self.cloud.points.len() as u64;
         let (rows, mls, region, volume_error) = match self.integration {
             Integration::Gauss { points } => {
                 let (rows, mls) = efg::gauss_rows(&approximation, &self.background, points)?;

@@ -5,7 +5,7 @@
 //! [`outcome::Outcome`] of records. Nothing here draws; nothing in `reports` solves.
 
 pub mod body;
-mod check;
+pub mod check;
 pub mod cli;
 mod cloud_file;
 pub mod command;

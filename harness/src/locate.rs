@@ -1,6 +1,6 @@
 //! From what stopped a run to the key of the scene that caused it: file, line and value.
 
-use cases::scene::{Cloud, ErrorKind, Family, Scene, SupportRule};
+use cases::scene::{Cloud, ErrorKind, Family, Functions, Scene, SupportRule};
 use efg::EfgError;
 use mechanics::{ExplicitError, SolveError, StaticError, TimeError};
 
@@ -46,9 +46,14 @@ impl Scenario<'_> {
 
     fn of_cloud(&self, error: &EfgError) -> Finding {
         let support = match &self.method.family {
-            Family::Efg(efg) => match efg.support {
-                SupportRule::Dilatation(_) => Key::Method("dilatation"),
-                SupportRule::Neighbours { .. } => Key::Method("neighbours"),
+            Family::Efg(efg) => match efg.functions {
+                Functions::MovingLeastSquares { support: SupportRule::Dilatation(_), .. } => {
+                    Key::Method("dilatation")
+                }
+                Functions::MovingLeastSquares { support: SupportRule::Neighbours { .. }, .. } => {
+                    Key::Method("neighbours")
+                }
+                Functions::MaximumEntropy { .. } => Key::Method("basis"),
             },
             Family::Fem(_) => Key::Method(""),
         };
@@ -59,6 +64,12 @@ impl Scenario<'_> {
             EfgError::FlatCells { .. } => {
                 (ErrorKind::NotRun, Key::Method("support"), "take support = \"round\", or another mesh")
             }
+            EfgError::OutsideHull { .. } => (
+                ErrorKind::NotRun,
+                support,
+                "nodes have to surround every point: take the nodes of the mesh that is integrated over on a convex body, or \
+                 basis = \"linear\"",
+            ),
             EfgError::BadRadius { .. } => {
                 (ErrorKind::NotRun, support, "a node needs another one at a distance")
             }

@@ -2,7 +2,7 @@
 
 use cases::scene::ConstraintRows;
 
-use crate::discretise::{Dilation, Discretisation, Efg, Essential, Integration};
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Functions, Integration};
 use crate::in_time::InTimeParams;
 use crate::outcome::Stage;
 use crate::relaxation;
@@ -187,12 +187,16 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
 }
 
 fn integration(efg: &Efg) -> String {
+    let functions = match efg.functions {
+        Functions::MovingLeastSquares { .. } => "moving least squares",
+        Functions::MaximumEntropy { .. } => "maximum entropy",
+    };
     match efg.integration {
         Integration::Gauss { points } => {
-            format!("moving least squares at {points} points per background cell")
+            format!("{functions} at {points} points per background cell")
         }
         Integration::Grid { points, .. } => {
-            format!("moving least squares at {points}^3 points per grid cell")
+            format!("{functions} at {points}^3 points per grid cell")
         }
         Integration::CellSmoothed { smoothing, face_points } => {
             let gradients = match smoothing {
@@ -200,7 +204,7 @@ fn integration(efg: &Efg) -> String {
                 efg::Smoothing::Linear => "linear",
             };
             format!(
-                "moving least squares at {face_points} points per face, smoothed to {gradients} gradients per cell"
+                "{functions} at {face_points} points per face, smoothed to {gradients} gradients per cell"
             )
         }
         Integration::NodeSmoothed { stabilisation, face_points } => {
@@ -209,7 +213,7 @@ fn integration(efg: &Efg) -> String {
                 share => format!(", cells with {share} of the weight"),
             };
             format!(
-                "moving least squares at {face_points} points per face, smoothed to one gradient per vertex{cells}"
+                "{functions} at {face_points} points per face, smoothed to one gradient per vertex{cells}"
             )
         }
     }

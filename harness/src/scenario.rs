@@ -7,7 +7,7 @@ use cases::scene::{
 use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::{Law, LinearElastic, NewtonParams, Prony, StaticParams, TimeParams};
 
-use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Integration};
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration};
 use crate::error::Key;
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
@@ -61,17 +61,26 @@ impl Scenario<'_> {
             }
             Family::Efg(efg) => {
                 pairs.push(("dilation", efg.dilation.name().into()));
-                pairs.push(("basis", efg.basis.name().into()));
-                match efg.support {
-                    scene::SupportRule::Dilatation(factor) => pairs.push(("dilatation", factor.to_string())),
-                    scene::SupportRule::Neighbours { k, factor } => {
-                        pairs.push(("neighbours", k.to_string()));
-                        pairs.push(("factor", factor.to_string()));
+                pairs.push(("basis", efg.functions.basis().into()));
+                let variant = match efg.functions {
+                    scene::Functions::MovingLeastSquares { kernel, support, shape, .. } => {
+                        match support {
+                            scene::SupportRule::Dilatation(d) => pairs.push(("dilatation", d.to_string())),
+                            scene::SupportRule::Neighbours { k, factor } => {
+                                pairs.push(("neighbours", k.to_string()));
+                                pairs.push(("factor", factor.to_string()));
+                            }
+                        }
+                        if shape == scene::SupportShape::Adapted {
+                            pairs.push(("support", shape.name().into()));
+                        }
+                        kernel.name.name()
                     }
-                }
-                if efg.support_shape == scene::SupportShape::Adapted {
-                    pairs.push(("support", efg.support_shape.name().into()));
-                }
+                    scene::Functions::MaximumEntropy { gamma } => {
+                        pairs.push(("gamma", gamma.to_string()));
+                        efg.functions.basis()
+                    }
+                };
                 if let scene::Cloud::Refined { refine, .. } = efg.cloud {
                     pairs.push(("refine", format!("gradient-error-{}-ratio-{}", refine.steps, refine.ratio)));
                 }
@@ -107,7 +116,7 @@ impl Scenario<'_> {
                     | scene::Cloud::Graded { seed, .. }
                     | scene::Cloud::Refined { seed, .. } => *seed,
                 };
-                ("efg", efg.kernel.name.name().to_string(), seed)
+                ("efg", variant.to_string(), seed)
             }
         };
         let law = self.scene.material.name();
@@ -291,7 +300,11 @@ impl Scenario<'_> {
             }
             _ => None,
         };
-        let followed = cells.filter(|_| efg.support_shape == scene::SupportShape::Adapted).map(Box::new);
+        let adapted = matches!(
+            efg.functions,
+            scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Adapted, .. }
+        );
+        let followed = cells.filter(|_| adapted).map(Box::new);
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let integration = match efg.integration {
             scene::Integration::Gauss { points } => Integration::Gauss { points },
@@ -323,17 +336,9 @@ impl Scenario<'_> {
             background: self.with_regions(background)?,
             cloud,
             shape,
-            kernel: kernel(efg.kernel)?,
-            basis: match efg.basis {
-                scene::Basis::Linear => efg::Basis::Linear,
-                scene::Basis::Quadratic => efg::Basis::Quadratic,
-            },
-            support: match efg.support {
-                scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
-                scene::SupportRule::Neighbours { k, factor } => efg::Support::Neighbours { count: k, factor },
-            },
             followed,
             refine,
+            functions: functions(efg.functions)?,
             integration,
             essential,
             dilation: dilation(efg.dilation),
@@ -503,6 +508,28 @@ fn dilation(dilation: scene::Dilation) -> Dilation {
         scene::Dilation::NodalMean => Dilation::Nodal,
         scene::Dilation::Mixed => Dilation::Mixed,
     }
+}
+
+/// The shape functions that a scene names.
+fn functions(functions: scene::Functions) -> Result<Functions, Failure> {
+    Ok(match functions {
+        scene::Functions::MovingLeastSquares { kernel, support, basis, .. } => {
+            Functions::MovingLeastSquares {
+                kernel: self::kernel(kernel)?,
+                basis: match basis {
+                    scene::Basis::Linear => efg::Basis::Linear,
+                    scene::Basis::Quadratic => efg::Basis::Quadratic,
+                },
+                support: match support {
+                    scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
+                    scene::SupportRule::Neighbours { k, factor } => {
+                        efg::Support::Neighbours { count: k, factor }
+                    }
+                },
+            }
+        }
+        scene::Functions::MaximumEntropy { gamma } => Functions::MaximumEntropy { gamma },
+    })
 }
 
 fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {

@@ -371,30 +371,33 @@ fn own_level(method: &scene::Method) -> u32 {
 
 /// The method with each kernel that the run table names.
 fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    each(&run.kernels, method, |efg, &name| {
-        efg.kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
+    each(&run.kernels, method, |kernel, _, &name| {
+        *kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
     })
 }
 
 /// The method with each dilatation that the run table names.
 fn dilatations(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    each(&run.dilatations, method, |efg, &factor| efg.support = scene::SupportRule::Dilatation(factor))
+    each(&run.dilatations, method, |_, support, &factor| *support = scene::SupportRule::Dilatation(factor))
 }
 
-/// A cloud changed by each of `values`; the method as it is where there are none, or where it is no cloud.
-fn each<T>(values: &[T], method: scene::Method, change: impl Fn(&mut scene::Efg, &T)) -> Vec<scene::Method> {
-    let scene::Family::Efg(efg) = &method.family else { return vec![method] };
-    if values.is_empty() {
-        return vec![method];
-    }
-    values
-        .iter()
-        .map(|value| {
-            let mut efg = efg.clone();
-            change(&mut efg, value);
-            scene::Method { id: method.id.clone(), family: scene::Family::Efg(efg) }
-        })
-        .collect()
+/// Moving least squares changed by each of `values`; the method as it is where there are none, or where it is of another kind.
+fn each<T>(
+    values: &[T],
+    method: scene::Method,
+    change: impl Fn(&mut scene::Kernel, &mut scene::SupportRule, &T),
+) -> Vec<scene::Method> {
+    let with = |value: &T| {
+        let mut method = method.clone();
+        let scene::Family::Efg(efg) = &mut method.family else { return None };
+        let scene::Functions::MovingLeastSquares { kernel, support, .. } = &mut efg.functions else {
+            return None;
+        };
+        change(kernel, support, value);
+        Some(method)
+    };
+    let changed: Vec<scene::Method> = values.iter().filter_map(with).collect();
+    if changed.is_empty() { vec![method] } else { changed }
 }
 
 /// The method on a cloud of each seed that the run table names.

@@ -45,14 +45,8 @@ pub struct Fem {
 pub struct Efg {
     /// Where the nodes are.
     pub cloud: Cloud,
-    /// Kernel and its parameters.
-    pub kernel: Kernel,
-    /// Support radius.
-    pub support: SupportRule,
-    /// Balls, or ellipsoids that follow the cells of the mesh the cloud is taken from.
-    pub support_shape: SupportShape,
-    /// Polynomial basis.
-    pub basis: Basis,
+    /// Shape functions.
+    pub functions: Functions,
     /// Integration rule.
     pub integration: Integration,
     /// How prescribed displacements are imposed.
@@ -61,6 +55,40 @@ pub struct Efg {
     pub dilation: Dilation,
     /// Mesh to integrate over, where it is not the one the cloud is taken from.
     pub background: Option<Size>,
+}
+
+/// Shape functions of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Functions {
+    /// Moving least squares.
+    MovingLeastSquares {
+        /// Kernel and its parameters.
+        kernel: Kernel,
+        /// Support radius.
+        support: SupportRule,
+        /// Balls, or ellipsoids that follow the cells of the mesh the cloud is taken from.
+        shape: SupportShape,
+        /// Polynomial basis.
+        basis: Basis,
+    },
+    /// Local maximum entropy: positive, exact on linear fields.
+    MaximumEntropy {
+        /// Locality: `beta h^2`.
+        gamma: f64,
+    },
+}
+
+impl Functions {
+    /// Locality of maximum-entropy functions unless a scene gives one (Arroyo and Ortiz 2006 find 0.8 to 4 sound).
+    pub const GAMMA: f64 = 1.8;
+
+    /// Name of the basis in files and tables.
+    pub fn basis(&self) -> &'static str {
+        match self {
+            Functions::MovingLeastSquares { basis, .. } => basis.name(),
+            Functions::MaximumEntropy { .. } => "maximum-entropy",
+        }
+    }
 }
 
 /// Element types.
@@ -314,8 +342,7 @@ impl SupportShape {
 }
 
 /// Polynomial bases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names are the field's words
 pub enum Basis {
     Linear,

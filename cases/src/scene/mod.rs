@@ -33,8 +33,8 @@ pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use method::{
-    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Integration, Jitter,
-    Kernel, KernelName, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
+    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
+    Jitter, Kernel, KernelName, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
 pub use metric::{Metric, Needs};
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};

@@ -109,6 +109,18 @@ const KEYS: &[Bad] = &[
     ("poisson = 0.45", "poisson = 2026-01-01 #<", "material.poisson", &["is a date"]),
     ("kind = \"linear\"", "kind = \"statik\" #<", "procedure.kind", &["did you mean 'static'?"]),
     (
+        "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"",
+        "kernel = \"cubic-spline\" #<\nbasis = \"maximum-entropy\"",
+        "method[2].kernel",
+        &["does not go with basis = \"maximum-entropy\""],
+    ),
+    (
+        "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"",
+        "basis = \"maximum-entropy\"\ngamma = 20 #<",
+        "method[2].gamma",
+        &["is no locality", "0.8 to 4"],
+    ),
+    (
         "kernel = \"cubic-spline\"",
         "kernel = \"cubic\" #<",
         "method[2].kernel",

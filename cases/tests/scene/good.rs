@@ -52,14 +52,32 @@ fn methods_keep_every_setting() {
     assert_eq!(fem.jitter, Some(Jitter { fraction: 0.2, seed: 7 }));
     let Family::Efg(efg) = &scene.methods[1].family else { panic!("efg") };
     assert_eq!(efg.cloud, Cloud::Uniform { nodes: 83, seed: 1 });
-    assert_eq!(efg.kernel, Kernel { name: KernelName::Gaussian, alpha: Some(0.4), power: None, eps: None });
-    assert_eq!(efg.support, SupportRule::Dilatation(1.6));
+    let Functions::MovingLeastSquares { kernel, support, .. } = efg.functions else { panic!("a kernel") };
+    assert_eq!(kernel, Kernel { name: KernelName::Gaussian, alpha: Some(0.4), power: None, eps: None });
+    assert_eq!(support, SupportRule::Dilatation(1.6));
     assert_eq!(efg.essential, Essential::Nitsche { factor: Some(10.0) });
     assert_eq!(efg.background, Some(Size::Spacing(0.005)));
     let Family::Efg(efg) = &scene.methods[2].family else { panic!("efg") };
     assert_eq!(efg.cloud, Cloud::Mesh { size: Size::Level(2), jitter: None });
-    assert_eq!(efg.support, SupportRule::Neighbours { k: 15, factor: 1.2 });
+    let Functions::MovingLeastSquares { support, .. } = efg.functions else { panic!("a kernel") };
+    assert_eq!(support, SupportRule::Neighbours { k: 15, factor: 1.2 });
     assert_eq!(efg.integration, Integration::CellSmoothed { order: 1, face_points: 1 });
+}
+
+#[test]
+fn maximum_entropy_takes_a_locality_and_nothing_else() {
+    for (given, gamma) in [("", 1.8), ("\ngamma = 0.8", 0.8)] {
+        let kernel = "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"";
+        let text = edited(kernel, &format!("basis = \"maximum-entropy\"{given}"));
+        let Family::Efg(efg) = &parse(&text, "block.toml").unwrap().methods[2].family else { panic!("efg") };
+        assert_eq!(
+            (efg.functions, efg.functions.basis()),
+            (Functions::MaximumEntropy { gamma }, "maximum-entropy")
+        );
+    }
+    let text = edited("essential = \"multipliers\"", "essential = \"elimination\"");
+    let Family::Efg(efg) = &parse(&text, "block.toml").unwrap().methods[2].family else { panic!("efg") };
+    assert_eq!(efg.essential, Essential::Elimination { rows: ConstraintRows::Means });
 }
 
 #[test]

@@ -6,6 +6,7 @@ use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 use crate::buckets::Buckets;
 use crate::info::Outcome;
 use crate::lanes::LANES;
+use crate::max_entropy::{CUT, Neighbours, NoPoint};
 use crate::mls::{Ball, Group};
 use crate::row_list::RowList;
 use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
@@ -28,22 +29,36 @@ const MOST_ENLARGEMENT: f64 = 3.0;
 /// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
 const REGULARISATION: f64 = 1e-7;
 
-/// Moving-least-squares shape functions over a cloud of nodes, each with a support radius of its own.
+/// Shape functions over a cloud of nodes, each with a support radius of its own: by moving least squares or of maximum
+/// entropy.
 ///
 /// Node `I` counts at `x` if `|x - x_I| < R_I`, or within its [`Ellipsoid`]. Where the neighbours do not determine the basis, a ladder is
 /// climbed and every rung counted in [`MlsInfo`]: enlarge all supports seen from that point (to 1.4 times the
 /// `2m`-th neighbour's relative distance, at most 3 times); regularise the quadratic block; fall back from the
-/// quadratic basis to the linear one. The linear basis gives way to nothing: a point it fails at is an error.
+/// quadratic basis to the linear one. The linear basis gives way to nothing: a point it fails at is an error. So is a point
+/// outside the convex hull of its neighbours, with maximum entropy: no positive functions reproduce linear fields there.
 pub struct Approximation {
     nodes: Vec<Point3>,
     balls: Vec<Ball>,
     /// Supports that follow the cloud, within those balls; empty where the balls are the supports.
     ellipsoids: Vec<Ellipsoid>,
+    functions: Functions,
+    buckets: Buckets,
+}
+
+/// What the shape functions are.
+enum Functions {
+    MovingLeastSquares(LeastSquares),
+    /// `beta = gamma / h^2` of every node, 1/m^2.
+    MaximumEntropy(Vec<f64>),
+}
+
+#[derive(Clone, Copy)]
+struct LeastSquares {
     kernel: Kernel,
     basis: Basis,
     /// Regularisation of the quadratic block, relative to the sum of the weights.
     mu: f64,
-    buckets: Buckets,
 }
 
 /// What becomes of one chunk of points.
@@ -54,6 +69,7 @@ struct Chunk {
     /// Points by number of neighbours: those of a group are as long as the longest.
     order: Vec<u32>,
     group: Group,
+    neighbours: Neighbours,
 }
 
 /// One for each of eight nodes whose support covers the point, zero for the others.
@@ -81,6 +97,32 @@ impl Approximation {
         basis: Basis,
     ) -> Result<Approximation, EfgError> {
         kernel.check()?;
+        let functions = Functions::MovingLeastSquares(LeastSquares { kernel, basis, mu: 0.0 });
+        Approximation::over(nodes, radii, functions, basis.terms())
+    }
+
+    /// Local maximum-entropy functions: positions and spacings `h` (m), one each per node, and the locality `gamma`, 0.6 to 4
+    /// as a rule. Larger ones are sharper and tend to linear interpolation.
+    pub fn maximum_entropy(
+        nodes: Vec<Point3>,
+        spacing: &[f64],
+        gamma: f64,
+    ) -> Result<Approximation, EfgError> {
+        if !(gamma > 0.0 && gamma.is_finite()) {
+            return Err(EfgError::BadParameter { what: "gamma", value: gamma, allowed: "a positive number" });
+        }
+        let reach = (-CUT.ln() / gamma).sqrt();
+        let radii = spacing.iter().map(|h| reach * h).collect();
+        let beta = spacing.iter().map(|h| gamma / (h * h)).collect();
+        Approximation::over(nodes, radii, Functions::MaximumEntropy(beta), Basis::Linear.terms())
+    }
+
+    fn over(
+        nodes: Vec<Point3>,
+        radii: Vec<f64>,
+        functions: Functions,
+        needed: usize,
+    ) -> Result<Approximation, EfgError> {
         if radii.len() != nodes.len() {
             return Err(EfgError::Length {
                 what: "support radii",
@@ -88,8 +130,8 @@ impl Approximation {
                 expected: nodes.len(),
             });
         }
-        if nodes.len() < basis.terms() {
-            return Err(EfgError::TooFewNodes { found: nodes.len(), needed: basis.terms() });
+        if nodes.len() < needed {
+            return Err(EfgError::TooFewNodes { found: nodes.len(), needed });
         }
         if let Some(node) = nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
             return Err(EfgError::NotFinite { node });
@@ -98,7 +140,7 @@ impl Approximation {
         let balls =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&nodes, &radii);
-        Ok(Approximation { nodes, balls, ellipsoids: Vec::new(), kernel, basis, mu: 0.0, buckets })
+        Ok(Approximation { nodes, balls, ellipsoids: Vec::new(), functions, buckets })
     }
 
     /// As [`Approximation::new`], with supports that follow the cloud, one per node.
@@ -115,13 +157,17 @@ impl Approximation {
 
     /// With the quadratic block of the moment matrix regularised at every point, by `mu` times the sum of the weights (modified
     /// moving least squares; Joldes et al. 2015): linear fields stay exact, quadratic ones are almost. The linear
-    /// basis has no such block.
+    /// basis has no such block, nor has maximum entropy.
     pub fn regularised(self, mu: f64) -> Result<Approximation, EfgError> {
         if !(0.0..=1.0).contains(&mu) {
             let what = "regularisation";
             return Err(EfgError::BadParameter { what, value: mu, allowed: "a value from 0 to 1" });
         }
-        Ok(Approximation { mu, ..self })
+        let functions = match self.functions {
+            Functions::MovingLeastSquares(fit) => Functions::MovingLeastSquares(LeastSquares { mu, ..fit }),
+            other => other,
+        };
+        Ok(Approximation { functions, ..self })
     }
 
     /// Node positions, m.
@@ -132,16 +178,6 @@ impl Approximation {
     /// Support radius of one node, m; of an ellipsoid the longest semi-axis.
     pub fn radius(&self, node: usize) -> f64 {
         self.balls[node].radius
-    }
-
-    /// The kernel.
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
-    }
-
-    /// The basis asked for.
-    pub fn basis(&self) -> Basis {
-        self.basis
     }
 
     /// Values at points; nodes of a row by ascending index.
@@ -279,7 +315,7 @@ impl Approximation {
 
     #[inline(always)]
     fn fill_plain<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        let Chunk { rows, outcomes, order, group } = chunk;
+        let Chunk { rows, outcomes, order, group, neighbours } = chunk;
         rows.offsets.truncate(1);
         rows.nodes.clear();
         for x in points {
@@ -288,6 +324,12 @@ impl Approximation {
         // What is left there is written over.
         rows.values.resize(rows.nodes.len(), 0.0);
         rows.grads.resize(if GRAD { rows.nodes.len() } else { 0 }, Vector3::zeros());
+        let fit = match &self.functions {
+            Functions::MovingLeastSquares(fit) => *fit,
+            Functions::MaximumEntropy(beta) => {
+                return self.fill_by_entropy::<GRAD>(points, beta, rows, outcomes, neighbours);
+            }
+        };
         order.clear();
         order.extend(0..points.len() as u32);
         order.sort_unstable_by_key(|&q| (rows.range(q as usize).len(), q));
@@ -298,7 +340,7 @@ impl Approximation {
             let nodes = |q: usize| &rows.nodes[rows.range(q)];
             let together_with = together.iter().map(|&q| (&points[q as usize], nodes(q as usize)));
             group.load(together_with, &self.balls, &self.ellipsoids, 1.0);
-            let conditions = self.fit::<GRAD>(self.basis, self.mu, group);
+            let conditions = self.fit::<GRAD>(&fit, group);
             for (lane, &q) in together.iter().enumerate() {
                 let range = rows.range(q as usize);
                 let outcome = &mut outcomes[q as usize];
@@ -310,15 +352,45 @@ impl Approximation {
                 group.store(lane, &mut rows.values[range], grads);
             }
         }
-        if failed { self.mend::<GRAD>(points, chunk) } else { Ok(()) }
+        if failed { self.mend::<GRAD>(points, &fit, chunk) } else { Ok(()) }
+    }
+
+    /// Rows of maximum entropy, one point after another.
+    #[inline(always)]
+    fn fill_by_entropy<const GRAD: bool>(
+        &self,
+        points: &[Point3],
+        beta: &[f64],
+        rows: &mut RowList,
+        outcomes: &mut Vec<Outcome>,
+        neighbours: &mut Neighbours,
+    ) -> Result<(), EfgError> {
+        outcomes.clear();
+        for (q, x) in points.iter().enumerate() {
+            let range = rows.range(q);
+            let nodes = &rows.nodes[range.clone()];
+            let near = nodes.iter().map(|&n| (Vector3::from(self.balls[n as usize].at), beta[n as usize]));
+            let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };
+            let condition = neighbours
+                .evaluate::<GRAD>(x, near, &mut rows.values[range.clone()], grads)
+                .map_err(|NoPoint { iterations, gap }| EfgError::OutsideHull {
+                    point: *x,
+                    found: range.len(),
+                    gap,
+                    iterations,
+                })?;
+            outcomes.push(Outcome { neighbours: range.len() as u32, condition, ..Outcome::default() });
+        }
+        Ok(())
     }
 
     /// Condition numbers of a group's fits, `None` where a fit failed or cannot be.
     #[inline(always)]
-    fn fit<const GRAD: bool>(&self, basis: Basis, mu: f64, group: &mut Group) -> [Option<f64>; LANES] {
+    fn fit<const GRAD: bool>(&self, fit: &LeastSquares, group: &mut Group) -> [Option<f64>; LANES] {
+        let &LeastSquares { kernel, basis, mu } = fit;
         let mut conditions = match basis {
-            Basis::Linear => group.fit::<4, 10, 10, GRAD>(self.kernel, mu),
-            Basis::Quadratic => group.fit::<10, 35, 20, GRAD>(self.kernel, mu),
+            Basis::Linear => group.fit::<4, 10, 10, GRAD>(kernel, mu),
+            Basis::Quadratic => group.fit::<10, 35, 20, GRAD>(kernel, mu),
         };
         for (lane, condition) in conditions.iter_mut().enumerate() {
             if mu == 0.0 && group.count(lane) < basis.terms() {
@@ -330,7 +402,12 @@ impl Approximation {
 
     /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
     #[cold]
-    fn mend<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
+    fn mend<const GRAD: bool>(
+        &self,
+        points: &[Point3],
+        fit: &LeastSquares,
+        chunk: &mut Chunk,
+    ) -> Result<(), EfgError> {
         let plain = std::mem::take(&mut chunk.rows);
         let rows = &mut chunk.rows;
         for (q, x) in points.iter().enumerate() {
@@ -341,7 +418,7 @@ impl Approximation {
                 rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
                 rows.close();
             } else {
-                chunk.outcomes[q] = self.climb::<GRAD>(x, &mut chunk.group, rows)?;
+                chunk.outcomes[q] = self.climb::<GRAD>(x, fit, &mut chunk.group, rows)?;
             }
         }
         Ok(())
@@ -351,10 +428,11 @@ impl Approximation {
     fn climb<const GRAD: bool>(
         &self,
         x: &Point3,
+        asked: &LeastSquares,
         group: &mut Group,
         rows: &mut RowList,
     ) -> Result<Outcome, EfgError> {
-        let needed = self.basis.terms();
+        let needed = asked.basis.terms();
         let enlargement = self.enlargement(x, 2 * needed);
         let covers = |&node: &u32| match self.ellipsoids.is_empty() {
             true => self.balls[node as usize].covers(x, enlargement),
@@ -363,16 +441,16 @@ impl Approximation {
         let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
         let found = nodes.len();
         group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
-        let rungs: &[(Basis, f64)] = match self.basis {
+        let rungs: &[(Basis, f64)] = match asked.basis {
             Basis::Linear => &[(Basis::Linear, 0.0)],
             Basis::Quadratic => &[
-                (Basis::Quadratic, self.mu),
-                (Basis::Quadratic, self.mu.max(REGULARISATION)),
+                (Basis::Quadratic, asked.mu),
+                (Basis::Quadratic, asked.mu.max(REGULARISATION)),
                 (Basis::Linear, 0.0),
             ],
         };
         for &(basis, mu) in rungs {
-            if let Some(condition) = self.fit::<GRAD>(basis, mu, group)[0] {
+            if let Some(condition) = self.fit::<GRAD>(&LeastSquares { basis, mu, ..*asked }, group)[0] {
                 let first = rows.values.len();
                 rows.nodes.extend_from_slice(&nodes);
                 rows.close();
@@ -384,8 +462,8 @@ impl Approximation {
                     neighbours: found as u32,
                     condition,
                     enlarged: enlargement > 1.0,
-                    regularised: mu > self.mu,
-                    reduced: basis != self.basis,
+                    regularised: mu > asked.mu,
+                    reduced: basis != asked.basis,
                 });
             }
         }

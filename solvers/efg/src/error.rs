@@ -87,6 +87,22 @@ pub enum EfgError {
         /// Factor on the support radii at the last attempt.
         enlargement: f64,
     },
+    /// A point at which no positive functions reproduce linear fields: it lies outside the convex hull of its neighbours.
+    #[error(
+        "point ({:e}, {:e}, {:e}) m lies outside the convex hull of its {found} neighbours: no mean of theirs came nearer \
+         than {gap:e} m in {iterations} steps (maximum-entropy functions are positive and cannot extrapolate)",
+        point.x, point.y, point.z
+    )]
+    OutsideHull {
+        /// Position, m.
+        point: Point3,
+        /// Neighbours found.
+        found: usize,
+        /// Least distance of the point from a weighted mean of the neighbours, m.
+        gap: f64,
+        /// Steps of Newton's method.
+        iterations: usize,
+    },
     /// A cell kind that this integration cannot use.
     #[error("cell {cell} is a {}; {what} takes {allowed}", kind.name())]
     CellKind {

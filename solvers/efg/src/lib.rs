@@ -1,6 +1,6 @@
 //! Element-free Galerkin: a cloud of nodes, a kernel and a polynomial basis make moving-least-squares shape
-//! functions; background cells or a grid make the integration points. What comes out are shape tables, as from
-//! finite elements, so that assembly, supports and output are the same code.
+//! functions, a cloud and a locality maximum-entropy ones; background cells or a grid make the integration points. What
+//! comes out are shape tables, as from finite elements, so that assembly, supports and output are the same code.
 //!
 //! ```
 //! use efg::{Approximation, Basis, Kernel, Support};
@@ -23,6 +23,7 @@ mod cell_rows;
 mod cells;
 mod ellipsoid;
 mod error;
+mod exp;
 mod facets;
 mod gauss;
 mod grid;
@@ -30,6 +31,7 @@ mod info;
 mod kernel;
 mod lanes;
 mod ldlt;
+mod max_entropy;
 mod mls;
 mod node_smoothed;
 mod recovery;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{Basis, ConstraintRows, Dilation, Element, KernelName, SupportShape};
+use crate::scene::method::{ConstraintRows, Dilation, Element, KernelName, SupportShape};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 
@@ -70,7 +70,8 @@ pub(crate) struct EfgKeys {
     /// Of a uniform or graded cloud
     pub seed: Option<u64>,
     pub jitter: Option<JitterKeys>,
-    pub kernel: KernelKeys,
+    /// Not with basis = "maximum-entropy"
+    pub kernel: Option<KernelKeys>,
     /// Support radius over the local spacing; or neighbours and factor
     pub dilatation: Option<f64>,
     /// Support radius over the distance to this neighbour
@@ -78,7 +79,9 @@ pub(crate) struct EfgKeys {
     pub factor: Option<f64>,
     /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
     pub support: Option<SupportShape>,
-    pub basis: Basis,
+    pub basis: BasisName,
+    /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
+    pub gamma: Option<f64>,
     pub integration: IntegrationKeys,
     pub essential: EssentialKeys,
     pub dilation: Option<Dilation>,
@@ -121,6 +124,14 @@ pub(crate) struct RefineKeys {
 pub(crate) enum Indicator {
     /// Displacement gradients against recovered ones
     GradientError,
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum BasisName {
+    Linear,
+    Quadratic,
+    MaximumEntropy,
 }
 
 #[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]

@@ -54,23 +54,26 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
         jitter,
     };
     let cloud = cloud(layout, key, report);
-    let support = support(keys.dilatation, keys.neighbours, keys.factor, keys.basis, key, report);
-    let support_shape = keys.support.unwrap_or_default();
     let help = "take the nodes of a mesh: size = { level = 2 }";
     report.require(
-        support_shape == SupportShape::Round || with_cells,
+        keys.support.unwrap_or_default() == SupportShape::Round || with_cells,
         &at("support"),
         "follows the cells around each node, and the nodes of this cloud have none",
         help,
     );
-    let kernel = kernel(keys.kernel, &at("kernel"), report);
+    let reach = Reach {
+        dilatation: keys.dilatation,
+        neighbours: keys.neighbours,
+        factor: keys.factor,
+        shape: keys.support,
+    };
+    let functions = functions(keys.basis, keys.kernel, reach, keys.gamma, key, report);
     let integration = integration(keys.integration, key, report);
     let essential = essential(keys.essential, &at("essential"), report);
-    let (cloud, support, background) = (cloud?, support?, background.map_or(Some(None), |b| b.map(Some))?);
+    let (cloud, functions, background) =
+        (cloud?, functions?, background.map_or(Some(None), |b| b.map(Some))?);
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
-    let basis = keys.basis;
-    let efg =
-        Efg { cloud, kernel, support, support_shape, basis, integration, essential, dilation, background };
+    let efg = Efg { cloud, functions, integration, essential, dilation, background };
     Some(Method { id: keys.id, family: Family::Efg(efg) })
 }
 
@@ -168,10 +171,62 @@ fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
     }
 }
 
-fn support(
+/// What a file says of how far nodes reach.
+struct Reach {
     dilatation: Option<f64>,
     neighbours: Option<u32>,
     factor: Option<f64>,
+    shape: Option<SupportShape>,
+}
+
+fn functions(
+    basis: BasisName,
+    kernel: Option<KernelKeys>,
+    reach: Reach,
+    gamma: Option<f64>,
+    key: &str,
+    report: &mut Report,
+) -> Option<Functions> {
+    let at = |name: &str| format!("{key}.{name}");
+    let basis = match basis {
+        BasisName::Linear => Basis::Linear,
+        BasisName::Quadratic => Basis::Quadratic,
+        BasisName::MaximumEntropy => {
+            let given = [
+                ("kernel", kernel.is_some()),
+                ("dilatation", reach.dilatation.is_some()),
+                ("neighbours", reach.neighbours.is_some()),
+                ("factor", reach.factor.is_some()),
+                ("support", reach.shape.is_some()),
+            ];
+            for (name, given) in given {
+                let problem = "does not go with basis = \"maximum-entropy\"";
+                report.require(!given, &at(name), problem, "leave it out: gamma says how far nodes reach");
+            }
+            let gamma = gamma.unwrap_or(Functions::GAMMA);
+            let help = "0.8 to 4 is usual: below, rows are long; above, close to linear interpolation";
+            report.require((0.6..=6.0).contains(&gamma), &at("gamma"), "is no locality", help);
+            return Some(Functions::MaximumEntropy { gamma });
+        }
+    };
+    report.require(
+        gamma.is_none(),
+        &at("gamma"),
+        "goes with basis = \"maximum-entropy\" only",
+        "leave it out",
+    );
+    let shape = reach.shape.unwrap_or_default();
+    let support = support(reach, basis, key, report);
+    let Some(kernel) = kernel else {
+        report.missing(&at("kernel"), "give kernel = \"cubic-spline\", or basis = \"maximum-entropy\"");
+        return None;
+    };
+    let kernel = self::kernel(kernel, &at("kernel"), report);
+    Some(Functions::MovingLeastSquares { kernel, support: support?, shape, basis })
+}
+
+fn support(
+    Reach { dilatation, neighbours, factor, .. }: Reach,
     basis: Basis,
     key: &str,
     report: &mut Report,
