@@ -1,10 +1,14 @@
 //! Which tetrahedron holds a point: for barycentric transfer and for finding integration cells.
 
-use crate::{Matrix3, Mesh, Point3};
+use rayon::prelude::*;
+
+use crate::{Matrix3, Mesh, Point3, Vector3};
 
 /// Barycentric coordinates may be this negative and still count as inside: faces shared by two cells lose nothing
 /// to rounding.
 const TOLERANCE: f64 = 1e-10;
+/// Relative error of barycentric coordinates that the search for the closest cell allows for.
+const SLACK: f64 = 1e-6;
 
 /// A point's place in a mesh of tetrahedra.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,25 +49,28 @@ pub enum LocateError {
     },
 }
 
+/// Points per parallel task.
+const CHUNK: usize = 128;
+
 /// Locates each point among the tetrahedra of `mesh`, taken flat through their corners. Points in several cells go
 /// to the lowest-numbered one; points outside all go to the closest cell and carry their distance.
 pub fn locate(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
     let cells = Cells::new(mesh)?;
-    let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
-    (points.iter().enumerate())
-        .map(|(point, p)| {
-            if !p.coords.iter().all(|c| c.is_finite()) {
-                return Err(LocateError::NotFinite { point });
-            }
-            Ok(cells.holding(p).unwrap_or_else(|| cells.closest(p, &mut scratch)))
-        })
-        .collect()
+    if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        return Err(LocateError::NotFinite { point });
+    }
+    let locations = points.par_chunks(CHUNK).flat_map_iter(|chunk| {
+        let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
+        let cells = &cells;
+        chunk.iter().map(move |p| cells.holding(p).unwrap_or_else(|| cells.closest(p, &mut scratch)))
+    });
+    Ok(locations.collect())
 }
 
 /// Tetrahedra in a uniform grid of bins.
 struct Cells {
     corners: Vec<[Point3; 4]>,
-    inverse: Vec<Matrix3>,
+    frames: Vec<Frame>,
     boxes: Vec<[Point3; 2]>,
     low: Point3,
     /// Bin widths (m) and counts per axis.
@@ -74,19 +81,60 @@ struct Cells {
     members: Vec<u32>,
 }
 
+/// What barycentric coordinates in a cell are made of.
+struct Frame {
+    origin: Point3,
+    inverse: Matrix3,
+}
+
+impl Frame {
+    fn barycentric(&self, p: &Point3) -> [f64; 4] {
+        let l = self.inverse * (p - self.origin);
+        [1.0 - l.x - l.y - l.z, l.x, l.y, l.z]
+    }
+
+    /// The squared distance of a point from the cell, or less: that from the farthest plane of a face that it lies beyond.
+    fn beyond(&self, p: &Point3) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.inverse.row(axis));
+        let slopes = [(x + y + z).norm_squared(), x.norm_squared(), y.norm_squared(), z.norm_squared()];
+        // Nearer by far more than rounding: a cell that is as close as another must not be taken for one farther away.
+        let past = |l: f64| (l + SLACK * (1.0 - l)).min(0.0);
+        let of_face = self.barycentric(p).into_iter().zip(slopes).map(|(l, square)| past(l).powi(2) / square);
+        of_face.fold(0.0, f64::max)
+    }
+}
+
 /// What the search for the closest cell reuses from point to point.
 struct Scratch {
     stamp: usize,
     /// Stamp of the last point that met each cell: most cells are in several bins.
     seen: Vec<usize>,
-    /// Squared distance of the box, and cell.
+    /// A squared distance (m^2) that the cell is not nearer than, and the cell.
     near: Vec<(f64, usize)>,
+}
+
+/// The closest cell so far.
+struct Closest {
+    /// Squared distance, m^2.
+    square: f64,
+    /// The point of the cell there.
+    at: Point3,
+    cell: usize,
 }
 
 impl Cells {
     fn new(mesh: &Mesh) -> Result<Cells, LocateError> {
         let count = mesh.cell_count();
-        let (mut corners, mut inverse, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut cells = Cells {
+            corners: Vec::with_capacity(count),
+            frames: Vec::with_capacity(count),
+            boxes: Vec::with_capacity(count),
+            low: Point3::origin(),
+            width: [0.0; 3],
+            bins: [0; 3],
+            offsets: vec![],
+            members: vec![],
+        };
         for cell in 0..count {
             let kind = mesh.kind(cell);
             if !kind.is_tet() {
@@ -97,25 +145,23 @@ impl Cells {
                 *slot = *q;
             }
             let edges = Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
-            let det_j = edges.determinant();
-            match edges.try_inverse() {
-                Some(m) if m.iter().all(|c| c.is_finite()) => inverse.push(m),
-                _ => return Err(LocateError::Flat { cell, det_j }),
-            }
-            boxes.push([
+            let inverse = edges.try_inverse().filter(|m| m.iter().all(|c| c.is_finite()));
+            let inverse = inverse.ok_or_else(|| LocateError::Flat { cell, det_j: edges.determinant() })?;
+            cells.frames.push(Frame { origin: p[0], inverse });
+            cells.boxes.push([
                 p[1..].iter().fold(p[0], |low, q| low.inf(q)),
                 p[1..].iter().fold(p[0], |high, q| high.sup(q)),
             ]);
-            corners.push(p);
+            cells.corners.push(p);
         }
-        let low = boxes.iter().fold(boxes[0][0], |low, b| low.inf(&b[0]));
+        let boxes = &cells.boxes;
+        cells.low = boxes.iter().fold(boxes[0][0], |low, b| low.inf(&b[0]));
         let high = boxes.iter().fold(boxes[0][1], |high, b| high.sup(&b[1]));
         // About one bin per cell, no bin much longer than it is wide.
-        let extent = high - low;
+        let extent = high - cells.low;
         let side = (extent.product() / count as f64).cbrt();
-        let bins: [usize; 3] = std::array::from_fn(|d| ((extent[d] / side).ceil() as usize).clamp(1, 256));
-        let width = std::array::from_fn(|d| extent[d] / bins[d] as f64);
-        let mut cells = Cells { corners, inverse, boxes, low, width, bins, offsets: vec![], members: vec![] };
+        cells.bins = std::array::from_fn(|d| ((extent[d] / side).ceil() as usize).clamp(1, 256));
+        cells.width = std::array::from_fn(|d| extent[d] / cells.bins[d] as f64);
         cells.fill_bins();
         Ok(cells)
     }
@@ -159,98 +205,77 @@ impl Cells {
         }
     }
 
-    fn barycentric(&self, cell: usize, p: &Point3) -> [f64; 4] {
-        let l = self.inverse[cell] * (p - self.corners[cell][0]);
-        [1.0 - l.x - l.y - l.z, l.x, l.y, l.z]
-    }
-
     fn holding(&self, p: &Point3) -> Option<Location> {
-        let at = self.bin(p);
-        let bin = (at[2] * self.bins[1] + at[1]) * self.bins[0] + at[0];
-        let members = &self.members[self.offsets[bin]..self.offsets[bin + 1]];
-        members.iter().find_map(|&cell| {
-            let barycentric = self.barycentric(cell as usize, p);
+        let [i, j, k] = self.bin(p);
+        self.members((k * self.bins[1] + j) * self.bins[0] + i).iter().find_map(|&cell| {
+            let barycentric = self.frames[cell as usize].barycentric(p);
             let inside = barycentric.iter().all(|&l| l >= -TOLERANCE);
             inside.then_some(Location { cell, barycentric, outside: 0.0 })
         })
     }
 
-    /// The closest cell to a point outside all (of several, the lowest-numbered), by growing cubes of bins about the point's own;
-    /// box distances prune. Each cube starts from its closest box, whose cell is about as close as any.
+    fn members(&self, bin: usize) -> &[u32] {
+        &self.members[self.offsets[bin]..self.offsets[bin + 1]]
+    }
+
+    /// The closest cell to a point outside all (of several, the lowest-numbered): cubes of bins about the point's own grow until
+    /// they hold cells, then all bins are searched that the ball to the closest of these touches.
     fn closest(&self, p: &Point3, scratch: &mut Scratch) -> Location {
-        let away =
-            |bounds: &[Point3; 2]| (bounds[0] - p).sup(&(p - bounds[1])).map(|c| c.max(0.0)).norm_squared();
-        let Scratch { stamp, seen, near } = scratch;
-        *stamp += 1;
+        scratch.stamp += 1;
         let centre = self.bin(p);
-        let (mut best, mut at, mut closest) = (f64::INFINITY, *p, usize::MAX);
-        for ring in 0.. {
-            near.clear();
-            self.each_of_shell(centre, ring, |bin| {
-                for &cell in &self.members[self.offsets[bin]..self.offsets[bin + 1]] {
-                    if std::mem::replace(&mut seen[cell as usize], *stamp) != *stamp {
-                        near.push((away(&self.boxes[cell as usize]), cell as usize));
-                    }
-                }
-            });
-            if let Some(first) = (0..near.len()).min_by(|&a, &b| near[a].0.total_cmp(&near[b].0)) {
-                near.swap(0, first);
-            }
-            for &(square, cell) in &*near {
-                if square > best {
-                    continue;
-                }
-                let (distance, q) = self.closest_on_cell(cell, p);
-                if distance < best || (distance == best && cell < closest) {
-                    (best, at, closest) = (distance, q, cell);
-                }
-            }
-            let gap = self.gap(p, centre, ring);
-            if gap * gap > best || gap == f64::INFINITY {
+        let mut best = Closest { square: f64::INFINITY, at: *p, cell: usize::MAX };
+        for ring in std::iter::once(0).chain((0..).map(|k| 1 << k)) {
+            let low = centre.map(|c| c.saturating_sub(ring));
+            let high = std::array::from_fn(|d| (centre[d] + ring).min(self.bins[d] - 1));
+            self.search(p, low, high, &mut best, scratch);
+            if best.cell != usize::MAX {
                 break;
             }
         }
-        let barycentric = self.barycentric(closest, &at);
-        Location { cell: closest as u32, barycentric, outside: best.sqrt() }
+        // Beyond the ball by far more than rounding.
+        let reach =
+            Vector3::repeat(best.square.sqrt() * (1.0 + 1e-9) + 1e-9 * self.width.iter().sum::<f64>());
+        self.search(p, self.bin(&(p - reach)), self.bin(&(p + reach)), &mut best, scratch);
+        let barycentric = self.frames[best.cell].barycentric(&best.at);
+        Location { cell: best.cell as u32, barycentric, outside: best.square.sqrt() }
     }
 
-    /// Bins of the grid that are `ring` bins from one along some axis and no more along any.
-    fn each_of_shell(&self, centre: [usize; 3], ring: usize, mut visit: impl FnMut(usize)) {
-        let low = centre.map(|c| c.saturating_sub(ring));
-        let high: [usize; 3] = std::array::from_fn(|d| (centre[d] + ring).min(self.bins[d] - 1));
-        for k in low[2]..=high[2] {
-            for j in low[1]..=high[1] {
-                // Within the shell only the two ends of a line belong to it.
-                let whole = k.abs_diff(centre[2]) == ring || j.abs_diff(centre[1]) == ring;
-                let mut at = |i: usize| visit((k * self.bins[1] + j) * self.bins[0] + i);
-                if whole {
-                    (low[0]..=high[0]).for_each(at);
-                } else {
-                    if centre[0] >= ring {
-                        at(low[0]);
-                    }
-                    if centre[0] + ring < self.bins[0] {
-                        at(high[0]);
-                    }
+    /// Looks among the cells of some bins that have not been looked at for this point. The nearest by its planes goes first: mostly
+    /// it is the closest, and one comparison dismisses any other.
+    fn search(
+        &self,
+        p: &Point3,
+        low: [usize; 3],
+        high: [usize; 3],
+        best: &mut Closest,
+        scratch: &mut Scratch,
+    ) {
+        let away =
+            |bounds: &[Point3; 2]| (bounds[0] - p).sup(&(p - bounds[1])).map(|c| c.max(0.0)).norm_squared();
+        let Scratch { stamp, seen, near } = scratch;
+        near.clear();
+        self.each_bin(low, high, |bin| {
+            for &cell in self.members(bin) {
+                let cell = cell as usize;
+                if std::mem::replace(&mut seen[cell], *stamp) != *stamp
+                    && away(&self.boxes[cell]) <= best.square
+                {
+                    near.push((self.frames[cell].beyond(p), cell));
                 }
             }
+        });
+        if let Some(first) = (0..near.len()).min_by(|&a, &b| near[a].0.total_cmp(&near[b].0)) {
+            near.swap(0, first);
         }
-    }
-
-    /// A distance (m) that no cell falls below which touches no bin within `ring` of one; infinite if there is none.
-    fn gap(&self, p: &Point3, centre: [usize; 3], ring: usize) -> f64 {
-        let mut gap = f64::INFINITY;
-        for d in 0..3 {
-            // Less than a bin's end by far more than rounding.
-            let margin = 1e-9 * self.width[d] * self.bins[d] as f64;
-            if centre[d] > ring {
-                gap = gap.min(p[d] - self.low[d] - (centre[d] - ring) as f64 * self.width[d] - margin);
+        for &(square, cell) in &*near {
+            if square > best.square {
+                continue;
             }
-            if centre[d] + ring + 1 < self.bins[d] {
-                gap = gap.min(self.low[d] + (centre[d] + ring + 1) as f64 * self.width[d] - p[d] - margin);
+            let (square, at) = self.closest_on_cell(cell, p);
+            if square < best.square || (square == best.square && cell < best.cell) {
+                *best = Closest { square, at, cell };
             }
         }
-        gap.max(0.0)
     }
 
     /// Squared distance to the faces of a cell, and the point there.
