@@ -20,7 +20,7 @@ const THIN: f64 = 1e-10;
 pub(crate) struct Hull {
     middle: Point3,
     facets: Vec<Facet>,
-    /// Slopes of the facets by fours, filled up with zeros.
+    /// Slopes of the facets by eights, filled up with zeros.
     slopes: Vec<[Lanes; 3]>,
 }
 
@@ -59,8 +59,8 @@ impl Hull {
         }
         let slopes = facets
             .chunks(LANES)
-            .map(|four| {
-                let of = |lane: usize, axis: usize| four.get(lane).map_or(0.0, |f: &Facet| f.slope[axis]);
+            .map(|eight| {
+                let of = |lane: usize, axis: usize| eight.get(lane).map_or(0.0, |f: &Facet| f.slope[axis]);
                 [0, 1, 2].map(|axis| Lanes(std::array::from_fn(|lane| of(lane, axis))))
             })
             .collect();

@@ -1,23 +1,23 @@
-//! Four numbers worked on alike, so that the compiler takes them in one register where the machine has such.
+//! Some numbers worked on alike, so that the compiler takes them in one register where the machine has such.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// How many.
-pub(crate) const LANES: usize = 4;
+/// Eight f64 fill one AVX-512 register or two of AVX2.
+pub(crate) const LANES: usize = 8;
 
-/// Four numbers.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+/// `N` numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<const N: usize = LANES>(pub(crate) [f64; N]);
 
 macro_rules! each_lane {
     ($($operator:ident $method:ident $sign:tt),*) => {$(
-        impl $operator for Lanes {
-            type Output = Lanes;
+        impl<const N: usize> $operator for Lanes<N> {
+            type Output = Lanes<N>;
 
             #[inline(always)]
-            fn $method(self, other: Lanes) -> Lanes {
+            fn $method(self, other: Lanes<N>) -> Lanes<N> {
                 let mut result = self;
-                for lane in 0..LANES {
+                for lane in 0..N {
                     result.0[lane] = self.0[lane] $sign other.0[lane];
                 }
                 result
@@ -28,26 +28,26 @@ macro_rules! each_lane {
 
 each_lane!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-impl Lanes {
+impl<const N: usize> Lanes<N> {
     /// One number in all lanes.
     #[inline(always)]
-    pub(crate) fn all(value: f64) -> Lanes {
-        Lanes([value; LANES])
+    pub(crate) fn all(value: f64) -> Lanes<N> {
+        Lanes([value; N])
     }
 
     /// The larger, lane by lane.
     #[inline(always)]
-    pub(crate) fn max(self, other: Lanes) -> Lanes {
+    pub(crate) fn max(self, other: Lanes<N>) -> Lanes<N> {
         let mut result = self;
-        for lane in 0..LANES {
+        for lane in 0..N {
             result.0[lane] = if self.0[lane] > other.0[lane] { self.0[lane] } else { other.0[lane] };
         }
         result
     }
 }
 
-/// Scalar product of two vectors of four.
+/// Scalar products of as many pairs of vectors.
 #[inline(always)]
-pub(crate) fn dot(a: &[Lanes; 3], b: &[Lanes; 3]) -> Lanes {
+pub(crate) fn dot<const N: usize>(a: &[Lanes<N>; 3], b: &[Lanes<N>; 3]) -> Lanes<N> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,5 +1,7 @@
 //! Natural neighbour interpolation.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Rows, Unity};
 
@@ -63,11 +65,11 @@ pub fn natural_neighbour(
     let (mut offsets, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
     let mut info = TransferInfo::default();
     for batch in batches {
-        for length in batch.lengths {
-            offsets.push(offsets[offsets.len() - 1] + length);
+        for row in batch.rows {
+            entries.extend_from_slice(&batch.nodes[row.clone()]);
+            values.extend_from_slice(&batch.values[row]);
+            offsets.push(entries.len());
         }
-        entries.extend(batch.nodes);
-        values.extend(batch.values);
         info.outside += batch.info.outside;
         info.fallbacks += batch.info.fallbacks;
     }
@@ -78,7 +80,8 @@ pub fn natural_neighbour(
 /// Rows of one chunk of targets.
 #[derive(Default)]
 struct Batch {
-    lengths: Vec<usize>,
+    /// Entries of each target among those below.
+    rows: Vec<Range<usize>>,
     nodes: Vec<u32>,
     values: Vec<f64>,
     info: TransferInfo,
@@ -89,10 +92,21 @@ impl Batch {
     /// left off.
     fn new(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
         #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked; that is all the function requires.
-            return unsafe { Batch::new_avx2(targets, hull, voronoi) };
+        {
+            if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
+                // SAFETY: the processor has the features that the function requires, just checked; so below.
+                return unsafe { Batch::new_avx512(targets, hull, voronoi) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { Batch::new_avx2(targets, hull, voronoi) };
+            }
         }
+        Batch::new_plain(targets, hull, voronoi)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512dq")]
+    fn new_avx512(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
         Batch::new_plain(targets, hull, voronoi)
     }
 
@@ -104,9 +118,10 @@ impl Batch {
 
     #[inline(always)]
     fn new_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-        let mut batch = Batch::default();
+        let mut batch = Batch { rows: vec![0..0; targets.len()], ..Batch::default() };
         let mut at = Workspace::new(voronoi);
-        for x in targets {
+        for target in along_a_curve(targets) {
+            let x = &targets[target];
             let inner = match hull.place(x) {
                 Place::Inside => None,
                 Place::Near { inner, outside } => {
@@ -116,12 +131,27 @@ impl Batch {
             };
             voronoi.coordinates(x, inner.as_ref(), &mut at);
             batch.info.fallbacks += usize::from(at.fallback);
-            batch.lengths.push(at.nodes.len());
+            batch.rows[target] = batch.nodes.len()..batch.nodes.len() + at.nodes.len();
             batch.nodes.extend_from_slice(&at.nodes);
             batch.values.extend_from_slice(&at.values);
         }
         batch
     }
+}
+
+/// The targets in Z-order (Morton 1966) on a grid of 16 cells along each axis of the cloud, of half-extent 1: the walk to a target
+/// starts close to it, at the cell of the one before.
+fn along_a_curve(targets: &[Point3]) -> Vec<usize> {
+    let key = |&target: &usize| {
+        // The cast saturates: what is beyond the cloud goes to the cells at its border.
+        let cells = targets[target].coords.map(|c| (((c + 1.0) * 8.0) as u32).min(15));
+        (0..4).fold(0, |key, bit| {
+            key | (cells.x >> bit & 1 | (cells.y >> bit & 1) << 1 | (cells.z >> bit & 1) << 2) << (3 * bit)
+        })
+    };
+    let mut order: Vec<usize> = (0..targets.len()).collect();
+    order.sort_by_cached_key(key);
+    order
 }
 
 #[cfg(test)]

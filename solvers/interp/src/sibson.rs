@@ -12,7 +12,7 @@ use shape::{Point3, Vector3};
 use crate::circumcentre::circumcentre;
 use crate::delaunay::{Delaunay, FACES, NONE};
 use crate::hull::DEPTH;
-use crate::lanes::{LANES, Lanes, dot};
+use crate::lanes::{LANES, Lanes};
 
 /// A circumsphere holds a point up to half of this much of the tetrahedron's size beyond it. What is taken from a cell then is
 /// wrong by the third power of that, and a point that lattices put on many spheres is held by all of them, in spite of
@@ -31,25 +31,36 @@ const FADE: f64 = DEPTH;
 pub(crate) struct Voronoi {
     nodes: Vec<Point3>,
     cells: Vec<Cell>,
-    faces: Vec<[Face; 4]>,
+    /// Four of each cell, one after another.
+    faces: Vec<Face>,
 }
 
 /// A tetrahedron.
 struct Cell {
     corners: [u32; 4],
+    /// Across each face; the number of cells, where there is none.
     neighbours: [u32; 4],
-    /// First corner.
-    origin: Point3,
-    /// Circumcentre from there.
-    centre: Vector3,
-    /// [`CLOSED`] times size and circumradius.
-    reach: f64,
+    /// Circumspheres of the neighbours: all are asked when a cell is, side by side.
+    around: Spheres<4>,
     /// Three times the volume that is each corner's.
     shares: [f64; 4],
 }
 
+/// Circumspheres of tetrahedra.
+#[derive(Clone, Copy)]
+struct Spheres<const N: usize> {
+    /// First corners.
+    origin: [Lanes<N>; 3],
+    /// Twice the circumcentres from there.
+    centre: [Lanes<N>; 3],
+    /// [`CLOSED`] times size and circumradius.
+    reach: Lanes<N>,
+}
+
 /// A face, in the order of its corners in [`FACES`].
+#[repr(align(64))] // one line of the cache
 struct Face {
+    nodes: [u32; 3],
     /// Normal, twice the area long; the cell is on its positive side.
     normal: Vector3,
     /// Areas of the triangle that are each corner's, over `|normal|`: times a circumcentre's height along the normal, what
@@ -71,7 +82,8 @@ pub(crate) struct Workspace {
     seen: Vec<u32>,
     stamp: u32,
     cavity: Vec<u32>,
-    rim: Vec<(u32, u32)>,
+    /// Faces.
+    rim: Vec<u32>,
     last: u32,
 }
 
@@ -85,7 +97,8 @@ impl Workspace {
             weights: Vec::new(),
             volumes: vec![0.0; nodes],
             listed: vec![false; nodes],
-            seen: vec![0; cells],
+            // One more for what is beyond the hull.
+            seen: vec![0; cells + 1],
             stamp: 0,
             cavity: Vec::new(),
             rim: Vec::new(),
@@ -97,24 +110,36 @@ impl Workspace {
 impl Voronoi {
     /// Of nodes with the origin amid them and coordinates of the order of 1.
     pub(crate) fn new(nodes: Vec<Point3>, mesh: &Delaunay) -> Voronoi {
-        let (mut cells, mut faces) =
-            (Vec::with_capacity(mesh.cells.len()), Vec::with_capacity(mesh.cells.len()));
-        for (&corners, &neighbours) in mesh.cells.iter().zip(&mesh.neighbours) {
+        let count = mesh.cells.len();
+        let (mut spheres, mut faces) = (Vec::with_capacity(count + 1), Vec::with_capacity(4 * count));
+        let mut shares = vec![[0.0; 4]; count];
+        for (corners, shares) in mesh.cells.iter().zip(&mut shares) {
             let at = corners.map(|v| nodes[v as usize]);
-            let face: [Face; 4] = std::array::from_fn(|k| Face::new(FACES[k].map(|i| at[i])));
             let centre = circumcentre(&at);
-            let mut shares = [0.0; 4];
-            for (face, corner) in face.iter().zip(FACES) {
+            for corner in FACES {
+                let face = Face::new(corner.map(|i| corners[i]), corner.map(|i| at[i]));
                 let height = (centre - (at[corner[0]] - at[0])).dot(&face.normal);
-                for (&i, share) in corner.iter().zip(face.shares) {
+                for (i, share) in corner.into_iter().zip(face.shares) {
                     shares[i] += height * share;
                 }
+                faces.push(face);
             }
             let size = at.iter().map(|x| (x - at[0]).norm()).fold(0.0, f64::max);
-            let reach = CLOSED * size * centre.norm();
-            cells.push(Cell { corners, neighbours, origin: at[0], centre, reach, shares });
-            faces.push(face);
+            spheres.push((at[0].coords, 2.0 * centre, CLOSED * size * centre.norm()));
         }
+        // Beyond the hull there is no sphere.
+        spheres.push((Vector3::zeros(), Vector3::zeros(), f64::NEG_INFINITY));
+        let cells = (mesh.cells.iter().zip(&mesh.neighbours).zip(shares))
+            .map(|((&corners, neighbours), shares)| {
+                let neighbours = neighbours.map(|n| if n == NONE { count as u32 } else { n });
+                Cell {
+                    corners,
+                    neighbours,
+                    around: Spheres::new(neighbours.map(|n| &spheres[n as usize])),
+                    shares,
+                }
+            })
+            .collect();
         Voronoi { nodes, cells, faces }
     }
 
@@ -153,68 +178,80 @@ impl Voronoi {
         at.nodes.iter().zip(&at.values).map(|(&node, &value)| (self.nodes[node as usize] - x) * value).sum()
     }
 
-    /// A cell whose circumsphere holds the point, by walking towards it.
+    /// The cell that holds the point, by walking towards it: its circumsphere does, too.
     #[inline(always)]
     fn locate(&self, x: &Point3, start: u32) -> u32 {
         let mut cell = start;
         'walk: for _ in 0..self.cells.len() {
-            let Cell { corners, neighbours, .. } = &self.cells[cell as usize];
-            for (k, face) in self.faces[cell as usize].iter().enumerate() {
-                let on = &self.nodes[corners[FACES[k][0]] as usize];
-                if neighbours[k] != NONE && face.normal.dot(&(x - on)) < 0.0 {
-                    cell = neighbours[k];
+            let neighbours = &self.cells[cell as usize].neighbours;
+            for (face, &across) in self.faces[4 * cell as usize..][..4].iter().zip(neighbours) {
+                let on = &self.nodes[face.nodes[0] as usize];
+                if (across as usize) < self.cells.len() && face.normal.dot(&(x - on)) < 0.0 {
+                    cell = across;
                     continue 'walk;
                 }
             }
             break;
         }
         // A flat cell may seem to hold any point of its plane, or turn the walk in a circle.
-        if self.cells[cell as usize].holds(x) {
+        let sphere_holds = |cell: &u32| {
+            let across = self.cells[*cell as usize].neighbours;
+            let seen_from = across.into_iter().find(|&n| (n as usize) < self.cells.len());
+            seen_from.is_none_or(|from| {
+                let Cell { neighbours, around, .. } = &self.cells[from as usize];
+                neighbours.iter().zip(around.hold(x)).any(|(n, holds)| n == cell && holds)
+            })
+        };
+        if sphere_holds(&cell) {
             return cell;
         }
-        self.cells.iter().position(|cell| cell.holds(x)).map_or(cell, |cell| cell as u32)
+        (0..self.cells.len() as u32).find(sphere_holds).unwrap_or(cell)
     }
 
     /// Collects the cells whose circumsphere holds the point, and the rim of faces around them, all of which see the
     /// point from within: of the two cells at a face it is on the side of the one whose sphere it is deeper in.
+    ///
+    /// Every neighbour is written to either list and counted in one: as many are within as without, and a branch would be
+    /// mispredicted.
     #[inline(always)]
     fn open(&self, x: &Point3, start: u32, at: &mut Workspace) {
-        at.stamp = match at.stamp.checked_add(2) {
+        at.stamp = match at.stamp.checked_add(1) {
             Some(stamp) => stamp,
             None => {
                 at.seen.fill(0);
-                2
+                1
             }
         };
-        let (out, within) = (at.stamp, at.stamp + 1);
-        at.cavity.clear();
-        at.rim.clear();
-        at.cavity.push(start);
-        at.seen[start as usize] = within;
-        let mut next = 0;
-        while next < at.cavity.len() {
-            let cell = at.cavity[next];
+        at.seen[start as usize] = at.stamp;
+        let Workspace { cavity, rim, seen, stamp, .. } = at;
+        cavity.clear();
+        cavity.push(start);
+        let (mut next, mut cells, mut faces) = (0, 1, 0);
+        while next < cells {
+            let cell = cavity[next];
             next += 1;
+            cavity.resize(cavity.len().max(cells + 4), 0);
+            rim.resize(rim.len().max(faces + 4), 0);
+            let (found, open) = (&mut cavity[cells..cells + 4], &mut rim[faces..faces + 4]);
+            let (mut new, mut closed) = (0, 0);
+            let Cell { neighbours, around, .. } = &self.cells[cell as usize];
+            let holds = around.hold(x);
             for k in 0..4 {
-                let across = self.cells[cell as usize].neighbours[k];
-                if across == NONE {
-                    at.rim.push((cell, k as u32));
-                    continue;
-                }
-                let seen = &mut at.seen[across as usize];
-                if *seen == within {
-                    continue;
-                }
-                if *seen < out {
-                    *seen = if self.cells[across as usize].holds(x) { within } else { out };
-                }
-                if *seen == out {
-                    at.rim.push((cell, k as u32));
-                } else {
-                    at.cavity.push(across);
-                }
+                let seen = &mut seen[neighbours[k] as usize];
+                let known = *seen == *stamp;
+                let within = holds[k] | known;
+                *seen = if within { *stamp } else { *seen };
+                // At most `k` are counted so far.
+                found[new % 4] = neighbours[k];
+                new += usize::from(holds[k] & !known);
+                open[closed % 4] = 4 * cell + k as u32;
+                closed += usize::from(!within);
             }
+            cells += new;
+            faces += closed;
         }
+        cavity.truncate(cells);
+        rim.truncate(faces);
     }
 
     /// Three times the volumes that the point takes from its neighbours.
@@ -222,23 +259,24 @@ impl Voronoi {
     fn volumes(&self, x: &Point3, at: &mut Workspace) {
         for &cell in &at.cavity {
             let Cell { corners, shares, .. } = &self.cells[cell as usize];
+            let listed = at.nodes.len();
+            at.nodes.extend_from_slice(corners);
+            let mut new = 0;
             for (&node, share) in corners.iter().zip(shares) {
-                if !at.listed[node as usize] {
-                    at.listed[node as usize] = true;
-                    at.nodes.push(node);
-                }
+                at.nodes[listed + new % 4] = node;
+                new += usize::from(!std::mem::replace(&mut at.listed[node as usize], true));
                 at.volumes[node as usize] += share;
             }
+            at.nodes.truncate(listed + new);
         }
         for group in at.rim.chunks(LANES) {
             // Lanes beyond the last face repeat it, and are not read.
-            let mut tets = Tetrahedra::default();
+            let mut tets = Tetrahedra::new();
             let mut nodes = [[0; 3]; LANES];
             for lane in 0..LANES {
-                let (cell, k) = group[lane.min(group.len() - 1)];
-                nodes[lane] = FACES[k as usize].map(|i| self.cells[cell as usize].corners[i]);
-                let corners = nodes[lane].map(|v| self.nodes[v as usize] - x);
-                tets.set(lane, &self.faces[cell as usize][k as usize], corners);
+                let face = &self.faces[group[lane.min(group.len() - 1)] as usize];
+                nodes[lane] = face.nodes;
+                tets.set(lane, face, face.nodes.map(|v| self.nodes[v as usize] - x));
             }
             let shares = tets.shares();
             for (lane, nodes) in nodes.iter().enumerate().take(group.len()) {
@@ -287,17 +325,31 @@ impl Voronoi {
     }
 }
 
-impl Cell {
-    /// The circumsphere holds the point: `|x - c|^2 <= R^2`, without the difference of two large squares.
+impl<const N: usize> Spheres<N> {
+    /// From origins, centres and reaches.
+    fn new(each: [&(Vector3, Vector3, f64); N]) -> Spheres<N> {
+        Spheres {
+            origin: [0, 1, 2].map(|axis| Lanes(each.map(|sphere| sphere.0[axis]))),
+            centre: [0, 1, 2].map(|axis| Lanes(each.map(|sphere| sphere.1[axis]))),
+            reach: Lanes(each.map(|sphere| sphere.2)),
+        }
+    }
+
+    /// Which hold the point: `|x - c|^2 <= R^2`, without the difference of two large squares.
     #[inline(always)]
-    fn holds(&self, x: &Point3) -> bool {
-        let y = x - self.origin;
-        (y - 2.0 * self.centre).dot(&y) <= self.reach
+    fn hold(&self, x: &Point3) -> [bool; N] {
+        let mut beyond = [0.0; N];
+        for lane in 0..N {
+            let y = [0, 1, 2].map(|axis| x[axis] - self.origin[axis].0[lane]);
+            let z = [0, 1, 2].map(|axis| y[axis] - self.centre[axis].0[lane]);
+            beyond[lane] = y[0] * z[0] + y[1] * z[1] + y[2] * z[2] - self.reach.0[lane];
+        }
+        beyond.map(|beyond| beyond <= 0.0)
     }
 }
 
 impl Face {
-    fn new([a, b, c]: [Point3; 3]) -> Face {
+    fn new(nodes: [u32; 3], [a, b, c]: [Point3; 3]) -> Face {
         // `orient3d` is positive on the side from which the corners turn clockwise.
         let normal = (c - a).cross(&(b - a));
         let square = normal.norm_squared();
@@ -308,12 +360,11 @@ impl Face {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             (sides[k] * dots[k] + sides[j] * dots[j]) / (8.0 * square)
         });
-        Face { normal, shares }
+        Face { nodes, normal, shares }
     }
 }
 
-/// The tetrahedra that four faces make with the origin, which is on their positive side.
-#[derive(Default)]
+/// The tetrahedra that eight faces make with the origin, which is on their positive side.
 struct Tetrahedra {
     normal: [Lanes; 3],
     shares: [Lanes; 3],
@@ -322,6 +373,12 @@ struct Tetrahedra {
 }
 
 impl Tetrahedra {
+    #[inline(always)]
+    fn new() -> Tetrahedra {
+        let zeros = [Lanes::all(0.0); 3];
+        Tetrahedra { normal: zeros, shares: zeros, corners: [zeros; 3] }
+    }
+
     #[inline(always)]
     fn set(&mut self, lane: usize, face: &Face, corners: [Vector3; 3]) {
         for i in 0..3 {
@@ -333,30 +390,45 @@ impl Tetrahedra {
         }
     }
 
-    /// Three times the volumes that are the faces' corners'.
+    /// Three times the volumes that are the faces' corners'. Lane by lane: sums and products of whole lanes the compiler takes
+    /// apart, a loop over lanes it puts together.
     #[inline(always)]
     fn shares(&self) -> [Lanes; 3] {
-        let [a, b, c] = &self.corners;
-        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-        let (ab, bc, ca) = (dot(a, b), dot(b, c), dot(c, a));
-        // Products of the normals b x c, c x a and a x b: cofactors of the matrix of products above.
-        let (naa, nbb, ncc) = (bb * cc - bc * bc, cc * aa - ca * ca, aa * bb - ab * ab);
-        let (nab, nbc, nca) = (bc * ca - ab * cc, ca * ab - bc * aa, ab * bc - ca * bb);
-        // Heights of the circumcentre over the four faces, times their normals, inwards.
-        let height = Lanes::all(0.0) - dot(&self.normal, a);
-        let scale = Lanes::all(0.5) / height;
-        let ha = (aa * naa + bb * nab + cc * nca) * scale;
-        let hb = (aa * nab + bb * nbb + cc * nbc) * scale;
-        let hc = (aa * nca + bb * nbc + cc * ncc) * scale;
-        let top = height - (ha + hb + hc);
-        let eight = Lanes::all(8.0);
-        let (ha, hb, hc) = (ha / (eight * naa), hb / (eight * nbb), hc / (eight * ncc));
-        // Share of a in the triangle (0, a, b): |b|^2 (|a|^2 + a.b) - 2 (a.b)^2 over 8 |a x b|.
-        let share = |p: Lanes, q: Lanes, pq: Lanes| q * (p + pq) - (pq + pq) * pq;
-        [
-            top * self.shares[0] + hb * share(aa, cc, ca) + hc * share(aa, bb, ab),
-            top * self.shares[1] + hc * share(bb, aa, ab) + ha * share(bb, cc, bc),
-            top * self.shares[2] + ha * share(cc, bb, bc) + hb * share(cc, aa, ca),
-        ]
+        let mut shares = [[0.0; LANES]; 3];
+        for lane in 0..LANES {
+            let of = |lanes: &[Lanes; 3]| [lanes[0].0[lane], lanes[1].0[lane], lanes[2].0[lane]];
+            let corners = [of(&self.corners[0]), of(&self.corners[1]), of(&self.corners[2])];
+            let of_lane = corner_shares(&of(&self.normal), &of(&self.shares), &corners);
+            (shares[0][lane], shares[1][lane], shares[2][lane]) = (of_lane[0], of_lane[1], of_lane[2]);
+        }
+        shares.map(Lanes)
     }
+}
+
+/// Three times the volumes that are the corners' of a face, of the tetrahedron that it makes with the origin.
+#[inline(always)]
+fn corner_shares(normal: &[f64; 3], areas: &[f64; 3], [a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
+    let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+    let (ab, bc, ca) = (dot(a, b), dot(b, c), dot(c, a));
+    // Products of the normals b x c, c x a and a x b: cofactors of the matrix of products above.
+    let (naa, nbb, ncc) = (bb * cc - bc * bc, cc * aa - ca * ca, aa * bb - ab * ab);
+    let (nab, nbc, nca) = (bc * ca - ab * cc, ca * ab - bc * aa, ab * bc - ca * bb);
+    // Heights of the circumcentre over the four faces, times their normals, inwards.
+    let height = -dot(normal, a);
+    let scale = 0.5 / height;
+    let ha = (aa * naa + bb * nab + cc * nca) * scale;
+    let hb = (aa * nab + bb * nbb + cc * nbc) * scale;
+    let hc = (aa * nca + bb * nbc + cc * ncc) * scale;
+    let top = height - (ha + hb + hc);
+    // Over eight times its product each; one division for three.
+    let each = 0.125 / (naa * nbb * ncc);
+    let (ha, hb, hc) = (ha * (nbb * ncc * each), hb * (ncc * naa * each), hc * (naa * nbb * each));
+    // Share of a in the triangle (0, a, b): |b|^2 (|a|^2 + a.b) - 2 (a.b)^2 over 8 |a x b|.
+    let share = |p: f64, q: f64, pq: f64| q * (p + pq) - (pq + pq) * pq;
+    [
+        top * areas[0] + hb * share(aa, cc, ca) + hc * share(aa, bb, ab),
+        top * areas[1] + hc * share(bb, aa, ab) + ha * share(bb, cc, bc),
+        top * areas[2] + ha * share(cc, bb, bc) + hb * share(cc, aa, ca),
+    ]
 }
