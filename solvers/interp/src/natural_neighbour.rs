@@ -171,7 +171,15 @@ mod tests {
         let (chosen, plain) =
             (Batch::new(&targets, &hull, &voronoi), Batch::new_plain(&targets, &hull, &voronoi));
         assert!((100..500).contains(&chosen.info.outside), "{:?}", chosen.info);
-        assert!(chosen.nodes == plain.nodes && chosen.values == plain.values);
-        assert_eq!(chosen.info, plain.info);
+        let mut wide = vec![chosen];
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked.
+            wide.push(unsafe { Batch::new_avx2(&targets, &hull, &voronoi) });
+        }
+        for wide in wide {
+            assert!(wide.nodes == plain.nodes && wide.values == plain.values && wide.rows == plain.rows);
+            assert_eq!(wide.info, plain.info);
+        }
     }
 }
