@@ -2,18 +2,33 @@
 //!
 //! Packed, a full table is 0.88 MB of weights, each used for three components. Read from the second-level cache and beyond at 104 GB/s
 //! they take 8.4 us; three products and three sums of eight lanes, each kind on two pipes of 256 bits, take 3 cycles per eight
-//! weights, 11 us at 3.7 GHz. Measured beside busy neighbours, the least of 800 (packs: 200), in us; a full table unpacked takes 80:
+//! weights, 11 us at 3.7 GHz. Measured beside busy neighbours, the least of 800, in us; a full table unpacked takes 80:
 //!
-//! | scheme | entries | apply | pack |
-//! |---|---|---|---|
-//! | nearest | 1 331 | 2.2 | 34 |
-//! | inverse-distance | 5 324 | 4.0 | 51 |
-//! | shepard, mls-linear | 33 453 | 9.3 | 165 |
-//! | mls-quadratic | 73 589 | 15.1 | 306 |
-//! | mls-modified | 52 282 | 11.8 | 243 |
-//! | radial bases | 110 473 | 18 | 282 |
-//! | natural-neighbour | 13 094 | 5.8 | 81 |
-//! | barycentric | 5 324 | 4.4 | 54 |
+//! | scheme | entries | apply |
+//! |---|---|---|
+//! | nearest | 1 331 | 2.2 |
+//! | inverse-distance | 5 324 | 4.0 |
+//! | shepard, mls-linear | 33 453 | 9.3 |
+//! | mls-quadratic | 73 589 | 15.1 |
+//! | mls-modified | 52 282 | 11.8 |
+//! | radial bases | 110 473 | 18 |
+//! | natural-neighbour | 13 094 | 5.8 |
+//! | barycentric | 5 324 | 4.4 |
+//!
+//! To build and pack takes, in ms of one processor at 2.5 GHz, itself shared, the least of 150 (the parallel part, two thirds of the
+//! longer ones, is shared out among processors; criterion's times are the wall's):
+//!
+//! | scheme | build + pack | of it pack |
+//! |---|---|---|
+//! | nearest | 0.34 | 0.07 |
+//! | inverse-distance | 0.66 | 0.09 |
+//! | shepard | 1.4 | 0.27 |
+//! | mls-linear | 1.6 | 0.29 |
+//! | mls-quadratic | 3.0 | 0.50 |
+//! | mls-modified | 2.4 | 0.40 |
+//! | radial bases | 3.3 to 4.2 | 0.38 |
+//! | natural-neighbour | 2.6 | 0.23 |
+//! | barycentric | 1.4 | 0.13 |
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
