@@ -15,8 +15,8 @@
 //! | natural-neighbour | 13 094 | 5.8 |
 //! | barycentric | 5 324 | 4.4 |
 //!
-//! To build and pack takes, in ms of one processor at 2.5 GHz, itself shared, the least of 150 (the parallel part, two thirds of the
-//! longer ones, is shared out among processors; criterion's times are the wall's):
+//! To build and pack takes, in ms of one processor at 2.5 GHz, itself shared, the least of 150 (most of moving
+//! least squares, radial bases, natural neighbours and location is shared out among processors; criterion's times are the wall's):
 //!
 //! | scheme | build + pack | of it pack |
 //! |---|---|---|
