@@ -130,6 +130,25 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     Ok(patch)
 }
 
+/// Fails where a place of a surface cuts facets: finite elements hold whole ones. A place with a volume holds the vertices in it.
+pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
+    let Place::Where(region) = place else { return Ok(()) };
+    if region.comparisons.iter().all(|c| c.relation != Relation::Equal) {
+        return Ok(());
+    }
+    let Patch { whole, cut } = patch(key, place, mesh)?;
+    if cut.is_empty() {
+        return Ok(());
+    }
+    let problem = format!(
+        "cuts faces of the background: {} of them lie in it as a whole, of others {} triangles",
+        whole.len(),
+        cut.len()
+    );
+    let help = "essential = \"coupling\" holds whole faces: let the place end at edges of the background, or take \"nitsche\"";
+    Err(Failure::input(self::key(place, key), problem, help))
+}
+
 fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
     mesh.facet_nodes(facet).take(count).map(|n| mesh.points()[n as usize]).collect()

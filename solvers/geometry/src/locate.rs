@@ -1,6 +1,6 @@
 //! Which tetrahedron holds a point: for barycentric transfer and for finding integration cells.
 
-use crate::{Matrix3, Mesh, Point3};
+use crate::{Matrix3, Mesh, Point3, Vector3};
 
 /// Barycentric coordinates may be this negative and still count as inside: faces shared by two cells lose nothing
 /// to rounding.
@@ -48,20 +48,11 @@ pub enum LocateError {
 /// Locates each point among the tetrahedra of `mesh`, taken flat through their corners. Points in several cells go
 /// to the lowest-numbered one; points outside all go to the closest cell and carry their distance.
 pub fn locate(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
-    let cells = Cells::new(mesh)?;
-    let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
-    (points.iter().enumerate())
-        .map(|(point, p)| {
-            if !p.coords.iter().all(|c| c.is_finite()) {
-                return Err(LocateError::NotFinite { point });
-            }
-            Ok(cells.holding(p).unwrap_or_else(|| cells.closest(p, &mut scratch)))
-        })
-        .collect()
+    Locator::new(mesh)?.locate(points)
 }
 
-/// Tetrahedra in a uniform grid of bins.
-struct Cells {
+/// Tetrahedra in a uniform grid of bins, taken flat through their corners: for points that come batch after batch.
+pub struct Locator {
     corners: Vec<[Point3; 4]>,
     inverse: Vec<Matrix3>,
     boxes: Vec<[Point3; 2]>,
@@ -75,16 +66,18 @@ struct Cells {
 }
 
 /// What the search for the closest cell reuses from point to point.
+#[derive(Default)]
 struct Scratch {
     stamp: usize,
-    /// Stamp of the last point that met each cell: most cells are in several bins.
+    /// Stamp of the last point that met each cell: most cells are in several bins. Empty until a point lies outside.
     seen: Vec<usize>,
     /// Squared distance of the box, and cell.
     near: Vec<(f64, usize)>,
 }
 
-impl Cells {
-    fn new(mesh: &Mesh) -> Result<Cells, LocateError> {
+impl Locator {
+    /// Sorts the cells of a mesh into bins.
+    pub fn new(mesh: &Mesh) -> Result<Locator, LocateError> {
         let count = mesh.cell_count();
         let (mut corners, mut inverse, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
         for cell in 0..count {
@@ -115,7 +108,8 @@ impl Cells {
         let side = (extent.product() / count as f64).cbrt();
         let bins: [usize; 3] = std::array::from_fn(|d| ((extent[d] / side).ceil() as usize).clamp(1, 256));
         let width = std::array::from_fn(|d| extent[d] / bins[d] as f64);
-        let mut cells = Cells { corners, inverse, boxes, low, width, bins, offsets: vec![], members: vec![] };
+        let mut cells =
+            Locator { corners, inverse, boxes, low, width, bins, offsets: vec![], members: vec![] };
         cells.fill_bins();
         Ok(cells)
     }
@@ -159,9 +153,34 @@ impl Cells {
         }
     }
 
-    fn barycentric(&self, cell: usize, p: &Point3) -> [f64; 4] {
+    /// The four corners of a cell, m.
+    pub fn corners(&self, cell: usize) -> &[Point3; 4] {
+        &self.corners[cell]
+    }
+
+    /// Barycentric coordinates of any point with respect to a cell; some are negative outside it.
+    pub fn barycentric(&self, cell: usize, p: &Point3) -> [f64; 4] {
         let l = self.inverse[cell] * (p - self.corners[cell][0]);
         [1.0 - l.x - l.y - l.z, l.x, l.y, l.z]
+    }
+
+    /// Gradients (1/m) of the four barycentric coordinates of a cell.
+    pub fn slopes(&self, cell: usize) -> [Vector3; 4] {
+        let [x, y, z] = [0, 1, 2].map(|k| self.inverse[cell].row(k).transpose());
+        [-(x + y + z), x, y, z]
+    }
+
+    /// As the function [`locate`], of these cells.
+    pub fn locate(&self, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
+        let mut scratch = Scratch::default();
+        (points.iter().enumerate())
+            .map(|(point, p)| {
+                if !p.coords.iter().all(|c| c.is_finite()) {
+                    return Err(LocateError::NotFinite { point });
+                }
+                Ok(self.holding(p).unwrap_or_else(|| self.closest(p, &mut scratch)))
+            })
+            .collect()
     }
 
     fn holding(&self, p: &Point3) -> Option<Location> {
@@ -181,6 +200,7 @@ impl Cells {
         let away =
             |bounds: &[Point3; 2]| (bounds[0] - p).sup(&(p - bounds[1])).map(|c| c.max(0.0)).norm_squared();
         let Scratch { stamp, seen, near } = scratch;
+        seen.resize(self.corners.len(), 0);
         *stamp += 1;
         let centre = self.bin(p);
         let (mut best, mut at, mut closest) = (f64::INFINITY, *p, usize::MAX);
@@ -303,8 +323,8 @@ pub fn closest_on_triangle(p: &Point3, &[a, b, c]: &[Point3; 3]) -> Point3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CellKind;
     use crate::generate::{box_mesh, kidney_mesh};
-    use crate::{CellKind, Vector3};
 
     #[test]
     fn growing_cubes_of_bins_find_what_a_scan_of_all_cells_does() {
@@ -317,7 +337,7 @@ mod tests {
             None,
         );
         for mesh in [kidney_mesh(CellKind::Tet4, 4).unwrap(), slab.unwrap()] {
-            let cells = Cells::new(&mesh).unwrap();
+            let cells = Locator::new(&mesh).unwrap();
             let [low, high] = [cells.low, cells.boxes.iter().fold(cells.low, |high, b| high.sup(&b[1]))];
             let (middle, extent) = (nalgebra::center(&low, &high), high - low);
             // Low-discrepancy points in three times the box, by multiples of irrational steps, and nodes moved off the mesh by whole
@@ -327,7 +347,7 @@ mod tests {
             let scattered =
                 (1..400).map(|q| middle + Vector3::from_fn(|d, _| at(q, d)).component_mul(&extent));
             let moved = mesh.points().iter().step_by(7).map(|p| p + Vector3::new(0.0, 0.0, 2.0 * extent.z));
-            let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
+            let mut scratch = Scratch::default();
             let mut outside = 0;
             for p in scattered.chain(moved).filter(|p| cells.holding(p).is_none()) {
                 outside += 1;
