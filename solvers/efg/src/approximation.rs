@@ -28,6 +28,9 @@ const UNITY: Unity = Unity::Within(1e-8);
 const BEYOND_NEIGHBOUR: f64 = 1.4;
 /// Supports are enlarged no further: beyond, the point is not near the cloud at all.
 const MOST_ENLARGEMENT: f64 = 3.0;
+/// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand on the other side of
+/// a point have given way, and a row of that number sums to one within 1e-10. Elsewhere medians are 10 to 100.
+const MOST_CONDITION: f64 = 1e5;
 /// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
 const REGULARISATION: f64 = 1e-7;
 
@@ -185,7 +188,10 @@ impl Approximation {
     /// ```
     ///
     /// They vanish on faces and in cells all of whose corners are listed, where parameters of the vertices are displacements.
-    /// Nodes of the cloud that lie there are left out: see [`coupled_nodes`](crate::coupled_nodes). Linear basis only: of a
+    /// Nodes of the cloud at which the hats sum to one half or more give way. What is left around such a point may lie in one
+    /// plane: supports are enlarged there, on the ladder. The layer of cells is about as stiff as linear tetrahedra are: on a
+    /// bending prism of 4 cells of depth the error of the displacement is 19 times that of constraints of the same cloud, and
+    /// falls with the spacing to the power 2.6. Linear basis only: of a
     /// quadratic one the hats reproduce too little for the others to vanish. Source: Huerta and Fernandez-Mendez (2000),
     /// Int. J. Numer. Meth. Engng 48, 1615-1636.
     pub fn coupled(self, background: &Mesh, vertices: &[u32]) -> Result<Approximation, EfgError> {
@@ -401,7 +407,11 @@ impl Approximation {
                 let outcome = &mut outcomes[q as usize];
                 outcome.neighbours = range.len() as u32;
                 // An infinite condition marks a point for the ladder.
-                let condition = conditions[lane].or(full(q as usize).then_some(1.0));
+                let condition = match layers.get(q as usize) {
+                    Some(layer) if layer.is_full() => Some(1.0),
+                    Some(layer) if !layer.is_empty() => conditions[lane].filter(|&c| c < MOST_CONDITION),
+                    _ => conditions[lane],
+                };
                 outcome.condition = condition.unwrap_or(f64::INFINITY);
                 failed |= condition.is_none();
                 let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };

@@ -79,10 +79,11 @@ fn linear_fields_and_their_gradients_are_reproduced_in_the_layer_and_beyond() {
             let ones = vec![1.0; of.len()];
             for (q, x) in points.iter().enumerate() {
                 let (unity, none) = apply(&rows, q, &ones);
-                assert!((unity - 1.0).abs() < 2e-14 && none.norm() < 2e-10, "{name}: {unity} {none}");
+                // Rounding times a condition number of up to 1e5; gradients are of 1e2 /m.
+                assert!((unity - 1.0).abs() < 1e-11 && none.norm() < 1e-9, "{name}: {unity} {none}");
                 let ((value, grad), (exact, slope)) = (apply(&rows, q, &of), field(Basis::Linear, x));
-                assert!((value - exact).abs() < 1e-15, "{name}: {:e}", value - exact);
-                assert!((grad - slope).norm() < 1e-11, "{name}: {:e}", (grad - slope).norm());
+                assert!((value - exact).abs() < 1e-12, "{name}: {:e}", value - exact);
+                assert!((grad - slope).norm() < 1e-10, "{name}: {:e}", (grad - slope).norm());
             }
         }
     }
