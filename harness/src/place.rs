@@ -221,6 +221,23 @@ mod tests {
     }
 
     #[test]
+    fn a_surface_that_ends_within_faces_is_refused_and_a_volume_is_not() {
+        let corner = Point3::new(4e-3, 4e-3, 4e-3);
+        let tet4 = geometry::CellKind::Tet4;
+        let mesh = geometry::generate::box_mesh(tet4, Point3::origin(), corner, [4; 3], [1.0; 3], None);
+        let mesh = mesh.unwrap();
+        let side = (0, Relation::Equal, 0.0);
+        let held = |comparisons: &[_]| whole("support[0]", &Place::Where(region(comparisons)), &mesh);
+        assert!(held(&[side]).is_ok() && held(&[side, (1, Relation::LessEqual, 2e-3)]).is_ok());
+        assert!(held(&[(1, Relation::LessEqual, 2.5e-3)]).is_ok());
+        let Err(Failure::At(bad)) = held(&[side, (1, Relation::LessEqual, 2.5e-3)]) else {
+            panic!("refused")
+        };
+        assert_eq!(bad.key, Key::Scene("support[0].where".into()));
+        assert!(bad.problem.contains("16 of them lie in it as a whole"), "{}", bad.problem);
+    }
+
+    #[test]
     fn a_triangle_across_a_plane_equality_keeps_nothing() {
         let triangle = [Point3::origin(), Point3::new(2.0, 0.0, 0.0), Point3::new(0.0, 2.0, 1.0)];
         let mut out = Vec::new();

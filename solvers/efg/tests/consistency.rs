@@ -109,7 +109,7 @@ fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
     }
 }
 
-/// Finite elements beside a cloud leave all functions continuous, and that is all it takes.
+/// Finite elements beside a cloud change the values at face points, which still serve both sides.
 #[test]
 fn clouds_coupled_to_finite_elements_meet_it_too() {
     for (place, mesh) in boxes() {
