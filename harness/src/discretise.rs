@@ -70,6 +70,8 @@ pub enum Essential {
     Multipliers,
     /// Elimination of one constraint per node of the surface.
     Elimination(ConstraintRows),
+    /// Finite elements along what is held, their nodes held exactly.
+    Coupling,
 }
 
 /// The shape functions of a cloud.
@@ -140,8 +142,19 @@ pub struct Efg {
     pub integration: Integration,
     /// Essential conditions.
     pub essential: Essential,
+    /// The finite-element nodes, where essential conditions are held by such.
+    pub coupled: Option<Coupled>,
     /// Volumetric projection.
     pub dilation: Dilation,
+}
+
+/// What a cloud is coupled to.
+#[derive(Clone)]
+pub struct Coupled {
+    /// Vertices of the background that are nodes of finite elements, ascending.
+    pub vertices: Vec<u32>,
+    /// Positions of all nodes, m: those left of the cloud, then the vertices.
+    pub nodes: Vec<Point3>,
 }
 
 /// One method on one body.
@@ -176,7 +189,7 @@ impl Discretisation {
     pub fn nodes(&self) -> &[Point3] {
         match self {
             Discretisation::Fem(fem) => fem.mesh.points(),
-            Discretisation::Efg(efg) => &efg.cloud.points,
+            Discretisation::Efg(efg) => efg.coupled.as_ref().map_or(&efg.cloud.points, |c| &c.nodes),
         }
     }
 
@@ -329,7 +342,10 @@ const ERROR_POINTS: usize = 14;
 
 impl Efg {
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
-        let approximation = self.functions.over(&self.cloud, self.followed.as_deref())?;
+        let mut approximation = self.functions.over(&self.cloud, self.followed.as_deref())?;
+        if let Some(Coupled { vertices, .. }) = &self.coupled {
+            approximation = approximation.coupled(&self.background, vertices)?;
+        }
         work.support_radii += self.cloud.points.len() as u64;
         let (rows, mls, region, volume_error) = match self.integration {
             Integration::Gauss { points } => {

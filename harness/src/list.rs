@@ -20,7 +20,7 @@ pub fn print() {
     println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
     println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
     println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
-    println!("essential   nitsche, penalty, multipliers, elimination");
+    println!("essential   nitsche, penalty, multipliers, elimination, coupling");
     println!("transfer    {}", SchemeName::ALL.map(SchemeName::name).join(", "));
     println!("exact solutions, with their parameters");
     for name in exact_names() {

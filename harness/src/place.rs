@@ -130,6 +130,25 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     Ok(patch)
 }
 
+/// Fails where a place of a surface cuts facets: finite elements hold whole ones. A place with a volume holds the vertices in it.
+pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
+    let Place::Where(region) = place else { return Ok(()) };
+    if region.comparisons.iter().all(|c| c.relation != Relation::Equal) {
+        return Ok(());
+    }
+    let Patch { whole, cut } = patch(key, place, mesh)?;
+    if cut.is_empty() {
+        return Ok(());
+    }
+    let problem = format!(
+        "cuts faces of the background: {} of them lie in it as a whole, of others {} triangles",
+        whole.len(),
+        cut.len()
+    );
+    let help = "essential = \"coupling\" holds whole faces: let the place end at edges of the background, or take \"nitsche\"";
+    Err(Failure::input(self::key(place, key), problem, help))
+}
+
 fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
     mesh.facet_nodes(facet).take(count).map(|n| mesh.points()[n as usize]).collect()
@@ -199,6 +218,23 @@ mod tests {
         // x >= 1/2, y <= 1 under x + y <= 2: the trapezoid 1/2..1 x 0..1 and the triangle beyond, 1/2 + 1/2.
         let area: f64 = out.iter().map(|t| t.area_vector().z).sum();
         assert!((area - 1.0).abs() < 1e-14, "{area}");
+    }
+
+    #[test]
+    fn a_surface_that_ends_within_faces_is_refused_and_a_volume_is_not() {
+        let corner = Point3::new(4e-3, 4e-3, 4e-3);
+        let tet4 = geometry::CellKind::Tet4;
+        let mesh = geometry::generate::box_mesh(tet4, Point3::origin(), corner, [4; 3], [1.0; 3], None);
+        let mesh = mesh.unwrap();
+        let side = (0, Relation::Equal, 0.0);
+        let held = |comparisons: &[_]| whole("support[0]", &Place::Where(region(comparisons)), &mesh);
+        assert!(held(&[side]).is_ok() && held(&[side, (1, Relation::LessEqual, 2e-3)]).is_ok());
+        assert!(held(&[(1, Relation::LessEqual, 2.5e-3)]).is_ok());
+        let Err(Failure::At(bad)) = held(&[side, (1, Relation::LessEqual, 2.5e-3)]) else {
+            panic!("refused")
+        };
+        assert_eq!(bad.key, Key::Scene("support[0].where".into()));
+        assert!(bad.problem.contains("16 of them lie in it as a whole"), "{}", bad.problem);
     }
 
     #[test]

@@ -48,7 +48,11 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
                 None => "radius and neighbours",
             };
             add("supports", true, format!("{supports} of {} nodes", efg.cloud.points.len()));
-            add("shape functions", true, integration(efg));
+            let coupled = match &efg.coupled {
+                Some(coupled) => format!(", coupled to {} nodes of finite elements", coupled.vertices.len()),
+                None => String::new(),
+            };
+            add("shape functions", true, integration(efg) + &coupled);
         }
         None => {
             add("supports", false, "the elements' nodes are the neighbours".into());
@@ -120,12 +124,15 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         Some(Essential::Elimination(ConstraintRows::Points)) => {
             (true, "displacements at points, by pivoted rows")
         }
+        Some(Essential::Coupling) => (true, "parameters of finite-element nodes are displacements"),
         Some(_) => (false, "nodal parameters are not displacements"),
     };
     add("supports by elimination", eliminated, why.into());
     let weak = match cloud.map(|efg| efg.essential) {
         _ if setup.held.is_empty() => (false, "no support in the scene".into()),
-        None | Some(Essential::Elimination(_)) => (false, "supports are eliminated".into()),
+        None | Some(Essential::Elimination(_) | Essential::Coupling) => {
+            (false, "supports are eliminated".into())
+        }
         Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
         Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
         Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),

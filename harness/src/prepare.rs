@@ -10,7 +10,7 @@ use mechanics::{
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
 
 use crate::Failure;
-use crate::discretise::{Discretisation, Efg, Essential, Volume};
+use crate::discretise::{Coupled, Discretisation, Efg, Essential, Volume};
 use crate::error::Key;
 use crate::place::{self, CutTriangle, Place, tolerance};
 use crate::setup::{Acting, Applied, Held, Setup};
@@ -83,7 +83,12 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     }
     for held in &setup.held {
         match method {
-            Discretisation::Fem(fem) => prepared.hold_nodes(&fem.mesh, held)?,
+            Discretisation::Fem(fem) => prepared.hold_nodes(&fem.mesh, held, |vertex| vertex)?,
+            Discretisation::Efg(Efg { background, coupled: Some(Coupled { vertices, nodes }), .. }) => {
+                // Those of all supports are listed, and come last among the nodes.
+                let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
+                prepared.hold_nodes(background, held, |vertex| node(vertex) as u32)?;
+            }
             Discretisation::Efg(efg) => prepared.hold_weakly(method, efg, held)?,
         }
     }
@@ -231,15 +236,17 @@ impl Prepared {
         Ok(())
     }
 
-    fn hold_nodes(&mut self, mesh: &Mesh, held: &Held) -> Result<(), Failure> {
-        let nodes = place::nodes(&held.key, &held.place, mesh)?;
-        if nodes.is_empty() {
+    /// Holds the vertices of a mesh that lie in a place; `node` tells which node each is.
+    fn hold_nodes(&mut self, mesh: &Mesh, held: &Held, node: impl Fn(u32) -> u32) -> Result<(), Failure> {
+        let vertices = place::nodes(&held.key, &held.place, mesh)?;
+        if vertices.is_empty() {
             return Err(place::empty(&held.key, &held.place, mesh));
         }
-        for node in nodes {
-            let value = (held.value)(&mesh.points()[node as usize]).map_err(not_finite(&held.key, "move"))?;
+        for vertex in vertices {
+            let value =
+                (held.value)(&mesh.points()[vertex as usize]).map_err(not_finite(&held.key, "move"))?;
             for axis in (0..3).filter(|&a| held.axes[a]) {
-                self.fixed.push(FixedDof { node, axis: axis as u8, value: value[axis] });
+                self.fixed.push(FixedDof { node: node(vertex), axis: axis as u8, value: value[axis] });
             }
         }
         Ok(())
@@ -276,6 +283,7 @@ impl Prepared {
                     }
                 }
             }
+            Essential::Coupling => {}
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
                     let flux = method.flux(&self.volume, &patch.whole)?;
@@ -300,7 +308,7 @@ impl Prepared {
                 let values = at(held, &nodes)?;
                 self.constraints.extend(collocated(&rows, held.axes, &values));
             }
-            Essential::Multipliers | Essential::Elimination(_) => {}
+            Essential::Multipliers | Essential::Elimination(_) | Essential::Coupling => {}
             Essential::Nitsche(factor) | Essential::Penalty(factor) => {
                 if let Some(flux) = self.clamped_volume(efg, held)? {
                     self.hold_flux(efg, held, flux, Weak::Penalty { factor }, None)?;
@@ -325,7 +333,7 @@ impl Prepared {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
                 "is not available where a support is held by Newton's method",
-                "essential = \"penalty\" is",
+                "essential = \"penalty\" and \"coupling\" are",
             ));
         };
         for (weak, beta) in self.weak.drain(..).zip(betas) {

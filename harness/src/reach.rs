@@ -20,6 +20,9 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     for held in &setup.held {
         let held_somewhere = match method {
             Discretisation::Fem(fem) => !place::nodes(&held.key, &held.place, &fem.mesh)?.is_empty(),
+            Discretisation::Efg(Efg { coupled: Some(_), background, .. }) => {
+                !place::nodes(&held.key, &held.place, background)?.is_empty()
+            }
             Discretisation::Efg(efg) => {
                 let patch = place::patch(&held.key, &held.place, mesh)?;
                 !patch.whole.is_empty() || holds_inside(efg, held, &patch)

@@ -4,10 +4,10 @@ use cases::exact::{Exact, Params, exact_by_name};
 use cases::scene::{
     self, ErrorKind, Family, LoadKind, OnStall, Prescribed, ProcedureKind, Reference, Scene, VectorField,
 };
-use geometry::{CellKind, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
+use geometry::{CellKind, Cloud, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 use mechanics::{Law, LinearElastic, NewtonParams, Prony, StaticParams, TimeParams};
 
-use crate::discretise::{Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration};
+use crate::discretise::{Coupled, Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration};
 use crate::error::Key;
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
@@ -106,6 +106,7 @@ impl Scenario<'_> {
                         scene::Essential::Nitsche { .. } => "nitsche".into(),
                         scene::Essential::Penalty { .. } => "penalty".into(),
                         scene::Essential::Multipliers => "multipliers".into(),
+                        scene::Essential::Coupling => "coupling".into(),
                         scene::Essential::Elimination { rows } => format!("elimination-{}", rows.name()),
                     },
                 ));
@@ -331,10 +332,16 @@ impl Scenario<'_> {
             scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
             scene::Essential::Multipliers => Essential::Multipliers,
             scene::Essential::Elimination { rows } => Essential::Elimination(rows),
+            scene::Essential::Coupling => Essential::Coupling,
+        };
+        let coupled = match essential {
+            Essential::Coupling => Some(self.coupled(&cloud, &background)?),
+            _ => None,
         };
         Ok(Efg {
             background: self.with_regions(background)?,
             cloud,
+            coupled,
             shape,
             followed,
             refine,
@@ -343,6 +350,20 @@ impl Scenario<'_> {
             essential,
             dilation: dilation(efg.dilation),
         })
+    }
+
+    /// Finite-element nodes at all vertices of what is held.
+    fn coupled(&self, cloud: &Cloud, background: &Mesh) -> Result<Coupled, Failure> {
+        let mut vertices = Vec::new();
+        for (index, support) in self.scene.supports.iter().enumerate() {
+            let key = format!("support[{index}]");
+            place::whole(&key, &support.place, background)?;
+            vertices.extend(place::nodes(&key, &support.place, background)?);
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        let nodes = efg::coupled_nodes(&cloud.points, background, &vertices)?;
+        Ok(Coupled { vertices, nodes })
     }
 
     /// Numbers the cells by the scene's material regions: 0 the scene's material, k + 1 its k-th region.

@@ -63,14 +63,14 @@ impl Scene {
                     }
                     let what = match efg.essential {
                         _ if matches!(kind, ProcedureKind::Linear | ProcedureKind::Prepare) => continue,
-                        Essential::Penalty { .. } => continue,
+                        Essential::Penalty { .. } | Essential::Coupling => continue,
                         Essential::Nitsche { .. } => "Nitsche's method",
                         Essential::Multipliers => "a support by multipliers",
                         Essential::Elimination { .. } => "a support of a cloud by elimination",
                     };
                     let article = if implicit { "an" } else { "a" };
                     let what = format!("{what} in {article} {} procedure", kind.name());
-                    add(&at("essential"), what, "essential = \"penalty\" is");
+                    add(&at("essential"), what, "essential = \"penalty\" and \"coupling\" are");
                 }
             }
         }

@@ -410,6 +410,8 @@ pub enum Essential {
         /// What the rows say.
         rows: ConstraintRows,
     },
+    /// Finite elements along what is held, coupled to the cloud; their nodes are held exactly.
+    Coupling,
 }
 
 /// What the eliminated rows of a held surface say, one for each node whose share of the surface this is.

@@ -182,6 +182,12 @@ impl Metric {
             Needs::Run,
             "rows of eliminated supports that follow from the others",
         ),
+        metric(
+            "finite-element-nodes",
+            Dimension::None,
+            Needs::Run,
+            "nodes of finite elements that a cloud is coupled to",
+        ),
         metric("time-prepare", Dimension::Time, Needs::Run, "seconds for search and shape functions"),
         metric("time-assemble", Dimension::Time, Needs::Run, "seconds to assemble"),
         metric("time-factor", Dimension::Time, Needs::Run, "seconds to factor"),

@@ -157,6 +157,33 @@ const KEYS: &[Bad] = &[
         &["goes with nitsche and penalty only"],
     ),
     (
+        "essential = \"multipliers\"",
+        "essential = { method = \"coupling\", factor = 4 } #<",
+        "method[2].essential.factor",
+        &["goes with nitsche and penalty only"],
+    ),
+    (
+        "basis = \"linear\"\nintegration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
+        "basis = \"quadratic\" #<\nintegration = { rule = \"cell-smoothed\", order = 2 }\nessential = \"coupling\"",
+        "method[2].basis",
+        &["'quadratic' does not go with essential = \"coupling\"", "take basis = \"linear\""],
+    ),
+    (
+        "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"\n\
+         integration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
+        "basis = \"maximum-entropy\" #<\nintegration = { rule = \"cell-smoothed\" }\nessential = \"coupling\"",
+        "method[2].basis",
+        &["'maximum-entropy' does not go with essential = \"coupling\""],
+    ),
+    (
+        "size = { level = 2 }\nkernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"\n\
+         integration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
+        "nodes = 83\ncloud = { refine = { by = \"gradient-error\" } } #<\nkernel = \"cubic-spline\"\ndilatation = 1.6\n\
+         basis = \"linear\"\nintegration = { rule = \"cell-smoothed\" }\nessential = \"coupling\"",
+        "method[2].cloud.refine",
+        &["does not go with essential = \"coupling\"", "\"elimination\""],
+    ),
+    (
         "scheme = \"inverse-distance\",",
         "scheme = \"inverse distance\", #<\n",
         "output.transfer.scheme",

@@ -291,6 +291,18 @@ fn what_waits_for_later_is_read_and_then_named() {
 }
 
 #[test]
+fn clouds_coupled_to_finite_elements_go_with_every_procedure_that_clouds_do() {
+    let coupled = edited("\"multipliers\"", "\"coupling\"");
+    let Family::Efg(efg) = &parse(&coupled, "s.toml").expect("sound").methods[2].family else {
+        panic!("efg")
+    };
+    assert_eq!(efg.essential, Essential::Coupling);
+    for text in [coupled, still().replacen("essential = \"penalty\"", "essential = \"coupling\"", 1)] {
+        assert!(parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0])).unavailable().is_empty());
+    }
+}
+
+#[test]
 fn a_static_scene_runs_with_everything_it_knows() {
     let text = still().replacen("[procedure]\n", &format!("{JAW}[procedure]\n"), 1);
     let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));

@@ -1,6 +1,6 @@
 //! What makes a cloud, a support or a background unusable. Lengths in metres.
 
-use geometry::CellKind;
+use geometry::{CellKind, LocateError};
 use shape::{Point3, ShapeError};
 
 /// What makes an approximation or its integration impossible.
@@ -161,6 +161,22 @@ pub enum EfgError {
         /// Most points allowed.
         limit: f64,
     },
+    /// Shape functions that cannot be coupled to finite elements.
+    #[error("only moving least squares with the linear basis are coupled to finite elements")]
+    NotCoupled,
+    /// A list of finite-element nodes that is none.
+    #[error(
+        "vertex {vertex} of the background can't be a finite-element node: there are {count}, to be listed ascending, each once"
+    )]
+    BadVertex {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices of the background.
+        count: usize,
+    },
+    /// Cells or points that cannot be located.
+    #[error(transparent)]
+    Locate(#[from] LocateError),
     /// A table that breaks a promise.
     #[error(transparent)]
     Shape(#[from] ShapeError),

@@ -21,6 +21,7 @@ mod basis;
 mod buckets;
 mod cell_rows;
 mod cells;
+mod coupling;
 mod ellipsoid;
 mod error;
 mod exp;
@@ -41,6 +42,7 @@ mod support;
 
 pub use approximation::Approximation;
 pub use basis::Basis;
+pub use coupling::coupled_nodes;
 pub use ellipsoid::Ellipsoid;
 pub use error::EfgError;
 pub use facets::{flux_rows, surface_rows};

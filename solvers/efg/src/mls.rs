@@ -3,6 +3,7 @@
 //! With `p_I = p((x_I - x)/s)`, `A = sum_I w_I p_I p_I^T` and `c0 = A^-1 e0`, values are `phi_I = c0.p_I w_I`.
 //! Gradients hold the basis frozen at `x`: `c_a = A^-1 (e_a/s - A_,a c0)`, `phi_I,a = c_a.p_I w_I + c0.p_I w_I,a`,
 //! with `A_,a c0` summed as a vector. Source: Belytschko, Krongauz, Organ, Fleming and Krysl (1996), in local coordinates.
+//! Shape functions that leave a part of their [`Moments`] to others have these for `e0` and their slopes for `e_a/s`.
 
 use shape::{Point3, Vector3};
 
@@ -36,6 +37,22 @@ impl Ball {
     }
 }
 
+/// Linear moments that shape functions are to have about the point, `sum_I phi_I p(x_I - x)`, and how they change with it if the
+/// basis stays; lengths in metres, by term (1, x, y, z) and axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Moments {
+    pub(crate) values: [f64; 4],
+    pub(crate) slopes: [[f64; 3]; 4],
+}
+
+impl Moments {
+    /// Those of functions that reproduce the basis alone.
+    pub(crate) const COMPLETE: Moments = Moments {
+        values: [1.0, 0.0, 0.0, 0.0],
+        slopes: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+}
+
 /// The neighbours of eight points and what is made of them, entry `k` of every list for the `k`-th neighbour of every
 /// point. Reused from group to group: no allocation in the loop.
 #[derive(Default)]
@@ -62,6 +79,8 @@ pub(crate) struct Group {
     grads: Vec<[Lanes; 3]>,
     /// `s`, the largest radius among a point's neighbours, m.
     scale: Lanes,
+    moments: Matrices<4, 1>,
+    moment_slopes: Matrices<4, 3>,
 }
 
 impl Group {
@@ -121,6 +140,9 @@ impl Group {
             (chain[k], relative[k]) = (inverse, q);
         }
         self.scale = scale;
+        for l in 0..LANES {
+            self.aim(l, &Moments::COMPLETE);
+        }
         self.stretched = !ellipsoids.is_empty();
         if self.stretched {
             self.stretch(points, ellipsoids, enlargement);
@@ -157,6 +179,17 @@ impl Group {
                 q[l] = root.min(1.0);
             }
             (self.chain[k], self.relative[k]) = (inverse, q);
+        }
+    }
+
+    /// Sets the moments of one point's shape functions; [`Group::load`] sets them complete.
+    #[inline(always)]
+    pub(crate) fn aim(&mut self, lane: usize, moments: &Moments) {
+        for i in 0..4 {
+            self.moments[i][0][lane] = moments.values[i];
+            for axis in 0..3 {
+                self.moment_slopes[i][axis][lane] = moments.slopes[i][axis];
+            }
         }
     }
 
@@ -205,10 +238,15 @@ impl Group {
             }
         }
         let ldlt = Ldlt::new(&a, PIVOT_TOLERANCE);
-        let mut c0 = [[[0.0; LANES]]; M];
-        c0[0][0] = [1.0; LANES];
+        let mut right = [[[0.0; LANES]]; M];
+        for i in 0..4 {
+            for l in 0..LANES {
+                right[i][0][l] = self.moments[i][0][l] * powers[i][l];
+            }
+        }
+        let mut c0 = right;
         ldlt.solve(&mut c0);
-        let condition = conditions(&a, &c0, &ldlt);
+        let condition = conditions(&a, &right, &c0, &ldlt);
         if GRAD {
             self.with_gradients::<M, FLOWS>(&ldlt, &c0, &powers, mu);
         } else {
@@ -260,8 +298,8 @@ impl Group {
             for axis in 0..3 {
                 for l in 0..LANES {
                     let extra = if i < 4 { 0.0 } else { mu * spread[axis][l] * c0[i][0][l] };
-                    let unit = if i == axis + 1 { powers[i][l] } else { 0.0 };
-                    ca[i][axis][l] = unit - (flows[i][axis][l] * powers[i][l] + extra);
+                    let slope = if i < 4 { self.moment_slopes[i][axis][l] * powers[i][l] } else { 0.0 };
+                    ca[i][axis][l] = slope - (flows[i][axis][l] * powers[i][l] + extra);
                 }
             }
         }
@@ -433,12 +471,13 @@ fn add_to_lane<const N: usize, const FIRST: usize, const END: usize>(
 #[inline(always)]
 fn conditions<const M: usize>(
     a: &Matrices<M, M>,
+    right: &Matrices<M, 1>,
     c0: &Matrices<M, 1>,
     ldlt: &Ldlt<M>,
 ) -> [Option<f64>; LANES] {
     let mut residual = [0.0; LANES];
     for i in 0..M {
-        let mut row = [if i == 0 { -1.0 } else { 0.0 }; LANES];
+        let mut row = right[i][0].map(|r| -r);
         for j in 0..M {
             for l in 0..LANES {
                 row[l] += a[i][j][l] * c0[j][0][l];

@@ -34,7 +34,7 @@ pub use cloud::{
     cloud_of_sizes, edges, read_points,
 };
 pub use isoparametric::HEX_CORNERS;
-pub use locate::{LocateError, Location, closest_on_triangle, locate};
+pub use locate::{LocateError, Location, Locator, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};
 pub use shapes::Kidney;

@@ -55,20 +55,11 @@ const CHUNK: usize = 128;
 /// Locates each point among the tetrahedra of `mesh`, taken flat through their corners. Points in several cells go
 /// to the lowest-numbered one; points outside all go to the closest cell and carry their distance.
 pub fn locate(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
-    let cells = Cells::new(mesh)?;
-    if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
-        return Err(LocateError::NotFinite { point });
-    }
-    let locations = points.par_chunks(CHUNK).flat_map_iter(|chunk| {
-        let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
-        let cells = &cells;
-        chunk.iter().map(move |p| cells.holding(p).unwrap_or_else(|| cells.closest(p, &mut scratch)))
-    });
-    Ok(locations.collect())
+    Locator::new(mesh)?.locate(points)
 }
 
-/// Tetrahedra in a uniform grid of bins.
-struct Cells {
+/// Tetrahedra in a uniform grid of bins, taken flat through their corners: for points that come batch after batch.
+pub struct Locator {
     corners: Vec<[Point3; 4]>,
     frames: Vec<Frame>,
     boxes: Vec<[Point3; 2]>,
@@ -93,10 +84,15 @@ impl Frame {
         [1.0 - l.x - l.y - l.z, l.x, l.y, l.z]
     }
 
+    /// Gradients of the barycentric coordinates, 1/m.
+    fn slopes(&self) -> [Vector3; 4] {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.inverse.row(axis).transpose());
+        [-(x + y + z), x, y, z]
+    }
+
     /// The squared distance of a point from the cell, or less: that from the farthest plane of a face that it lies beyond.
     fn beyond(&self, p: &Point3) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.inverse.row(axis));
-        let slopes = [(x + y + z).norm_squared(), x.norm_squared(), y.norm_squared(), z.norm_squared()];
+        let slopes = self.slopes().map(|slope| slope.norm_squared());
         // Nearer by far more than rounding: a cell that is as close as another must not be taken for one farther away.
         let past = |l: f64| (l + SLACK * (1.0 - l)).min(0.0);
         let of_face = self.barycentric(p).into_iter().zip(slopes).map(|(l, square)| past(l).powi(2) / square);
@@ -105,9 +101,10 @@ impl Frame {
 }
 
 /// What the search for the closest cell reuses from point to point.
+#[derive(Default)]
 struct Scratch {
     stamp: usize,
-    /// Stamp of the last point that met each cell: most cells are in several bins.
+    /// Stamp of the last point that met each cell: most cells are in several bins. Empty until a point lies outside.
     seen: Vec<usize>,
     /// A squared distance (m^2) that the cell is not nearer than, and the cell.
     near: Vec<(f64, usize)>,
@@ -122,10 +119,11 @@ struct Closest {
     cell: usize,
 }
 
-impl Cells {
-    fn new(mesh: &Mesh) -> Result<Cells, LocateError> {
+impl Locator {
+    /// Sorts the cells of a mesh into bins.
+    pub fn new(mesh: &Mesh) -> Result<Locator, LocateError> {
         let count = mesh.cell_count();
-        let mut cells = Cells {
+        let mut cells = Locator {
             corners: Vec::with_capacity(count),
             frames: Vec::with_capacity(count),
             boxes: Vec::with_capacity(count),
@@ -205,6 +203,33 @@ impl Cells {
         }
     }
 
+    /// The four corners of a cell, m.
+    pub fn corners(&self, cell: usize) -> &[Point3; 4] {
+        &self.corners[cell]
+    }
+
+    /// Barycentric coordinates of any point with respect to a cell; some are negative outside it.
+    pub fn barycentric(&self, cell: usize, p: &Point3) -> [f64; 4] {
+        self.frames[cell].barycentric(p)
+    }
+
+    /// Gradients (1/m) of the four barycentric coordinates of a cell.
+    pub fn slopes(&self, cell: usize) -> [Vector3; 4] {
+        self.frames[cell].slopes()
+    }
+
+    /// As the function [`locate`], of these cells.
+    pub fn locate(&self, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
+        if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            return Err(LocateError::NotFinite { point });
+        }
+        let locations = points.par_chunks(CHUNK).flat_map_iter(|chunk| {
+            let mut scratch = Scratch::default();
+            chunk.iter().map(move |p| self.holding(p).unwrap_or_else(|| self.closest(p, &mut scratch)))
+        });
+        Ok(locations.collect())
+    }
+
     fn holding(&self, p: &Point3) -> Option<Location> {
         let [i, j, k] = self.bin(p);
         self.members((k * self.bins[1] + j) * self.bins[0] + i).iter().find_map(|&cell| {
@@ -222,6 +247,7 @@ impl Cells {
     /// they hold cells, then all bins are searched that the ball to the closest of these touches.
     fn closest(&self, p: &Point3, scratch: &mut Scratch) -> Location {
         scratch.stamp += 1;
+        scratch.seen.resize(self.corners.len(), 0);
         let centre = self.bin(p);
         let mut best = Closest { square: f64::INFINITY, at: *p, cell: usize::MAX };
         for ring in std::iter::once(0).chain((0..).map(|k| 1 << k)) {
@@ -342,7 +368,7 @@ mod tests {
             None,
         );
         for mesh in [kidney_mesh(CellKind::Tet4, 4).unwrap(), slab.unwrap()] {
-            let cells = Cells::new(&mesh).unwrap();
+            let cells = Locator::new(&mesh).unwrap();
             let [low, high] = [cells.low, cells.boxes.iter().fold(cells.low, |high, b| high.sup(&b[1]))];
             let (middle, extent) = (nalgebra::center(&low, &high), high - low);
             // Low-discrepancy points in three times the box, by multiples of irrational steps, and nodes moved off the mesh by whole
@@ -352,7 +378,7 @@ mod tests {
             let scattered =
                 (1..400).map(|q| middle + Vector3::from_fn(|d, _| at(q, d)).component_mul(&extent));
             let moved = mesh.points().iter().step_by(7).map(|p| p + Vector3::new(0.0, 0.0, 2.0 * extent.z));
-            let mut scratch = Scratch { stamp: 0, seen: vec![0; mesh.cell_count()], near: Vec::new() };
+            let mut scratch = Scratch::default();
             let mut outside = 0;
             for p in scattered.chain(moved).filter(|p| cells.holding(p).is_none()) {
                 outside += 1;

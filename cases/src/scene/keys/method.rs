@@ -192,6 +192,7 @@ pub(crate) enum EssentialName {
     Penalty,
     Multipliers,
     Elimination,
+    Coupling,
 }
 
 #[derive(Deserialize, JsonSchema)]

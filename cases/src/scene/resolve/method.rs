@@ -72,9 +72,29 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let essential = essential(keys.essential, &at("essential"), report);
     let (cloud, functions, background) =
         (cloud?, functions?, background.map_or(Some(None), |b| b.map(Some))?);
+    if essential == Essential::Coupling {
+        coupling(&cloud, &functions, key, report);
+    }
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
     let efg = Efg { cloud, functions, integration, essential, dilation, background };
     Some(Method { id: keys.id, family: Family::Efg(efg) })
+}
+
+/// What clouds that are coupled to finite elements are made of.
+fn coupling(cloud: &Cloud, functions: &Functions, key: &str, report: &mut Report) {
+    let linear = matches!(functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. });
+    report.require(
+        linear,
+        &format!("{key}.basis"),
+        "does not go with essential = \"coupling\"",
+        "take basis = \"linear\": what linear elements leave of another does not vanish where they hold",
+    );
+    report.require(
+        !matches!(cloud, Cloud::Refined { .. }),
+        &format!("{key}.cloud.refine"),
+        "does not go with essential = \"coupling\"",
+        "take essential = \"elimination\": nodes of finite elements can't be placed anew",
+    );
 }
 
 /// What a file says of a cloud; `size` is `Some(None)` where it could not be read.
@@ -368,6 +388,7 @@ fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {
         EssentialName::Nitsche => Essential::Nitsche { factor },
         EssentialName::Penalty => Essential::Penalty { factor },
         EssentialName::Multipliers => Essential::Multipliers,
+        EssentialName::Coupling => Essential::Coupling,
         EssentialName::Elimination => Essential::Elimination { rows: rows.unwrap_or(ConstraintRows::Means) },
     }
 }
