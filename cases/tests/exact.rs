@@ -3,7 +3,7 @@
 use cases::exact::{
     BarWave, CantileverPlaneStrain, Elastic, Exact, ExactError, LameCube, Matrix3, Params, Point3,
     PureBending, RelaxingCompression, RollerBox, ThickSphere, UniaxialCompression, Vector3,
-    VibratingCantilever, exact_by_name, exact_names, exact_parameters,
+    VibratingCantilever, Vibrations, exact_by_name, exact_names, exact_parameters,
 };
 use cases::scene::{Bound, load};
 use proptest::prelude::*;

@@ -90,9 +90,9 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
         for mass in ["consistent", "lumped", "transformed"] {
             let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().parameter("mass") == Some(mass));
             let lines = of_mass.map(|(s, name)| {
-                let name = name.strip_suffix(mass).and_then(|n| n.strip_suffix('-')).unwrap_or(name);
+                let name = name.replacen(&format!("-{mass}"), "", 1);
                 let points = curve(s.finest(), "mode", "omega-ratio");
-                (name.to_string(), s.is().family == "efg", points, Vec::new())
+                (name, s.is().family == "efg", points, Vec::new())
             });
             panels.push((format!("{}, {mass} mass", case[0].is.case), lines.filter(drawn).collect()));
         }

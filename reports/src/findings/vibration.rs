@@ -1,7 +1,7 @@
 //! What each mass does to the frequencies.
 
 use super::cases;
-use crate::select::{Run, series};
+use crate::select::{Run, labels, series};
 use crate::text::{list, significant};
 
 /// For every case with modes: the error of the first frequency by family and mass, and who has modes that no body has.
@@ -28,10 +28,12 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
                 out.push(format!("{case}: {called} miss the exact frequency by {}.", list(&parts)));
             }
         }
+        let names = labels(&finest.iter().map(|r| (r.name(), r.is)).collect::<Vec<_>>());
         let slow: Vec<String> = finest
             .iter()
-            .filter_map(|r| Some((r, r.value("slow-modes").filter(|count| *count > 0.0)?)))
-            .map(|(r, count)| format!("{} ({count})", r.name()))
+            .zip(names)
+            .filter_map(|(r, name)| Some((name, r.value("slow-modes").filter(|count| *count > 0.0)?)))
+            .map(|(name, count)| format!("{count} of {name}"))
             .collect();
         if !slow.is_empty() {
             out.push(format!("{case}: modes slower than any that the body has: {}.", list(&slow)));
