@@ -1,9 +1,9 @@
 //! One list of properties over every exact solution, then the boundary conditions that make each one what it is.
 
 use cases::exact::{
-    BarWave, CantileverPlaneStrain, Elastic, Exact, ExactError, Matrix3, Params, Point3, PureBending,
-    RelaxingCompression, ThickSphere, UniaxialCompression, Vector3, VibratingCantilever, exact_by_name,
-    exact_names, exact_parameters,
+    BarWave, CantileverPlaneStrain, Elastic, Exact, ExactError, LameCube, Matrix3, Params, Point3,
+    PureBending, RelaxingCompression, RollerBox, ThickSphere, UniaxialCompression, Vector3,
+    VibratingCantilever, Vibrations, exact_by_name, exact_names, exact_parameters,
 };
 use cases::scene::{Bound, load};
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 type Sample = (&'static str, &'static [(&'static str, f64)], [[f64; 2]; 3]);
 
 const UNIT: [[f64; 2]; 3] = [[-1.0, 1.0]; 3];
-const SAMPLES: [Sample; 10] = [
+const SAMPLES: [Sample; 13] = [
     ("affine", &[("hxy", 0.2), ("hzz", -0.1), ("ty", 0.3)], UNIT),
     ("affine", &[], UNIT),
     ("quadratic-patch", &[("amplitude", 0.02)], UNIT),
@@ -39,6 +39,17 @@ const SAMPLES: [Sample; 10] = [
         [[0.6, 1.6]; 3],
     ),
     ("rigid", &[], UNIT),
+    ("lame-cube", &[("side", 2.0), ("density", 3.0), ("amplitude", 0.1)], [[0.0, 2.0]; 3]),
+    (
+        "roller-box",
+        &[("length", 2.0), ("depth", 1.6), ("width", 1.1), ("density", 3.0)],
+        [[0.0, 2.0], [0.0, 1.6], [0.0, 1.1]],
+    ),
+    (
+        "roller-box",
+        &[("length", 0.7), ("depth", 2.0), ("width", 0.6), ("density", 3.0)],
+        [[0.0, 0.7], [0.0, 2.0], [0.0, 0.6]],
+    ),
 ];
 
 /// What moves is at rest at time 0; it has tests of its own, at other times.
@@ -374,4 +385,94 @@ fn bad_requests_are_named() {
     assert!(matches!(Elastic::new(f64::NAN, 0.3), Err(ExactError::Material { what: "young", .. })));
     assert_eq!(exact_parameters("pure-bending").unwrap()[0].unit, "1/m");
     assert!(exact_parameters("x").is_err());
+}
+
+/// `omega^2 = 2 pi^2 mu / (rho L^2)` whatever Poisson's ratio; no traction anywhere on the surface; three modes, whose Gram
+/// matrix is that of the integral of `sin`.
+#[test]
+fn lames_cube_is_free() {
+    let (side, density) = (2.0, 3.0);
+    for poisson in [0.0, 0.3, 0.495] {
+        let elastic = Elastic::new(YOUNG, poisson).unwrap();
+        let cube = LameCube::new(elastic, side, density, 0.1).unwrap();
+        let vibrations = cube.vibrations().unwrap();
+        let squared = 2.0 * std::f64::consts::PI.powi(2) * elastic.mu() / (density * side * side);
+        assert!((vibrations.omega().powi(2) / squared - 1.0).abs() < 1e-14);
+        assert_eq!(vibrations.lowest(5), None);
+        let inside = elastic.mu() * cube.gradient(&Point3::new(1.0, 1.0, 1.0)).norm();
+        for (a, b) in [(0.3, 1.1), (1.7, 0.6), (1.0, 1.0)] {
+            for axis in 0..3 {
+                for (end, sign) in [(0.0, -1.0), (side, 1.0)] {
+                    let mut x = Point3::new(a, b, a + 0.1);
+                    x[axis] = end;
+                    let force = cube.traction(&x, &(Vector3::ith(axis, 1.0) * sign));
+                    assert!(force.norm() < 1e-14 * inside, "{poisson} {x}: {force}");
+                }
+            }
+        }
+        // A quarter of a period on it is at rest, half a period on it is its opposite.
+        let period = 2.0 * std::f64::consts::PI / vibrations.omega();
+        let x = Point3::new(0.3, 1.7, 0.4);
+        assert!(cube.at(0.25 * period).unwrap().displacement(&x).norm() < 1e-16);
+        let opposite = cube.at(0.5 * period).unwrap().displacement(&x) + cube.displacement(&x);
+        assert!(opposite.norm() < 1e-15);
+    }
+    let cube = LameCube::new(Elastic::new(YOUNG, 0.3).unwrap(), side, density, 0.1).unwrap();
+    let middles = |n: usize| (0..n).map(move |i| side * (i as f64 + 0.5) / n as f64);
+    let mut gram = Matrix3::zeros();
+    for x in middles(16) {
+        for y in middles(16) {
+            for z in middles(16) {
+                let u = Matrix3::from_columns(&cube.shapes(&Point3::new(x, y, z)));
+                gram += u.transpose() * u;
+            }
+        }
+    }
+    let ratio = gram[(0, 1)] / gram[(0, 0)];
+    assert!((ratio + 4.0 / std::f64::consts::PI.powi(2)).abs() < 2e-3, "{ratio}");
+}
+
+/// The lowest frequencies of a box of 4 x 3 x 2 pi, counted by hand: `|k|^2` are sums of `i^2/16, j^2/9, l^2/4`.
+#[test]
+fn modes_of_a_box_on_rollers_are_counted() {
+    let pi = std::f64::consts::PI;
+    // mu = 4, lambda + 2 mu = 12 at nu = 0.25: with rho = 4, shear waves at speed 1 and compression at sqrt(3).
+    let elastic = Elastic::new(10.0, 0.25).unwrap();
+    let size = [4.0 * pi, 3.0 * pi, 2.0 * pi];
+    let body = RollerBox::new(elastic, size, 4.0, 0.1).unwrap();
+    let squares: Vec<f64> = body.lowest(12).unwrap().iter().map(|w| w * w).collect();
+    let (x, y, z) = (1.0 / 16.0, 1.0 / 9.0, 1.0 / 4.0);
+    let expected = [
+        x + y,       // shear (1, 1, 0): 0.174
+        3.0 * x,     // compression (1, 0, 0): 0.188
+        x + z,       // shear (1, 0, 1): 0.313
+        3.0 * y,     // compression (0, 1, 0): 0.333
+        4.0 * x + y, // shear (2, 1, 0): 0.361
+        y + z,       // shear (0, 1, 1): 0.361
+        x + y + z,   // shear (1, 1, 1), twice: 0.424
+        x + y + z,
+        4.0 * x + z,     // shear (2, 0, 1): 0.5
+        x + 4.0 * y,     // shear (1, 2, 0): 0.507
+        3.0 * (x + y),   // compression (1, 1, 0): 0.521
+        4.0 * x + y + z, // shear (2, 1, 1), twice: 0.611
+    ];
+    for (found, expected) in squares.iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{squares:?}");
+    }
+    assert!((body.omega() - squares[0].sqrt()).abs() < 1e-14);
+    // Near incompressibility waves of compression are far above those of shear; long counts end all the same.
+    let stiff = RollerBox::new(Elastic::new(10.0, 0.4999).unwrap(), size, 4.0, 0.1).unwrap();
+    assert_eq!(stiff.lowest(100).unwrap().len(), 100);
+    // In a slender box compression along it comes first.
+    let slender = RollerBox::new(elastic, [1.0, 5.0, 0.5], 4.0, 0.1).unwrap();
+    assert!((slender.omega() / (3.0f64.sqrt() * pi / 5.0) - 1.0).abs() < 1e-14);
+    // Nothing moves through the walls, and no shear acts on them.
+    for body in [body, slender] {
+        let [a, b, c] = if body == slender { [1.0, 5.0, 0.5] } else { size };
+        for x in [Point3::new(a, 0.3 * b, 0.7 * c), Point3::new(0.0, 0.6 * b, 0.2 * c)] {
+            let (u, stress) = (body.displacement(&x), body.stress(&x));
+            let scale = stress.norm() + elastic.mu() * 0.1;
+            assert!(u.x.abs() < 1e-15 && stress[(0, 1)].abs() + stress[(0, 2)].abs() < 1e-13 * scale);
+        }
+    }
 }

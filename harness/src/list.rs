@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cases::exact::{exact_names, exact_parameters};
-use cases::scene::{Basis, Element, KernelName, Metric, SchemeName, SupportShape};
+use cases::scene::{Basis, Element, KernelName, Mass, Metric, SchemeName, SupportShape};
 use reports::{Check, Status};
 
 use crate::outcome::{Outcome, Stage};
@@ -20,6 +20,7 @@ pub fn print() {
     println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
     println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
     println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
+    println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
     println!("essential   nitsche, penalty, multipliers, elimination, coupling");
     println!("transfer    {}", SchemeName::ALL.map(SchemeName::name).join(", "));
     println!("exact solutions, with their parameters");

@@ -206,6 +206,8 @@ pub struct Outcome {
     pub last: Option<LoadStep>,
     /// The load steps of a static procedure or the recorded states of dynamics, as far as it came.
     pub steps: Vec<LoadStep>,
+    /// The lowest modes of vibration, each with its frequency and what it is compared with.
+    pub modes: Vec<Vec<Metric>>,
     /// `ok`; `relaxed` where dynamic relaxation carried what Newton's method could not; or how a run ended early: `stalled` in a static procedure; `inverted`, `step-too-large`, `not-finite` or
     /// `contact-lost` in dynamics.
     pub status: &'static str,
@@ -254,6 +256,10 @@ impl Outcome {
             records.extend(self.transfer_records(transfer));
         }
         records.extend(self.step_records());
+        for (number, metrics) in self.modes.iter().enumerate() {
+            let phase = format!("mode-{}", number + 1);
+            records.extend(metrics.iter().map(|m| self.record(&m.name, m.unit, &phase, "value", m.value)));
+        }
         records
     }
 

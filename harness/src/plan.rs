@@ -90,6 +90,7 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     let explicit = setup.explicit.as_ref();
     let in_time = setup.in_time.as_ref();
     let (mass, why) = match (explicit, in_time) {
+        _ if setup.modes.is_some() => (true, setup.modes.as_ref().map_or("", |m| m.mass.name())),
         (Some(_), _) => (true, "lumped"),
         (_, Some(InTimeParams { density: Some(_), .. })) => (true, "consistent"),
         (_, Some(_)) => (false, "without inertia"),
@@ -185,6 +186,17 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             (false, _) => "none asked for".into(),
         },
     );
+    if setup.modes.is_some() {
+        for stage in &mut stages {
+            match stage.stage {
+                "factorisation" => stage.why = "one, dense, into all modes".into(),
+                "transfer" | "transfer schemes" => {
+                    (stage.ran, stage.why) = (false, "modes are compared where they are integrated".into());
+                }
+                _ => {}
+            }
+        }
+    }
     if setup.prepare_only {
         for stage in stages.iter_mut().filter(|stage| OF_SOLVING.contains(&stage.stage)) {
             (stage.ran, stage.why) = (false, "nothing is solved (kind = \"prepare\")".into());

@@ -14,6 +14,7 @@ use crate::explicit;
 use crate::in_time;
 use crate::measure::{measure, of_tables, probes, push};
 use crate::memory::Baseline;
+use crate::modes::{self, Told};
 use crate::motion::Motion;
 use crate::outcome::{Identity, LoadStep, Outcome, Probe, Size, Stage};
 use crate::picture::{State, picture};
@@ -102,6 +103,8 @@ pub(crate) struct Solution {
     pub(crate) path: Option<Path>,
     /// Of dynamics.
     pub(crate) motion: Option<Motion>,
+    /// Of vibrations.
+    modes: Option<modes::Found>,
 }
 
 /// Runs one method.
@@ -128,7 +131,12 @@ pub fn run(
     let method = refined.as_ref().unwrap_or(method);
     let memory = baseline.peak();
     if setup.prepare_only {
-        return Ok(prepared_only(identity, plan, method, prepared, (timings, memory, work)));
+        let told = Told { metrics: Vec::new(), dofs: 0, modes: Vec::new() };
+        return Ok(unloaded(identity, plan, method, prepared, told, (timings, memory, work)));
+    }
+    if let Some(found) = solution.modes.take() {
+        let told = modes::told(method, setup, &prepared, &found)?;
+        return Ok(unloaded(identity, plan, method, prepared, told, (timings, memory, work)));
     }
     let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
     let mut phases = timings.summaries();
@@ -219,6 +227,7 @@ pub fn run(
         tools,
         last,
         steps,
+        modes: Vec::new(),
         status,
         stalled,
         relaxed: relaxed_from,
@@ -236,21 +245,22 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
     }
 }
 
-/// What a run that ends before anything is solved leaves: times, memory, and what its tables are like.
-fn prepared_only(
+/// What a run without a displacement leaves, one that ends before anything is solved or has modes: times, memory, and what its
+/// tables are like.
+fn unloaded(
     identity: Identity,
     plan: Vec<Stage>,
     method: &Discretisation,
     prepared: Prepared,
+    Told { mut metrics, dofs, modes }: Told,
     (timings, memory, work): (Timings, u64, Work),
 ) -> Solved {
-    let mut metrics = Vec::new();
     of_tables(&mut metrics, &prepared);
     let mut phases = timings.summaries();
     phases.push(("total", timings.total()));
     let outcome = Outcome {
         identity,
-        size: size(method, &prepared, 0),
+        size: size(method, &prepared, dofs),
         metrics,
         phases,
         latencies: Vec::new(),
@@ -263,6 +273,7 @@ fn prepared_only(
         tools: Vec::new(),
         last: None,
         steps: Vec::new(),
+        modes,
         status: "ok",
         stalled: None,
         relaxed: None,
@@ -298,8 +309,22 @@ fn solve(
 ) -> Result<(Prepared, Solution), Failure> {
     let prepared = timings.time("prepare", || prepare(method, setup, work))?;
     if setup.prepare_only {
+        let solution = Solution {
+            u: Vec::new(),
+            dofs: 0,
+            residual: 0.0,
+            info: None,
+            path: None,
+            motion: None,
+            modes: None,
+        };
+        return Ok((prepared, solution));
+    }
+    if let Some(params) = &setup.modes {
+        let found = modes::solve(method, setup, params, &prepared, timings, work)?;
+        let modes = Some(found);
         let solution =
-            Solution { u: Vec::new(), dofs: 0, residual: 0.0, info: None, path: None, motion: None };
+            Solution { u: Vec::new(), dofs: 0, residual: 0.0, info: None, path: None, motion: None, modes };
         return Ok((prepared, solution));
     }
     if let Some(params) = &setup.statics {
@@ -308,7 +333,8 @@ fn solve(
             timings.book("solve-to-limit", path.to_limit);
         }
         let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
-        let solution = Solution { u, dofs, residual, info: None, path: Some(path), motion: None };
+        let solution =
+            Solution { u, dofs, residual, info: None, path: Some(path), motion: None, modes: None };
         return Ok((prepared, solution));
     }
     let motion = match (&setup.explicit, &setup.in_time) {
@@ -320,12 +346,13 @@ fn solve(
     };
     if let Some(motion) = motion {
         let (u, dofs) = (motion.u.clone(), motion.dofs);
-        let solution = Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion) };
+        let solution =
+            Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion), modes: None };
         return Ok((prepared, solution));
     }
     let mechanics::Solution { u, info, .. } = solve_linear(method, setup, &prepared, timings, work)?;
     let (dofs, residual) = (info.dofs, info.residual);
-    Ok((prepared, Solution { u, dofs, residual, info: Some(info), path: None, motion: None }))
+    Ok((prepared, Solution { u, dofs, residual, info: Some(info), path: None, motion: None, modes: None }))
 }
 
 /// Assembles, factors and solves once.

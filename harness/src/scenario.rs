@@ -11,6 +11,7 @@ use crate::discretise::{Coupled, Dilation, Discretisation, Efg, Essential, Fem, 
 use crate::error::Key;
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
+use crate::modes::ModesParams;
 use crate::outcome::Identity;
 use crate::place::{self, tolerance};
 use crate::refine::Refine;
@@ -121,8 +122,11 @@ impl Scenario<'_> {
             }
         };
         let law = self.scene.material.name();
-        if self.scene.procedure.kind != ProcedureKind::Linear {
+        if !matches!(self.scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes) {
             pairs.push(("law", law.into()));
+        }
+        if let Some(mass) = self.method.mass {
+            pairs.push(("mass", mass.name().into()));
         }
         pairs.sort();
         Identity {
@@ -181,6 +185,15 @@ impl Scenario<'_> {
             density: materials.map(|m| m.density().unwrap_or(f64::NAN)).collect(),
             over: self.scene.tools.iter().map(|t| t.over.unwrap_or(duration)).collect(),
         })
+    }
+
+    fn modes(&self) -> Option<ModesParams> {
+        let procedure = self.scene.procedure;
+        let mass = self.method.mass.filter(|_| procedure.kind == ProcedureKind::Modes)?;
+        let materials =
+            std::iter::once(&self.scene.material).chain(self.scene.regions.iter().map(|r| &r.material));
+        let density = materials.map(|m| m.density().unwrap_or(f64::NAN)).collect();
+        Some(ModesParams { mass, count: procedure.modes, density })
     }
 
     fn in_time(&self) -> Result<Option<InTimeParams>, Failure> {
@@ -480,6 +493,7 @@ impl Scenario<'_> {
             tools,
             watch: None,
             prepare_only,
+            modes: self.modes(),
             statics,
             relax,
             explicit,

@@ -6,6 +6,7 @@ use mechanics::{Law, LinearElastic, StaticParams};
 
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;
+use crate::modes::ModesParams;
 use crate::outcome::LoadStep;
 use crate::place::Place;
 use crate::tools::SetTool;
@@ -65,6 +66,8 @@ pub struct Setup {
     pub watch: Option<fn(&LoadStep)>,
     /// Whether nothing is solved.
     pub prepare_only: bool,
+    /// Which vibrations are asked for; `None` for another procedure.
+    pub modes: Option<ModesParams>,
     /// How a static procedure is stepped; `None` for another one.
     pub statics: Option<StaticParams>,
     /// Whether a static path that stalls goes on by dynamic relaxation.

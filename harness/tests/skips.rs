@@ -59,6 +59,7 @@ fn what_a_plan_skips_is_not_done_and_what_it_runs_is() {
         "cloud-cost",
         "compression",
         "first",
+        "modes-cube",
         "patch-displacement",
         "patch-large-strain",
         "patch-traction",

@@ -1,15 +1,17 @@
-//! Numbers told step by step: which steps a run recorded, and one quantity over another.
+//! Numbers told step by step or mode by mode: which of them a run recorded, and one quantity over another.
 //!
-//! A step is a record whose phase is `step-N`; everything a run recorded at the same step belongs together.
+//! A step is a record whose phase is `step-N`, a mode of vibration one whose phase is `mode-N`; everything a run recorded at the
+//! same one belongs together.
 
 use std::collections::BTreeMap;
 
 use crate::record::Record;
 use crate::select::Run;
 
-/// The number of the step a record belongs to, where it belongs to one.
+/// The number of the step or mode a record belongs to, where it belongs to one.
 pub(crate) fn step(record: &Record) -> Option<u64> {
-    record.phase.strip_prefix("step-")?.parse().ok()
+    let phase = &record.phase;
+    phase.strip_prefix("step-").or(phase.strip_prefix("mode-"))?.parse().ok()
 }
 
 /// One quantity by step, for one statistic.

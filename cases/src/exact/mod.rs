@@ -4,7 +4,7 @@
 //! by its own constructor or by name with a list of parameters ([`exact_by_name`]). Stresses follow from the
 //! gradients by Hooke's law written out here, so that a solver's material never judges itself.
 //!
-//! A solution may move ([`BarWave`]) or relax ([`RelaxingCompression`]): it is a field at one time and gives that at any other.
+//! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax ([`RelaxingCompression`]): it is a field at one time and gives that at any other.
 //!
 //! Beside them stand large strains ([`Homogeneous`], [`FiniteBending`], of the laws in [`Hyperelastic`]), contact
 //! ([`Hertz`]) and a period ([`VibratingCantilever`]).
@@ -17,12 +17,14 @@ mod finite_bending;
 mod hertz;
 mod homogeneous;
 mod hyperelastic;
+mod lame_cube;
 mod params;
 mod polylog;
 mod pure_bending;
 mod quadratic_patch;
 mod relaxing_compression;
 mod rigid;
+mod roller_box;
 mod saint_venant;
 mod thick_sphere;
 mod uniaxial_compression;
@@ -36,11 +38,13 @@ pub use finite_bending::FiniteBending;
 pub use hertz::Hertz;
 pub use homogeneous::Homogeneous;
 pub use hyperelastic::Hyperelastic;
+pub use lame_cube::LameCube;
 pub use params::{ExactError, Parameter, Params};
 pub use pure_bending::PureBending;
 pub use quadratic_patch::QuadraticPatch;
 pub use relaxing_compression::RelaxingCompression;
 pub use rigid::Rigid;
+pub use roller_box::RollerBox;
 pub use saint_venant::SaintVenantFlexure;
 pub use thick_sphere::ThickSphere;
 pub use uniaxial_compression::UniaxialCompression;
@@ -86,12 +90,30 @@ pub trait Exact: Send + Sync {
     fn at(&self, _time: f64) -> Option<Box<dyn Exact>> {
         None
     }
+
+    /// What is known of free vibrations, where the solution is one.
+    fn vibrations(&self) -> Option<&dyn Vibrations> {
+        None
+    }
+}
+
+/// Free vibrations of a body.
+pub trait Vibrations {
+    /// Angular frequency of the solution's own field, rad/s.
+    fn omega(&self) -> f64;
+
+    /// All modes of that frequency at a point, linearly independent, of any size.
+    fn shapes(&self, x: &Point3) -> Vec<Vector3>;
+
+    /// The lowest `count` angular frequencies of the body, ascending and each as often as it has modes, rad/s; `None` where
+    /// not all are known.
+    fn lowest(&self, count: usize) -> Option<Vec<f64>>;
 }
 
 type Build = fn(Elastic, &Values) -> Result<Box<dyn Exact>, ExactError>;
 
 /// Name, parameters and constructor of every solution.
-const SOLUTIONS: [(&str, &[Parameter], Build); 10] = [
+const SOLUTIONS: [(&str, &[Parameter], Build); 12] = [
     ("affine", affine::PARAMETERS, affine::build),
     ("quadratic-patch", quadratic_patch::PARAMETERS, quadratic_patch::build),
     ("pure-bending", pure_bending::PARAMETERS, pure_bending::build),
@@ -102,6 +124,8 @@ const SOLUTIONS: [(&str, &[Parameter], Build); 10] = [
     ("rigid", rigid::PARAMETERS, rigid::build),
     ("bar-wave", bar_wave::PARAMETERS, bar_wave::build),
     ("relaxing-compression", relaxing_compression::PARAMETERS, relaxing_compression::build),
+    ("lame-cube", lame_cube::PARAMETERS, lame_cube::build),
+    ("roller-box", roller_box::PARAMETERS, roller_box::build),
 ];
 
 fn entry(name: &str) -> Result<&'static (&'static str, &'static [Parameter], Build), ExactError> {

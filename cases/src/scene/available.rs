@@ -41,6 +41,10 @@ impl Scene {
         for (i, method) in self.methods.iter().enumerate() {
             let at = |key: &str| format!("method[{i}].{key}");
             match &method.family {
+                Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Modes => {
+                    let help = "\"standard\", \"element-mean\" and \"nodal-mean\" are";
+                    add(&at("dilation"), "dilation = \"mixed\" in vibrations".into(), help);
+                }
                 Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Linear => {
                     let help =
                         "procedure = { kind = \"static\" } has it, with the linear law in one step too";
@@ -62,7 +66,13 @@ impl Scene {
                         add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                     }
                     let what = match efg.essential {
-                        _ if matches!(kind, ProcedureKind::Linear | ProcedureKind::Prepare) => continue,
+                        _ if matches!(
+                            kind,
+                            ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
+                        ) =>
+                        {
+                            continue;
+                        }
                         Essential::Penalty { .. } | Essential::Coupling => continue,
                         Essential::Nitsche { .. } => "Nitsche's method",
                         Essential::Multipliers => "a support by multipliers",

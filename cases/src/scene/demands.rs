@@ -16,6 +16,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     mixed(scene, report);
     unsolved(scene, report);
     refined(scene, report);
+    vibrating(scene, report);
     if scene.output.repeated.is_some() {
         let at_rest = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static);
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
@@ -83,8 +84,44 @@ fn unsolved(scene: &Scene, report: &mut Report) {
     }
 }
 
+/// Vibrations are free: mass and stiffness are all there is, and what is told of them is no displacement.
+fn vibrating(scene: &Scene, report: &mut Report) {
+    let vibrates = scene.procedure.kind == ProcedureKind::Modes;
+    for (i, method) in scene.methods.iter().enumerate() {
+        let key = format!("method[{i}].mass");
+        if vibrates && method.mass.is_none() {
+            report.missing(&key, "add mass = \"consistent\", \"lumped\" or \"transformed\"");
+        }
+        let help = "leave it out, or take [procedure] kind = \"modes\"";
+        report.require(vibrates || method.mass.is_none(), &key, "is of vibrations alone", help);
+    }
+    if !vibrates {
+        return;
+    }
+    for (key, ..) in materials(scene).iter().filter(|m| m.1.density().is_none()) {
+        report.missing(&format!("{key}.density"), "vibrations need a mass: density = \"1000 kg/m^3\"");
+    }
+    let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
+    for (i, support) in scene.supports.iter().enumerate() {
+        let holds = support.motion.iter().flatten().all(still);
+        let help = "hold it: fix = \"xyz\"";
+        report.require(holds, &format!("support[{i}].move"), "moves what vibrates freely", help);
+    }
+    let output = &scene.output;
+    for (key, given) in [
+        ("load[0]", !scene.loads.is_empty()),
+        ("output.probes", !output.probes.is_empty()),
+        ("output.transfer", !output.transfers.is_empty()),
+        ("output.beside", output.beside.is_some()),
+        ("reference", matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)))),
+    ] {
+        let help = "leave it out: vibrations are compared with an exact solution of them, or with none";
+        report.require(!given, key, "has no part in free vibrations", help);
+    }
+}
+
 fn timeless(scene: &Scene) -> bool {
-    matches!(scene.procedure.kind, ProcedureKind::Prepare | ProcedureKind::Linear | ProcedureKind::Static)
+    !matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic)
 }
 
 /// Every material with its key.
@@ -99,7 +136,8 @@ fn laws(scene: &Scene, report: &mut Report) {
     let materials = materials(scene);
     let linear = |material: &Material| matches!(material, Material::Linear(_));
     for (key, material, prony) in &materials {
-        if scene.procedure.kind == ProcedureKind::Linear && !linear(material) {
+        let small = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes);
+        if small && !linear(material) {
             let problem = Problem::new("is a law of large strain, but the procedure is linear");
             let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";
             report.add(&format!("{key}.law"), problem.found(material.name()).help(help));
@@ -125,7 +163,7 @@ fn laws(scene: &Scene, report: &mut Report) {
 fn tools(scene: &Scene, report: &mut Report) {
     for (i, tool) in scene.tools.iter().enumerate() {
         let at = |name: &str| format!("tool[{i}].{name}");
-        if scene.procedure.kind == ProcedureKind::Linear {
+        if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes) {
             let problem =
                 Problem::new(format!("'{}' touches the body, but the procedure is linear", tool.name));
             let help = "contact is not linear: add [procedure] kind = \"static\" and steps = 10";

@@ -14,6 +14,34 @@ pub struct Method {
     pub id: String,
     /// Its family and settings.
     pub family: Family,
+    /// What moves in vibrations (`kind = "modes"`, which needs one).
+    pub mass: Option<Mass>,
+}
+
+/// How mass is shared out among nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mass {
+    /// `M_IJ`, the integral of density and both shape functions.
+    Consistent,
+    /// Diagonal, on the nodal parameters: row sums, of quadratic elements the scaled diagonal.
+    Lumped,
+    /// The same masses on the displacements of the nodes, which a cloud's parameters are not.
+    Transformed,
+}
+
+impl Mass {
+    /// All, in the order they are listed.
+    pub const ALL: [Mass; 3] = [Mass::Consistent, Mass::Lumped, Mass::Transformed];
+
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Mass::Consistent => "consistent",
+            Mass::Lumped => "lumped",
+            Mass::Transformed => "transformed",
+        }
+    }
 }
 
 /// Family of a method.

@@ -35,6 +35,10 @@ pub enum Needs {
     Steps,
     /// A procedure by Newton's method.
     Newton,
+    /// Vibrations.
+    Modes,
+    /// Vibrations, and an exact solution of them.
+    ModesReference,
     /// Dynamics.
     Dynamics,
     /// Explicit dynamics.
@@ -119,6 +123,44 @@ impl Metric {
         metric("order-l2", Dimension::None, Needs::Levels, "observed order of the L2 error"),
         metric("order-energy", Dimension::None, Needs::Levels, "observed order of the energy error"),
         metric("order-pressure", Dimension::None, Needs::Levels, "observed order of the pressure error"),
+        metric(
+            "order-frequency-error",
+            Dimension::None,
+            Needs::Levels,
+            "observed order of the frequency's error",
+        ),
+        metric(
+            "frequency-ratio",
+            Dimension::None,
+            Needs::ModesReference,
+            "computed over exact frequency, the worst of the modes nearest to the exact ones of that frequency",
+        ),
+        metric("frequency-error", Dimension::None, Needs::ModesReference, "the same less 1, either way"),
+        metric(
+            "mode-overlap",
+            Dimension::None,
+            Needs::ModesReference,
+            "least share of their displacement that lies in the exact modes",
+        ),
+        metric(
+            "spectrum-error",
+            Dimension::None,
+            Needs::ModesReference,
+            "largest error of the frequencies told, one by one in order, over the exact ones",
+        ),
+        metric(
+            "slow-modes",
+            Dimension::None,
+            Needs::ModesReference,
+            "modes slower than 0.9 of the slowest exact one",
+        ),
+        metric(
+            "rigid-modes",
+            Dimension::None,
+            Needs::Modes,
+            "modes slower than a thousandth of a shear wave across the body",
+        ),
+        metric("massless", Dimension::None, Needs::Modes, "motions that have stiffness but no mass"),
         metric("transfer-rms", Dimension::Length, Needs::Transfer, "root mean square error after transfer"),
         metric(
             "probe-difference",
@@ -151,7 +193,12 @@ impl Metric {
         metric("newton-iterations", Dimension::None, Needs::Newton, "Newton iterations of all steps"),
         metric("cut-backs", Dimension::None, Needs::Newton, "steps that failed and were cut"),
         metric("time-steps", Dimension::None, Needs::Dynamics, "time steps made"),
-        metric("critical-step", Dimension::Time, Needs::Explicit, "smallest critical time step estimated"),
+        metric(
+            "critical-step",
+            Dimension::Time,
+            Needs::Explicit,
+            "smallest critical time step estimated; of vibrations 2 / omega of the fastest",
+        ),
         metric(
             "energy-drift",
             Dimension::None,
@@ -167,7 +214,7 @@ impl Metric {
             "residual",
             Dimension::None,
             Needs::Run,
-            "relative residual of the linear solve, or of the last static step",
+            "relative residual of the linear solve, of the last static step, or of the worst mode told",
         ),
         metric("condition", Dimension::None, Needs::Run, "largest condition estimate of a moment matrix"),
         metric(

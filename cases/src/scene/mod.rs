@@ -34,7 +34,7 @@ pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
-    Jitter, Kernel, KernelName, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
+    Jitter, Kernel, KernelName, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
 pub use metric::{Metric, Needs};
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};

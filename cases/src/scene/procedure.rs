@@ -11,6 +11,8 @@ pub enum ProcedureKind {
     Prepare,
     /// One linear solve.
     Linear,
+    /// Small free vibrations: the lowest modes and every frequency.
+    Modes,
     /// Quasi-static load steps, each by Newton's method; tools touch and large-strain laws act.
     Static,
     /// Explicit dynamics.
@@ -25,6 +27,7 @@ impl ProcedureKind {
         match self {
             ProcedureKind::Prepare => "prepare",
             ProcedureKind::Linear => "linear",
+            ProcedureKind::Modes => "modes",
             ProcedureKind::Static => "static",
             ProcedureKind::Explicit => "explicit",
             ProcedureKind::ImplicitDynamic => "implicit-dynamic",
@@ -63,6 +66,8 @@ pub struct Procedure {
     pub newton: Newton,
     /// Part of the load to within which a limit point of a static path is sought, if it is.
     pub limit_within: Option<f64>,
+    /// Lowest modes that are told and compared (kind = "modes").
+    pub modes: usize,
     /// What follows where a static path finds no equilibrium.
     pub on_stall: OnStall,
     /// Mass-proportional damping in one per second (dynamics); of the tools too where they have a mass (explicit).
@@ -109,6 +114,9 @@ impl Explicit {
     /// steps that a soft body takes.
     pub const STANDARD: Explicit = Explicit { safety: 0.9, step: None, tool_mass: 0.1 };
 }
+
+/// Modes that are told where the file says nothing.
+pub(crate) const MODES: usize = 24;
 
 /// How a static step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]

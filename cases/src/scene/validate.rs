@@ -58,6 +58,13 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
                 let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
                 match exact_by_name(name, &params) {
                     Err(bad) => report.add("reference", Problem::new(format!("can't be built: {bad}"))),
+                    Ok(exact) if scene.procedure.kind == ProcedureKind::Modes => {
+                        let problem = Problem::new("knows no vibrations").found(name);
+                        let help = "take \"lame-cube\" or \"roller-box\", or leave the reference out";
+                        if exact.vibrations().is_none() {
+                            report.add("reference.exact", problem.help(help));
+                        }
+                    }
                     Ok(exact) if exact.at(0.0).is_some() && scene.procedure.duration.is_none() => {
                         let problem = format!(
                             "moves in time, which a {} procedure has not",
@@ -123,7 +130,12 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
             "needs a [reference] and output.probes in the scene"
         }
-        Needs::Steps if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Prepare) => {
+        Needs::Steps
+            if matches!(
+                scene.procedure.kind,
+                ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
+            ) =>
+        {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Dynamics if !in_time(scene) => {
@@ -137,6 +149,14 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         {
             "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene"
         }
+        Needs::Modes if scene.procedure.kind != ProcedureKind::Modes => {
+            "needs [procedure] kind = \"modes\" in the scene"
+        }
+        Needs::ModesReference
+            if scene.procedure.kind != ProcedureKind::Modes || scene.reference.is_none() =>
+        {
+            "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene"
+        }
         Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
         Needs::ToolReference if scene.tools.is_empty() || !solved => {
             "needs a [[tool]] and [reference] method or record in the scene"
@@ -145,8 +165,10 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
             "needs output.probes and [reference] method or record in the scene"
         }
         Needs::StepsReference
-            if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Prepare)
-                || !matches!(scene.reference, Some(Reference::Method { .. })) =>
+            if matches!(
+                scene.procedure.kind,
+                ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
+            ) || !matches!(scene.reference, Some(Reference::Method { .. })) =>
         {
             "needs [procedure] kind = \"static\" or dynamics, and [reference] method in the scene"
         }

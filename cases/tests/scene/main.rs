@@ -4,6 +4,7 @@ mod bad_scenes;
 mod bad_studies;
 mod fuzz;
 mod good;
+mod vibrations;
 
 /// A scene that uses every part that runs today, and some that wait.
 pub const SCENE: &str = r#"title = "A block"

@@ -1,4 +1,5 @@
-//! What happens while a tool closes: its force over the closure, and where the energy is over time.
+//! What happens while a tool closes, its force over the closure and where the energy is over time; and how frequencies go
+//! wrong from mode to mode.
 
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
@@ -76,6 +77,32 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
         "Energy over time",
         "Where the energy is at every step, the finest run of each method; the work of the loads is the sum of the others where none is lost",
         ("time [s]", "energy [mJ]"),
+        panels,
+    )
+}
+
+/// Computed over exact frequency, mode by mode: one panel for each mass of a case, the finest run of every method.
+pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
+    let mut panels = Vec::new();
+    for case in groups(runs, |r| r.is.case.clone()) {
+        let all = series(case);
+        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        for mass in ["consistent", "lumped", "transformed"] {
+            let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().parameter("mass") == Some(mass));
+            let lines = of_mass.map(|(s, name)| {
+                let name = name.replacen(&format!("-{mass}"), "", 1);
+                let points = curve(s.finest(), "mode", "omega-ratio");
+                (name, s.is().family == "efg", points, Vec::new())
+            });
+            panels.push((format!("{}, {mass} mass", case[0].is.case), lines.filter(drawn).collect()));
+        }
+    }
+    figures(
+        "spectrum",
+        "Frequency spectrum",
+        "Computed over exact frequency of the lowest modes in order, the finest run of each method; a spurious slow mode lies near zero and \
+         shifts all others",
+        ("mode [1]", "computed over exact frequency [1]"),
         panels,
     )
 }

@@ -49,6 +49,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     figures.extend(locking::figures(&solved));
     figures.extend(history::forces(&solved));
     figures.extend(history::energies(&solved));
+    figures.extend(history::spectra(&solved));
     figures.extend(surface::figures(&set.fields, &solved));
     figures.extend(section::figures(&set.fields, &solved));
     figures.extend(bars::rms(&solved));

@@ -6,6 +6,7 @@ mod claim;
 mod kidney;
 mod outcome;
 mod placement;
+mod vibration;
 
 use crate::clouds::Clouds;
 use crate::record::RunSet;
@@ -26,6 +27,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
             sentences: [cheapest::cheapest(&solved), claim::claim(&solved)].concat(),
         },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
+        Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },
         Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
         Topic { title: "Node placement", sentences: placement::placement(clouds) },
         Topic { title: "Transfer", sentences: kidney::transfer(runs) },

@@ -5,6 +5,7 @@ mod conditioning;
 mod cost;
 mod errors;
 mod kidney;
+mod modes;
 mod orders;
 mod outcome;
 mod placement;
@@ -29,6 +30,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         errors::maxima(runs),
         orders::observed(runs),
         orders::convergence_index(runs),
+        modes::modes(runs),
         timing::phases(runs),
         repeated::repeated(runs),
         cost::cost(runs),

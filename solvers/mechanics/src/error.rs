@@ -152,6 +152,17 @@ pub enum SolveError {
         /// The limit.
         limit: f64,
     },
+    /// A motion whose frequency is any number.
+    #[error(
+        "some motion has neither stiffness nor mass: no frequency; integrate one of them with more points"
+    )]
+    NoFrequency,
+    /// The decomposition of the frequencies did not end.
+    #[error("no frequencies: the eigenvalues of {dofs} degrees of freedom did not converge")]
+    NoEigenvalues {
+        /// Number of degrees of freedom.
+        dofs: usize,
+    },
     /// The nested-dissection ordering failed.
     #[error("METIS could not order the matrix (status {status})")]
     Ordering {

@@ -8,6 +8,8 @@
 //! LinearProblem --assemble--> Assembled --factor--> Factored --solve--> Solution
 //! ```
 //!
+//! The same problem with a [`Mass`] has [`modes`] of free vibration.
+//!
 //! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its residual,
 //! and results have the same bits at any number of threads.
 //!
@@ -37,6 +39,7 @@ mod implicit;
 mod linear_solver;
 mod load;
 mod material;
+mod modes;
 mod nonlinear;
 mod pattern;
 mod problem;
@@ -73,6 +76,7 @@ pub use material::{
     Ogden, Prony, PronyStep, SaintVenantKirchhoff, Tangent, deviator, relaxed_stress_and_tangent,
     volume_change,
 };
+pub use modes::{Modes, modes};
 pub use nonlinear::{
     Dilation, Drive, DrivenTool, Frames, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError,
     StaticParams, StaticPath, StaticProblem, StaticWork, Step, ToolState, Worst, solve_static,

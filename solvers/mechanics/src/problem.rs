@@ -4,7 +4,7 @@ use crate::body::check_len;
 use crate::constraint::{self, ConstraintRow};
 use crate::dilation::Projected;
 use crate::load::{Load, nodal_forces};
-use crate::pattern::{BlockPattern, Incidence};
+use crate::pattern::{BlockPattern, Connectivity, Incidence};
 use crate::rigid;
 use crate::stiffness::{GradTable, Stiffness};
 use crate::support::{FixedDof, prescribed};
@@ -70,6 +70,19 @@ impl Pointwise {
 /// Checks the problem, builds the pattern and sums stiffness and forces. Rigid motions left free are found here,
 /// before anything is factored.
 pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
+    assemble_if(problem, rigid::check)
+}
+
+/// As [`assemble`] for a body that need not be held.
+pub(crate) fn assemble_free<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
+    assemble_if(problem, |_, _, _, _, _| Ok(()))
+}
+
+/// What is asked of the supports before anything is summed.
+type SupportCheck =
+    fn(&Body, Connectivity, &[Option<f64>], &[constraint::Row], &[WeakSupport]) -> Result<(), SolveError>;
+
+fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<Assembled<'a>, SolveError> {
     let body = problem.body;
     body.check()?;
     let nodes = body.nodes.len();
@@ -105,7 +118,7 @@ pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveE
     {
         return Err(SolveError::OrphanNode { node });
     }
-    rigid::check(&body, points.connectivity(), &prescribed, &rows, problem.weak)?;
+    holds(&body, points.connectivity(), &prescribed, &rows, problem.weak)?;
 
     let mut stiffness = Stiffness::zeros(pattern);
     stiffness.add_volume(&points, &points_of);

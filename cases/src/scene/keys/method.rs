@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{ConstraintRows, Dilation, Element, KernelName, SupportShape};
+use crate::scene::method::{ConstraintRows, Dilation, Element, KernelName, Mass, SupportShape};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 
@@ -53,6 +53,8 @@ pub(crate) struct FemKeys {
     pub reduced: bool,
     pub size: SizeKeys,
     pub jitter: Option<JitterKeys>,
+    /// What moves in vibrations; kind = "modes" only
+    pub mass: Option<Mass>,
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -87,6 +89,8 @@ pub(crate) struct EfgKeys {
     pub dilation: Option<Dilation>,
     /// Size of the mesh to integrate over
     pub background: Option<SizeKeys>,
+    /// What moves in vibrations; kind = "modes" only
+    pub mass: Option<Mass>,
 }
 
 /// A cloud by name, or where its nodes are from

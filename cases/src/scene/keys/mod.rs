@@ -164,6 +164,8 @@ pub(crate) struct ProcedureKeys {
     /// Part of the load to within which a limit point is sought, where a static path loses its stability: steps are halved
     /// down to it; unless given a limit point is told where a load step ends beyond one
     pub limit_within: Option<f64>,
+    /// Lowest modes of vibration that are told and compared; 24 unless given
+    pub modes: Option<u32>,
     /// What follows where a static path finds no equilibrium: "stop" unless given, or "relax", which goes on by dynamic
     /// relaxation (finite elements without a pressure field; a cloud stops)
     pub on_stall: Option<OnStall>,

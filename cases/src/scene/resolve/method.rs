@@ -22,6 +22,7 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
             Some(Method {
                 id: fem.id,
                 family: Family::Fem(Fem { element: fem.element, dilation, reduced, size: size?, jitter }),
+                mass: fem.mass,
             })
         }
         MethodKeys::Efg(efg) => efg_method(*efg, &key, report),
@@ -77,7 +78,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     }
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
     let efg = Efg { cloud, functions, integration, essential, dilation, background };
-    Some(Method { id: keys.id, family: Family::Efg(efg) })
+    Some(Method { id: keys.id, family: Family::Efg(efg), mass: keys.mass })
 }
 
 /// What clouds that are coupled to finite elements are made of.

@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
-use super::procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
+use super::procedure::{Explicit, Implicit, MODES, Newton, OnStall, Procedure, ProcedureKind};
 use super::report::Report;
 use super::units::{Dim, Q};
 use condition::{load, place, support};
@@ -143,6 +143,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
             over: None,
             newton,
             limit_within: None,
+            modes: MODES,
             on_stall,
             damping: 0.0,
             explicit,
@@ -160,7 +161,9 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
     let iterations = keys.iterations.map_or(newton.iterations, |n| n as usize);
     report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
     let augmentations = keys.augmentations.map_or(newton.augmentations, |n| n as usize);
-    use ProcedureKind::{Explicit as OfExplicit, ImplicitDynamic as OfImplicit, Static as OfStatic};
+    use ProcedureKind::{
+        Explicit as OfExplicit, ImplicitDynamic as OfImplicit, Modes as OfModes, Static as OfStatic,
+    };
     let (newtons, dynamics) = (&[OfStatic, OfImplicit][..], &[OfExplicit, OfImplicit][..]);
     let given = [
         ("tolerance", keys.tolerance.is_some(), newtons),
@@ -168,6 +171,7 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
         ("augmentations", keys.augmentations.is_some(), newtons),
         ("limit-within", keys.limit_within.is_some(), &[OfStatic]),
         ("on-stall", keys.on_stall.is_some(), &[OfStatic]),
+        ("modes", keys.modes.is_some(), &[OfModes]),
         ("damping", keys.damping.is_some(), dynamics),
         ("over", keys.over.is_some(), dynamics),
         ("inertia", keys.inertia.is_some(), &[OfImplicit]),
@@ -209,9 +213,24 @@ fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> P
         "is no part of the load",
         "give 1e-4 to 1; 0.02 is usual",
     );
+    let modes = keys.modes.map_or(MODES, |n| n as usize);
+    let sound = (1..=1000).contains(&modes);
+    report.require(sound, "procedure.modes", "is no number of modes", "give 1 to 1000; 24 is usual");
     let on_stall = keys.on_stall.unwrap_or_default();
     let (kind, steps) = (keys.kind, steps as usize);
-    Procedure { kind, steps, duration, over, newton, limit_within, on_stall, damping, explicit, implicit }
+    Procedure {
+        kind,
+        steps,
+        duration,
+        over,
+        newton,
+        limit_within,
+        modes,
+        on_stall,
+        damping,
+        explicit,
+        implicit,
+    }
 }
 
 fn implicit(keys: &ProcedureKeys, tools: bool, report: &mut Report) -> Implicit {

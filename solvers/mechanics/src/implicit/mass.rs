@@ -1,11 +1,12 @@
 //! Mass matrices, as tables of values with the mass of each point: `M v` is a product with the table.
 
-use shape::VolumeRows;
+use shape::{Rows, VolumeRows};
 
 use super::TimeError;
-use crate::Vector3;
 use crate::body::check_len;
 use crate::nonlinear::SurfaceTable;
+use crate::pattern::BlockPattern;
+use crate::{Matrix3, Stiffness, Vector3};
 
 /// Residual of the accelerations at the start relative to their forces.
 const ACCURACY: f64 = 1e-13;
@@ -49,12 +50,21 @@ impl Mass {
         Mass::of(SurfaceTable::nodal(nodal.to_vec()), nodal.len())
     }
 
+    /// Of masses (kg) that move with displacements at nodes, where these are not the nodal parameters: with
+    /// `Lambda_IJ = N_J(x_I)` in the rows of `at_nodes`, `M = Lambda^T diag(m) Lambda`, the lumped mass after the
+    /// transformation to nodal displacements `d = Lambda u` (Chen, Pan, Wu & Liu, Comput. Methods Appl. Mech. Engrg. 139
+    /// (1996) 195-227). Where the basis is Kronecker it is [`Mass::lumped`].
+    pub fn transformed(at_nodes: &Rows, nodal: &[f64]) -> Result<Mass, TimeError> {
+        check_len("rows at the nodes", at_nodes.len(), nodal.len())?;
+        check_len("nodes of the mass table", at_nodes.node_count(), nodal.len())?;
+        positive(nodal)?;
+        Mass::of(SurfaceTable::weighted(at_nodes, nodal.to_vec()), nodal.len())
+    }
+
     fn of(table: SurfaceTable, nodes: usize) -> Result<Mass, TimeError> {
         let diagonal = table.diagonal(nodes);
-        match diagonal.iter().position(|&m| !(m > 0.0 && m.is_finite())) {
-            Some(node) => Err(TimeError::NodalMass { node, mass: diagonal[node] }),
-            None => Ok(Mass { table, diagonal }),
-        }
+        positive(&diagonal)?;
+        Ok(Mass { table, diagonal })
     }
 
     /// `M v`: momentum by node, kg m/s, if `v` is a velocity.
@@ -64,6 +74,25 @@ impl Mass {
 
     pub(crate) fn node_count(&self) -> usize {
         self.diagonal.len()
+    }
+
+    /// The matrix itself, blocks `M_IJ` times the identity, kg.
+    pub(crate) fn matrix(&self) -> Stiffness {
+        let rows = &self.table.rows;
+        let of_node = rows.incidence(self.node_count());
+        let mut matrix =
+            Stiffness::zeros(BlockPattern::new(self.node_count(), &[(rows.connectivity(), &of_node)]));
+        matrix.for_each_row(|i, slot, row, _| {
+            for &(q, k) in of_node.of(i) {
+                let (q, k) = (q as usize, k as usize);
+                let weighted = self.table.weights[q] * rows.data[k];
+                for j in rows.offsets[q]..=k {
+                    row[slot[rows.nodes[j] as usize] as usize] +=
+                        Matrix3::identity() * (weighted * rows.data[j]);
+                }
+            }
+        });
+        matrix
     }
 
     pub(crate) fn table(&self) -> &SurfaceTable {
@@ -113,5 +142,12 @@ impl Mass {
             rz = next;
         }
         unreachable!("the loop returns by its last iteration")
+    }
+}
+
+fn positive(nodal: &[f64]) -> Result<(), TimeError> {
+    match nodal.iter().position(|&m| !(m > 0.0 && m.is_finite())) {
+        Some(node) => Err(TimeError::NodalMass { node, mass: nodal[node] }),
+        None => Ok(()),
     }
 }

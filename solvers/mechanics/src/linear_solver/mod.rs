@@ -4,6 +4,7 @@
 //! ends with its residual.
 
 mod dense;
+pub(crate) mod eigen;
 mod ordering;
 mod sparse;
 mod unsymmetric;

@@ -1,0 +1,115 @@
+//! A free cube that vibrates in Lame's modes: the equivoluminal ones, whatever its Poisson's ratio.
+//!
+//! ```text
+//! Source      Lame, Lecons sur la theorie mathematique de l'elasticite des corps solides (1852); Ekstein & Schiffman,
+//!             J. Appl. Phys. 27 (1956) 405-412: free vibrations of isotropic cubes.
+//!
+//!       ^ y
+//!     L +-------+
+//!       | <-  ^ |            side L from the origin, free all around; each face across the axis stays as it is, the four
+//!       | v  -> |            others turn about it, one against the next
+//!     0 +-------+--> x
+//!       0       L
+//!
+//! Field       u = A cos(omega t) (cos kx sin ky, -sin kx cos ky, 0),  k = pi / L; two more about x and y
+//! Frequency   omega^2 = 2 k^2 mu / rho
+//! Conditions  div u = 0 and du_x/dy + du_y/dx = 0, so that sigma = 2 mu diag(du_x/dx, du_y/dy, 0), both -+ A k sin kx sin ky:
+//!             zero on all faces.
+//! Must hold   three modes of this frequency, not one on another: the integral of u_z . u_x is -4 / pi^2 of that of u_z^2.
+//! ```
+
+use std::f64::consts::PI;
+
+use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3, Vibrations};
+
+/// Lame's mode about z; as a field it stands still at its largest until [`Exact::at`] gives it a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LameCube {
+    elastic: Elastic,
+    side: f64,
+    density: f64,
+    amplitude: f64,
+    time: f64,
+}
+
+impl LameCube {
+    /// Side (m) and density (kg/m^3), both above zero, and amplitude (m); at time 0.
+    pub fn new(elastic: Elastic, side: f64, density: f64, amplitude: f64) -> Result<LameCube, ExactError> {
+        for (name, value) in [("side", side), ("density", density)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let need = "above zero".into();
+                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+            }
+        }
+        Ok(LameCube { elastic, side, density, amplitude, time: 0.0 })
+    }
+
+    fn now(&self) -> f64 {
+        self.amplitude * (self.omega() * self.time).cos()
+    }
+
+    /// The mode about an axis, of amplitude 1.
+    fn about(&self, axis: usize, p: &Point3) -> Vector3 {
+        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [(sin_a, cos_a), (sin_b, cos_b)] = [a, b].map(|axis| (PI / self.side * p[axis]).sin_cos());
+        let mut u = Vector3::zeros();
+        (u[a], u[b]) = (cos_a * sin_b, -sin_a * cos_b);
+        u
+    }
+}
+
+impl Exact for LameCube {
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    fn displacement(&self, p: &Point3) -> Vector3 {
+        self.about(2, p) * self.now()
+    }
+
+    fn gradient(&self, p: &Point3) -> Matrix3 {
+        let k = PI / self.side;
+        let [(sin_x, cos_x), (sin_y, cos_y)] = [p.x, p.y].map(|x| (k * x).sin_cos());
+        let (normal, shear) = (sin_x * sin_y, cos_x * cos_y);
+        Matrix3::new(-normal, shear, 0.0, -shear, normal, 0.0, 0.0, 0.0, 0.0) * (k * self.now())
+    }
+
+    fn body_force(&self, p: &Point3) -> Vector3 {
+        self.displacement(p) * (self.density * self.omega().powi(2))
+    }
+
+    fn at(&self, time: f64) -> Option<Box<dyn Exact>> {
+        Some(Box::new(LameCube { time, ..*self }))
+    }
+
+    fn vibrations(&self) -> Option<&dyn Vibrations> {
+        Some(self)
+    }
+}
+
+impl Vibrations for LameCube {
+    fn omega(&self) -> f64 {
+        PI / self.side * (2.0 * self.elastic.mu() / self.density).sqrt()
+    }
+
+    fn shapes(&self, x: &Point3) -> Vec<Vector3> {
+        (0..3).map(|axis| self.about(axis, x)).collect()
+    }
+
+    fn lowest(&self, _count: usize) -> Option<Vec<f64>> {
+        None
+    }
+}
+
+const NAME: &str = "lame-cube";
+
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::required("side", "m", "side of the cube, one corner at the origin"),
+    Parameter::required("density", "kg/m^3", "mass per volume"),
+    Parameter::optional("amplitude", "m", "largest displacement", 1e-3),
+];
+
+pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
+    let [side, density, amplitude] = [0, 1, 2].map(|k| values.at(k));
+    Ok(Box::new(LameCube::new(elastic, side, density, amplitude)?))
+}

@@ -1,0 +1,70 @@
+//! Free vibrations from a scene to its numbers.
+
+mod common;
+
+use common::{assert_fails, tissuebench, write};
+use serde_json::Value;
+
+const BOX: &str = r#"title = "A box"
+body = { shape = "box", size = ["40 mm", "30 mm", "20 mm"] }
+material = { law = "linear", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }
+procedure = { kind = "modes", modes = 8 }
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { level = 1 }, mass = "consistent" },
+    { id = "hex8-lumped", family = "fem", element = "hex8", size = { level = 1 }, mass = "lumped" },
+    { id = "hex8-transformed", family = "fem", element = "hex8", size = { level = 1 }, mass = "transformed" },
+    { id = "efg", family = "efg", size = { level = 1 }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "nitsche", mass = "transformed" },
+]
+"#;
+
+const ROLLERS: &str = r#"support = [{ on = ["x-min", "x-max"], fix = "x" }, { on = ["y-min", "y-max"], fix = "y" }, { on = ["z-min", "z-max"], fix = "z" }]
+reference = { exact = "roller-box", length = "40 mm", depth = "30 mm", width = "20 mm", density = "1000 kg/m^3" }
+"#;
+
+fn metrics(text: &str) -> Vec<Value> {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(&dir, "box.toml", text);
+    let done = tissuebench(&["run", &scene, "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    done.stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()).collect()
+}
+
+fn metric(run: &Value, name: &str) -> f64 {
+    run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name} of {run}"))
+}
+
+#[test]
+fn a_free_box_has_six_rigid_modes_and_its_mass() {
+    let runs = metrics(BOX);
+    assert_eq!(runs.len(), 4);
+    for run in &runs {
+        assert_eq!((metric(run, "rigid-modes"), metric(run, "massless")), (6.0, 0.0));
+        assert!((metric(run, "mass") - 0.024).abs() < 1e-12 && metric(run, "residual") < 1e-9);
+        assert!(run["metrics"]["slow-modes"].is_null(), "nothing exact to be slower than");
+    }
+    // Parameters of elements are displacements.
+    assert_eq!(metric(&runs[1], "critical-step"), metric(&runs[2], "critical-step"));
+    assert!(metric(&runs[0], "critical-step") < metric(&runs[1], "critical-step"));
+}
+
+/// Linear elements: consistent mass from above, lumped from below. On equal hexahedra the discrete modes are sines with either
+/// mass, so that the two frequencies differ by `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.
+#[test]
+fn a_box_on_rollers_vibrates_as_known() {
+    let runs = metrics(&format!("{BOX}{ROLLERS}"));
+    for run in &runs {
+        assert_eq!((metric(run, "rigid-modes"), metric(run, "slow-modes")), (0.0, 0.0));
+        assert!(metric(run, "mode-overlap") > 0.97, "{run}");
+    }
+    let ratios: Vec<f64> = runs.iter().map(|r| metric(r, "frequency-ratio")).collect();
+    assert!(ratios[0] > 1.0 && ratios[1] < 1.0, "{ratios:?}");
+    let [a, b] = [4.0, 3.0].map(|n: f64| 2.0 + (std::f64::consts::PI / n).cos());
+    assert!((ratios[0] / ratios[1] / (9.0 / (a * b)).sqrt() - 1.0).abs() < 1e-9, "{ratios:?}");
+}
+
+#[test]
+fn a_reference_that_knows_no_vibrations_is_refused_at_its_key() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(&dir, "box.toml", &format!("{BOX}reference = {{ exact = \"rigid\" }}\n"));
+    assert_fails(&tissuebench(&["run", &scene]), 2, "reference.exact: 'rigid' knows no vibrations");
+}

@@ -1,0 +1,51 @@
+//! What each mass does to the frequencies.
+
+use super::cases;
+use crate::select::{Run, labels, series};
+use crate::text::{list, significant};
+
+/// For every case with modes: the error of the first frequency by family and mass, and who has modes that no body has.
+pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
+    let mut out = Vec::new();
+    for (case, runs) in cases(runs) {
+        // Methods at their finest.
+        let all = series(runs);
+        let finest: Vec<&Run> = all.iter().map(|s| s.finest()).collect();
+        for (family, called) in [("fem", "elements"), ("efg", "clouds")] {
+            let mut parts = Vec::new();
+            for mass in ["consistent", "lumped", "transformed"] {
+                let mut errors: Vec<f64> = finest
+                    .iter()
+                    .filter(|r| r.is.family == family && r.is.parameter("mass") == Some(mass))
+                    .filter_map(|r| Some((r.value("frequency-ratio")? - 1.0) * 1e2))
+                    .collect();
+                errors.sort_by(f64::total_cmp);
+                if let (Some(low), Some(high)) = (errors.first(), errors.last()) {
+                    parts.push(format!("{} % with {mass} mass", range(*low, *high)));
+                }
+            }
+            if !parts.is_empty() {
+                out.push(format!("{case}: {called} miss the exact frequency by {}.", list(&parts)));
+            }
+        }
+        let names = labels(&finest.iter().map(|r| (r.name(), r.is)).collect::<Vec<_>>());
+        let slow: Vec<String> = finest
+            .iter()
+            .zip(names)
+            .filter_map(|(r, name)| Some((name, r.value("slow-modes").filter(|count| *count > 0.0)?)))
+            .map(|(name, count)| format!("{count} of {name}"))
+            .collect();
+        if !slow.is_empty() {
+            out.push(format!("{case}: modes slower than any that the body has: {}.", list(&slow)));
+        } else if finest.iter().any(|r| r.value("slow-modes").is_some()) {
+            out.push(format!("{case}: no method has modes slower than the body's own."));
+        }
+    }
+    out
+}
+
+fn range(low: f64, high: f64) -> String {
+    let [a, b] =
+        [low, high].map(|v| if v > 0.0 { format!("+{}", significant(v, 2)) } else { significant(v, 2) });
+    if a == b { a } else { format!("{a} to {b}") }
+}

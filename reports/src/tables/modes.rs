@@ -1,0 +1,75 @@
+//! Free vibrations: the first frequency, and the modes that no body has.
+
+use super::{labelled, millimetres as milliseconds};
+use crate::select::Run;
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+/// Every run that was asked for its modes.
+pub(super) fn modes(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "modes",
+        "Vibrations",
+        "Error of the frequency of the mode nearest to the exact one, with the share of its displacement that is exact; largest error of the \
+         lowest frequencies in order; modes slower than 0.9 of the slowest exact one; rigid motions; motions without mass; critical \
+         time step of central differences",
+        &[
+            ("case", Words),
+            ("method", Words),
+            ("mass", Words),
+            ("nodes", Number),
+            ("unknowns", Number),
+            ("frequency [%]", Number),
+            ("share [%]", Number),
+            ("spectrum [%]", Number),
+            ("slow", Number),
+            ("rigid", Number),
+            ("massless", Number),
+            ("critical step [ms]", Number),
+        ],
+    );
+    for (run, label) in labelled(runs) {
+        let Some(mass) = run.is.parameter("mass") else { continue };
+        let percent = |quantity: &str| run.value(quantity).map(|v| v * 1e2);
+        let count = |quantity: &str| Cell::Digits(run.value(quantity), 3);
+        let whole = |quantity: &str| run.value(quantity).map_or(count(quantity), |v| Cell::Count(v as u64));
+        table.row(&[
+            Cell::Text(&run.is.case),
+            Cell::Text(&label),
+            Cell::Text(mass),
+            Cell::Count(run.is.nodes),
+            Cell::Count(run.is.dofs),
+            Cell::Digits(percent("frequency-ratio").map(|v| v - 1e2), 3),
+            Cell::Digits(percent("mode-overlap"), 4),
+            Cell::Digits(percent("spectrum-error"), 3),
+            whole("slow-modes"),
+            whole("rigid-modes"),
+            whole("massless"),
+            Cell::Digits(milliseconds(run.value("critical-step")), 3),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::modes;
+    use crate::fronts::tests::record;
+    use crate::select::runs;
+
+    #[test]
+    fn a_row_for_each_mass() {
+        let mut records = Vec::new();
+        for (mass, ratio) in [("consistent", 1.01), ("lumped", 0.5)] {
+            for (quantity, value) in [("frequency-ratio", ratio), ("slow-modes", 3.0), ("rigid-modes", 6.0)] {
+                let mut record = record(("cube", "tet4", "fem"), 100, (quantity, ":value"), value);
+                record.parameters = format!("dilation=standard;mass={mass}");
+                records.push(record);
+            }
+        }
+        records.push(record(("cube", "still", "fem"), 100, ("l2", ":value"), 1.0));
+        let table = modes(&runs(&records));
+        let rows: Vec<String> = table.shown().iter().map(|row| row[2..].join(" ")).collect();
+        assert_eq!(rows, ["consistent 100 300 1.00 — — 3 6 — —", "lumped 100 300 -50.0 — — 3 6 — —"]);
+    }
+}
