@@ -63,9 +63,11 @@ impl Pieces {
         i
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    /// Whether they were apart.
+    fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b)] = a.min(b);
+        a != b
     }
 }
 
@@ -174,11 +176,16 @@ const NOWHERE: usize = usize::MAX;
 fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, Vec<usize>, Vec<Vec<usize>>) {
     let mut find = Pieces((0..nodes.len()).collect());
     let mut seen = vec![false; nodes.len()];
+    let mut joints = 0;
     for range in points.offsets.windows(2) {
         let row = &points.nodes[range[0]..range[1]];
         for &node in row {
             seen[node as usize] = true;
-            find.join(row[0] as usize, node as usize);
+            joints += usize::from(find.join(row[0] as usize, node as usize));
+        }
+        // All in one piece: what other points join is joined. A cloud is there after a tenth of its points.
+        if joints + 1 == nodes.len() {
+            break;
         }
     }
     let mut piece_of = vec![NOWHERE; nodes.len()];
@@ -209,7 +216,9 @@ fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, 
     for row in rows {
         let mut ids = row.terms.iter().map(|t| piece_of[t.0 / 3]).filter(|&p| p != NOWHERE);
         if let Some(first) = ids.next() {
-            ids.for_each(|p| find.join(first, p));
+            ids.for_each(|p| {
+                find.join(first, p);
+            });
         }
     }
     let mut clusters: Vec<Vec<usize>> = Vec::new();

@@ -77,9 +77,12 @@ impl GradTable {
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let mut table = GradTable::with_capacity(groups.len(), 0, vec![(1.0, 0.0)]);
-        let mut scratch = vec![Vector3::zeros(); body.nodes.len()];
-        for a in 0..groups.len() {
-            let (volume, mut row) = groups.averaged_gradient(a, body.volume, &mut scratch);
+        let scratch = || vec![Vector3::zeros(); body.nodes.len()];
+        let averaged: Vec<_> = (0..groups.len())
+            .into_par_iter()
+            .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
+            .collect();
+        for (a, (volume, mut row)) in averaged.into_iter().enumerate() {
             // `!(V > 0)`: a NaN must not pass.
             if !(volume > 0.0) {
                 return Err(SolveError::GroupVolume { group: a, volume });

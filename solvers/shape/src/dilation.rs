@@ -77,19 +77,26 @@ impl DilationGroups {
     /// is refused.
     pub fn nodal(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
         let rows = volume.rows();
-        let mut lists: Vec<Vec<(u32, f64)>> = vec![Vec::new(); rows.node_count()];
+        let mut next = vec![0; rows.node_count()];
+        rows.nodes().iter().for_each(|&node| next[node as usize] += 1);
+        let mut offsets = vec![0];
+        for next in &mut next {
+            let (first, count) = (offsets[offsets.len() - 1], *next);
+            // A node that no point sees has no group.
+            if count > 0 {
+                offsets.push(first + count);
+            }
+            *next = first;
+        }
+        let (mut points, mut shares) = (vec![0; rows.nodes().len()], vec![0.0; rows.nodes().len()]);
         for q in 0..rows.len() {
             let (nodes, values) = rows.row(q);
             for (&node, &value) in nodes.iter().zip(values) {
-                lists[node as usize].push((q as u32, value));
+                let at = &mut next[node as usize];
+                (points[*at], shares[*at]) = (q as u32, value);
+                *at += 1;
             }
         }
-        lists.retain(|list| !list.is_empty());
-        let mut offsets = vec![0];
-        for list in &lists {
-            offsets.push(offsets.last().unwrap() + list.len());
-        }
-        let (points, shares) = lists.into_iter().flatten().unzip();
         DilationGroups::new(rows.len(), offsets, points, shares)
     }
 
