@@ -143,7 +143,7 @@ pub struct Efg {
     /// Essential conditions.
     pub essential: Essential,
     /// The finite-element nodes, where essential conditions are held by such.
-    pub coupled: Option<Coupled>,
+    pub coupled: Option<Box<Coupled>>,
     /// Volumetric projection.
     pub dilation: Dilation,
 }
@@ -343,8 +343,8 @@ const ERROR_POINTS: usize = 14;
 impl Efg {
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
         let mut approximation = self.functions.over(&self.cloud, self.followed.as_deref())?;
-        if let Some(Coupled { vertices, .. }) = &self.coupled {
-            approximation = approximation.coupled(&self.background, vertices)?;
+        if let Some(coupled) = &self.coupled {
+            approximation = approximation.coupled(&self.background, &coupled.vertices)?;
         }
         work.support_radii += self.cloud.points.len() as u64;
         let (rows, mls, region, volume_error) = match self.integration {

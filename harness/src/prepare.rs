@@ -84,7 +84,8 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     for held in &setup.held {
         match method {
             Discretisation::Fem(fem) => prepared.hold_nodes(&fem.mesh, held, |vertex| vertex)?,
-            Discretisation::Efg(Efg { background, coupled: Some(Coupled { vertices, nodes }), .. }) => {
+            Discretisation::Efg(Efg { background, coupled: Some(coupled), .. }) => {
+                let Coupled { vertices, nodes } = &**coupled;
                 // Those of all supports are listed, and come last among the nodes.
                 let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
                 prepared.hold_nodes(background, held, |vertex| node(vertex) as u32)?;

@@ -348,7 +348,7 @@ impl Scenario<'_> {
             scene::Essential::Coupling => Essential::Coupling,
         };
         let coupled = match essential {
-            Essential::Coupling => Some(self.coupled(&cloud, &background)?),
+            Essential::Coupling => Some(Box::new(self.coupled(&cloud, &background)?)),
             _ => None,
         };
         Ok(Efg {
