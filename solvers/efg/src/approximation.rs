@@ -6,7 +6,7 @@ use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::buckets::Buckets;
 use crate::coupling::{Coupling, Layer, joined};
-use crate::info::Outcome;
+use crate::info::{Outcome, Tally};
 use crate::lanes::LANES;
 use crate::max_entropy::{CUT, Neighbours, NoPoint};
 use crate::mls::{Ball, Group, Moments};
@@ -246,7 +246,7 @@ impl Approximation {
         let mut chunks: Vec<Chunk> = Vec::new();
         let entries = self.expected_entries(points);
         let mut rows = RowList::with_capacity(points.len(), entries, if GRAD { entries } else { 0 });
-        let mut outcomes = Vec::with_capacity(points.len());
+        let mut tally = Tally::with_capacity(points.len());
         for wave in points.chunks(wave) {
             let parts = wave.par_chunks(CHUNK);
             chunks.resize_with(parts.len(), Chunk::default);
@@ -258,12 +258,12 @@ impl Approximation {
             for (done, chunk) in done.into_iter().zip(&chunks) {
                 done?;
                 rows.append(&chunk.rows);
-                outcomes.extend_from_slice(&chunk.outcomes);
+                chunk.outcomes.iter().for_each(|met| tally.add(met));
             }
         }
         let RowList { offsets, nodes, values, grads } = rows;
         let rows = Rows::new(self.nodes.len(), offsets, nodes, values, UNITY)?;
-        Ok((rows, grads, MlsInfo::new(&outcomes)))
+        Ok((rows, grads, tally.info()))
     }
 
     /// Entries of a table by the neighbours of a few of its points, with a margin.

@@ -39,27 +39,52 @@ impl MlsInfo {
     pub fn fallbacks(&self) -> usize {
         self.enlarged + self.regularised + self.reduced
     }
+}
 
-    pub(crate) fn new(outcomes: &[Outcome]) -> MlsInfo {
-        let count = |what: fn(&Outcome) -> bool| outcomes.iter().filter(|o| what(o)).count();
-        let points = outcomes.len();
-        let neighbours = || outcomes.iter().map(|o| o.neighbours as usize);
-        let total: usize = neighbours().sum();
-        let mut conditions: Vec<f64> = outcomes.iter().map(|o| o.condition).collect();
+/// The report of points met so far. Of each only the condition is kept, for the median: 8 bytes where an [`Outcome`] has 24.
+pub(crate) struct Tally {
+    conditions: Vec<f64>,
+    fewest: u32,
+    most: u32,
+    total: usize,
+    enlarged: usize,
+    regularised: usize,
+    reduced: usize,
+}
+
+impl Tally {
+    pub(crate) fn with_capacity(points: usize) -> Tally {
+        let conditions = Vec::with_capacity(points);
+        Tally { conditions, fewest: u32::MAX, most: 0, total: 0, enlarged: 0, regularised: 0, reduced: 0 }
+    }
+
+    pub(crate) fn add(&mut self, met: &Outcome) {
+        self.conditions.push(met.condition);
+        self.fewest = self.fewest.min(met.neighbours);
+        self.most = self.most.max(met.neighbours);
+        self.total += met.neighbours as usize;
+        self.enlarged += usize::from(met.enlarged);
+        self.regularised += usize::from(met.regularised);
+        self.reduced += usize::from(met.reduced);
+    }
+
+    pub(crate) fn info(self) -> MlsInfo {
+        let Tally { mut conditions, fewest, most, total, enlarged, regularised, reduced } = self;
+        let points = conditions.len();
         let condition_median = match points {
             0 => 0.0,
             n => *conditions.select_nth_unstable_by(n / 2, f64::total_cmp).1,
         };
         MlsInfo {
             points,
-            neighbours_min: neighbours().min().unwrap_or(0),
+            neighbours_min: if points > 0 { fewest as usize } else { 0 },
             neighbours_mean: total as f64 / points.max(1) as f64,
-            neighbours_max: neighbours().max().unwrap_or(0),
+            neighbours_max: most as usize,
             condition_max: conditions.into_iter().fold(0.0, f64::max),
             condition_median,
-            enlarged: count(|o| o.enlarged),
-            regularised: count(|o| o.regularised),
-            reduced: count(|o| o.reduced),
+            enlarged,
+            regularised,
+            reduced,
         }
     }
 }
