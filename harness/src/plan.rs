@@ -89,12 +89,12 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
     );
     let explicit = setup.explicit.as_ref();
     let in_time = setup.in_time.as_ref();
-    let (mass, why) = match (explicit, in_time) {
-        _ if setup.modes.is_some() => (true, setup.modes.as_ref().map_or("", |m| m.mass.name())),
-        (Some(_), _) => (true, "lumped"),
-        (_, Some(InTimeParams { density: Some(_), .. })) => (true, "consistent"),
-        (_, Some(_)) => (false, "without inertia"),
-        (None, None) => (false, "static"),
+    let (mass, why) = match (&setup.modes, explicit, in_time) {
+        (Some(modes), ..) => (true, modes.mass.name()),
+        (_, Some(_), _) => (true, "lumped"),
+        (_, _, Some(InTimeParams { density: Some(_), .. })) => (true, "consistent"),
+        (_, _, Some(_)) => (false, "without inertia"),
+        (None, None, None) => (false, "static"),
     };
     add("mass", mass, why.into());
     let steps = setup.statics.map(|params| params.steps).or(in_time.map(|params| params.time.steps));

@@ -91,6 +91,7 @@ pub struct Solved {
 }
 
 /// What a procedure came to.
+#[derive(Default)]
 pub(crate) struct Solution {
     /// Nodal parameters at the end, m.
     pub(crate) u: Vec<Vector3>,
@@ -309,23 +310,11 @@ fn solve(
 ) -> Result<(Prepared, Solution), Failure> {
     let prepared = timings.time("prepare", || prepare(method, setup, work))?;
     if setup.prepare_only {
-        let solution = Solution {
-            u: Vec::new(),
-            dofs: 0,
-            residual: 0.0,
-            info: None,
-            path: None,
-            motion: None,
-            modes: None,
-        };
-        return Ok((prepared, solution));
+        return Ok((prepared, Solution::default()));
     }
     if let Some(params) = &setup.modes {
         let found = modes::solve(method, setup, params, &prepared, timings, work)?;
-        let modes = Some(found);
-        let solution =
-            Solution { u: Vec::new(), dofs: 0, residual: 0.0, info: None, path: None, motion: None, modes };
-        return Ok((prepared, solution));
+        return Ok((prepared, Solution { modes: Some(found), ..Solution::default() }));
     }
     if let Some(params) = &setup.statics {
         let path = timings.time("solve", || statics::solve(method, setup, params, &prepared, work))?;
@@ -333,8 +322,7 @@ fn solve(
             timings.book("solve-to-limit", path.to_limit);
         }
         let (u, dofs, residual) = (path.u.clone(), path.dofs, path.residual);
-        let solution =
-            Solution { u, dofs, residual, info: None, path: Some(path), motion: None, modes: None };
+        let solution = Solution { u, dofs, residual, path: Some(path), ..Solution::default() };
         return Ok((prepared, solution));
     }
     let motion = match (&setup.explicit, &setup.in_time) {
@@ -346,13 +334,12 @@ fn solve(
     };
     if let Some(motion) = motion {
         let (u, dofs) = (motion.u.clone(), motion.dofs);
-        let solution =
-            Solution { u, dofs, residual: 0.0, info: None, path: None, motion: Some(motion), modes: None };
+        let solution = Solution { u, dofs, motion: Some(motion), ..Solution::default() };
         return Ok((prepared, solution));
     }
     let mechanics::Solution { u, info, .. } = solve_linear(method, setup, &prepared, timings, work)?;
     let (dofs, residual) = (info.dofs, info.residual);
-    Ok((prepared, Solution { u, dofs, residual, info: Some(info), path: None, motion: None, modes: None }))
+    Ok((prepared, Solution { u, dofs, residual, info: Some(info), ..Solution::default() }))
 }
 
 /// Assembles, factors and solves once.

@@ -153,7 +153,7 @@ impl Vibrations for RollerBox {
     }
 
     fn lowest(&self, count: usize) -> Option<Vec<f64>> {
-        // Shear with one half wave along a side along y and 1 to `count` along x is as many modes below this.
+        // Shear with one half wave along y and 1 to `count` along x: so many modes are no faster than this.
         let highest = self.of([count, 1, 0]).1 * (1.0 + 1e-9);
         let mut modes = Vec::new();
         let within = |axis: usize, numbers: [usize; 3]| {

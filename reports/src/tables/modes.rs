@@ -1,6 +1,6 @@
 //! Free vibrations: the first frequency, and the modes that no body has.
 
-use super::{labelled, millimetres as milliseconds};
+use super::labelled;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -45,7 +45,7 @@ pub(super) fn modes(runs: &[Run]) -> Table {
             whole("slow-modes"),
             whole("rigid-modes"),
             whole("massless"),
-            Cell::Digits(milliseconds(run.value("critical-step")), 3),
+            Cell::Digits(run.value("critical-step").map(|s| s * 1e3), 3),
         ]);
     }
     table
