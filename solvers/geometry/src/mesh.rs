@@ -1,6 +1,6 @@
 //! A mixed mesh in flat arrays, with named cell regions and named groups of boundary facets.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use crate::{CellKind, Point3};
 
@@ -205,24 +205,41 @@ impl Mesh {
 
     /// All facets that belong to one cell only, in cell order.
     pub fn boundary(&self) -> Vec<Facet> {
-        let mut seen: HashMap<[u32; 4], (Facet, u32)> = HashMap::new();
+        /// A face met for the first time; faces of the same smallest node make a list, the last met first.
+        struct Met {
+            nodes: [u32; 4],
+            facet: Facet,
+            shared: bool,
+            before: Option<u32>,
+        }
+        let mut met: Vec<Met> = Vec::with_capacity(3 * self.kinds.len());
+        let mut last: Vec<Option<u32>> = vec![None; self.points.len()];
         for (cell, kind) in self.kinds.iter().enumerate() {
             for face in 0..kind.faces().len() {
                 let facet = Facet { cell: cell as u32, face: face as u8 };
-                // u32::MAX pads triangles, so that one key type serves both face shapes.
-                let mut key = [u32::MAX; 4];
+                // u32::MAX pads triangles, so that one type serves both face shapes.
+                let mut nodes = [u32::MAX; 4];
                 for (slot, node) in
-                    key.iter_mut().zip(self.facet_nodes(facet).take(kind.face_kind().corner_count()))
+                    nodes.iter_mut().zip(self.facet_nodes(facet).take(kind.face_kind().corner_count()))
                 {
                     *slot = node;
                 }
-                key.sort_unstable();
-                seen.entry(key).and_modify(|e| e.1 += 1).or_insert((facet, 1));
+                nodes.sort_unstable();
+                let list = &mut last[nodes[0] as usize];
+                let mut next = *list;
+                while let Some(m) = next.filter(|&m| met[m as usize].nodes != nodes) {
+                    next = met[m as usize].before;
+                }
+                match next {
+                    Some(same) => met[same as usize].shared = true,
+                    None => {
+                        let before = list.replace(met.len() as u32);
+                        met.push(Met { nodes, facet, shared: false, before });
+                    }
+                }
             }
         }
-        let mut facets: Vec<Facet> = seen.into_values().filter(|(_, n)| *n == 1).map(|(f, _)| f).collect();
-        facets.sort_unstable();
-        facets
+        met.into_iter().filter(|m| !m.shared).map(|m| m.facet).collect()
     }
 
     /// Sorted node indices that any of the facets touches.

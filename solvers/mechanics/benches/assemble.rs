@@ -2,9 +2,13 @@
 
 mod common;
 
-use common::{Pressed, cloud};
+use common::Pressed;
 use criterion::{Criterion, criterion_group, criterion_main};
+use efg::{Approximation, Basis, Kernel};
+use geometry::generate::kidney_mesh;
+use geometry::{CellKind, Cloud, Kidney};
 use mechanics::*;
+use shape::DilationGroups;
 
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("assemble");
@@ -19,19 +23,32 @@ fn benches(c: &mut Criterion) {
             });
         }
     }
+    let pressed = Pressed::of(CellKind::Tet10, 10);
+    let loads = pressed.loads();
+    group.bench_function("tet10, 27783 dofs", |b| {
+        b.iter(|| assemble(&pressed.problem(&loads, false)).unwrap())
+    });
+    // Clouds of the kidney over its 6288 tetrahedra, one point each; nothing is held but parameters, as only assembly counts.
+    let background = kidney_mesh(CellKind::Tet4, 8).unwrap();
     let material = [LinearElastic::new(20e3, 0.495).unwrap()];
-    for (nodes, points, neighbours) in [(83, 4000, 30), (1331, 24760, 30)] {
-        let volume = cloud(nodes, points, neighbours);
-        let at: Vec<Point3> =
-            (0..nodes).map(|i| Point3::new((i % 7) as f64, (i / 7 % 7) as f64, (i / 49) as f64)).collect();
-        let body = Body { nodes: &at, volume: &volume, materials: &material, region: &[], dilation: None };
+    for nodes in [83, 1331] {
+        let Cloud { points, spacing, .. } = geometry::cloud(&Kidney, nodes, 1, &[]).unwrap();
+        let radii = spacing.iter().map(|h| 1.6 * h).collect();
+        let mls = Approximation::new(points.clone(), radii, Kernel::CubicSpline, Basis::Linear).unwrap();
+        let volume = efg::gauss_rows(&mls, &background, 1).unwrap().0;
+        let nodal = DilationGroups::nodal(&volume).unwrap();
         let fixed: Vec<_> = (0..3 * nodes as u32)
             .map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 })
             .collect();
-        let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
-        group.bench_function(format!("cloud, {nodes} nodes, {points} points of {neighbours}"), |b| {
-            b.iter(|| assemble(&problem).unwrap())
-        });
+        for (name, dilation) in [("cloud", None), ("cloud nodal dilation", Some(&nodal))] {
+            let body = Body { nodes: &points, volume: &volume, materials: &material, region: &[], dilation };
+            let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
+            let entries = volume.rows().nodes().len() / volume.rows().len();
+            group.bench_function(
+                format!("{name}, {nodes} nodes, {} points of {entries}", volume.rows().len()),
+                |b| b.iter(|| assemble(&problem).unwrap()),
+            );
+        }
     }
     group.finish();
 }

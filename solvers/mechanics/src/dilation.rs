@@ -46,3 +46,15 @@ impl Projected {
         &self.rows[point]
     }
 }
+
+/// Bulk modulus of one dilation group, Pa: the volume average over its points.
+pub(crate) fn group_bulk(body: &Body, group: usize) -> f64 {
+    let (points, shares) = body.dilation.expect("a body with groups").group(group);
+    let (mut volume, mut bulk) = (0.0, 0.0);
+    for (&q, share) in points.iter().zip(shares) {
+        let dv = share * body.volume.weights()[q as usize];
+        volume += dv;
+        bulk += dv * body.material(q as usize).bulk();
+    }
+    bulk / volume
+}

@@ -35,6 +35,7 @@ mod dilation;
 mod eliminate;
 mod error;
 mod explicit;
+mod grad_table;
 mod implicit;
 mod linear_solver;
 mod load;

@@ -8,6 +8,15 @@ use rayon::prelude::*;
 pub(crate) struct Connectivity<'a> {
     pub offsets: &'a [usize],
     pub nodes: &'a [u32],
+    /// Where a row is of several points, which of them see a node, a bit each; empty where every row is of one.
+    pub seen_by: &'a [u8],
+}
+
+impl Connectivity<'_> {
+    /// Whether a point sees the nodes of both entries of a row.
+    fn meet(&self, j: usize, k: usize) -> bool {
+        self.seen_by.is_empty() || self.seen_by[j] & self.seen_by[k] != 0
+    }
 }
 
 /// For each node the entries that name it: the transpose of a table.
@@ -75,8 +84,9 @@ impl BlockPattern {
                                 if columns.len() - start == i + 1 {
                                     break 'row;
                                 }
-                                for &j in &table.nodes[table.offsets[q as usize]..k as usize] {
-                                    if mark[j as usize] != i as u32 {
+                                for at in table.offsets[q as usize]..k as usize {
+                                    let j = table.nodes[at];
+                                    if mark[j as usize] != i as u32 && table.meet(at, k as usize) {
                                         mark[j as usize] = i as u32;
                                         columns.push(j);
                                     }

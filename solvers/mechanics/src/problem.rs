@@ -3,10 +3,11 @@
 use crate::body::check_len;
 use crate::constraint::{self, ConstraintRow};
 use crate::dilation::Projected;
+use crate::grad_table::GradTable;
 use crate::load::{Load, nodal_forces};
 use crate::pattern::{BlockPattern, Connectivity, Incidence};
 use crate::rigid;
-use crate::stiffness::{GradTable, Stiffness};
+use crate::stiffness::Stiffness;
 use crate::support::{FixedDof, prescribed};
 use crate::weak::{Weak, WeakSupport, WeakTable};
 use crate::{Body, SolveError, Vector3};

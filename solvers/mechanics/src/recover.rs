@@ -3,7 +3,7 @@
 use shape::GradRows;
 
 use crate::body::{check_len, check_regions, region_of};
-use crate::stiffness::group_bulk;
+use crate::dilation::group_bulk;
 use crate::{Body, LinearElastic, Matrix3, SolveError, Vector3};
 
 /// Stress (3, 3), Pa, at any points by the plain law, `sigma = lambda tr(eps) I + 2 mu eps`, from nodal parameters

@@ -180,7 +180,7 @@ impl WeakTable {
     }
 
     pub fn connectivity(&self) -> Connectivity<'_> {
-        Connectivity { offsets: &self.offsets, nodes: &self.nodes }
+        Connectivity { offsets: &self.offsets, nodes: &self.nodes, seen_by: &[] }
     }
 
     pub fn incidence(&self, node_count: usize) -> Incidence {
@@ -189,7 +189,7 @@ impl WeakTable {
 
     /// Adds the bilinear form `sum over held axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
     pub fn add_stiffness(&self, stiffness: &mut Stiffness, incidence: &Incidence) {
-        stiffness.for_each_row(|i, slot, row, _| {
+        stiffness.for_each_row(|i, slot, row| {
             for &(q, k) in incidence.of(i) {
                 let (q, k) = (q as usize, k as usize);
                 let w = self.weights[q];

@@ -116,8 +116,12 @@ impl DilationGroups {
             measure += dv;
             let (nodes, grads) = volume.row(q as usize);
             for (&node, g) in nodes.iter().zip(grads) {
-                touched.push(node);
-                scratch[node as usize] += dv * g;
+                let sum = &mut scratch[node as usize];
+                // Again where a sum is zero by chance.
+                if *sum == Vector3::zeros() {
+                    touched.push(node);
+                }
+                *sum += dv * g;
             }
         }
         touched.sort_unstable();

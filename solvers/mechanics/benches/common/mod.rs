@@ -1,11 +1,11 @@
-//! Boxes of tetrahedra, pressed from above and held below, and a meshless-like table.
+//! Boxes of tetrahedra, pressed from above and held below.
 #![allow(dead_code)] // each bench uses its own part
 
 use fem::{SurfaceRule, VolumeRule};
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
 use mechanics::*;
-use shape::{DilationGroups, GradRows, Rows, SurfaceRows, Unity, VolumeRows};
+use shape::{DilationGroups, SurfaceRows, VolumeRows};
 
 pub struct Pressed {
     pub mesh: Mesh,
@@ -56,22 +56,4 @@ impl Pressed {
     pub fn problem<'a>(&'a self, loads: &'a [Load<'a>], projected: bool) -> LinearProblem<'a> {
         LinearProblem { body: self.body(projected), loads, fixed: &self.fixed, constraints: &[], weak: &[] }
     }
-}
-
-/// Rows of `neighbours` nodes at `points` points among `nodes` nodes, as a meshless cloud has them: the cost of
-/// assembly depends on these counts alone. The numbers are smooth nonsense.
-pub fn cloud(nodes: usize, points: usize, neighbours: usize) -> VolumeRows {
-    let (mut list, mut grads) = (Vec::new(), Vec::new());
-    for q in 0..points {
-        for k in 0..neighbours {
-            list.push(((q * 7 + k * 5) % nodes) as u32);
-            let t = (q * neighbours + k) as f64;
-            grads.push(Vector3::new((0.1 * t).sin(), (0.2 * t).cos(), (0.3 * t).sin()));
-        }
-    }
-    let offsets = (0..=points).map(|q| q * neighbours).collect();
-    let values = vec![1.0 / neighbours as f64; list.len()];
-    let rows = Rows::new(nodes, offsets, list, values, Unity::Within(1e-12)).unwrap();
-    let at = GradRows::new(vec![Point3::origin(); points], rows, grads).unwrap();
-    VolumeRows::new(at, vec![1e-9; points]).unwrap()
 }

@@ -82,7 +82,7 @@ impl Mass {
         let of_node = rows.incidence(self.node_count());
         let mut matrix =
             Stiffness::zeros(BlockPattern::new(self.node_count(), &[(rows.connectivity(), &of_node)]));
-        matrix.for_each_row(|i, slot, row, _| {
+        matrix.for_each_row(|i, slot, row| {
             for &(q, k) in of_node.of(i) {
                 let (q, k) = (q as usize, k as usize);
                 let weighted = self.table.weights[q] * rows.data[k];

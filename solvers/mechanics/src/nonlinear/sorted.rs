@@ -41,7 +41,7 @@ impl<T: Copy + AddAssign> Sorted<T> {
     }
 
     pub fn connectivity(&self) -> Connectivity<'_> {
-        Connectivity { offsets: &self.offsets, nodes: &self.nodes }
+        Connectivity { offsets: &self.offsets, nodes: &self.nodes, seen_by: &[] }
     }
 
     pub fn incidence(&self, node_count: usize) -> Incidence {

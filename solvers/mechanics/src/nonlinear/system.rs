@@ -119,7 +119,7 @@ impl<'a> System<'a> {
                     of_groups[start..].sort_unstable();
                     offsets.push(of_groups.len());
                 }
-                let connectivity = Connectivity { offsets: &offsets, nodes: &of_groups };
+                let connectivity = Connectivity { offsets: &offsets, nodes: &of_groups, seen_by: &[] };
                 let incidence = Incidence::new(nodes, connectivity, 0..groups.len());
                 Some((offsets, of_groups, incidence))
             }
@@ -138,7 +138,7 @@ impl<'a> System<'a> {
         }
         let mut tables = vec![(points.connectivity(), &points_of)];
         if let Some((offsets, nodes, of)) = &groups {
-            tables.push((Connectivity { offsets, nodes }, of));
+            tables.push((Connectivity { offsets, nodes, seen_by: &[] }, of));
         }
         tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
         let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
@@ -199,7 +199,7 @@ impl<'a> System<'a> {
         let System { points, points_of, groups, surfaces, stiffness, .. } = self;
         let groups = groups.as_ref();
         stiffness.clear();
-        stiffness.for_each_row(|i, slot, row, _| {
+        stiffness.for_each_row(|i, slot, row| {
             for &(q, k) in points_of.of(i) {
                 let (q, k) = (q as usize, k as usize);
                 let D = &hessian.point[q];

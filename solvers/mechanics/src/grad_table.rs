@@ -1,0 +1,384 @@
+#![allow(non_snake_case)] // G and H as in the formulas
+//! Gradient rows ready for assembly, those of two points together where they see nearly the same nodes.
+//!
+//! The sum `G_ij = sum_q w g_i g_j^T` reads and writes a block for every pair of nodes of every point: as many stores as there are
+//! products. Two points that share their nodes share these stores too.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::body::region_of;
+use crate::dilation::group_bulk;
+use crate::pattern::{Connectivity, Incidence};
+use crate::{Body, Matrix3, SolveError, Vector3};
+
+/// Bundles per task.
+const CHUNK: usize = 64;
+
+/// Points of a bundle, at most.
+const POINTS: usize = 2;
+
+/// A vector at each point of a bundle, padded to four numbers each: a register of AVX-512 or two of AVX2, a line of the cache.
+pub(crate) type Pair = [f64; 4 * POINTS];
+
+/// Gradients of one or two points that follow each other, by bundle; nodes ascending in each, so that the partners `j <= i` of an
+/// entry are the entries before it. Bundles are in the order of their laws, and the points of one have the same.
+pub(crate) struct GradTable {
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    /// Which points of its bundle see the node, a bit each.
+    seen_by: Vec<u8>,
+    /// 1/m; zero at points that do not see the node.
+    grads: Vec<Pair>,
+    /// Weight of each point, at every place of its gradients.
+    weights: Vec<Pair>,
+    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    laws: Vec<(Range<usize>, (f64, f64))>,
+}
+
+/// What a table is made of: points in their order, the row of gradients of each (a row may name a node twice; its gradients add up), its
+/// weight and its law.
+struct Rows<R, W, L> {
+    order: Vec<u32>,
+    row: R,
+    weight: W,
+    law: L,
+}
+
+impl GradTable {
+    /// The body's own quadrature; with a projection only its deviatoric part, `lambda' = -2 mu / 3`.
+    pub fn points(body: &Body) -> GradTable {
+        let moduli = body.materials.iter().map(|m| match body.dilation {
+            Some(_) => (-2.0 / 3.0 * m.mu(), m.mu()),
+            None => (m.lambda(), m.mu()),
+        });
+        let law = |q| region_of(body.region, q);
+        let mut order: Vec<u32> = (0..body.volume.weights().len() as u32).collect();
+        order.sort_by_key(|&q| law(q as usize));
+        let rows = Rows {
+            order,
+            row: |q| {
+                let (nodes, grads) = body.volume.row(q);
+                nodes.iter().copied().zip(grads.iter().copied())
+            },
+            weight: |q| body.volume.weights()[q],
+            law,
+        };
+        GradTable::new(body.nodes.len(), &rows, &moduli.collect::<Vec<_>>())
+    }
+
+    /// The dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1, 0) and weight `kappa V_a`.
+    pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
+        let Some(groups) = body.dilation else { return Ok(None) };
+        let scratch = || vec![Vector3::zeros(); body.nodes.len()];
+        let averaged: Vec<_> = (0..groups.len())
+            .into_par_iter()
+            .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
+            .collect();
+        // `!(V > 0)`: a NaN must not pass.
+        if let Some((group, &(volume, _))) = averaged.iter().enumerate().find(|(_, of)| !(of.0 > 0.0)) {
+            return Err(SolveError::GroupVolume { group, volume });
+        }
+        let rows = Rows {
+            order: (0..groups.len() as u32).collect(),
+            row: |a: usize| averaged[a].1.iter().copied(),
+            weight: |a| group_bulk(body, a) * averaged[a].0,
+            law: |_| 0,
+        };
+        Ok(Some(GradTable::new(body.nodes.len(), &rows, &[(1.0, 0.0)])))
+    }
+
+    fn new<I, R, W, L>(node_count: usize, rows: &Rows<R, W, L>, moduli: &[(f64, f64)]) -> GradTable
+    where
+        I: Iterator<Item = (u32, Vector3)>,
+        R: Fn(usize) -> I + Sync,
+        W: Fn(usize) -> f64 + Sync,
+        L: Fn(usize) -> usize + Sync,
+    {
+        let (mut offsets, mut nodes, mut firsts) = (vec![0], Vec::new(), vec![0]);
+        let (row, law) = (|p| (rows.row)(rows.order[p] as usize), |p| (rows.law)(rows.order[p] as usize));
+        // The first point of the bundle that met a node last.
+        let mut met = vec![usize::MAX; node_count];
+        let mut first = 0;
+        for p in 0..rows.order.len() {
+            let (mut all, mut new) = (0, 0);
+            for (node, _) in row(p) {
+                all += 1;
+                new += usize::from(met[node as usize] != first);
+            }
+            // All pairs of a bundle cost the same, whichever of its points see them.
+            let here: usize = nodes.len() - offsets[offsets.len() - 1];
+            let pays = (here + new).pow(2) <= here.pow(2) + all * all;
+            let joins = p < first + POINTS && law(p) == law(first) && pays;
+            if p > first && !joins {
+                offsets.push(nodes.len());
+                firsts.push(p);
+                first = p;
+            }
+            for (node, _) in row(p) {
+                if std::mem::replace(&mut met[node as usize], first) != first {
+                    nodes.push(node);
+                }
+            }
+        }
+        if !rows.order.is_empty() {
+            offsets.push(nodes.len());
+            firsts.push(rows.order.len());
+        }
+        let bundles = firsts.len() - 1;
+        let mut weights = vec![[0.0; 8]; bundles];
+        for (weights, range) in weights.iter_mut().zip(firsts.windows(2)) {
+            for (at, p) in (range[0]..range[1]).enumerate() {
+                weights[places(at)].fill((rows.weight)(rows.order[p] as usize));
+            }
+        }
+        let mut laws: Vec<(Range<usize>, (f64, f64))> = Vec::new();
+        for (l, &moduli) in moduli.iter().enumerate() {
+            let start = laws.last().map_or(0, |last| last.0.end);
+            let end = firsts[..bundles].partition_point(|&p| law(p) <= l);
+            if end > start {
+                laws.push((start..end, moduli));
+            }
+        }
+        let (seen_by, grads) = (vec![0; nodes.len()], vec![[0.0; 8]; nodes.len()]);
+        let mut table = GradTable { offsets, nodes, seen_by, grads, weights, laws };
+        table.fill(&firsts, &row, node_count);
+        table
+    }
+
+    /// Sorts the nodes of every bundle and adds its gradients up. `firsts` are the points that the bundles start with.
+    fn fill<I: Iterator<Item = (u32, Vector3)>>(
+        &mut self,
+        firsts: &[usize],
+        row: &(impl Fn(usize) -> I + Sync),
+        node_count: usize,
+    ) {
+        let GradTable { offsets, nodes, seen_by, grads, .. } = self;
+        let mut rest = (&mut nodes[..], &mut seen_by[..], &mut grads[..]);
+        let mut tasks = Vec::new();
+        for first in (0..firsts.len() - 1).step_by(CHUNK) {
+            let bundles = first..(first + CHUNK).min(firsts.len() - 1);
+            let entries = offsets[bundles.end] - offsets[bundles.start];
+            let (nodes, nodes_left) = rest.0.split_at_mut(entries);
+            let (seen_by, seen_by_left) = rest.1.split_at_mut(entries);
+            let (grads, grads_left) = rest.2.split_at_mut(entries);
+            rest = (nodes_left, seen_by_left, grads_left);
+            tasks.push((bundles, nodes, seen_by, grads));
+        }
+        let offsets = &offsets[..];
+        tasks.into_par_iter().for_each_init(
+            || vec![0; node_count],
+            |at, (bundles, nodes, seen_by, grads)| {
+                let base = offsets[bundles.start];
+                for bundle in bundles {
+                    let entries = offsets[bundle] - base..offsets[bundle + 1] - base;
+                    nodes[entries.clone()].sort_unstable();
+                    for k in entries {
+                        at[nodes[k] as usize] = k;
+                    }
+                    for (p, point) in (firsts[bundle]..firsts[bundle + 1]).enumerate() {
+                        for (node, g) in row(point) {
+                            let k = at[node as usize];
+                            seen_by[k] |= 1 << p;
+                            let grad = &mut grads[k][places(p)];
+                            (0..3).for_each(|axis| grad[axis] += g[axis]);
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    pub fn connectivity(&self) -> Connectivity<'_> {
+        Connectivity { offsets: &self.offsets, nodes: &self.nodes, seen_by: &self.seen_by }
+    }
+
+    /// The bundles that each node is in, ascending.
+    pub fn incidence(&self, node_count: usize) -> Incidence {
+        Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
+    }
+
+    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    pub fn laws(&self) -> &[(Range<usize>, (f64, f64))] {
+        &self.laws
+    }
+
+    /// `G_ij += w g_i g_j^T` over the bundles `seen` by node i and their nodes j <= i, the inner loop of assembly; `G` is the sum
+    /// of two halves. Blocks of nodes that only other points of a bundle see have no `slot`, and get zeros wherever that leads.
+    ///
+    /// For two points three stores and three products and sums of eight lanes: 3 cycles per pair of nodes with AVX-512, what one
+    /// point takes alone.
+    pub fn gather(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::is_x86_feature_detected!("avx512f") {
+                // SAFETY: the processor has the feature that the function requires, just checked; so below.
+                return unsafe { self.gather_avx512(seen, slot, sums) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { self.gather_avx2(seen, slot, sums) };
+            }
+        }
+        self.gather_plain(seen, slot, sums)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f")]
+    fn gather_avx512(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+        self.gather_plain(seen, slot, sums)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn gather_avx2(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+        self.gather_plain(seen, slot, sums)
+    }
+
+    /// The same arithmetic in the same order on every path, so the same bits: multiply and add stay apart.
+    #[inline(always)]
+    fn gather_plain(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+        let last = sums.len() - 1;
+        for &(b, k) in seen {
+            let (b, k) = (b as usize, k as usize);
+            let start = self.offsets[b];
+            let (own, weight) = (&self.grads[k], &self.weights[b]);
+            let mut x = [[0.0; 8]; 3];
+            for axis in 0..3 {
+                for l in 0..8 {
+                    x[axis][l] = weight[l] * own[l / 4 * 4 + axis];
+                }
+            }
+            for (&j, gj) in self.nodes[start..=k].iter().zip(&self.grads[start..=k]) {
+                let G = &mut sums[(slot[j as usize] as usize).min(last)];
+                for axis in 0..3 {
+                    for l in 0..8 {
+                        G[axis][l] += x[axis][l] * gj[l];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
+    pub fn subtract_force(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
+        // Row a of w sigma at the points of a bundle, zero beyond them.
+        let stress: Vec<[Pair; 3]> = (0..self.weights.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|b| {
+                let range = self.offsets[b]..self.offsets[b + 1];
+                let base = u[self.nodes[range.start] as usize];
+                let mut H = [[0.0; 8]; 3];
+                for (&node, g) in self.nodes[range.clone()].iter().zip(&self.grads[range]) {
+                    // Gradients of a partition of unity sum to zero: only differences of displacements count.
+                    let difference = u[node as usize] - base;
+                    for axis in 0..3 {
+                        for l in 0..8 {
+                            H[axis][l] += difference[axis] * g[l];
+                        }
+                    }
+                }
+                self.stress(b, &H)
+            })
+            .collect();
+        force.par_iter_mut().with_min_len(32).enumerate().for_each(|(i, force)| {
+            let mut sums = [[0.0; 8]; 3];
+            for &(b, k) in incidence.of(i) {
+                let (stress, g) = (&stress[b as usize], &self.grads[k as usize]);
+                for axis in 0..3 {
+                    for l in 0..8 {
+                        sums[axis][l] += stress[axis][l] * g[l];
+                    }
+                }
+            }
+            *force -= Vector3::from_fn(|axis, _| sums[axis].iter().sum::<f64>());
+        });
+    }
+
+    /// `w sigma` at the points of a bundle from the displacement gradients there, both by rows.
+    fn stress(&self, bundle: usize, H: &[Pair; 3]) -> [Pair; 3] {
+        let law = self.laws.partition_point(|(bundles, _)| bundles.end <= bundle);
+        let (lambda, mu) = self.laws[law].1;
+        let mut stress = [[0.0; 8]; 3];
+        for p in 0..POINTS {
+            let at = places(p);
+            let H = Matrix3::from_fn(|a, b| H[a][at.start + b]);
+            let weight = self.weights[bundle][at.start];
+            let sigma = ((H + H.transpose()) * mu + Matrix3::identity() * (lambda * H.trace())) * weight;
+            for (a, row) in stress.iter_mut().enumerate() {
+                (0..3).for_each(|b| row[at.start + b] = sigma[(a, b)]);
+            }
+        }
+        stress
+    }
+}
+
+/// Where the vector at one of the points stands.
+fn places(point: usize) -> Range<usize> {
+    4 * point..4 * point + 4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of two laws in turn, one of which names a node twice and one of which shares no node with those beside it.
+    fn rows() -> Vec<Vec<(u32, Vector3)>> {
+        let g = |k: u32| Vector3::new(f64::from(k), 1.0 - 0.5 * f64::from(k), 0.25 * f64::from(k * k));
+        let of = |nodes: &[u32]| nodes.iter().map(|&n| (n, g(n))).collect();
+        vec![of(&[3, 0, 2]), of(&[0, 2, 3]), of(&[2, 4, 2, 0]), of(&[5, 1]), of(&[4, 3, 0]), of(&[0, 3, 4])]
+    }
+
+    type Gather = fn(&GradTable, &[(u32, u32)], &[u32], &mut [[Pair; 3]]);
+
+    fn paths() -> Vec<Gather> {
+        let mut paths: Vec<Gather> = vec![GradTable::gather, GradTable::gather_plain];
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just checked.
+            paths.push(|table, seen, slot, sums| unsafe { table.gather_avx2(seen, slot, sums) });
+        }
+        paths
+    }
+
+    #[test]
+    fn bundles_sum_what_their_points_do_by_law_on_every_path() {
+        let (rows, node_count) = (rows(), 6);
+        let (weight, law) = (|q: usize| 0.5 + q as f64, |q: usize| usize::from(q == 1 || q >= 4));
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        order.sort_by_key(|&q| law(q as usize));
+        let parts = Rows { order, row: |q: usize| rows[q].iter().copied(), weight, law };
+        let table = GradTable::new(node_count, &parts, &[(1.0, 2.0), (3.0, 4.0)]);
+        // Points 0 and 2, 3 alone, 1 and 4, 5.
+        assert_eq!(table.offsets, [0, 4, 6, 10, 13]);
+        assert_eq!(table.laws(), [(0..2, (1.0, 2.0)), (2..4, (3.0, 4.0))]);
+        let incidence = table.incidence(node_count);
+        let slot: Vec<u32> = (0..node_count as u32).collect();
+        for (l, (bundles, _)) in table.laws().iter().enumerate() {
+            for i in 0..node_count {
+                let seen: Vec<(u32, u32)> =
+                    incidence.of(i).iter().copied().filter(|of| bundles.contains(&(of.0 as usize))).collect();
+                let sums: Vec<Vec<[Pair; 3]>> = paths()
+                    .iter()
+                    .map(|gather| {
+                        let mut sums = vec![[[0.0; 8]; 3]; node_count];
+                        gather(&table, &seen, &slot, &mut sums);
+                        sums
+                    })
+                    .collect();
+                assert!(sums.windows(2).all(|two| two[0] == two[1]), "row {i}");
+                for j in 0..=i {
+                    let at = |q: usize, n: usize| {
+                        let of = rows[q].iter().filter(|e| e.0 == n as u32);
+                        of.map(|e| e.1).sum::<Vector3>()
+                    };
+                    let points = (0..rows.len()).filter(|&q| law(q) == l);
+                    let exact: Matrix3 = points.map(|q| at(q, i) * at(q, j).transpose() * weight(q)).sum();
+                    let sum = Matrix3::from_fn(|a, b| sums[0][j][a][b] + sums[0][j][a][4 + b]);
+                    assert!((sum - exact).norm() <= 1e-14 * exact.norm(), "{i} {j}: {sum} {exact}");
+                }
+            }
+        }
+    }
+}
