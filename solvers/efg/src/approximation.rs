@@ -1,5 +1,7 @@
 //! The approximation over a cloud: which neighbours, which fit, and what to do where neighbours are too few.
 
+use std::cmp::Reverse;
+
 use geometry::Mesh;
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
@@ -15,6 +17,9 @@ use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
 const CHUNK: usize = 128;
+/// Tables of up to so many points are made in one wave, and their size is counted, not estimated: one of 1331 points in two
+/// waves leaves threads idle at the end of either, and is copied once more where the estimate falls short.
+const SMALL: usize = 16 * CHUNK;
 /// About so many points, or one in [`SPARING`], give an estimate of a table's size: to a standard error of 0.5 % where neighbours
 /// scatter by a third. Growing by doubling would take up to three times the memory while it copies, and touch pages anew.
 pub(crate) const SAMPLES: usize = 4000;
@@ -73,28 +78,12 @@ struct LeastSquares {
 struct Chunk {
     rows: RowList,
     outcomes: Vec<Outcome>,
-    /// Points by number of neighbours: those of a group are as long as the longest.
+    /// Points by number of neighbours, most first: lists of a group are as long as the longest, and grow once.
     order: Vec<u32>,
     group: Group,
     neighbours: Neighbours,
     /// What finite elements have at each point; empty without any.
     layers: Vec<Layer>,
-}
-
-/// One for each of eight nodes whose support covers the point, zero for the others.
-#[inline(always)]
-fn covered(balls: &[Ball], nodes: &[u32; LANES], x: &Point3) -> [u64; LANES] {
-    let (mut at, mut radius) = ([[0.0; LANES]; 3], [0.0; LANES]);
-    for l in 0..LANES {
-        let ball = balls[nodes[l] as usize];
-        (at[0][l], at[1][l], at[2][l], radius[l]) = (ball.at[0], ball.at[1], ball.at[2], ball.radius);
-    }
-    let mut covered = [0; LANES];
-    for l in 0..LANES {
-        let ball = Ball { at: [at[0][l], at[1][l], at[2][l]], radius: radius[l] };
-        covered[l] = u64::from(ball.covers(x, 1.0));
-    }
-    covered
 }
 
 impl Approximation {
@@ -146,9 +135,9 @@ impl Approximation {
             return Err(EfgError::NotFinite { node });
         }
         support::check(&radii)?;
-        let balls =
+        let balls: Vec<Ball> =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
-        let buckets = Buckets::new(&nodes, &radii);
+        let buckets = Buckets::new(&balls);
         Ok(Approximation { nodes, balls, ellipsoids: Vec::new(), functions, buckets, coupling: None })
     }
 
@@ -206,8 +195,7 @@ impl Approximation {
         if nodes.len() < Basis::Linear.terms() {
             return Err(EfgError::TooFewNodes { found: nodes.len(), needed: Basis::Linear.terms() });
         }
-        let radii: Vec<f64> = balls.iter().map(|ball| ball.radius).collect();
-        let buckets = Buckets::new(&nodes, &radii);
+        let buckets = Buckets::new(&balls);
         nodes.extend(vertices.iter().map(|&v| background.points()[v as usize]));
         Ok(Approximation { nodes, balls, ellipsoids, buckets, coupling: Some(coupling), ..self })
     }
@@ -242,10 +230,10 @@ impl Approximation {
     fn table<const GRAD: bool>(&self, points: &[Point3]) -> Result<(Rows, Vec<Vector3>, MlsInfo), EfgError> {
         // In waves that reuse their buffers: all chunks at once would touch twice the memory, and in a single call
         // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave.
-        let wave = 4 * CHUNK * rayon::current_num_threads();
+        let small = points.len() <= SMALL;
+        let wave = if small { SMALL } else { 4 * CHUNK * rayon::current_num_threads() };
         let mut chunks: Vec<Chunk> = Vec::new();
-        let entries = self.expected_entries(points);
-        let mut rows = RowList::with_capacity(points.len(), entries, if GRAD { entries } else { 0 });
+        let mut rows = RowList::default();
         let mut tally = Tally::with_capacity(points.len());
         for wave in points.chunks(wave) {
             let parts = wave.par_chunks(CHUNK);
@@ -255,6 +243,11 @@ impl Approximation {
                 .zip(parts)
                 .map(|(chunk, part)| self.fill::<GRAD>(part, chunk))
                 .collect();
+            if rows.offsets.len() == 1 {
+                let counted = || chunks.iter().map(|chunk| chunk.rows.nodes.len()).sum();
+                let entries = if small { counted() } else { self.expected_entries(points) };
+                rows = RowList::with_capacity(points.len(), entries, if GRAD { entries } else { 0 });
+            }
             for (done, chunk) in done.into_iter().zip(&chunks) {
                 done?;
                 rows.append(&chunk.rows);
@@ -280,31 +273,12 @@ impl Approximation {
     /// Appends the nodes whose supports cover the point, as a row.
     #[inline(always)]
     fn find(&self, x: &Point3, rows: &mut RowList) {
-        let candidates = self.buckets.candidates(x);
         let first = rows.nodes.len();
-        rows.nodes.resize(first + candidates.len(), 0);
-        let (found, balls) = (&mut rows.nodes[first..], &self.balls[..]);
-        // Written always, counted if covered: about half of the candidates are not, and a branch would be mispredicted.
-        let mut n = 0;
-        let (groups, rest) = candidates.as_chunks::<LANES>();
-        for nodes in groups {
-            let covered = covered(balls, nodes, x);
-            let (room, mut kept) = (&mut found[n..n + LANES], 0);
-            for l in 0..LANES {
-                // At most `l` are kept so far: the remainder is the number itself, and no place beyond the room.
-                room[kept % LANES] = nodes[l];
-                kept += covered[l] as usize;
-            }
-            n += kept;
-        }
-        for &node in rest {
-            found[n] = node;
-            n += usize::from(balls[node as usize].covers(x, 1.0));
-        }
+        self.buckets.find(x, &self.balls, &mut rows.nodes);
         if !self.ellipsoids.is_empty() {
-            n = self.within_ellipsoids(x, &mut found[..n]);
+            let kept = self.within_ellipsoids(x, &mut rows.nodes[first..]);
+            rows.nodes.truncate(first + kept);
         }
-        rows.nodes.truncate(first + n);
         rows.close();
     }
 
@@ -390,7 +364,7 @@ impl Approximation {
         };
         order.clear();
         order.extend(0..points.len() as u32);
-        order.sort_unstable_by_key(|&q| (rows.range(q as usize).len(), q));
+        order.sort_unstable_by_key(|&q| (Reverse(rows.range(q as usize).len()), q));
         outcomes.clear();
         outcomes.resize(points.len(), Outcome::default());
         let mut failed = false;

@@ -1,12 +1,23 @@
-//! Which supports may cover a point? A uniform grid whose cells list the nodes whose support balls touch them.
-//! A query reads one list: at 83 nodes it takes less time than descending a tree.
+//! Which supports cover a point? A uniform grid whose cells list the nodes whose support balls touch them: a query reads one
+//! list. Few nodes are all asked, side by side, in less time than it takes to gather those of a list.
 
 use shape::Point3;
 
+use crate::lanes::{LANES, Lanes};
+use crate::mls::Ball;
+
+/// Up to so many nodes, all are asked.
+const FEW: usize = 128;
 /// Cells per support radius: finer cells hold fewer false candidates but more entries in all.
 const CELLS_PER_RADIUS: f64 = 2.0;
 
-pub(crate) struct Buckets {
+pub(crate) enum Buckets {
+    /// Every ball by axis and radius, by eights, filled up with balls of no radius.
+    Few(Vec<[Lanes; 4]>),
+    Grid(Grid),
+}
+
+pub(crate) struct Grid {
     origin: [f64; 3],
     inverse_size: f64,
     counts: [usize; 3],
@@ -15,28 +26,112 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
+    pub(crate) fn new(balls: &[Ball]) -> Buckets {
+        if balls.len() > FEW {
+            return Buckets::Grid(Grid::new(balls));
+        }
+        let side_by_side = |eight: &[Ball]| {
+            let mut lanes = [[0.0; LANES]; 4];
+            for (l, Ball { at: [x, y, z], radius }) in eight.iter().enumerate() {
+                (lanes[0][l], lanes[1][l], lanes[2][l], lanes[3][l]) = (*x, *y, *z, *radius);
+            }
+            lanes
+        };
+        Buckets::Few(balls.chunks(LANES).map(side_by_side).collect())
+    }
+
+    /// Appends the nodes whose balls cover the point, by ascending index.
+    #[inline(always)]
+    pub(crate) fn find(&self, x: &Point3, balls: &[Ball], nodes: &mut Vec<u32>) {
+        let first = nodes.len();
+        let mut n = first;
+        match self {
+            Buckets::Few(eights) => {
+                nodes.resize(first + eights.len() * LANES, 0);
+                for (&eight, node) in eights.iter().zip((0..).step_by(LANES)) {
+                    let mut these = [0; LANES];
+                    for l in 0..LANES {
+                        these[l] = node + l as u32;
+                    }
+                    n += keep(&these, &covered(eight, x), &mut nodes[n..n + LANES]);
+                }
+            }
+            Buckets::Grid(grid) => {
+                let candidates = grid.candidates(x);
+                nodes.resize(first + candidates.len(), 0);
+                let (groups, rest) = candidates.as_chunks::<LANES>();
+                for these in groups {
+                    n += keep(these, &covered(gathered(balls, these), x), &mut nodes[n..n + LANES]);
+                }
+                for &node in rest {
+                    nodes[n] = node;
+                    n += usize::from(balls[node as usize].covers(x, 1.0));
+                }
+            }
+        }
+        nodes.truncate(n);
+    }
+}
+
+/// Positions and radii of eight balls.
+#[inline(always)]
+fn gathered(balls: &[Ball], nodes: &[u32; LANES]) -> [Lanes; 4] {
+    let mut lanes = [[0.0; LANES]; 4];
+    for l in 0..LANES {
+        let Ball { at: [x, y, z], radius } = balls[nodes[l] as usize];
+        (lanes[0][l], lanes[1][l], lanes[2][l], lanes[3][l]) = (x, y, z, radius);
+    }
+    lanes
+}
+
+/// One for each of eight balls that covers the point, zero for the others.
+#[inline(always)]
+fn covered([at_x, at_y, at_z, radius]: [Lanes; 4], x: &Point3) -> [u64; LANES] {
+    let mut covered = [0; LANES];
+    for l in 0..LANES {
+        let ball = Ball { at: [at_x[l], at_y[l], at_z[l]], radius: radius[l] };
+        covered[l] = u64::from(ball.covers(x, 1.0));
+    }
+    covered
+}
+
+/// Moves the nodes that count to the front of the room and counts them. Written always: about half of the candidates do not
+/// count, and a branch would be mispredicted.
+#[inline(always)]
+fn keep(nodes: &[u32; LANES], covered: &[u64; LANES], room: &mut [u32]) -> usize {
+    let mut kept = 0;
+    for l in 0..LANES {
+        // At most `l` are kept so far: the remainder is the number itself, and no place beyond the room.
+        room[kept % LANES] = nodes[l];
+        kept += covered[l] as usize;
+    }
+    kept
+}
+
+impl Grid {
     /// Lists every ball in the cells it touches, by ascending node index.
-    pub(crate) fn new(points: &[Point3], radii: &[f64]) -> Buckets {
+    fn new(balls: &[Ball]) -> Grid {
         let bound = |axis: usize, sign: f64| {
-            let ends = points.iter().zip(radii).map(|(p, r)| sign * p[axis] + r);
+            let ends = balls.iter().map(|ball| sign * ball.at[axis] + ball.radius);
             sign * ends.fold(f64::NEG_INFINITY, f64::max)
         };
         let origin: [f64; 3] = std::array::from_fn(|a| bound(a, -1.0));
         let extent: [f64; 3] = std::array::from_fn(|a| bound(a, 1.0) - origin[a]);
-        let mut size = radii.iter().sum::<f64>() / radii.len() as f64 / CELLS_PER_RADIUS;
+        let mut size =
+            balls.iter().map(|ball| ball.radius).sum::<f64>() / balls.len() as f64 / CELLS_PER_RADIUS;
         // A few nodes far from the rest must not make a grid of empty cells.
-        let limit = (64 * points.len() + 4096) as f64;
+        let limit = (64 * balls.len() + 4096) as f64;
         let cells = |size: f64| extent.iter().map(|e| (e / size).floor() + 1.0).product::<f64>();
         while cells(size) > limit {
             size *= 1.25;
         }
         let counts = extent.map(|e| (e / size).floor() as usize + 1);
         let mut grid =
-            Buckets { origin, inverse_size: 1.0 / size, counts, offsets: Vec::new(), items: Vec::new() };
+            Grid { origin, inverse_size: 1.0 / size, counts, offsets: Vec::new(), items: Vec::new() };
         grid.offsets = vec![0; counts.iter().product::<usize>() + 1];
         let mut entries = Vec::new();
-        for (node, (point, &radius)) in points.iter().zip(radii).enumerate() {
-            grid.for_each_touched(point, radius, |cell| entries.push((cell as u32, node as u32)));
+        for (node, ball) in balls.iter().enumerate() {
+            grid.for_each_touched(ball, |cell| entries.push((cell as u32, node as u32)));
         }
         for &(cell, _) in &entries {
             grid.offsets[cell as usize + 1] += 1;
@@ -56,7 +151,7 @@ impl Buckets {
 
     /// Nodes whose supports may cover the point, by ascending index; a superset of those that do.
     #[inline]
-    pub(crate) fn candidates(&self, point: &Point3) -> &[u32] {
+    fn candidates(&self, point: &Point3) -> &[u32] {
         let mut cell = 0;
         for axis in 0..3 {
             let at = (point[axis] - self.origin[axis]) * self.inverse_size;
@@ -69,10 +164,10 @@ impl Buckets {
         &self.items[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
     }
 
-    fn for_each_touched(&self, point: &Point3, radius: f64, mut visit: impl FnMut(usize)) {
+    fn for_each_touched(&self, ball: &Ball, mut visit: impl FnMut(usize)) {
         // In cell units, with a margin far above rounding.
-        let radius = radius * self.inverse_size + 1e-9;
-        let at: [f64; 3] = std::array::from_fn(|a| (point[a] - self.origin[a]) * self.inverse_size);
+        let radius = ball.radius * self.inverse_size + 1e-9;
+        let at: [f64; 3] = std::array::from_fn(|a| (ball.at[a] - self.origin[a]) * self.inverse_size);
         let range = |a: usize| {
             let first = (at[a] - radius).floor().max(0.0) as usize;
             first..=((at[a] + radius).floor() as usize).min(self.counts[a] - 1)
@@ -90,5 +185,32 @@ impl Buckets {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ways_find_the_balls_that_cover() {
+        let at = |i: usize, c: f64| (i as f64 * c).fract();
+        let place = |i: usize| [at(i, 0.754_877), at(i, 0.569_84), at(i, 0.317_8)];
+        // Not a multiple of eight.
+        let balls: Vec<Ball> =
+            (0..83).map(|i| Ball { at: place(i), radius: 0.2 + 0.01 * (i % 7) as f64 }).collect();
+        let (few, grid) = (Buckets::new(&balls), Buckets::Grid(Grid::new(&balls)));
+        assert!(matches!(few, Buckets::Few(_)));
+        let mut total = 0;
+        for x in (100..400).map(|i| Point3::from(place(i).map(|c| 1.6 * c - 0.3))) {
+            let covering: Vec<u32> = (0..83).filter(|&n| balls[n as usize].covers(&x, 1.0)).collect();
+            for buckets in [&few, &grid] {
+                let mut nodes = vec![7];
+                buckets.find(&x, &balls, &mut nodes);
+                assert_eq!(nodes[1..], covering);
+            }
+            total += covering.len();
+        }
+        assert!((200..600).contains(&total), "{total}");
     }
 }

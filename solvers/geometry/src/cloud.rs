@@ -9,11 +9,15 @@ pub use generate::{CloudError, Refinement, cloud, cloud_of_sizes};
 pub use read::{PointFile, PointFileError, PointProblem, read_points};
 pub use sizes::Sizes;
 
+use rayon::prelude::*;
+
 use crate::{Mesh, Point3, Search};
 
 /// Neighbours whose mean distance is the spacing of a node in a cloud without a mesh: about as many as a node of a
 /// tetrahedral mesh has edges.
 const NEIGHBOURS: usize = 14;
+/// Nodes per parallel task at least.
+const CHUNK: usize = 32;
 
 /// Nodes and their local spacing.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,21 +36,19 @@ impl Cloud {
             return Err(CloudError::TooFew { nodes: points.len(), least: 2 });
         }
         let search = Search::new(&points)?;
-        let mut spacing = Vec::with_capacity(points.len());
-        for (node, p) in points.iter().enumerate() {
+        let of_node = |(node, p): (usize, &Point3)| {
             let near = search.nearest(p, NEIGHBOURS + 1);
-            let others: Vec<f64> = near
-                .iter()
-                .filter(|n| n.index as usize != node)
-                .map(|n| n.distance)
-                .take(NEIGHBOURS)
-                .collect();
-            if others[0] == 0.0 {
-                let other = near.iter().find(|n| n.index as usize != node).map_or(0, |n| n.index as usize);
-                return Err(CloudError::Coincident { first: node.min(other), second: node.max(other) });
+            let others = || near.iter().filter(|n| n.index as usize != node).take(NEIGHBOURS);
+            match others().next() {
+                Some(other) if other.distance == 0.0 => {
+                    let other = other.index as usize;
+                    Err(CloudError::Coincident { first: node.min(other), second: node.max(other) })
+                }
+                _ => Ok(others().map(|n| n.distance).sum::<f64>() / others().count() as f64),
             }
-            spacing.push(others.iter().sum::<f64>() / others.len() as f64);
-        }
+        };
+        let spacing: Vec<_> = points.par_iter().with_min_len(CHUNK).enumerate().map(of_node).collect();
+        let spacing = spacing.into_iter().collect::<Result<Vec<f64>, CloudError>>()?;
         Ok(Cloud { points, spacing })
     }
 }

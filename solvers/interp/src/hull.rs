@@ -72,7 +72,11 @@ impl Hull {
     pub(crate) fn place(&self, x: &Point3) -> Place {
         let r = x - self.middle;
         let lanes = [r.x, r.y, r.z].map(Lanes::all);
-        let highest = self.slopes.iter().fold(Lanes::all(0.0), |most, slope| most.max(dot(slope, &lanes)));
+        // A loop: what a fold is handed would not be inlined, and then not on wide registers.
+        let mut highest = Lanes::all(0.0);
+        for slope in &self.slopes {
+            highest = highest.max(dot(slope, &lanes));
+        }
         let highest = highest.0.into_iter().fold(0.0, f64::max);
         if highest < 1.0 - DEPTH {
             return Place::Inside;

@@ -1,9 +1,10 @@
 //! Inverse-distance weighting, the transfer of the paper that this project starts from.
 
-use shape::{Point3, PointRows, Rows, Unity};
+use shape::{Point3, PointRows, Unity};
 
 use crate::InterpError;
-use crate::neighbours::{Neighbours, check_count, check_finite};
+use crate::neighbours::{Found, Neighbours, check_count, check_finite};
+use crate::table::{Batch, in_chunks};
 
 /// `u(x) = sum_i u_i / d_i^p / sum_i 1 / d_i^p` over the `neighbours` nearest nodes, `d_i = |x - x_i|`, `p`
 /// the `power` (the paper's Eq. 5; Shepard 1968 over all nodes).
@@ -25,23 +26,22 @@ pub fn inverse_distance(
     }
     check_finite(nodes, targets)?;
     check_count("inverse-distance", nodes.len(), neighbours)?;
-    let mut search = Neighbours::new(nodes, neighbours)?;
-    let mut entries = Vec::with_capacity(targets.len() * neighbours);
-    let mut values = Vec::with_capacity(targets.len() * neighbours);
-    for x in targets {
-        let found = search.of(x);
-        let nearest = found[0].0;
-        let start = values.len();
-        for &(distance, node) in found {
-            entries.push(node);
-            values.push(relative_weight(nearest, distance, power));
+    let search = Neighbours::new(nodes, neighbours)?;
+    let (rows, _) = in_chunks(nodes.len(), targets, Unity::Within(1e-12), |targets| {
+        let mut batch = Batch::with_capacity(targets.len(), targets.len() * neighbours);
+        let mut found = Found::default();
+        for x in targets {
+            let found = search.of(x, &mut found);
+            let nearest = found[0].0;
+            for &(distance, node) in found {
+                batch.nodes.push(node);
+                batch.values.push(relative_weight(nearest, distance, power));
+            }
+            batch.close_over_sum();
         }
-        let sum: f64 = values[start..].iter().sum();
-        values[start..].iter_mut().for_each(|w| *w /= sum);
-    }
-    let offsets = (0..=targets.len()).map(|row| row * neighbours).collect();
-    let rows = Rows::new(nodes.len(), offsets, entries, values, Unity::Within(1e-12))?;
-    Ok(PointRows::new(targets.to_vec(), rows)?)
+        batch
+    })?;
+    Ok(rows)
 }
 
 /// `(d_min / d)^p`; where `d_min` is zero, one at the node and zero elsewhere.

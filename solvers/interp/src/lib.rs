@@ -38,6 +38,7 @@ mod radial;
 mod scheme;
 mod shepard;
 mod sibson;
+mod table;
 mod twofold;
 
 pub use barycentric::{barycentric, barycentric_gradients};

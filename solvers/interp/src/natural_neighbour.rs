@@ -1,20 +1,16 @@
 //! Natural neighbour interpolation.
 
-use std::ops::Range;
-
-use rayon::prelude::*;
-use shape::{Point3, PointRows, Rows, Unity};
+use shape::{Point3, PointRows, Unity};
 
 use crate::delaunay::{Degenerate, Delaunay};
 use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::hull::{Hull, Place};
 use crate::neighbours::{check_count, check_finite};
 use crate::sibson::{Voronoi, Workspace};
+use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
 
 const SCHEME: &str = "natural-neighbour";
-/// Targets per parallel task: fixed, so that the bits are the same at any thread count.
-const CHUNK: usize = 128;
 
 /// `u(x) = sum_i V_i u_i / sum_i V_i`, `V_i` the volume that the Voronoi cell of the target takes from the cell of node `i`
 /// (Sibson 1980, 1981). Exact for linear fields; interpolates; smooth (C1) but at the nodes, within the convex hull of
@@ -57,86 +53,67 @@ pub fn natural_neighbour(
     let hull = Hull::new(&cloud, &mesh);
     let voronoi = Voronoi::new(cloud, &mesh);
 
-    let mut batches: Vec<Batch> = Vec::new();
-    targets
-        .par_chunks(CHUNK)
-        .map(|chunk| Batch::new(&chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi))
-        .collect_into_vec(&mut batches);
-    let (mut offsets, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
+    in_chunks(nodes.len(), targets, Unity::Within(1e-9), |chunk| {
+        batch(&chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi)
+    })
+}
+
+/// The same arithmetic in the same order on either path, so the same bits; fused multiply-add, which would change them, is
+/// left off.
+fn batch(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
+            // SAFETY: the processor has the features that the function requires, just checked; so below.
+            return unsafe { batch_avx512(targets, hull, voronoi) };
+        }
+        if std::is_x86_feature_detected!("avx2") {
+            return unsafe { batch_avx2(targets, hull, voronoi) };
+        }
+    }
+    batch_plain(targets, hull, voronoi)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn batch_avx512(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+    batch_plain(targets, hull, voronoi)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn batch_avx2(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+    batch_plain(targets, hull, voronoi)
+}
+
+#[inline(always)]
+fn batch_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+    let mut at = Workspace::new(voronoi);
     let mut info = TransferInfo::default();
-    for batch in batches {
-        for row in batch.rows {
-            entries.extend_from_slice(&batch.nodes[row.clone()]);
-            values.extend_from_slice(&batch.values[row]);
-            offsets.push(entries.len());
-        }
-        info.outside += batch.info.outside;
-        info.fallbacks += batch.info.fallbacks;
-    }
-    let rows = Rows::new(nodes.len(), offsets, entries, values, Unity::Within(1e-9))?;
-    Ok((PointRows::new(targets.to_vec(), rows)?, info))
-}
-
-/// Rows of one chunk of targets.
-#[derive(Default)]
-struct Batch {
-    /// Entries of each target among those below.
-    rows: Vec<Range<usize>>,
-    nodes: Vec<u32>,
-    values: Vec<f64>,
-    info: TransferInfo,
-}
-
-impl Batch {
-    /// The same arithmetic in the same order on either path, so the same bits; fused multiply-add, which would change them, is
-    /// left off.
-    fn new(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
-                // SAFETY: the processor has the features that the function requires, just checked; so below.
-                return unsafe { Batch::new_avx512(targets, hull, voronoi) };
+    let (mut rows, mut nodes, mut values) = (vec![0..0; targets.len()], Vec::new(), Vec::new());
+    for target in along_a_curve(targets) {
+        let x = &targets[target];
+        let inner = match hull.place(x) {
+            Place::Inside => None,
+            Place::Near { inner, outside } => {
+                info.outside += usize::from(outside);
+                Some(inner)
             }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { Batch::new_avx2(targets, hull, voronoi) };
-            }
-        }
-        Batch::new_plain(targets, hull, voronoi)
+        };
+        voronoi.coordinates(x, inner.as_ref(), &mut at);
+        info.fallbacks += usize::from(at.fallback);
+        rows[target] = nodes.len()..nodes.len() + at.nodes.len();
+        nodes.extend_from_slice(&at.nodes);
+        values.extend_from_slice(&at.values);
     }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512dq")]
-    fn new_avx512(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-        Batch::new_plain(targets, hull, voronoi)
+    let mut batch = Batch::with_capacity(targets.len(), nodes.len());
+    batch.info = info;
+    for row in rows {
+        batch.nodes.extend_from_slice(&nodes[row.clone()]);
+        batch.values.extend_from_slice(&values[row]);
+        batch.close();
     }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn new_avx2(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-        Batch::new_plain(targets, hull, voronoi)
-    }
-
-    #[inline(always)]
-    fn new_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-        let mut batch = Batch { rows: vec![0..0; targets.len()], ..Batch::default() };
-        let mut at = Workspace::new(voronoi);
-        for target in along_a_curve(targets) {
-            let x = &targets[target];
-            let inner = match hull.place(x) {
-                Place::Inside => None,
-                Place::Near { inner, outside } => {
-                    batch.info.outside += usize::from(outside);
-                    Some(inner)
-                }
-            };
-            voronoi.coordinates(x, inner.as_ref(), &mut at);
-            batch.info.fallbacks += usize::from(at.fallback);
-            batch.rows[target] = batch.nodes.len()..batch.nodes.len() + at.nodes.len();
-            batch.nodes.extend_from_slice(&at.nodes);
-            batch.values.extend_from_slice(&at.values);
-        }
-        batch
-    }
+    batch
 }
 
 /// The targets in Z-order (Morton 1966) on a grid of 16 cells along each axis of the cloud, of half-extent 1: the walk to a target
@@ -168,18 +145,16 @@ mod tests {
         let mesh = Delaunay::new(&nodes).unwrap();
         let (hull, voronoi) = (Hull::new(&nodes, &mesh), Voronoi::new(nodes, &mesh));
         let targets = points(601, 1.1);
-        let (chosen, plain) =
-            (Batch::new(&targets, &hull, &voronoi), Batch::new_plain(&targets, &hull, &voronoi));
+        let (chosen, plain) = (batch(&targets, &hull, &voronoi), batch_plain(&targets, &hull, &voronoi));
         assert!((100..500).contains(&chosen.info.outside), "{:?}", chosen.info);
         let mut wide = vec![chosen];
         #[cfg(target_arch = "x86_64")]
         if std::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has AVX2, just checked.
-            wide.push(unsafe { Batch::new_avx2(&targets, &hull, &voronoi) });
+            wide.push(unsafe { batch_avx2(&targets, &hull, &voronoi) });
         }
         for wide in wide {
-            assert!(wide.nodes == plain.nodes && wide.values == plain.values && wide.rows == plain.rows);
-            assert_eq!(wide.info, plain.info);
+            assert!(wide == plain);
         }
     }
 }

@@ -26,45 +26,53 @@ const TREE: usize = 1000;
 /// Finds the `count` nearest nodes.
 pub(crate) struct Neighbours {
     way: Way,
-    best: Vec<(f64, u32)>,
     count: usize,
 }
 
 enum Way {
-    All { axes: [Vec<f64>; 3], squares: Vec<f64> },
+    All([Vec<f64>; 3]),
     Tree(Search),
+}
+
+/// What is found, reused from target to target.
+#[derive(Default)]
+pub(crate) struct Found {
+    squares: Vec<f64>,
+    best: Vec<(f64, u32)>,
 }
 
 impl Neighbours {
     /// `count` is at least 1 and at most the number of nodes, whose coordinates are finite.
     pub(crate) fn new(nodes: &[Point3], count: usize) -> Result<Neighbours, InterpError> {
         let way = if nodes.len() < TREE {
-            let axes = std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect());
-            Way::All { axes, squares: vec![0.0; nodes.len()] }
+            Way::All(std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect()))
         } else {
             Way::Tree(Search::new(nodes)?)
         };
-        Ok(Neighbours { way, best: Vec::with_capacity(count), count })
+        Ok(Neighbours { way, count })
     }
 
     /// Distance (m) and index of the nearest nodes, nearest first.
-    pub(crate) fn of(&mut self, x: &Point3) -> &[(f64, u32)] {
-        self.best.clear();
-        match &mut self.way {
+    pub(crate) fn of<'a>(&self, x: &Point3, found: &'a mut Found) -> &'a [(f64, u32)] {
+        let Found { squares, best } = found;
+        best.clear();
+        match &self.way {
             Way::Tree(search) => {
-                self.best.extend(search.nearest(x, self.count).iter().map(|n| (n.distance, n.index)));
+                best.extend(search.nearest(x, self.count).iter().map(|n| (n.distance, n.index)));
             }
-            Way::All { axes, squares } => {
+            Way::All(axes) => {
+                squares.resize(axes[0].len(), 0.0);
                 squared_distances(axes, x, squares);
-                smallest(squares, self.count, &mut self.best);
-                self.best.iter_mut().for_each(|found| found.0 = found.0.sqrt());
+                smallest(squares, self.count, best);
+                best.iter_mut().for_each(|found| found.0 = found.0.sqrt());
             }
         }
-        &self.best
+        best
     }
 }
 
-fn squared_distances([xs, ys, zs]: &[Vec<f64>; 3], x: &Point3, squares: &mut [f64]) {
+/// Squared distances (m^2) of a point from others, given axis by axis.
+pub(crate) fn squared_distances([xs, ys, zs]: &[Vec<f64>; 3], x: &Point3, squares: &mut [f64]) {
     for (((square, a), b), c) in squares.iter_mut().zip(xs).zip(ys).zip(zs) {
         let (dx, dy, dz) = (a - x.x, b - x.y, c - x.z);
         *square = dx * dx + dy * dy + dz * dz;
@@ -99,10 +107,10 @@ mod tests {
         // A lattice, where most distances are shared by several nodes.
         let nodes: Vec<Point3> =
             (0..1000).map(|i| Point3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64)).collect();
-        let of = |way: Way, x: &Point3| Neighbours { way, best: Vec::new(), count: 20 }.of(x).to_vec();
+        let of = |way: Way, x: &Point3| Neighbours { way, count: 20 }.of(x, &mut Found::default()).to_vec();
         let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect());
         for x in [nodes[444], Point3::new(3.5, 4.5, 5.5), Point3::new(0.1, 7.3, 20.0)] {
-            let all = of(Way::All { axes: axes.clone(), squares: vec![0.0; 1000] }, &x);
+            let all = of(Way::All(axes.clone()), &x);
             assert_eq!(all, of(Way::Tree(Search::new(&nodes).unwrap()), &x));
             let mut sorted: Vec<(f64, u32)> =
                 nodes.iter().zip(0..).map(|(p, i)| ((p - x).norm_squared().sqrt(), i)).collect();

@@ -2,9 +2,10 @@
 
 use efg::{Kernel, Support};
 use geometry::Cloud;
-use shape::{Point3, PointRows, Rows, Unity};
+use shape::{Point3, PointRows, Unity};
 
-use crate::neighbours::{check_count, check_finite};
+use crate::neighbours::{check_count, check_finite, squared_distances};
+use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
 
 /// Where no node reaches a target, all supports are enlarged to this multiple of what the first node would
@@ -27,33 +28,47 @@ pub fn shepard(
     check_finite(nodes, targets)?;
     check_count("shepard", nodes.len(), 2)?;
     let radii = support.radii(nodes, &Cloud::from_points(nodes.to_vec())?.spacing)?;
-    let mut info = TransferInfo::default();
-    let (mut offsets, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
     let inverse_squares: Vec<f64> = radii.iter().map(|r| 1.0 / (r * r)).collect();
-    // Squares of d / R: roots are taken of those that count, a tenth of all.
-    let mut squares = vec![0.0; nodes.len()];
-    for x in targets {
-        for ((square, node), inverse) in squares.iter_mut().zip(nodes).zip(&inverse_squares) {
-            *square = (node - x).norm_squared() * inverse;
-        }
-        let first = squares.iter().copied().fold(f64::INFINITY, f64::min);
-        let scale = if first < RIM * RIM {
-            1.0
-        } else {
-            info.fallbacks += 1;
-            1.0 / (ENLARGE * ENLARGE * first)
-        };
-        let start = values.len();
-        for (node, square) in squares.iter().enumerate() {
-            if square * scale < 1.0 {
-                entries.push(node as u32);
-                values.push(Kernel::CubicSpline.eval((square * scale).sqrt()).0);
+    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect());
+    in_chunks(nodes.len(), targets, Unity::Within(1e-12), |targets| {
+        let mut batch = Batch::default();
+        // Squares of d / R: roots are taken of those that count, a third of all.
+        let mut squares = vec![0.0; nodes.len()];
+        for x in targets {
+            squared_distances(&axes, x, &mut squares);
+            squares.iter_mut().zip(&inverse_squares).for_each(|(square, inverse)| *square *= inverse);
+            let start = batch.start();
+            batch.keep_below_one(&squares);
+            let first = |squares: &[f64]| squares.iter().copied().fold(f64::INFINITY, f64::min);
+            if !(first(&batch.values[start..]) < RIM * RIM) {
+                batch.info.fallbacks += 1;
+                let scale = 1.0 / (ENLARGE * ENLARGE * first(&squares));
+                squares.iter_mut().for_each(|square| *square *= scale);
+                batch.nodes.truncate(start);
+                batch.values.truncate(start);
+                batch.keep_below_one(&squares);
             }
+            for value in &mut batch.values[start..] {
+                *value = Kernel::CubicSpline.eval(value.sqrt()).0;
+            }
+            batch.close_over_sum();
         }
-        let sum: f64 = values[start..].iter().sum();
-        values[start..].iter_mut().for_each(|w| *w /= sum);
-        offsets.push(values.len());
+        batch
+    })
+}
+
+impl Batch {
+    /// Appends the nodes whose numbers are below one, with these.
+    fn keep_below_one(&mut self, numbers: &[f64]) {
+        let mut n = self.nodes.len();
+        self.nodes.resize(n + numbers.len(), 0);
+        self.values.resize(n + numbers.len(), 0.0);
+        // Written always, counted if below: a branch would be mispredicted.
+        for (node, &number) in numbers.iter().enumerate() {
+            (self.nodes[n], self.values[n]) = (node as u32, number);
+            n += usize::from(number < 1.0);
+        }
+        self.nodes.truncate(n);
+        self.values.truncate(n);
     }
-    let rows = Rows::new(nodes.len(), offsets, entries, values, Unity::Within(1e-12))?;
-    Ok((PointRows::new(targets.to_vec(), rows)?, info))
 }

@@ -1,0 +1,75 @@
+//! Tables made in chunks of targets, side by side.
+
+use rayon::prelude::*;
+use shape::{Point3, PointRows, Rows, Unity};
+
+use crate::{InterpError, TransferInfo};
+
+/// Targets per parallel task: fixed, so that the bits are the same at any thread count.
+const CHUNK: usize = 128;
+
+/// Rows of one chunk of targets.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Batch {
+    /// Ends of the rows among the entries below.
+    ends: Vec<usize>,
+    pub(crate) nodes: Vec<u32>,
+    pub(crate) values: Vec<f64>,
+    pub(crate) info: TransferInfo,
+}
+
+impl Batch {
+    /// Room for the rows of some targets, with about so many entries in all.
+    pub(crate) fn with_capacity(targets: usize, entries: usize) -> Batch {
+        Batch {
+            ends: Vec::with_capacity(targets),
+            nodes: Vec::with_capacity(entries),
+            values: Vec::with_capacity(entries),
+            info: TransferInfo::default(),
+        }
+    }
+
+    /// Where the row of the next target starts.
+    pub(crate) fn start(&self) -> usize {
+        self.ends.last().map_or(0, |&end| end)
+    }
+
+    /// Ends the row of the next target, whose entries are there.
+    pub(crate) fn close(&mut self) {
+        self.ends.push(self.nodes.len());
+    }
+
+    /// The same, of weights to be taken over their sum.
+    pub(crate) fn close_over_sum(&mut self) {
+        let start = self.start();
+        let weights = &mut self.values[start..];
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= sum);
+        self.close();
+    }
+}
+
+/// The table of all targets, by what `make` makes of each chunk.
+pub(crate) fn in_chunks(
+    node_count: usize,
+    targets: &[Point3],
+    unity: Unity,
+    make: impl Fn(&[Point3]) -> Batch + Send + Sync,
+) -> Result<(PointRows, TransferInfo), InterpError> {
+    let mut batches: Vec<Batch> = Vec::new();
+    targets.par_chunks(CHUNK).map(make).collect_into_vec(&mut batches);
+    let entries = batches.iter().map(|batch| batch.values.len()).sum();
+    let (mut nodes, mut values) = (Vec::with_capacity(entries), Vec::with_capacity(entries));
+    let mut offsets = Vec::with_capacity(targets.len() + 1);
+    offsets.push(0);
+    let mut info = TransferInfo::default();
+    for batch in batches {
+        offsets.extend(batch.ends.iter().map(|end| nodes.len() + end));
+        nodes.extend_from_slice(&batch.nodes);
+        values.extend_from_slice(&batch.values);
+        info.outside += batch.info.outside;
+        info.fallbacks += batch.info.fallbacks;
+    }
+    let rows = Rows::new(node_count, offsets, nodes, values, unity)?;
+    Ok((PointRows::new(targets.to_vec(), rows)?, info))
+}
