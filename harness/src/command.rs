@@ -129,9 +129,10 @@ fn run(args: &RunArgs) -> u8 {
             // A static run may take minutes.
             eprintln!("{} ...", method.id);
         }
-        match group
-            .run(&group.scenario(method.clone(), 0), Extras { picture: args.out.is_some(), frames: true })
-        {
+        match group.run(
+            &group.scenario(method.clone(), 0),
+            Extras { picture: args.out.is_some(), frames: true, split: None },
+        ) {
             Ok(outcome) => {
                 if args.format == Format::Json {
                     print_json(&RunObject::finished(&outcome));

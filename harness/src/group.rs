@@ -9,7 +9,7 @@ use interp::{Radial, Scheme};
 use crate::discretise::Discretisation;
 use crate::outcome::{LoadStep, Outcome, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
-use crate::run::{self, Asks, Repeats, run};
+use crate::run::{self, Asks, Repeats, Solved, run};
 use crate::scenario::Scenario;
 use crate::stored::Stored;
 use crate::work::Work;
@@ -32,12 +32,14 @@ pub struct Group<'a> {
 }
 
 /// What a run does beside its numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extras {
     /// Keeps the surface displacement, for pictures.
     pub picture: bool,
     /// Runs the loop that the scene asks for (`[output] repeated`) after the first solution.
     pub frames: bool,
+    /// Solves a cloud once more, integrated by this rule, to tell its errors of integration and of discretisation apart.
+    pub split: Option<scene::Integration>,
 }
 
 /// The case name of a scene: its file's stem.
@@ -119,11 +121,20 @@ impl<'a> Group<'a> {
         }
         let mut scenario = self.scenario(method, 0);
         scenario.size_key = size.map(|_| "reference.size".into());
-        let (discretisation, mut setup) = (scenario.discretise()?, scenario.setup()?);
-        setup.watch = self.watch;
+        let discretisation = scenario.discretise()?;
         if self.targets.is_empty() {
             self.targets = discretisation.nodes().to_vec();
         }
+        let solved = self.solved(&scenario, &discretisation)?;
+        let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
+        self.reference_work += solved.outcome.work;
+        Ok((run::reference(discretisation, solved, &self.targets)?, stalled))
+    }
+
+    /// One method's solution, once and with nothing beside it.
+    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Solved, Failure> {
+        let mut setup = scenario.setup()?;
+        setup.watch = self.watch;
         let asks = Asks {
             probes: &self.probes,
             targets: &self.targets,
@@ -132,13 +143,24 @@ impl<'a> Group<'a> {
             repeats: Repeats { most: 1, seconds: 0.0 },
             reference: None,
             beside: None,
+            integrated: None,
             repeated: None,
         };
-        let solved = run(scenario.identity(), Vec::new(), &discretisation, &setup, &asks)
-            .map_err(|failure| scenario.locate(failure))?;
-        let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
-        self.reference_work += solved.outcome.work;
-        Ok((run::reference(discretisation, solved, &self.targets)?, stalled))
+        run(scenario.identity(), Vec::new(), discretisation, &setup, &asks)
+            .map_err(|failure| scenario.locate(failure))
+    }
+
+    /// A cloud's solution, integrated by another rule, where the cloud is compared: at the targets, or else at its nodes.
+    fn integrated(&self, scenario: &Scenario, rule: scene::Integration) -> Result<run::Reference, Failure> {
+        let mut scenario = scenario.clone();
+        if let Family::Efg(efg) = &mut scenario.method.family {
+            efg.integration = rule;
+        }
+        let discretisation = scenario.discretise()?;
+        let solved = self.solved(&scenario, &discretisation)?;
+        let nodes = discretisation.nodes().to_vec();
+        let at = if self.targets.is_empty() { &nodes } else { &self.targets };
+        run::reference(discretisation, solved, at)
     }
 
     /// One of the scene's methods, as a run of this group.
@@ -169,6 +191,13 @@ impl<'a> Group<'a> {
         let size = size(&discretisation);
         let setup = scenario.setup().map_err(|failure| Unfinished { failure, plan: Vec::new(), size })?;
         let stages = plan(&discretisation, &setup, self.wants());
+        let integrated = match extras.split.filter(|_| matches!(discretisation, Discretisation::Efg(_))) {
+            Some(rule) => {
+                let fail = |failure| Unfinished { failure, plan: stages.clone(), size };
+                Some(self.integrated(scenario, rule).map_err(fail)?)
+            }
+            None => None,
+        };
         let asks = Asks {
             probes: &self.probes,
             targets: &self.targets,
@@ -177,6 +206,7 @@ impl<'a> Group<'a> {
             repeats: self.repeats,
             reference: self.reference.as_ref(),
             beside: self.beside.as_ref(),
+            integrated: integrated.as_ref(),
             repeated: self.scene.output.repeated.as_ref().filter(|_| extras.frames),
         };
         match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {

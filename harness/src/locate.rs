@@ -83,7 +83,7 @@ impl Scenario<'_> {
             EfgError::NoRule { .. } => (
                 ErrorKind::Invalid,
                 Key::Method("integration.points"),
-                "in a tetrahedron 1, 4, 11 and more are known",
+                "in a tetrahedron 1, 4, 8, 14 and more are known",
             ),
             _ => (ErrorKind::NotRun, Key::Method(""), ""),
         };

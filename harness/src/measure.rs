@@ -55,6 +55,12 @@ pub(crate) fn measure(
         (None, Some(reference)) => Some(reference.targets.clone()),
         (None, None) => None,
     };
+    if let Some(integrated) = asks.integrated {
+        push_difference(metrics, "integration-rms", &field, &integrated.targets);
+        if let Some(against) = &against {
+            push_difference(metrics, "discretisation-rms", &integrated.targets, against);
+        }
+    }
     if let Some(against) = against {
         push_difference(metrics, "rms", &field, &against);
         push(metrics, "max-error", difference(&field, &against).max, "m");

@@ -74,6 +74,8 @@ pub struct Asks<'a> {
     pub reference: Option<&'a Reference>,
     /// The method that every run is compared with beside the reference, if the scene names one.
     pub beside: Option<&'a Reference>,
+    /// The same cloud integrated by another rule, which errors of integration are measured from.
+    pub integrated: Option<&'a Reference>,
     /// The loop of frames after the first solution, if it is to run.
     pub repeated: Option<&'a Repeated>,
 }
@@ -163,6 +165,7 @@ pub fn run(
     let at_end = Asks {
         reference: asks.reference.filter(|r| finished && r.finished),
         beside: asks.beside.filter(|r| finished && r.finished),
+        integrated: asks.integrated.filter(|r| finished && r.finished),
         ..*asks
     };
     measure(&mut metrics, method, setup, &prepared, &solution, field, &at_end)?;

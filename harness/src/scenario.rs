@@ -101,11 +101,14 @@ impl Scenario<'_> {
                         }
                     },
                 ));
+                let with = |name: &str, factor: Option<f64>| {
+                    factor.map_or_else(|| name.to_string(), |factor| format!("{name}-{factor}"))
+                };
                 pairs.push((
                     "essential",
                     match efg.essential {
-                        scene::Essential::Nitsche { .. } => "nitsche".into(),
-                        scene::Essential::Penalty { .. } => "penalty".into(),
+                        scene::Essential::Nitsche { factor } => with("nitsche", factor),
+                        scene::Essential::Penalty { factor } => with("penalty", factor),
                         scene::Essential::Multipliers => "multipliers".into(),
                         scene::Essential::Coupling => "coupling".into(),
                         scene::Essential::Elimination { rows } => format!("elimination-{}", rows.name()),

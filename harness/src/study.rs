@@ -158,7 +158,9 @@ impl Plan {
         for &index in members {
             let task = &self.tasks[index];
             bar.set_message(format!("{case} {}", task.method.id));
-            let what = format!("{:?} {} {:?} {}", task.method, task.level, task.poisson, task.picture);
+            let split = self.study.runs[task.run].split;
+            let what =
+                format!("{:?} {} {:?} {} {split:?}", task.method, task.level, task.poisson, task.picture);
             let key = task::key(program, text, &files(scene), &what);
             let stored = if args.resume { TaskResult::load(store, &key) } else { None };
             let known = stored.is_some();
@@ -173,7 +175,7 @@ impl Plan {
                     Ok(group) => {
                         // Clouds of many seeds are of one kind: one loop is enough for them all.
                         let frames = !args.quick && self.study.runs[task.run].seeds == 0;
-                        let extras = Extras { picture: task.picture, frames };
+                        let extras = Extras { picture: task.picture, frames, split };
                         group.run(&group.scenario(task.method.clone(), task.level), extras)
                     }
                     Err(failure) => Err(failure.clone().into()),
@@ -309,14 +311,15 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
     Stored::load(scene, path).map(|s| s.records(&case_name(scene), poisson)).unwrap_or_default()
 }
 
-/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times dilatations, times seeds, times
-/// Poisson's ratios.
+/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times dilatations, times essential
+/// conditions, times seeds, times Poisson's ratios.
 fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
     // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
     let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
-    let varied = !(run.kernels.is_empty() && run.dilatations.is_empty() && run.nodes.is_empty());
+    let varied = !(run.kernels.is_empty() && run.dilatations.is_empty() && run.nodes.is_empty())
+        || !run.essentials.is_empty();
     let picture = organ && !varied && run.seeds == 0;
     for &poisson in &ratios {
         for method in &scene.methods {
@@ -325,7 +328,8 @@ fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene:
             }
             for (level, sized) in sizes(run, method) {
                 let shaped = kernels(run, sized).into_iter().flat_map(|method| dilatations(run, method));
-                for method in shaped.flat_map(|method| seeds(run, method)) {
+                let held = shaped.flat_map(|method| essentials(run, method));
+                for method in held.flat_map(|method| seeds(run, method)) {
                     // The scene's own cloud may have been asked for before.
                     let same = |t: &Task| (t.scene, t.poisson) == (at, poisson) && t.method == method;
                     if run.seeds == 0 || !tasks.iter().any(same) {
@@ -379,6 +383,21 @@ fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
 /// The method with each dilatation that the run table names.
 fn dilatations(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     each(&run.dilatations, method, |_, support, &factor| *support = scene::SupportRule::Dilatation(factor))
+}
+
+/// The method held in each of the ways that the run table names.
+fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    if run.essentials.is_empty() || !matches!(method.family, scene::Family::Efg(_)) {
+        return vec![method];
+    }
+    let held = |&essential: &scene::Essential| {
+        let mut method = method.clone();
+        if let scene::Family::Efg(efg) = &mut method.family {
+            efg.essential = essential;
+        }
+        method
+    };
+    run.essentials.iter().map(held).collect()
 }
 
 /// Moving least squares changed by each of `values`; the method as it is where there are none, or where it is of another kind.

@@ -1,4 +1,4 @@
-//! A method that others are compared with beside the reference.
+//! What runs are compared with beside the reference: another method, or the same cloud integrated otherwise.
 
 mod common;
 
@@ -13,10 +13,16 @@ output = { transfer = { to = "reference-nodes", scheme = "inverse-distance" }, b
 "#;
 
 fn outcomes(reference: &str) -> Vec<Outcome> {
+    split(reference, None)
+}
+
+fn split(reference: &str, points: Option<usize>) -> Vec<Outcome> {
     let text = format!("{}{CLOUD}reference = {reference}\n", BLOCK.trim_end().trim_end_matches(']'));
     let scene: Scene = scene::parse(&text, "beside.toml").unwrap();
     let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
-    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), Extras::default());
+    let extras =
+        Extras { split: points.map(|points| scene::Integration::Gauss { points }), ..Extras::default() };
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), extras);
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }
 
@@ -67,4 +73,31 @@ fn a_finer_reference_leaves_the_difference_to_the_other_method() {
     let (rms, beside) = (value(&two.metrics, "rms"), value(&two.metrics, "beside-rms"));
     let apart = value(&two.transfers[0].metrics, "beside-rms");
     assert!(rms > 0.0 && beside > 0.0 && rms != beside && apart != beside, "{rms} {beside} {apart}");
+}
+
+#[test]
+fn integrated_alike_there_is_no_error_of_integration_and_all_is_discretisation() {
+    let runs = split(r#"{ method = "tet4", size = { cells = [6, 6, 4] } }"#, Some(4));
+    let of = |method: &str| runs.iter().find(|r| r.identity.method == method).unwrap();
+    for axis in ["-x", "-y", "-z", ""] {
+        let of = |name: &str| value(&of("efg").metrics, &format!("{name}{axis}"));
+        assert_eq!((of("integration-rms"), of("discretisation-rms")), (0.0, of("rms")));
+    }
+    assert_eq!(of("tet4").metric("integration-rms"), None, "elements have one rule");
+}
+
+#[test]
+fn four_points_are_nearer_to_fourteen_and_these_to_forty_six() {
+    let apart = |points: usize| {
+        let runs = split(r#"{ method = "tet4", size = { cells = [6, 6, 4] } }"#, Some(points));
+        let efg = runs.iter().find(|r| r.identity.method == "efg").unwrap();
+        let of = |name: &str| value(&efg.metrics, name);
+        let (rms, left, rule) = (of("rms"), of("discretisation-rms"), of("integration-rms"));
+        // A triangle of three fields.
+        assert!(rms <= left + rule && left <= rms + rule && rule <= rms + left, "{rms} {left} {rule}");
+        (rule, left)
+    };
+    let ((one, _), (fourteen, coarse), (most, fine)) = (apart(1), apart(14), apart(46));
+    assert!(one > 2.0 * most, "one point is far from four: {one} {most}");
+    assert!(fourteen > 0.0 && (coarse - fine).abs() < 0.2 * most, "{fourteen} {most}: {coarse} {fine}");
 }

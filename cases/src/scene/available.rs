@@ -6,6 +6,24 @@ use super::model::Scene;
 use super::procedure::ProcedureKind;
 use super::tool::ToolShape;
 
+/// What holds a cloud in every procedure.
+pub(super) const HELD: &str = "essential = \"penalty\" and \"coupling\" are";
+
+/// A way to hold a cloud that a procedure has not, in words.
+pub(super) fn unheld(essential: &Essential, kind: ProcedureKind) -> Option<String> {
+    if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare) {
+        return None;
+    }
+    let what = match essential {
+        Essential::Penalty { .. } | Essential::Coupling => return None,
+        Essential::Nitsche { .. } => "Nitsche's method",
+        Essential::Multipliers => "a support by multipliers",
+        Essential::Elimination { .. } => "a support of a cloud by elimination",
+    };
+    let article = if kind == ProcedureKind::ImplicitDynamic { "an" } else { "a" };
+    Some(format!("{what} in {article} {} procedure", kind.name()))
+}
+
 impl Scene {
     /// Every part of the scene that no solver here runs yet; empty if all of it runs.
     pub fn unavailable(&self) -> Vec<SceneError> {
@@ -65,22 +83,8 @@ impl Scene {
                         let help = "\"element-mean\" and \"nodal-mean\" are";
                         add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                     }
-                    let what = match efg.essential {
-                        _ if matches!(
-                            kind,
-                            ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
-                        ) =>
-                        {
-                            continue;
-                        }
-                        Essential::Penalty { .. } | Essential::Coupling => continue,
-                        Essential::Nitsche { .. } => "Nitsche's method",
-                        Essential::Multipliers => "a support by multipliers",
-                        Essential::Elimination { .. } => "a support of a cloud by elimination",
-                    };
-                    let article = if implicit { "an" } else { "a" };
-                    let what = format!("{what} in {article} {} procedure", kind.name());
-                    add(&at("essential"), what, "essential = \"penalty\" and \"coupling\" are");
+                    let Some(what) = unheld(&efg.essential, kind) else { continue };
+                    add(&at("essential"), what, HELD);
                 }
             }
         }

@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::available::{HELD, unheld};
 use super::error::{Problem, SceneError};
-use super::keys::CheckKeys;
-use super::method::{Family, KernelName, Method};
+use super::keys::{CheckKeys, EssentialKeys, IntegrationKeys};
+use super::method::{Basis, Cloud, Efg, Essential, Family, Functions, Integration, KernelName, Method};
 use super::metric::Needs;
 use super::model::Scene;
 use super::output::Check;
 use super::report::Report;
-use super::resolve::checks;
+use super::resolve::{checks, essential, integration};
 use super::validate::{self, known_methods};
 use super::{document, load, text_of};
 
@@ -25,8 +26,8 @@ pub struct Study {
     pub runs: Vec<Run>,
 }
 
-/// One scene with what is varied of it: methods times levels (or node counts) times kernels times dilatations times seeds times
-/// Poisson's ratios.
+/// One scene with what is varied of it: methods times levels (or node counts) times kernels times dilatations times essential
+/// conditions times seeds times Poisson's ratios.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The scene file.
@@ -43,6 +44,11 @@ pub struct Run {
     pub kernels: Vec<KernelName>,
     /// Dilatations of clouds; their own supports where empty.
     pub dilatations: Vec<f64>,
+    /// How prescribed displacements are imposed on clouds; their own way where empty.
+    pub essentials: Vec<Essential>,
+    /// Every cloud is solved once more, integrated by this rule: what that changes is its error of integration, what is left
+    /// then is the error of its discretisation.
+    pub split: Option<Integration>,
     /// Clouds of the seeds 1 to this in place of their own; 0 for their own. How far a result depends on where nodes happen
     /// to stand is their spread: the scene's checks, which are of its own cloud, are not asked of them.
     pub seeds: u64,
@@ -85,6 +91,11 @@ pub(crate) struct RunKeys {
     /// Dilatations of clouds
     #[serde(default)]
     pub dilatations: Vec<f64>,
+    /// How prescribed displacements are imposed on clouds
+    #[serde(default)]
+    pub essentials: Vec<EssentialKeys>,
+    /// Solves every cloud once more, integrated by this rule, to tell errors of integration and of discretisation apart
+    pub split: Option<IntegrationKeys>,
     /// Clouds of this many seeds, from 1 on, in place of their own
     #[serde(default)]
     pub seeds: u32,
@@ -140,6 +151,9 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
     report.require(alone, &at("nodes"), "stands beside levels", "vary levels or node counts, not both");
+    let essentials = keys.essentials.into_iter().enumerate();
+    let essentials =
+        essentials.map(|(i, keys)| essential(keys, &format!("{key}.essentials[{i}]"), report)).collect();
     Run {
         scene,
         methods: keys.methods,
@@ -148,6 +162,8 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
         kernels: keys.kernels,
         dilatations: keys.dilatations,
+        essentials,
+        split: keys.split.map(|keys| integration(keys, &at("split"), report)),
         seeds: keys.seeds.into(),
         quick: keys.quick,
         checks: checks(keys.check, &at("check"), report),
@@ -173,15 +189,35 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         }
     }
     let chosen = |m: &&Method| run.methods.is_empty() || run.methods.contains(&m.id);
-    let clouds = scene.methods.iter().filter(chosen).any(|m| matches!(m.family, Family::Efg(_)));
+    let cloud = |m: &'_ Method| if let Family::Efg(efg) = &m.family { Some(efg.clone()) } else { None };
+    let efgs: Vec<Efg> = scene.methods.iter().filter(chosen).filter_map(cloud).collect();
+    let clouds = !efgs.is_empty();
     for (name, given) in [
         ("nodes", !run.nodes.is_empty()),
         ("kernels", !run.kernels.is_empty()),
         ("dilatations", !run.dilatations.is_empty()),
+        ("essentials", !run.essentials.is_empty()),
+        ("split", run.split.is_some()),
     ] {
         let help = "element-free Galerkin methods have them";
         report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
     }
+    for (i, essential) in run.essentials.iter().enumerate() {
+        let key = format!("{key}.essentials[{i}]");
+        if let Some(what) = unheld(essential, scene.procedure.kind) {
+            report.add(&key, Problem::new(format!("{what} is not available yet")).help(HELD));
+        }
+        let linear = |efg: &Efg| {
+            matches!(efg.functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. })
+                && !matches!(efg.cloud, Cloud::Refined { .. })
+        };
+        let help = "name methods of a linear basis whose nodes stay where they are";
+        let fits = *essential != Essential::Coupling || efgs.iter().all(linear);
+        report.require(fits, &key, "does not go with every method", help);
+    }
+    let placed = efgs.iter().any(|efg| matches!(efg.cloud, Cloud::Refined { .. }));
+    let help = "a cloud that follows an error would be another one: name other methods";
+    report.require(run.split.is_none() || !placed, &format!("{key}.split"), "is not of every method", help);
     let seeded = scene.methods.iter().filter(chosen).all(|m| m.seeded(1).is_some());
     let help = "a cloud that is uniform, graded or jittered has one: name such methods in methods";
     report.require(run.seeds == 0 || seeded, &format!("{key}.seeds"), "are not of every method", help);

@@ -42,6 +42,36 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["has no method to vary"],
     ),
     (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet10\"]\nessentials = [\"penalty\"] #<",
+        "run[0].essentials",
+        &["has no method to vary"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"kidney-fair.toml\"\nessentials = [\"penalty\", \"nitsche\"] #<",
+        "run[0].essentials[1]",
+        &["Nitsche's method in a static procedure is not available", "\"coupling\" are"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"pure-bending.toml\"\nessentials = [\"coupling\"] #<",
+        "run[0].essentials[0]",
+        &["does not go with every method", "linear basis"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nessentials = [{ method = \"coupling\", factor = 4 }] #<",
+        "run[0].essentials[0].factor",
+        &["nitsche and penalty only"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nsplit = { rule = \"gauss\", points = 0 } #<",
+        "run[0].split.points",
+        &["is zero"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"punch.toml\"\nsplit = { rule = \"gauss\", points = 14 } #<",
+        "run[0].split",
+        &["is not of every method", "another one"],
+    ),
+    (
         "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet11\"] #<",
         "run[0].methods",
         &["'tet11' is not a method", "did you mean 'tet10'?"],

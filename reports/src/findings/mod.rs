@@ -3,6 +3,7 @@
 mod accuracy;
 mod cheapest;
 mod claim;
+mod integration;
 mod kidney;
 mod outcome;
 mod placement;
@@ -30,6 +31,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
         Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },
         Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
         Topic { title: "Node placement", sentences: placement::placement(clouds) },
+        Topic { title: "Integration of clouds", sentences: integration::integration(runs) },
         Topic { title: "Transfer", sentences: kidney::transfer(runs) },
         Topic { title: "Patch tests", sentences: accuracy::patch(&solved) },
         Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },

@@ -3,6 +3,7 @@
 mod closure;
 mod conditioning;
 mod cost;
+mod error_split;
 mod errors;
 mod kidney;
 mod modes;
@@ -13,6 +14,7 @@ mod repeated;
 mod timing;
 mod transfer;
 
+pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
 pub(crate) use kidney::{
     Pair as KidneyPair, Split as KidneySplit, pairs as kidney_pairs, splits as kidney_splits,
 };
@@ -35,6 +37,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         repeated::repeated(runs),
         cost::cost(runs),
         transfer::schemes(runs),
+        error_split::error_split(runs),
         conditioning::conditioning(runs),
         placement::placement(clouds),
         kidney::beside_the_paper(runs),

@@ -69,7 +69,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
         shape: keys.support,
     };
     let functions = functions(keys.basis, keys.kernel, reach, keys.gamma, key, report);
-    let integration = integration(keys.integration, key, report);
+    let integration = integration(keys.integration, &at("integration"), report);
     let essential = essential(keys.essential, &at("essential"), report);
     let (cloud, functions, background) =
         (cloud?, functions?, background.map_or(Some(None), |b| b.map(Some))?);
@@ -317,11 +317,11 @@ fn kernel(keys: KernelKeys, key: &str, report: &mut Report) -> Kernel {
     Kernel { name, alpha: keys.alpha, power: keys.power, eps: keys.eps }
 }
 
-fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integration {
-    let at = format!("{key}.integration.points");
+pub(crate) fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integration {
+    let at = format!("{key}.points");
     match keys {
         IntegrationKeys::Gauss { points } => {
-            report.require(points > 0, &at, "is zero", "in a tetrahedron 1, 4, 11 and more are known");
+            report.require(points > 0, &at, "is zero", "in a tetrahedron 1, 4, 8, 14 and more are known");
             Integration::Gauss { points: points as usize }
         }
         IntegrationKeys::Grid { points, spacing } => {
@@ -332,7 +332,7 @@ fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integra
                 "is no cube number",
                 "points per grid cell are 1, 8, 27, 64, ... 1000",
             );
-            let spacing = spacing.map(|q| positive(q.0, &format!("{key}.integration.spacing"), report));
+            let spacing = spacing.map(|q| positive(q.0, &format!("{key}.spacing"), report));
             Integration::Grid { points: points as usize, spacing }
         }
         IntegrationKeys::CellSmoothed { points, order } => {
@@ -340,7 +340,7 @@ fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integra
             let known = [1, 2].contains(&order);
             report.require(
                 known,
-                &format!("{key}.integration.order"),
+                &format!("{key}.order"),
                 "is not known",
                 "1 is exact for linear displacements, 2 for quadratic ones",
             );
@@ -356,7 +356,7 @@ fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integra
         IntegrationKeys::NodeSmoothed { stabilisation, points } => {
             report.require(
                 (0.0..1.0).contains(&stabilisation),
-                &format!("{key}.integration.stabilisation"),
+                &format!("{key}.stabilisation"),
                 "is no share of the weight",
                 "0 is none, 0.05 is usual; all of it is rule = \"cell-smoothed\"",
             );
@@ -371,7 +371,7 @@ fn face_points(points: u32, key: &str, report: &mut Report) -> usize {
     points as usize
 }
 
-fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {
+pub(crate) fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> Essential {
     let (name, factor, rows) = match keys {
         EssentialKeys::Name(name) => (name, None, None),
         EssentialKeys::Table(table) => (table.method, table.factor, table.rows),

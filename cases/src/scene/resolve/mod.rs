@@ -16,6 +16,7 @@ use super::units::{Dim, Q};
 use condition::{load, place, support};
 use material::material;
 use method::method;
+pub(crate) use method::{essential, integration};
 pub(crate) use output::checks;
 use output::{output, reference};
 use tool::tool;

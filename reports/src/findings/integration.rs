@@ -1,0 +1,43 @@
+//! Where a cloud loses more by how it is integrated than by its nodes.
+
+use crate::select::{Run, groups};
+use crate::tables::{ErrorParts, error_parts};
+use crate::text::{list, ratio, significant};
+
+/// A sentence for every case whose clouds were solved with a fine rule too.
+pub(super) fn integration(runs: &[Run]) -> Vec<String> {
+    let parts = error_parts(runs);
+    let mut out = Vec::new();
+    for case in groups(&parts, |p| (&p.run.is.case, p.run.is.poisson.to_bits())) {
+        let worse: Vec<_> = case.iter().filter(|p| p.badly_integrated()).collect();
+        let share = |p: &ErrorParts| p.integration / p.discretisation;
+        let Some(most) = case.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
+        let places = match worse.len() {
+            0 => String::new(),
+            _ => {
+                let methods = groups(&worse, |p| p.label.as_str());
+                let told: Vec<String> = methods
+                    .iter()
+                    .map(|m| {
+                        let nodes: Vec<String> = m.iter().map(|p| p.run.is.nodes.to_string()).collect();
+                        format!("{} at {} nodes", m[0].label, list(&nodes))
+                    })
+                    .collect();
+                format!(": {}", told.join("; "))
+            }
+        };
+        out.push(format!(
+            "{} at ν = {}: integration is the larger part of the error for {} of {} clouds{places}. It is {} times the discretisation's at most, for {} at {} \
+             nodes ({} cells per node).",
+            most.run.is.case,
+            ratio(most.run.is.poisson),
+            worse.len(),
+            case.len(),
+            significant(share(most), 2),
+            most.label,
+            most.run.is.nodes,
+            significant(most.cells(), 2),
+        ));
+    }
+    out
+}
