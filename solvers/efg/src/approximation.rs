@@ -12,7 +12,7 @@ use crate::info::{Outcome, Tally};
 use crate::lanes::LANES;
 use crate::max_entropy::{CUT, Neighbours, NoPoint};
 use crate::mls::{Ball, Group, Moments};
-use crate::row_list::RowList;
+use crate::row_list::{RowList, sample_step};
 use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
 
 /// Points per parallel task: fixed, so that results are the same bits at any thread count.
@@ -20,13 +20,6 @@ const CHUNK: usize = 128;
 /// Tables of up to so many points are made in one wave, and their size is counted, not estimated: one of 1331 points in two
 /// waves leaves threads idle at the end of either, and is copied once more where the estimate falls short.
 const SMALL: usize = 16 * CHUNK;
-/// About so many points, or one in [`SPARING`], give an estimate of a table's size: to a standard error of 0.5 % where neighbours
-/// scatter by a third. Growing by doubling would take up to three times the memory while it copies, and touch pages anew.
-pub(crate) const SAMPLES: usize = 4000;
-/// Of small tables one point in so many is enough.
-pub(crate) const SPARING: usize = 25;
-/// Taken times that estimate.
-pub(crate) const MARGIN: f64 = 1.01;
 /// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
 /// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
@@ -259,15 +252,13 @@ impl Approximation {
         Ok((rows, grads, tally.info()))
     }
 
-    /// Entries of a table by the neighbours of a few of its points, with a margin.
+    /// Entries of a table by the neighbours of a few of its points.
     fn expected_entries(&self, points: &[Point3]) -> usize {
-        let step = (points.len() / SAMPLES).max(SPARING);
         let mut found = RowList::default();
-        for x in points.iter().step_by(step) {
+        for x in points.iter().step_by(sample_step(points.len())) {
             self.find(x, &mut found);
         }
-        let sampled = (found.offsets.len() - 1).max(1);
-        (MARGIN * found.nodes.len() as f64 * points.len() as f64 / sampled as f64) as usize
+        found.expected_entries(points.len())
     }
 
     /// Appends the nodes whose supports cover the point, as a row.

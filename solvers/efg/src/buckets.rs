@@ -8,8 +8,9 @@ use crate::mls::Ball;
 
 /// Up to so many nodes, all are asked.
 const FEW: usize = 128;
-/// Cells per support radius: finer cells hold fewer false candidates but more entries in all.
-const CELLS_PER_RADIUS: f64 = 2.0;
+/// Cells per support radius: finer cells hold fewer false candidates but more entries in all. With 2 there would be a sixth fewer
+/// candidates, and 23 bytes more for every integration point.
+const CELLS_PER_RADIUS: f64 = 1.6;
 
 pub(crate) enum Buckets {
     /// Every ball by axis and radius, by eights, filled up with balls of no radius.

@@ -5,10 +5,9 @@ use geometry::quadrature::{self, Rule};
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Vector3};
 
-use crate::approximation::{MARGIN, SAMPLES, SPARING};
 use crate::cells::tet_measure;
 use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
-use crate::row_list::RowList;
+use crate::row_list::{RowList, sample_step};
 use crate::{Approximation, EfgError, MlsInfo};
 
 /// Cells per parallel task: fixed, so that results are the same bits at any thread count.
@@ -130,16 +129,14 @@ impl<const P: usize> Parts<'_, P> {
         sum.drain_into(&self.basis, rows);
     }
 
-    /// Entries of all rows by those of a few cells, with a margin.
+    /// Entries of all rows by those of a few cells.
     fn expected_entries(&self, nodes: usize) -> usize {
         let count = self.volumes.len();
         let (mut sum, mut batch) = (Sum::<P>::new(nodes), RowList::default());
-        let mut sampled = 0;
-        for cell in (0..count).step_by((count / SAMPLES).max(SPARING)) {
+        for cell in (0..count).step_by(sample_step(count)) {
             self.add(cell, &mut sum, &mut batch);
-            sampled += 1;
         }
-        (MARGIN * batch.nodes.len() as f64 * count as f64 / sampled.max(1) as f64) as usize
+        batch.expected_entries(P * count)
     }
 }
 

@@ -205,15 +205,8 @@ impl Mesh {
 
     /// All facets that belong to one cell only, in cell order.
     pub fn boundary(&self) -> Vec<Facet> {
-        /// A face met for the first time; faces of the same smallest node make a list, the last met first.
-        struct Met {
-            nodes: [u32; 4],
-            facet: Facet,
-            shared: bool,
-            before: Option<u32>,
-        }
-        let mut met: Vec<Met> = Vec::with_capacity(3 * self.kinds.len());
-        let mut last: Vec<Option<u32>> = vec![None; self.points.len()];
+        let mut faces = Vec::with_capacity(4 * self.kinds.len());
+        let mut starts = vec![0; self.points.len() + 1];
         for (cell, kind) in self.kinds.iter().enumerate() {
             for face in 0..kind.faces().len() {
                 let facet = Facet { cell: cell as u32, face: face as u8 };
@@ -225,21 +218,29 @@ impl Mesh {
                     *slot = node;
                 }
                 nodes.sort_unstable();
-                let list = &mut last[nodes[0] as usize];
-                let mut next = *list;
-                while let Some(m) = next.filter(|&m| met[m as usize].nodes != nodes) {
-                    next = met[m as usize].before;
-                }
-                match next {
-                    Some(same) => met[same as usize].shared = true,
-                    None => {
-                        let before = list.replace(met.len() as u32);
-                        met.push(Met { nodes, facet, shared: false, before });
-                    }
-                }
+                starts[nodes[0] as usize + 1] += 1;
+                faces.push((nodes, facet));
             }
         }
-        met.into_iter().filter(|m| !m.shared).map(|m| m.facet).collect()
+        // By smallest node first: sorting all faces at once takes three times as long.
+        for node in 0..self.points.len() {
+            starts[node + 1] += starts[node];
+        }
+        let (mut next, mut order) = (starts.clone(), vec![0; faces.len()]);
+        for (at, (nodes, _)) in faces.iter().enumerate() {
+            let slot = &mut next[nodes[0] as usize];
+            order[*slot] = at;
+            *slot += 1;
+        }
+        let mut inner = vec![false; faces.len()];
+        for range in starts.windows(2) {
+            let around = &mut order[range[0]..range[1]];
+            around.sort_unstable_by_key(|&at| faces[at].0);
+            for two in around.windows(2).filter(|two| faces[two[0]].0 == faces[two[1]].0) {
+                (inner[two[0]], inner[two[1]]) = (true, true);
+            }
+        }
+        faces.iter().zip(inner).filter(|(_, inner)| !inner).map(|((_, facet), _)| *facet).collect()
     }
 
     /// Sorted node indices that any of the facets touches.

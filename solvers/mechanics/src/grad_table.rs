@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::body::region_of;
 use crate::dilation::group_bulk;
+use crate::explicit::locality_order;
 use crate::pattern::{Connectivity, Incidence};
 use crate::{Body, Matrix3, SolveError, Vector3};
 
@@ -18,6 +19,9 @@ const CHUNK: usize = 64;
 
 /// Points of a bundle, at most.
 const POINTS: usize = 2;
+
+/// Neighbours from which on it pays to sort the points in space: with those of linear elements that takes as long as their sums.
+const LONG: usize = 16;
 
 /// A vector at each point of a bundle, padded to four numbers each: a register of AVX-512 or two of AVX2, a line of the cache.
 pub(crate) type Pair = [f64; 4 * POINTS];
@@ -54,7 +58,7 @@ impl GradTable {
             None => (m.lambda(), m.mu()),
         });
         let law = |q| region_of(body.region, q);
-        let mut order: Vec<u32> = (0..body.volume.weights().len() as u32).collect();
+        let mut order = in_space(body);
         order.sort_by_key(|&q| law(q as usize));
         let rows = Rows {
             order,
@@ -312,6 +316,27 @@ impl GradTable {
         }
         stress
     }
+}
+
+/// The points of a body along a curve, so that those that follow each other see nearly the same nodes, whatever the order of the cells
+/// they are from. Points that have all their nodes in common stay together, as those of an element.
+fn in_space(body: &Body) -> Vec<u32> {
+    let rows = body.volume.rows();
+    let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+    if rows.nodes().len() < LONG * rows.len() {
+        return order;
+    }
+    let mut place = vec![0; rows.len()];
+    for (at, q) in locality_order(body.volume.points()).into_iter().enumerate() {
+        place[q as usize] = at;
+    }
+    for q in 1..rows.len() {
+        if rows.row(q).0 == rows.row(q - 1).0 {
+            place[q] = place[q - 1];
+        }
+    }
+    order.sort_by_key(|&q| place[q as usize]);
+    order
 }
 
 /// Where the vector at one of the points stands.

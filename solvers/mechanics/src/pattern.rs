@@ -66,7 +66,8 @@ pub struct BlockPattern {
 impl BlockPattern {
     /// The union of the pairs of all tables, each with nodes ascending in every row. The diagonal is always there.
     pub(crate) fn new(node_count: usize, tables: &[(Connectivity, &Incidence)]) -> BlockPattern {
-        const CHUNK: usize = 128;
+        /// Rows per task: few, as a cloud of 83 nodes is to keep two threads busy.
+        const CHUNK: usize = 16;
         let nodes: Vec<usize> = (0..node_count).collect();
         let chunks: Vec<(Vec<u32>, Vec<usize>)> = nodes
             .par_chunks(CHUNK)
