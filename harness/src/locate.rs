@@ -83,7 +83,7 @@ impl Scenario<'_> {
             EfgError::NoRule { .. } => (
                 ErrorKind::Invalid,
                 Key::Method("integration.points"),
-                "in a tetrahedron 1, 4, 8, 14 and more are known",
+                "in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known",
             ),
             _ => (ErrorKind::NotRun, Key::Method(""), ""),
         };

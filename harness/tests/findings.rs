@@ -224,7 +224,7 @@ const CASES: &[Case] = &[
         name: "a number of points without a rule",
         edit: ("rule = \"gauss\", points = 4 }", "rule = \"gauss\", points = 7 } #<"),
         key: "method[1].integration.points",
-        says: &["'7'", "1, 4, 11"],
+        says: &["'7'", "1, 4, 8, 14, 15"],
         stops: &["efg"],
         ..SOUND
     },

@@ -321,7 +321,12 @@ pub(crate) fn integration(keys: IntegrationKeys, key: &str, report: &mut Report)
     let at = format!("{key}.points");
     match keys {
         IntegrationKeys::Gauss { points } => {
-            report.require(points > 0, &at, "is zero", "in a tetrahedron 1, 4, 8, 14 and more are known");
+            report.require(
+                points > 0,
+                &at,
+                "is zero",
+                "in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known",
+            );
             Integration::Gauss { points: points as usize }
         }
         IntegrationKeys::Grid { points, spacing } => {
