@@ -318,9 +318,11 @@ fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene:
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
     // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
     let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
-    let varied = !(run.kernels.is_empty() && run.dilatations.is_empty() && run.nodes.is_empty())
-        || !run.essentials.is_empty();
-    let picture = organ && !varied && run.seeds == 0;
+    let plain = run.kernels.is_empty()
+        && run.dilatations.is_empty()
+        && run.nodes.is_empty()
+        && run.essentials.is_empty();
+    let picture = organ && plain && run.seeds == 0;
     for &poisson in &ratios {
         for method in &scene.methods {
             if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
