@@ -60,7 +60,7 @@ pub enum Integration {
 }
 
 /// How a cloud is held.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Essential {
     /// Symmetric Nitsche with this factor.
     Nitsche(f64),
@@ -71,7 +71,7 @@ pub enum Essential {
     /// Elimination of one constraint per node of the surface.
     Elimination(ConstraintRows),
     /// Finite elements along what is held, their nodes held exactly.
-    Coupling,
+    Coupling(Coupled),
 }
 
 /// The shape functions of a cloud.
@@ -142,14 +142,12 @@ pub struct Efg {
     pub integration: Integration,
     /// Essential conditions.
     pub essential: Essential,
-    /// The finite-element nodes, where essential conditions are held by such.
-    pub coupled: Option<Box<Coupled>>,
     /// Volumetric projection.
     pub dilation: Dilation,
 }
 
 /// What a cloud is coupled to.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Coupled {
     /// Vertices of the background that are nodes of finite elements, ascending.
     pub vertices: Vec<u32>,
@@ -189,7 +187,7 @@ impl Discretisation {
     pub fn nodes(&self) -> &[Point3] {
         match self {
             Discretisation::Fem(fem) => fem.mesh.points(),
-            Discretisation::Efg(efg) => efg.coupled.as_ref().map_or(&efg.cloud.points, |c| &c.nodes),
+            Discretisation::Efg(efg) => efg.coupled().map_or(&efg.cloud.points, |c| &c.nodes),
         }
     }
 
@@ -341,9 +339,17 @@ fn of_regions(mesh: &Mesh, points: impl Fn(&Mesh) -> Vec<u16>) -> Vec<u16> {
 const ERROR_POINTS: usize = 14;
 
 impl Efg {
+    /// The finite-element nodes, where essential conditions are held by such.
+    pub fn coupled(&self) -> Option<&Coupled> {
+        match &self.essential {
+            Essential::Coupling(coupled) => Some(coupled),
+            _ => None,
+        }
+    }
+
     fn volume(&self, work: &mut Work) -> Result<Volume, Failure> {
         let mut approximation = self.functions.over(&self.cloud, self.followed.as_deref())?;
-        if let Some(coupled) = &self.coupled {
+        if let Some(coupled) = self.coupled() {
             approximation = approximation.coupled(&self.background, &coupled.vertices)?;
         }
         work.support_radii += self.cloud.points.len() as u64;

@@ -4,7 +4,7 @@ use geometry::{Matrix3, Point3, Vector3};
 use mechanics::{Body, Law};
 
 use crate::Failure;
-use crate::discretise::{Discretisation, Efg};
+use crate::discretise::{Discretisation, Efg, Essential};
 use crate::mean_pressure::cauchy;
 use crate::norms::{self, difference, exact_at, norms, relative};
 use crate::outcome::{Metric, Probe};
@@ -96,7 +96,7 @@ pub(crate) fn measure(
             push(metrics, "constraints-dropped", info.dropped as f64, "1");
         }
     }
-    if let Discretisation::Efg(Efg { coupled: Some(coupled), .. }) = method {
+    if let Discretisation::Efg(Efg { essential: Essential::Coupling(coupled), .. }) = method {
         push(metrics, "finite-element-nodes", coupled.vertices.len() as f64, "1");
     }
     let resultant = prepared.resultant();

@@ -48,7 +48,7 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
                 None => "radius and neighbours",
             };
             add("supports", true, format!("{supports} of {} nodes", efg.cloud.points.len()));
-            let coupled = match &efg.coupled {
+            let coupled = match efg.coupled() {
                 Some(coupled) => format!(", coupled to {} nodes of finite elements", coupled.vertices.len()),
                 None => String::new(),
             };
@@ -116,7 +116,7 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
             },
         },
     );
-    let (eliminated, why) = match cloud.map(|efg| efg.essential) {
+    let (eliminated, why) = match cloud.map(|efg| &efg.essential) {
         _ if setup.held.is_empty() => (false, "no support in the scene"),
         None => (true, "the basis is Kronecker: nodal parameters are displacements"),
         Some(Essential::Elimination(ConstraintRows::Means)) => {
@@ -125,13 +125,13 @@ pub fn plan(method: &Discretisation, setup: &Setup, wants: Wants) -> Vec<Stage> 
         Some(Essential::Elimination(ConstraintRows::Points)) => {
             (true, "displacements at points, by pivoted rows")
         }
-        Some(Essential::Coupling) => (true, "parameters of finite-element nodes are displacements"),
+        Some(Essential::Coupling(_)) => (true, "parameters of finite-element nodes are displacements"),
         Some(_) => (false, "nodal parameters are not displacements"),
     };
     add("supports by elimination", eliminated, why.into());
-    let weak = match cloud.map(|efg| efg.essential) {
+    let weak = match cloud.map(|efg| &efg.essential) {
         _ if setup.held.is_empty() => (false, "no support in the scene".into()),
-        None | Some(Essential::Elimination(_) | Essential::Coupling) => {
+        None | Some(Essential::Elimination(_) | Essential::Coupling(_)) => {
             (false, "supports are eliminated".into())
         }
         Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),

@@ -84,13 +84,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, work: &mut Work) -> Resul
     for held in &setup.held {
         match method {
             Discretisation::Fem(fem) => prepared.hold_nodes(&fem.mesh, held, |vertex| vertex)?,
-            Discretisation::Efg(Efg { background, coupled: Some(coupled), .. }) => {
-                let Coupled { vertices, nodes } = &**coupled;
-                // Those of all supports are listed, and come last among the nodes.
-                let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
-                prepared.hold_nodes(background, held, |vertex| node(vertex) as u32)?;
-            }
-            Discretisation::Efg(efg) => prepared.hold_weakly(method, efg, held)?,
+            Discretisation::Efg(efg) => prepared.hold_cloud(method, efg, held)?,
         }
     }
     work.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
@@ -253,9 +247,9 @@ impl Prepared {
         Ok(())
     }
 
-    /// A support on a basis whose parameters are not displacements: on the facets of the place, and, where the place
-    /// has a volume (a clamped end, not a clamped face), on that too.
-    fn hold_weakly(&mut self, method: &Discretisation, efg: &Efg, held: &Held) -> Result<(), Failure> {
+    /// A support on a basis whose parameters are not displacements, unless elements are coupled to it: on the facets of the
+    /// place, and, where the place has a volume (a clamped end, not a clamped face), on that too.
+    fn hold_cloud(&mut self, method: &Discretisation, efg: &Efg, held: &Held) -> Result<(), Failure> {
         let patch = place::patch(&held.key, &held.place, &efg.background)?;
         let (rows, constraints) = (self.weak.len(), self.constraints.len());
         match efg.essential {
@@ -284,7 +278,11 @@ impl Prepared {
                     }
                 }
             }
-            Essential::Coupling => {}
+            Essential::Coupling(Coupled { ref vertices, ref nodes }) => {
+                // Those of all supports are listed, and come last among the nodes.
+                let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
+                return self.hold_nodes(&efg.background, held, |vertex| node(vertex) as u32);
+            }
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
                     let flux = method.flux(&self.volume, &patch.whole)?;
@@ -309,7 +307,7 @@ impl Prepared {
                 let values = at(held, &nodes)?;
                 self.constraints.extend(collocated(&rows, held.axes, &values));
             }
-            Essential::Multipliers | Essential::Elimination(_) | Essential::Coupling => {}
+            Essential::Multipliers | Essential::Elimination(_) | Essential::Coupling(_) => {}
             Essential::Nitsche(factor) | Essential::Penalty(factor) => {
                 if let Some(flux) = self.clamped_volume(efg, held)? {
                     self.hold_flux(efg, held, flux, Weak::Penalty { factor }, None)?;

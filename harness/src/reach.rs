@@ -20,7 +20,7 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     for held in &setup.held {
         let held_somewhere = match method {
             Discretisation::Fem(fem) => !place::nodes(&held.key, &held.place, &fem.mesh)?.is_empty(),
-            Discretisation::Efg(Efg { coupled: Some(_), background, .. }) => {
+            Discretisation::Efg(Efg { essential: Essential::Coupling(_), background, .. }) => {
                 !place::nodes(&held.key, &held.place, background)?.is_empty()
             }
             Discretisation::Efg(efg) => {

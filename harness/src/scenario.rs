@@ -348,16 +348,11 @@ impl Scenario<'_> {
             scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
             scene::Essential::Multipliers => Essential::Multipliers,
             scene::Essential::Elimination { rows } => Essential::Elimination(rows),
-            scene::Essential::Coupling => Essential::Coupling,
-        };
-        let coupled = match essential {
-            Essential::Coupling => Some(Box::new(self.coupled(&cloud, &background)?)),
-            _ => None,
+            scene::Essential::Coupling => Essential::Coupling(self.coupled(&cloud, &background)?),
         };
         Ok(Efg {
             background: self.with_regions(background)?,
             cloud,
-            coupled,
             shape,
             followed,
             refine,

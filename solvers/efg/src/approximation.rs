@@ -1,4 +1,6 @@
-//! The approximation over a cloud: which neighbours, which fit, and what to do where neighbours are too few.
+//! The approximation over a cloud: which neighbours, and which fit.
+
+mod ladder;
 
 use std::cmp::Reverse;
 
@@ -11,7 +13,7 @@ use crate::coupling::{Coupling, Layer, joined};
 use crate::info::{Outcome, Tally};
 use crate::lanes::LANES;
 use crate::max_entropy::{CUT, Neighbours, NoPoint};
-use crate::mls::{Ball, Group, Moments};
+use crate::mls::{Ball, Group};
 use crate::row_list::{RowList, sample_step};
 use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
 
@@ -22,15 +24,9 @@ const CHUNK: usize = 128;
 const SMALL: usize = 16 * CHUNK;
 /// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
-/// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
-const BEYOND_NEIGHBOUR: f64 = 1.4;
-/// Supports are enlarged no further: beyond, the point is not near the cloud at all.
-const MOST_ENLARGEMENT: f64 = 3.0;
 /// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand on the other side of
 /// a point have given way, and a row of that number sums to one within 1e-10. Elsewhere medians are 10 to 100.
 const MOST_CONDITION: f64 = 1e5;
-/// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
-const REGULARISATION: f64 = 1e-7;
 
 /// Shape functions over a cloud of nodes, each with a support radius of its own: by moving least squares or of maximum
 /// entropy.
@@ -429,92 +425,6 @@ impl Approximation {
             }
         }
         conditions
-    }
-
-    /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
-    #[cold]
-    fn mend<const GRAD: bool>(
-        &self,
-        points: &[Point3],
-        fit: &LeastSquares,
-        chunk: &mut Chunk,
-    ) -> Result<(), EfgError> {
-        let plain = std::mem::take(&mut chunk.rows);
-        let rows = &mut chunk.rows;
-        for (q, x) in points.iter().enumerate() {
-            if chunk.outcomes[q].condition < f64::INFINITY {
-                let range = plain.range(q);
-                rows.nodes.extend_from_slice(&plain.nodes[range.clone()]);
-                rows.values.extend_from_slice(&plain.values[range.clone()]);
-                rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
-                rows.close();
-            } else {
-                let moments = chunk.layers.get(q).map_or(Moments::COMPLETE, |layer| layer.moments);
-                chunk.outcomes[q] = self.climb::<GRAD>(x, &moments, fit, &mut chunk.group, rows)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The ladder, for a point at which the plain fit failed. Appends its row.
-    fn climb<const GRAD: bool>(
-        &self,
-        x: &Point3,
-        moments: &Moments,
-        asked: &LeastSquares,
-        group: &mut Group,
-        rows: &mut RowList,
-    ) -> Result<Outcome, EfgError> {
-        let needed = asked.basis.terms();
-        let enlargement = self.enlargement(x, 2 * needed);
-        let covers = |&node: &u32| match self.ellipsoids.is_empty() {
-            true => self.balls[node as usize].covers(x, enlargement),
-            false => self.relative(node, x) < enlargement,
-        };
-        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
-        let found = nodes.len();
-        group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
-        group.aim(0, moments);
-        let rungs: &[(Basis, f64)] = match asked.basis {
-            Basis::Linear => &[(Basis::Linear, 0.0)],
-            Basis::Quadratic => &[
-                (Basis::Quadratic, asked.mu),
-                (Basis::Quadratic, asked.mu.max(REGULARISATION)),
-                (Basis::Linear, 0.0),
-            ],
-        };
-        for &(basis, mu) in rungs {
-            if let Some(condition) = self.fit::<GRAD>(&LeastSquares { basis, mu, ..*asked }, group)[0] {
-                let first = rows.values.len();
-                rows.nodes.extend_from_slice(&nodes);
-                rows.close();
-                rows.values.resize(first + found, 0.0);
-                rows.grads.resize(if GRAD { first + found } else { 0 }, Vector3::zeros());
-                let grads = if GRAD { &mut rows.grads[first..] } else { &mut [] };
-                group.store(0, &mut rows.values[first..], grads);
-                return Ok(Outcome {
-                    neighbours: found as u32,
-                    condition,
-                    enlarged: enlargement > 1.0,
-                    regularised: mu > asked.mu,
-                    reduced: basis != asked.basis,
-                });
-            }
-        }
-        let point = *x;
-        if found < Basis::Linear.terms() {
-            Err(EfgError::TooFewNeighbours { point, found, needed, enlargement })
-        } else {
-            Err(EfgError::SingularMoment { point, found, needed, enlargement })
-        }
-    }
-
-    /// Factor on all support radii by which `count` nodes (all, if there are fewer) cover `x` comfortably.
-    fn enlargement(&self, x: &Point3, count: usize) -> f64 {
-        let mut ratios: Vec<f64> = (0..self.balls.len() as u32).map(|node| self.relative(node, x)).collect();
-        let last = count.min(ratios.len()) - 1;
-        let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
-        (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)
     }
 }
 

@@ -1,0 +1,104 @@
+//! The ladder: what is done at a point where the neighbours do not determine the basis.
+
+use shape::{Point3, Vector3};
+
+use super::{Approximation, Chunk, LeastSquares};
+use crate::info::Outcome;
+use crate::mls::{Group, Moments};
+use crate::row_list::RowList;
+use crate::{Basis, EfgError};
+
+/// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
+const BEYOND_NEIGHBOUR: f64 = 1.4;
+/// Supports are enlarged no further: beyond, the point is not near the cloud at all.
+const MOST_ENLARGEMENT: f64 = 3.0;
+/// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
+const REGULARISATION: f64 = 1e-7;
+
+impl Approximation {
+    /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
+    #[cold]
+    pub(super) fn mend<const GRAD: bool>(
+        &self,
+        points: &[Point3],
+        fit: &LeastSquares,
+        chunk: &mut Chunk,
+    ) -> Result<(), EfgError> {
+        let plain = std::mem::take(&mut chunk.rows);
+        let rows = &mut chunk.rows;
+        for (q, x) in points.iter().enumerate() {
+            if chunk.outcomes[q].condition < f64::INFINITY {
+                let range = plain.range(q);
+                rows.nodes.extend_from_slice(&plain.nodes[range.clone()]);
+                rows.values.extend_from_slice(&plain.values[range.clone()]);
+                rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
+                rows.close();
+            } else {
+                let moments = chunk.layers.get(q).map_or(Moments::COMPLETE, |layer| layer.moments);
+                chunk.outcomes[q] = self.climb::<GRAD>(x, &moments, fit, &mut chunk.group, rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The ladder, for a point at which the plain fit failed. Appends its row.
+    fn climb<const GRAD: bool>(
+        &self,
+        x: &Point3,
+        moments: &Moments,
+        asked: &LeastSquares,
+        group: &mut Group,
+        rows: &mut RowList,
+    ) -> Result<Outcome, EfgError> {
+        let needed = asked.basis.terms();
+        let enlargement = self.enlargement(x, 2 * needed);
+        let covers = |&node: &u32| match self.ellipsoids.is_empty() {
+            true => self.balls[node as usize].covers(x, enlargement),
+            false => self.relative(node, x) < enlargement,
+        };
+        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
+        let found = nodes.len();
+        group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
+        group.aim(0, moments);
+        let rungs: &[(Basis, f64)] = match asked.basis {
+            Basis::Linear => &[(Basis::Linear, 0.0)],
+            Basis::Quadratic => &[
+                (Basis::Quadratic, asked.mu),
+                (Basis::Quadratic, asked.mu.max(REGULARISATION)),
+                (Basis::Linear, 0.0),
+            ],
+        };
+        for &(basis, mu) in rungs {
+            if let Some(condition) = self.fit::<GRAD>(&LeastSquares { basis, mu, ..*asked }, group)[0] {
+                let first = rows.values.len();
+                rows.nodes.extend_from_slice(&nodes);
+                rows.close();
+                rows.values.resize(first + found, 0.0);
+                rows.grads.resize(if GRAD { first + found } else { 0 }, Vector3::zeros());
+                let grads = if GRAD { &mut rows.grads[first..] } else { &mut [] };
+                group.store(0, &mut rows.values[first..], grads);
+                return Ok(Outcome {
+                    neighbours: found as u32,
+                    condition,
+                    enlarged: enlargement > 1.0,
+                    regularised: mu > asked.mu,
+                    reduced: basis != asked.basis,
+                });
+            }
+        }
+        let point = *x;
+        if found < Basis::Linear.terms() {
+            Err(EfgError::TooFewNeighbours { point, found, needed, enlargement })
+        } else {
+            Err(EfgError::SingularMoment { point, found, needed, enlargement })
+        }
+    }
+
+    /// Factor on all support radii by which `count` nodes (all, if there are fewer) cover `x` comfortably.
+    fn enlargement(&self, x: &Point3, count: usize) -> f64 {
+        let mut ratios: Vec<f64> = (0..self.balls.len() as u32).map(|node| self.relative(node, x)).collect();
+        let last = count.min(ratios.len()) - 1;
+        let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
+        (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)
+    }
+}
