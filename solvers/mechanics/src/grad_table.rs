@@ -203,6 +203,11 @@ impl GradTable {
         Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
     }
 
+    /// Bundles that have about so many gradients together, one at least.
+    pub fn bundles_of(&self, gradients: usize) -> usize {
+        (gradients * self.weights.len() / self.nodes.len().max(1)).max(1)
+    }
+
     /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
     pub fn laws(&self) -> &[(Range<usize>, (f64, f64))] {
         &self.laws

@@ -12,9 +12,9 @@ use crate::{Matrix3, Vector3};
 
 /// Rows per task. Late rows of a lower triangle are the long ones: 83 nodes in tasks of 32 keep one of two threads waiting.
 const ROWS: usize = 8;
-/// Bundles that the rows of a task go through together: 256 KB of gradients, where points have 30 neighbours, that stay in the
-/// second-level cache for all of them.
-const TILE: usize = 128;
+/// Gradients of bundles that the rows of a task go through together: 256 KB, which stay in the second-level cache for all of
+/// them.
+const TILE: usize = 4096;
 
 /// One block row of the lower triangle.
 struct Row<'a> {
@@ -122,6 +122,7 @@ impl Stiffness {
         let nodes = self.pattern.node_count();
         let mut order: Vec<usize> = (0..nodes).collect();
         order.sort_by_key(|&i| incidence.of(i).first());
+        let tile = table.bundles_of(TILE);
         self.tasks(order.into_iter()).into_par_iter().for_each_init(
             || vec![(vec![0; nodes], Vec::new()); ROWS],
             |scratch, mut rows| {
@@ -138,7 +139,7 @@ impl Stiffness {
                         (first < bundles.end).then_some(first)
                     };
                     while let Some(first) = next(&seen) {
-                        let end = (first + TILE).min(bundles.end);
+                        let end = (first + tile).min(bundles.end);
                         for (seen, (slot, sums)) in seen.iter_mut().zip(&mut *scratch) {
                             let (here, later) =
                                 seen.split_at(seen.partition_point(|&(b, _)| (b as usize) < end));
