@@ -1,6 +1,7 @@
 //! A mixed mesh in flat arrays, with named cell regions and named groups of boundary facets.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use crate::{CellKind, Point3};
 
@@ -70,6 +71,19 @@ pub struct Mesh {
     regions: Vec<u16>,
     region_names: Vec<String>,
     groups: BTreeMap<String, Vec<Facet>>,
+    boundary: Boundary,
+}
+
+/// Found when first asked for: every load and every support asks, and with 6190 tetrahedra it takes a fifth of the time that a cloud
+/// of 83 nodes takes to prepare.
+#[derive(Clone, Debug, Default)]
+struct Boundary(OnceLock<Vec<Facet>>);
+
+/// Cells tell the boundary: meshes do not differ by whether anybody has asked.
+impl PartialEq for Boundary {
+    fn eq(&self, _: &Boundary) -> bool {
+        true
+    }
 }
 
 impl Mesh {
@@ -123,6 +137,7 @@ impl Mesh {
             regions,
             region_names: vec!["body".into()],
             groups: BTreeMap::new(),
+            boundary: Boundary::default(),
         })
     }
 
@@ -205,6 +220,10 @@ impl Mesh {
 
     /// All facets that belong to one cell only, in cell order.
     pub fn boundary(&self) -> Vec<Facet> {
+        self.boundary.0.get_or_init(|| self.find_boundary()).clone()
+    }
+
+    fn find_boundary(&self) -> Vec<Facet> {
         let mut faces = Vec::with_capacity(4 * self.kinds.len());
         let mut starts = vec![0; self.points.len() + 1];
         for (cell, kind) in self.kinds.iter().enumerate() {
