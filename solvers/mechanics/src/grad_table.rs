@@ -275,34 +275,97 @@ impl GradTable {
         let stress: Vec<[Pair; 3]> = (0..self.weights.len())
             .into_par_iter()
             .with_min_len(64)
-            .map(|b| {
-                let range = self.offsets[b]..self.offsets[b + 1];
-                let base = u[self.nodes[range.start] as usize];
-                let mut H = [[0.0; 8]; 3];
-                for (&node, g) in self.nodes[range.clone()].iter().zip(&self.grads[range]) {
-                    // Gradients of a partition of unity sum to zero: only differences of displacements count.
-                    let difference = u[node as usize] - base;
-                    for axis in 0..3 {
-                        for l in 0..8 {
-                            H[axis][l] += difference[axis] * g[l];
-                        }
-                    }
-                }
-                self.stress(b, &H)
-            })
+            .map(|b| self.stress(b, &self.displacement_gradient(b, u)))
             .collect();
         force.par_iter_mut().with_min_len(32).enumerate().for_each(|(i, force)| {
-            let mut sums = [[0.0; 8]; 3];
-            for &(b, k) in incidence.of(i) {
-                let (stress, g) = (&stress[b as usize], &self.grads[k as usize]);
-                for axis in 0..3 {
-                    for l in 0..8 {
-                        sums[axis][l] += stress[axis][l] * g[l];
-                    }
-                }
-            }
+            let sums = self.flow(incidence.of(i), &stress);
             *force -= Vector3::from_fn(|axis, _| sums[axis].iter().sum::<f64>());
         });
+    }
+
+    /// Displacement gradients at the points of a bundle, by rows.
+    fn displacement_gradient(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::is_x86_feature_detected!("avx512f") {
+                // SAFETY: the processor has the feature that the function requires, just checked; so below.
+                return unsafe { self.displacement_gradient_avx512(bundle, u) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { self.displacement_gradient_avx2(bundle, u) };
+            }
+        }
+        self.displacement_gradient_plain(bundle, u)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f")]
+    fn displacement_gradient_avx512(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
+        self.displacement_gradient_plain(bundle, u)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn displacement_gradient_avx2(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
+        self.displacement_gradient_plain(bundle, u)
+    }
+
+    #[inline(always)]
+    fn displacement_gradient_plain(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
+        let range = self.offsets[bundle]..self.offsets[bundle + 1];
+        let base = u[self.nodes[range.start] as usize];
+        let mut H = [[0.0; 8]; 3];
+        for (&node, g) in self.nodes[range.clone()].iter().zip(&self.grads[range]) {
+            // Gradients of a partition of unity sum to zero: only differences of displacements count.
+            let difference = u[node as usize] - base;
+            for axis in 0..3 {
+                for l in 0..8 {
+                    H[axis][l] += difference[axis] * g[l];
+                }
+            }
+        }
+        H
+    }
+
+    /// `sum_q w sigma grad N` of a node, to be summed over the lanes.
+    fn flow(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::is_x86_feature_detected!("avx512f") {
+                // SAFETY: the processor has the feature that the function requires, just checked; so below.
+                return unsafe { self.flow_avx512(seen, stress) };
+            }
+            if std::is_x86_feature_detected!("avx2") {
+                return unsafe { self.flow_avx2(seen, stress) };
+            }
+        }
+        self.flow_plain(seen, stress)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f")]
+    fn flow_avx512(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
+        self.flow_plain(seen, stress)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn flow_avx2(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
+        self.flow_plain(seen, stress)
+    }
+
+    #[inline(always)]
+    fn flow_plain(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
+        let mut sums = [[0.0; 8]; 3];
+        for &(b, k) in seen {
+            let (stress, g) = (&stress[b as usize], &self.grads[k as usize]);
+            for axis in 0..3 {
+                for l in 0..8 {
+                    sums[axis][l] += stress[axis][l] * g[l];
+                }
+            }
+        }
+        sums
     }
 
     /// `w sigma` at the points of a bundle from the displacement gradients there, both by rows.
