@@ -1,6 +1,6 @@
 //! Where a support or a load acts, on one mesh: nodes, whole facets, or facets cut by the region's planes.
 
-use cases::scene::{Region, Relation};
+use cases::scene::{Comparison, Region, Relation};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::Failure;
@@ -116,7 +116,8 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     let tolerance = tolerance(mesh);
     let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
     for facet in facets(key, place, mesh)? {
-        let corners = corners(mesh, facet);
+        let (corners, count) = corners(mesh, facet);
+        let corners = &corners[..count];
         let sum = corners.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords);
         let centre = Point3::from(sum / corners.len() as f64);
         if holds(place, &centre, tolerance) && corners.iter().all(|p| holds(place, p, tolerance)) {
@@ -149,31 +150,44 @@ pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
     Err(Failure::input(self::key(place, key), problem, help))
 }
 
-fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
+/// Corners of a facet, and how many they are: three or four.
+fn corners(mesh: &Mesh, facet: Facet) -> ([Point3; 4], usize) {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-    mesh.facet_nodes(facet).take(count).map(|n| mesh.points()[n as usize]).collect()
+    let mut corners = [Point3::origin(); 4];
+    for (corner, node) in corners.iter_mut().zip(mesh.facet_nodes(facet).take(count)) {
+        *corner = mesh.points()[node as usize];
+    }
+    (corners, count)
+}
+
+/// How far `x` is on the side that a comparison keeps, m; above its value for an equality.
+fn ahead(comparison: &Comparison, x: &Point3) -> f64 {
+    let above = x[comparison.axis] - comparison.value;
+    match comparison.relation {
+        Relation::Less | Relation::LessEqual => -above,
+        Relation::Equal | Relation::Greater | Relation::GreaterEqual => above,
+    }
 }
 
 /// Clips a triangle by each plane of the region in turn (Sutherland and Hodgman 1974) and fans what is left.
 /// An equality keeps nothing of a facet that is not in its plane.
 fn clip(triangle: &[Point3; 3], region: &Region, tolerance: f64, out: &mut Vec<CutTriangle>) {
+    let beyond = |c: &Comparison| c.relation != Relation::Equal && triangle.iter().all(|p| ahead(c, p) < 0.0);
+    if region.comparisons.iter().any(beyond) {
+        return;
+    }
     let mut polygon = triangle.to_vec();
     for comparison in &region.comparisons {
-        let sign = match comparison.relation {
-            Relation::Greater | Relation::GreaterEqual => 1.0,
-            Relation::Less | Relation::LessEqual => -1.0,
-            Relation::Equal => {
-                if polygon.iter().any(|p| (p[comparison.axis] - comparison.value).abs() > tolerance) {
-                    return;
-                }
-                continue;
+        if comparison.relation == Relation::Equal {
+            if polygon.iter().any(|p| ahead(comparison, p).abs() > tolerance) {
+                return;
             }
-        };
-        let ahead = |p: &Point3| sign * (p[comparison.axis] - comparison.value);
+            continue;
+        }
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (k, p) in polygon.iter().enumerate() {
             let next = &polygon[(k + 1) % polygon.len()];
-            let (a, b) = (ahead(p), ahead(next));
+            let (a, b) = (ahead(comparison, p), ahead(comparison, next));
             if a >= 0.0 {
                 kept.push(*p);
             }
@@ -197,7 +211,6 @@ fn clip(triangle: &[Point3; 3], region: &Region, tolerance: f64, out: &mut Vec<C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cases::scene::Comparison;
 
     fn region(comparisons: &[(usize, Relation, f64)]) -> Region {
         Region {

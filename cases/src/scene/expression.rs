@@ -79,6 +79,11 @@ const STACK: usize = 4 * (MAX_DEPTH + 1);
 impl Expression {
     /// Value at `x` (metres), in the unit that stands beside the expression.
     pub fn value(&self, x: [f64; 3]) -> Result<f64, NotFinite> {
+        if let [Op::Number(value)] = self.program[..]
+            && value.is_finite()
+        {
+            return Ok(value);
+        }
         let mut stack = [0.0; STACK];
         let mut top = 0;
         for op in &self.program {
@@ -215,7 +220,13 @@ impl<'t> Reader<'t> {
             }
             self.signed()?;
             self.depth -= 1;
-            self.program.push(Op::Two(f64::powf));
+            // The power that fields mostly have, without exponential and logarithm.
+            if let Some(Op::Number(2.0)) = self.program.last() {
+                self.program.pop();
+                self.program.push(Op::One(|a| a * a));
+            } else {
+                self.program.push(Op::Two(f64::powf));
+            }
         }
         Ok(())
     }

@@ -218,34 +218,44 @@ impl Approximation {
 
     fn table<const GRAD: bool>(&self, points: &[Point3]) -> Result<(Rows, Vec<Vector3>, MlsInfo), EfgError> {
         // In waves that reuse their buffers: all chunks at once would touch twice the memory, and in a single call
-        // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave.
+        // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave. One joins the table while
+        // the next is filled: joining is a quarter of the work, and one thread's.
         let small = points.len() <= SMALL;
         let wave = if small { SMALL } else { 4 * CHUNK * rayon::current_num_threads() };
-        let mut chunks: Vec<Chunk> = Vec::new();
-        let mut rows = RowList::default();
+        let expected = if small { 0 } else { self.expected_entries(points) };
+        let mut rows = RowList::with_capacity(points.len(), expected, if GRAD { expected } else { 0 });
         let mut tally = Tally::with_capacity(points.len());
-        for wave in points.chunks(wave) {
-            let parts = wave.par_chunks(CHUNK);
-            chunks.resize_with(parts.len(), Chunk::default);
-            let done: Vec<Result<(), EfgError>> = chunks
-                .par_iter_mut()
-                .zip(parts)
-                .map(|(chunk, part)| self.fill::<GRAD>(part, chunk))
-                .collect();
-            if rows.offsets.len() == 1 {
-                let counted = || chunks.iter().map(|chunk| chunk.rows.nodes.len()).sum();
-                let entries = if small { counted() } else { self.expected_entries(points) };
-                rows = RowList::with_capacity(points.len(), entries, if GRAD { entries } else { 0 });
-            }
-            for (done, chunk) in done.into_iter().zip(&chunks) {
-                done?;
+        let mut join = |chunks: &[Chunk]| {
+            let entries = chunks.iter().map(|chunk| chunk.rows.nodes.len()).sum();
+            rows.reserve(entries, if GRAD { entries } else { 0 });
+            for chunk in chunks {
                 rows.append(&chunk.rows);
                 chunk.outcomes.iter().for_each(|met| tally.add(met));
             }
+        };
+        let (mut next, mut filled) = (Vec::new(), Vec::new());
+        for wave in points.chunks(wave) {
+            let (done, ()) = rayon::join(|| self.fill_wave::<GRAD>(wave, &mut next), || join(&filled));
+            done?;
+            std::mem::swap(&mut next, &mut filled);
         }
+        join(&filled);
         let RowList { offsets, nodes, values, grads } = rows;
         let rows = Rows::new(self.nodes.len(), offsets, nodes, values, UNITY)?;
         Ok((rows, grads, tally.info()))
+    }
+
+    /// Fills one chunk for every so many points, or tells the first that fails.
+    fn fill_wave<const GRAD: bool>(
+        &self,
+        points: &[Point3],
+        chunks: &mut Vec<Chunk>,
+    ) -> Result<(), EfgError> {
+        let parts = points.par_chunks(CHUNK);
+        chunks.resize_with(parts.len(), Chunk::default);
+        let fill = |(chunk, part)| self.fill::<GRAD>(part, chunk);
+        let done: Vec<Result<(), EfgError>> = chunks.par_iter_mut().zip(parts).map(fill).collect();
+        done.into_iter().collect()
     }
 
     /// Entries of a table by the neighbours of a few of its points.

@@ -14,7 +14,7 @@ pub(crate) fn tet_points(
     points: &mut Vec<Point3>,
     weights: &mut Vec<f64>,
 ) -> Result<(), EfgError> {
-    let p: Vec<&Point3> = mesh.cell_points(cell).collect();
+    let p = tet_corners(mesh, cell);
     let edges = [p[1] - p[0], p[2] - p[0], p[3] - p[0]];
     let det_j = positive_det(cell, &Matrix3::from_columns(&edges))?;
     for (xi, weight) in rule.points.iter().zip(&rule.weights) {
@@ -54,10 +54,16 @@ pub(crate) fn tet_measure(mesh: &Mesh, cell: usize) -> Result<(f64, Point3), Efg
         let (kind, what) = (mesh.kind(cell), "cell smoothing");
         return Err(EfgError::CellKind { cell, kind, what, allowed: "tet4" });
     }
-    let p: Vec<&Point3> = mesh.cell_points(cell).collect();
+    let p = tet_corners(mesh, cell);
     let det_j = positive_det(cell, &Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]))?;
     let centroid = p[0] + ((p[1] - p[0]) + (p[2] - p[0]) + (p[3] - p[0])) / 4.0;
     Ok((det_j / 6.0, centroid))
+}
+
+fn tet_corners(mesh: &Mesh, cell: usize) -> [Point3; 4] {
+    let mut corners = [Point3::origin(); 4];
+    corners.iter_mut().zip(mesh.cell_points(cell)).for_each(|(corner, p)| *corner = *p);
+    corners
 }
 
 fn positive_det(cell: usize, jacobian: &Matrix3) -> Result<f64, EfgError> {

@@ -42,6 +42,13 @@ impl RowList {
         }
     }
 
+    /// Room for so many entries more, and no more than that where there is none: a table grows at its end only.
+    pub fn reserve(&mut self, entries: usize, grads: usize) {
+        self.nodes.reserve_exact(entries);
+        self.values.reserve_exact(entries);
+        self.grads.reserve_exact(grads);
+    }
+
     /// Entry range of one row.
     pub fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.offsets[row]..self.offsets[row + 1]

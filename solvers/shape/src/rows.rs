@@ -1,6 +1,11 @@
 //! Compressed rows of (node, value): the sparse matrix that every table here is made of.
 
+use rayon::prelude::*;
+
 use crate::Vector3;
+
+/// Rows that one task checks at least: some microseconds.
+const CHECKED_TOGETHER: usize = 512;
 
 /// What the maker of a table promises about the sum of each row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,25 +119,43 @@ impl Rows {
         let lengths = || offsets.windows(2).map(|p| p[1] - p[0]);
         let uniform_len = lengths().next().filter(|&first| lengths().all(|n| n == first));
         let rows = Rows { node_count, offsets, nodes, values, uniform_len };
-        for row in 0..rows.len() {
-            let (nodes, values) = rows.row(row);
-            // Sums first: a search for the offender would stop at every entry to look. Whatever is not finite makes the sum so.
-            let sum = sum_of(values);
-            let highest = nodes.iter().fold(0, |highest, &node| highest.max(node));
-            if !nodes.is_empty() && highest as usize >= node_count {
-                let node = nodes.iter().find(|&&n| n as usize >= node_count).map_or(highest, |&n| n);
-                return Err(ShapeError::NodeOutOfRange { row, node: node as usize, nodes: node_count });
-            }
-            if !sum.is_finite() && !values.iter().all(|v| v.is_finite()) {
-                return Err(ShapeError::NotFinite { what: "value", row });
-            }
-            if let Unity::Within(tolerance) = unity
-                && !((sum - 1.0).abs() <= tolerance)
-            {
-                return Err(ShapeError::NotUnity { row, sum, tolerance });
-            }
+        match rows.first_fault(|row| rows.fault(row, unity)) {
+            Some(fault) => Err(fault),
+            None => Ok(rows),
         }
-        Ok(rows)
+    }
+
+    /// The first row's fault, of those that have any.
+    pub(crate) fn first_fault(
+        &self,
+        of: impl Fn(usize) -> Option<ShapeError> + Sync + Send,
+    ) -> Option<ShapeError> {
+        (0..self.len()).into_par_iter().with_min_len(CHECKED_TOGETHER).find_map_first(of)
+    }
+
+    fn fault(&self, row: usize, unity: Unity) -> Option<ShapeError> {
+        let (nodes, values) = self.row(row);
+        // Sums first: a search for the offender would stop at every entry to look. Whatever is not finite makes the sum so.
+        let sum = sum_of(values);
+        let highest = nodes.iter().fold(0, |highest, &node| highest.max(node)) as usize;
+        if !nodes.is_empty() && highest >= self.node_count {
+            let first = nodes.iter().map(|&n| n as usize).find(|&n| n >= self.node_count);
+            return Some(ShapeError::NodeOutOfRange {
+                row,
+                node: first.unwrap_or(highest),
+                nodes: self.node_count,
+            });
+        }
+        if !sum.is_finite() && !values.iter().all(|v| v.is_finite()) {
+            return Some(ShapeError::NotFinite { what: "value", row });
+        }
+        match unity {
+            // A sum that is no number is not near one either.
+            Unity::Within(tolerance) if !((sum - 1.0).abs() <= tolerance) => {
+                Some(ShapeError::NotUnity { row, sum, tolerance })
+            }
+            _ => None,
+        }
     }
 
     /// Number of rows (points).

@@ -71,10 +71,15 @@ impl GradRows {
         check_len("points", points.len(), rows.len())?;
         check_len("gradients", grads.len(), rows.nodes().len())?;
         check_points(&points)?;
-        for row in 0..rows.len() {
-            if !grads[rows.range(row)].iter().all(|g| g.iter().all(|c| c.is_finite())) {
-                return Err(ShapeError::NotFinite { what: "gradient", row });
-            }
+        let finite = |g: &Vector3| g.iter().all(|c| c.is_finite());
+        let fault = |row| {
+            // As with values: a sum first.
+            let grads = &grads[rows.range(row)];
+            (!finite(&grads.iter().sum()) && !grads.iter().all(finite))
+                .then_some(ShapeError::NotFinite { what: "gradient", row })
+        };
+        if let Some(fault) = rows.first_fault(fault) {
+            return Err(fault);
         }
         Ok(GradRows { points, rows, grads })
     }
