@@ -17,6 +17,9 @@ use crate::{Body, Matrix3, SolveError, Vector3};
 /// Bundles per task.
 const CHUNK: usize = 64;
 
+/// Gradients whose forces one task sums.
+const TASK: usize = 4096;
+
 /// Points of a bundle, at most.
 const POINTS: usize = 2;
 
@@ -270,102 +273,74 @@ impl GradTable {
     }
 
     /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
-    pub fn subtract_force(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
-        // Row a of w sigma at the points of a bundle, zero beyond them.
-        let stress: Vec<[Pair; 3]> = (0..self.weights.len())
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|b| self.stress(b, &self.displacement_gradient(b, u)))
-            .collect();
-        force.par_iter_mut().with_min_len(32).enumerate().for_each(|(i, force)| {
-            let sums = self.flow(incidence.of(i), &stress);
-            *force -= Vector3::from_fn(|axis, _| sums[axis].iter().sum::<f64>());
-        });
+    ///
+    /// Gradients come from the outermost cache, so they are read once: a bundle's forces are summed while its gradients are near.
+    /// Tasks are the same at any number of threads.
+    pub fn subtract_force(&self, u: &[Vector3], force: &mut [Vector3]) {
+        let tasks: Vec<usize> = (0..self.weights.len()).step_by(self.bundles_of(TASK)).collect();
+        let of_task = |scratch: &mut Forces, &first: &usize| {
+            let end = (first + self.bundles_of(TASK)).min(self.weights.len());
+            scratch.start(&self.nodes[self.offsets[first]..self.offsets[end]]);
+            self.add_force(first..end, u, scratch);
+            scratch.finish()
+        };
+        let start = || Forces { slot: vec![u32::MAX; force.len()], nodes: Vec::new(), sums: Vec::new() };
+        let parts: Vec<Vec<(u32, Vector3)>> = tasks.par_iter().map_init(start, of_task).collect();
+        for (node, part) in parts.into_iter().flatten() {
+            force[node as usize] -= part;
+        }
     }
 
-    /// Displacement gradients at the points of a bundle, by rows.
-    fn displacement_gradient(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
+    /// Adds the forces of some bundles.
+    fn add_force(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
         #[cfg(target_arch = "x86_64")]
         {
             if std::is_x86_feature_detected!("avx512f") {
                 // SAFETY: the processor has the feature that the function requires, just checked; so below.
-                return unsafe { self.displacement_gradient_avx512(bundle, u) };
+                return unsafe { self.add_force_avx512(bundles, u, forces) };
             }
             if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.displacement_gradient_avx2(bundle, u) };
+                return unsafe { self.add_force_avx2(bundles, u, forces) };
             }
         }
-        self.displacement_gradient_plain(bundle, u)
+        self.add_force_plain(bundles, u, forces)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f")]
-    fn displacement_gradient_avx512(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
-        self.displacement_gradient_plain(bundle, u)
+    fn add_force_avx512(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
+        self.add_force_plain(bundles, u, forces)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn displacement_gradient_avx2(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
-        self.displacement_gradient_plain(bundle, u)
+    fn add_force_avx2(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
+        self.add_force_plain(bundles, u, forces)
     }
 
     #[inline(always)]
-    fn displacement_gradient_plain(&self, bundle: usize, u: &[Vector3]) -> [Pair; 3] {
-        let range = self.offsets[bundle]..self.offsets[bundle + 1];
-        let base = u[self.nodes[range.start] as usize];
-        let mut H = [[0.0; 8]; 3];
-        for (&node, g) in self.nodes[range.clone()].iter().zip(&self.grads[range]) {
-            // Gradients of a partition of unity sum to zero: only differences of displacements count.
-            let difference = u[node as usize] - base;
-            for axis in 0..3 {
-                for l in 0..8 {
-                    H[axis][l] += difference[axis] * g[l];
+    fn add_force_plain(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
+        for bundle in bundles {
+            let range = self.offsets[bundle]..self.offsets[bundle + 1];
+            let (nodes, grads) = (&self.nodes[range.clone()], &self.grads[range]);
+            let base = u[nodes[0] as usize];
+            let mut H = [[0.0; 8]; 3];
+            for (&node, g) in nodes.iter().zip(grads) {
+                // Gradients of a partition of unity sum to zero: only differences of displacements count.
+                let difference = u[node as usize] - base;
+                for (row, d) in H.iter_mut().zip(&difference) {
+                    *row = add_product(*row, &[*d; 8], g);
+                }
+            }
+            // Row a of w sigma at the points of the bundle, zero beyond them.
+            let stress = self.stress(bundle, &H);
+            for (&node, g) in nodes.iter().zip(grads) {
+                let sum = &mut forces.sums[forces.slot[node as usize] as usize];
+                for (sum, row) in sum.iter_mut().zip(&stress) {
+                    *sum = add_product(*sum, row, g);
                 }
             }
         }
-        H
-    }
-
-    /// `sum_q w sigma grad N` of a node, to be summed over the lanes.
-    fn flow(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") {
-                // SAFETY: the processor has the feature that the function requires, just checked; so below.
-                return unsafe { self.flow_avx512(seen, stress) };
-            }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.flow_avx2(seen, stress) };
-            }
-        }
-        self.flow_plain(seen, stress)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f")]
-    fn flow_avx512(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
-        self.flow_plain(seen, stress)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn flow_avx2(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
-        self.flow_plain(seen, stress)
-    }
-
-    #[inline(always)]
-    fn flow_plain(&self, seen: &[(u32, u32)], stress: &[[Pair; 3]]) -> [Pair; 3] {
-        let mut sums = [[0.0; 8]; 3];
-        for &(b, k) in seen {
-            let (stress, g) = (&stress[b as usize], &self.grads[k as usize]);
-            for axis in 0..3 {
-                for l in 0..8 {
-                    sums[axis][l] += stress[axis][l] * g[l];
-                }
-            }
-        }
-        sums
     }
 
     /// `w sigma` at the points of a bundle from the displacement gradients there, both by rows.
@@ -383,6 +358,42 @@ impl GradTable {
             }
         }
         stress
+    }
+}
+
+/// By whole arrays: added in place lane by lane, the compiler takes these products one at a time.
+#[inline(always)]
+fn add_product(sum: Pair, a: &Pair, b: &Pair) -> Pair {
+    std::array::from_fn(|l| sum[l] + a[l] * b[l])
+}
+
+/// Forces of the nodes that some bundles see.
+struct Forces {
+    /// Where the sum of each node of the body is; `u32::MAX` of the nodes that are not seen.
+    slot: Vec<u32>,
+    nodes: Vec<u32>,
+    /// By axis, to be summed over the lanes.
+    sums: Vec<[Pair; 3]>,
+}
+
+impl Forces {
+    /// Makes room for nodes, any of them more than once.
+    fn start(&mut self, seen: &[u32]) {
+        for &node in seen {
+            let slot = &mut self.slot[node as usize];
+            if *slot == u32::MAX {
+                *slot = self.nodes.len() as u32;
+                self.nodes.push(node);
+            }
+        }
+        self.sums.resize(self.nodes.len(), [[0.0; 8]; 3]);
+    }
+
+    /// The forces, N, and an end with nothing seen.
+    fn finish(&mut self) -> Vec<(u32, Vector3)> {
+        let total = |sum: [Pair; 3]| Vector3::from_fn(|axis, _| sum[axis].iter().sum::<f64>());
+        self.nodes.iter().for_each(|&node| self.slot[node as usize] = u32::MAX);
+        self.nodes.drain(..).zip(self.sums.drain(..)).map(|(node, sum)| (node, total(sum))).collect()
     }
 }
 

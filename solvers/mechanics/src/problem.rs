@@ -52,15 +52,15 @@ pub struct Assembled<'a> {
 /// Summed point by point, from differences of displacements, it is smaller by the ratio of displacement to strain
 /// times support.
 pub(crate) struct Pointwise {
-    volume: Vec<(GradTable, Incidence)>,
+    volume: Vec<GradTable>,
     weak: Vec<(WeakTable, Incidence)>,
 }
 
 impl Pointwise {
     /// Takes the internal forces and those of the weak supports (at `factor` times their values) from `residual`.
     pub fn subtract(&self, u: &[Vector3], factor: f64, residual: &mut [Vector3]) {
-        for (table, of) in &self.volume {
-            table.subtract_force(of, u, residual);
+        for table in &self.volume {
+            table.subtract_force(u, residual);
         }
         for (table, of) in &self.weak {
             table.subtract_residual(of, u, factor, residual);
@@ -137,8 +137,7 @@ fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<A
     });
     let gamma = gammas.reduce(f64::min);
     let pointwise = (!weak.is_empty() || !rows.is_empty()).then(|| {
-        let mut volume = vec![(points, points_of)];
-        volume.extend(groups.zip(groups_of));
+        let volume = std::iter::once(points).chain(groups).collect();
         Pointwise { volume, weak }
     });
     Ok(Assembled { body, stiffness, load, weak_load, prescribed, rows, gamma, pointwise })
