@@ -8,20 +8,20 @@ use shape::DilationGroups;
 
 use super::Inverted;
 use super::groups::Pairs;
+use super::lanes::{GroupRow, Lanes, add_row};
 use super::separated::Volumetric;
 use super::solid::{Kinematics, Solid};
 use super::split::{Split, add_dilation_hessian, cofactor};
+use crate::explicit::LanePath;
 use crate::material::Tangent;
 use crate::{Matrix3, Vector3};
 
-/// The share of one dilation group in the second derivatives; rows by ascending node.
+/// The share of one dilation group in the second derivatives: `k b b^T + b m^T + m b^T`, of rank two, is `b n^T + n b^T`
+/// with `n = m + k b / 2`. Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` carried to the nodes (N) and `k` is
+/// `d2 psi / d theta2` over the group (J).
 pub(crate) struct GroupHessian {
-    /// `dJ_a / du`, 1/m.
-    pub b: Vec<Vector3>,
-    /// `d2 psi / dF d theta` carried to the nodes, N.
-    pub m: Vec<Vector3>,
-    /// `d2 psi / d theta2` over the group, J.
-    pub k: f64,
+    /// By the nodes of the group, ascending.
+    pub rows: Vec<GroupRow>,
 }
 
 /// A solid at a displacement, with the dilations its points share.
@@ -153,12 +153,20 @@ impl<'a> Shared<'a> {
         let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
         let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
         let point = self.point_tangents(&pressure, |q| shape[q].2);
-        // P grad N of every neighbour, the same for all groups of a point.
-        let carried: Vec<Vec<Vector3>> =
-            self.points(|q| self.solid.volume.row(q).1.iter().map(|g| shape[q].1 * g).collect());
+        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        let rows = self.solid.volume.rows();
+        let mixed: Vec<Lanes> = (0..shape.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .flat_map_iter(|q| self.mixed_rows(q, shape[q].1))
+            .collect();
+        let path = LanePath::best();
         let groups = self.group_hessians(
-            |a| self.solid.group_volume(self.groups, a) * (parts[a].A[2] * energy[a] + parts[a].U[2]),
-            |a, q, _, k, _| carried[q][k] * parts[a].A[1],
+            |a| {
+                let volume = self.solid.group_volume(self.groups, a);
+                (volume * (parts[a].A[2] * energy[a] + parts[a].U[2]), parts[a].A[1])
+            },
+            |q, _, share, sums| add_row(path, rows.row(q).0, &mixed[rows.range(q)], share, sums),
         );
         (point, groups)
     }
@@ -183,11 +191,17 @@ impl<'a> Shared<'a> {
         let point = self.point_tangents(&pressure, |q| each[q].0);
         let stiffness = |a: usize| {
             let (points, shares) = self.groups.group(a);
-            (points.iter().zip(shares).zip(self.pairs.places(a)))
+            let k = (points.iter().zip(shares).zip(self.pairs.places(a)))
                 .map(|((&q, s), &at)| s * weights[q as usize] * of_pair[at].by_theta_theta)
-                .sum()
+                .sum();
+            (k, 1.0)
         };
-        (point, self.group_hessians(stiffness, |_, _, at, _, g| of_pair[at].by_F_theta * g))
+        let (rows, path) = (self.solid.volume.rows(), LanePath::best());
+        let groups = self.group_hessians(stiffness, |q, at, share, sums| {
+            let mixed: Vec<Lanes> = self.mixed_rows(q, of_pair[at].by_F_theta).collect();
+            add_row(path, rows.row(q).0, &mixed, share, sums);
+        });
+        (point, groups)
     }
 
     /// `w D` with what the change of J itself adds.
@@ -203,47 +217,36 @@ impl<'a> Shared<'a> {
         })
     }
 
-    /// By the stiffness of a group, and `d2 psi / dF d theta` times the gradient of a neighbour: by group, point, place
-    /// in the pair list, place in the point's row and gradient.
+    /// What the neighbours of a point have of `b` and, with `by_F_theta`, of `m`.
+    fn mixed_rows(&self, q: usize, by_F_theta: Matrix3) -> impl Iterator<Item = Lanes> + '_ {
+        let (cofactor, weight) = (self.cofactor(q), self.solid.volume.weights()[q]);
+        let of_node = move |g: &Vector3| Lanes::pair(&(cofactor * g * weight), &(by_F_theta * g * weight));
+        self.solid.volume.row(q).1.iter().map(of_node)
+    }
+
+    /// `stiffness` tells k of a group and a factor of its m; `add` adds to the sums of all nodes what a point has of b and
+    /// m: by point, place in the pair list and share.
     fn group_hessians(
         &self,
-        stiffness: impl Fn(usize) -> f64 + Sync + Send,
-        mixed: impl Fn(usize, usize, usize, usize, &Vector3) -> Vector3 + Sync + Send,
+        stiffness: impl Fn(usize) -> (f64, f64) + Sync + Send,
+        add: impl Fn(usize, usize, f64, &mut [Lanes]) + Sync + Send,
     ) -> Vec<GroupHessian> {
-        let (volume, nodes) = (self.solid.volume, self.solid.node_count());
-        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
-        let cof: Vec<Vec<Vector3>> = self.points(|q| {
-            let cof = self.cofactor(q);
-            volume.row(q).1.iter().map(|g| cof * g).collect()
-        });
         (0..self.groups.len())
             .into_par_iter()
             .map_init(
-                || (vec![[Vector3::zeros(); 2]; nodes], vec![false; nodes]),
-                |(scratch, seen), a| {
+                || vec![Lanes::ZERO; self.solid.node_count()],
+                |sums, a| {
                     let (points, shares) = self.groups.group(a);
-                    let whole = self.solid.group_volume(self.groups, a);
-                    let mut touched = Vec::new();
-                    for ((&q, share), &at) in points.iter().zip(shares).zip(self.pairs.places(a)) {
-                        let q = q as usize;
-                        let dv = share * volume.weights()[q];
-                        let (row, grads) = volume.row(q);
-                        for (k, (&node, g)) in row.iter().zip(grads).enumerate() {
-                            if !std::mem::replace(&mut seen[node as usize], true) {
-                                touched.push(node);
-                            }
-                            let [b, m] = &mut scratch[node as usize];
-                            *b += cof[q][k] * (dv / whole);
-                            *m += mixed(a, q, at, k, g) * dv;
-                        }
+                    for ((&q, &share), &at) in points.iter().zip(shares).zip(self.pairs.places(a)) {
+                        add(q as usize, at, share, sums);
                     }
-                    touched.sort_unstable();
-                    touched.iter().for_each(|&n| seen[n as usize] = false);
-                    let (b, m) = touched
-                        .iter()
-                        .map(|&n| std::mem::replace(&mut scratch[n as usize], [Vector3::zeros(); 2]).into())
-                        .unzip();
-                    GroupHessian { b, m, k: stiffness(a) }
+                    let (volume, (k, factor)) = (self.solid.group_volume(self.groups, a), stiffness(a));
+                    let row = |&node: &u32| {
+                        let (b, m) = std::mem::replace(&mut sums[node as usize], Lanes::ZERO).of_pair();
+                        let b = b / volume;
+                        GroupRow::new(&b, &(m * factor + b * (0.5 * k)))
+                    };
+                    GroupHessian { rows: self.pairs.nodes(a).iter().map(row).collect() }
                 },
             )
             .collect()
