@@ -172,19 +172,20 @@ fn group_products_in<const FMA: bool>(
 }
 
 on_path! {
-    /// Adds `share` times the row of a point to the sums of its `nodes`.
+    /// Adds `share` times the row of a point to the sums of its `nodes`, each at its slot.
     pub(super) fn add_row(
         nodes: &[u32],
         row: &[Lanes],
         share: f64,
+        slot: &[u32],
         sums: &mut [Lanes],
     ) = add_row_in
 }
 
 #[inline(always)]
-fn add_row_in<const FMA: bool>(nodes: &[u32], row: &[Lanes], share: f64, sums: &mut [Lanes]) {
+fn add_row_in<const FMA: bool>(nodes: &[u32], row: &[Lanes], share: f64, slot: &[u32], sums: &mut [Lanes]) {
     for (&node, Lanes(row)) in nodes.iter().zip(row) {
-        let Lanes(sum) = &mut sums[node as usize];
+        let Lanes(sum) = &mut sums[slot[node as usize] as usize];
         for l in 0..8 {
             sum[l] += share * row[l];
         }

@@ -163,7 +163,7 @@ impl<'a> System<'a> {
     pub fn internal_force(&self, internal: &Internal) -> Vec<Vector3> {
         (0..self.solid.node_count())
             .into_par_iter()
-            .with_min_len(64)
+            .with_min_len(8)
             .map(|i| {
                 (self.points_of.of(i).iter())
                     .map(|&(q, k)| internal.stress[q as usize] * self.points.data[k as usize].xyz())
