@@ -191,3 +191,52 @@ fn add_row_in<const FMA: bool>(nodes: &[u32], row: &[Lanes], share: f64, slot: &
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explicit::LanePath;
+
+    #[test]
+    fn blocks_are_those_of_plain_matrices_with_the_same_bits_on_every_path() {
+        let D = Tangent::from_fn(|i, j| (1.3 * (i * j) as f64 + 0.7 * (i + j) as f64).sin());
+        let g = |k: usize| Vector3::from_fn(|a, _| (2.1 * k as f64 + 0.9 * a as f64).cos());
+        let points = Sorted::new(std::iter::once((0..3).map(|k| (k as u32, g(k).push(0.0)))));
+        let rows = (0..3).map(|k| GroupRow::new(&g(k + 5), &g(k + 9))).collect();
+        let groups = [GroupHessian { rows }];
+        let (offsets, nodes) = ([0, 3], [0, 1, 2]);
+        let connectivity = Connectivity { offsets: &offsets, nodes: &nodes, seen_by: &[] };
+        let tangents = [PointTangent::new(&D)];
+        let blocks: Vec<Vec<Matrix3>> = LanePath::available()
+            .into_iter()
+            .map(|path| {
+                let mut sums = [BlockSum::ZERO; 3];
+                point_products(path, &points, &tangents, &[(0, 2)], &nodes, &mut sums);
+                group_products(path, connectivity, &groups, &[(0, 2)], &nodes, &mut sums);
+                let mut rows = [Lanes::ZERO; 3];
+                add_row(
+                    path,
+                    &nodes,
+                    &[0, 1, 2].map(|k| Lanes::pair(&g(k), &g(k + 1))),
+                    0.3,
+                    &nodes,
+                    &mut rows,
+                );
+                for (k, row) in rows.iter().enumerate() {
+                    assert_eq!(row.of_pair(), (g(k) * 0.3, g(k + 1) * 0.3));
+                }
+                sums.iter().map(BlockSum::block).collect()
+            })
+            .collect();
+        assert!(blocks.iter().all(|of_path| of_path == &blocks[0]));
+        for (j, block) in blocks[0].iter().enumerate() {
+            let of_point = Matrix3::from_fn(|a, b| {
+                let sum =
+                    |k: usize| -> f64 { (0..3).map(|l| g(2)[k] * D[(3 * k + a, 3 * l + b)] * g(j)[l]).sum() };
+                (0..3).map(sum).sum()
+            });
+            let of_group = g(7) * g(j + 9).transpose() + g(11) * g(j + 5).transpose();
+            assert!((block - of_point - of_group).norm() < 1e-14 * block.norm(), "{j}: {block}");
+        }
+    }
+}

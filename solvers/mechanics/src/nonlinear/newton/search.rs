@@ -107,10 +107,11 @@ impl Newton<'_> {
             {
                 return Ok((balance, length));
             }
-            // Secant between the ends, kept between a tenth and a half of the way.
+            // Secant between the ends, kept between a tenth and a half of the way; a secant to the far side of a touch comes to it
+            // in steps too small.
             *(if short { &mut low } else { &mut high }) = (length, now);
             let part = low.1 / (low.1 - high.1);
-            let part = if part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
+            let part = if part.is_finite() && !short { part.clamp(0.1, 0.5) } else { 0.5 };
             length = low.0 + part * (high.0 - low.0);
         }
         let (farthest, balance, length) =
