@@ -98,13 +98,8 @@ impl Newton<'_> {
                 break;
             }
             let short = self.repeats && high.1 < 0.0 && now > 0.5 * slope && trial < 6;
-            if !short && now.abs() <= (1.0 - 0.2 * length) * slope.abs()
-                || smaller && !short
-                || held_move.is_some()
-                || saddle
-                || approaches
-                || trial >= 6
-            {
+            let less = smaller || now.abs() <= (1.0 - 0.2 * length) * slope.abs();
+            if less && !short || held_move.is_some() || saddle || approaches || trial >= 6 {
                 return Ok((balance, length));
             }
             // Secant between the ends, kept between a tenth and a half of the way; a secant to the far side of a touch comes to it
