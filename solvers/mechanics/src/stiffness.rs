@@ -4,6 +4,8 @@
 //! Each row gathers from the points that see its node, in one fixed order, whichever thread does it: the bits do not
 //! depend on the number of threads.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::grad_table::{GradTable, Pair};
@@ -42,11 +44,6 @@ impl Stiffness {
     pub(crate) fn zeros(pattern: BlockPattern) -> Stiffness {
         let blocks = vec![Matrix3::zeros(); pattern.block_count()];
         Stiffness { pattern, blocks }
-    }
-
-    /// Sets all numbers to zero and keeps the pattern.
-    pub(crate) fn clear(&mut self) {
-        self.blocks.fill(Matrix3::zeros());
     }
 
     /// The symbolic pattern.
@@ -119,10 +116,37 @@ impl Stiffness {
     /// points, so only `G_ij = sum_q w g_i g_j^T` is summed in the inner loop and
     /// `K_ij += lambda G + mu G^T + mu tr(G) I` is formed once per law: a third of the arithmetic.
     pub(crate) fn add_volume(&mut self, table: &GradTable, incidence: &Incidence) {
+        let laws: Vec<Range<usize>> = table.laws().iter().map(|law| law.0.clone()).collect();
+        let gather =
+            |seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]| table.gather(seen, slot, sums);
+        self.by_tiles(
+            incidence,
+            &laws,
+            table.bundles_of(TILE),
+            [[0.0; 8]; 3],
+            gather,
+            |law, _, _, sums, row| {
+                flush(sums, row, table.laws()[law].1);
+            },
+        );
+    }
+
+    /// Sums of all block rows over the entries `incidence` of a table, whose rows are visited in tiles of `tile` by several
+    /// block rows together, so that they stay in the cache. `gather(seen, slot, sums)` adds to sums that start as
+    /// `zero`, `slot[j]` the place of column `j` among them; after each of the `parts` of the table
+    /// `finish(part, node, slot, sums, blocks)` takes them and leaves zeros.
+    pub(crate) fn by_tiles<S: Copy + Send + Sync>(
+        &mut self,
+        incidence: &Incidence,
+        parts: &[Range<usize>],
+        tile: usize,
+        zero: S,
+        gather: impl Fn(&[(u32, u32)], &[u32], &mut [S]) + Sync,
+        finish: impl Fn(usize, usize, &[u32], &mut [S], &mut [Matrix3]) + Sync,
+    ) {
         let nodes = self.pattern.node_count();
         let mut order: Vec<usize> = (0..nodes).collect();
         order.sort_by_key(|&i| incidence.of(i).first());
-        let tile = table.bundles_of(TILE);
         self.tasks(order.into_iter()).into_par_iter().for_each_init(
             || vec![(vec![0; nodes], Vec::new()); ROWS],
             |scratch, mut rows| {
@@ -130,25 +154,25 @@ impl Stiffness {
                 for (row, (slot, sums)) in rows.iter().zip(&mut *scratch) {
                     row.set_slots(slot);
                     // Those of rows before are zero again.
-                    sums.resize(row.columns.len(), [[0.0; 8]; 3]);
+                    sums.resize(row.columns.len(), zero);
                 }
-                for (bundles, moduli) in table.laws() {
+                for (part, range) in parts.iter().enumerate() {
                     let next = |seen: &[&[(u32, u32)]]| {
                         let first =
                             seen.iter().filter_map(|seen| seen.first()).map(|of| of.0 as usize).min()?;
-                        (first < bundles.end).then_some(first)
+                        (first < range.end).then_some(first)
                     };
                     while let Some(first) = next(&seen) {
-                        let end = (first + tile).min(bundles.end);
+                        let end = (first + tile).min(range.end);
                         for (seen, (slot, sums)) in seen.iter_mut().zip(&mut *scratch) {
                             let (here, later) =
-                                seen.split_at(seen.partition_point(|&(b, _)| (b as usize) < end));
-                            table.gather(here, slot, sums);
+                                seen.split_at(seen.partition_point(|&(row, _)| (row as usize) < end));
+                            gather(here, slot, sums);
                             *seen = later;
                         }
                     }
-                    for (row, (_, sums)) in rows.iter_mut().zip(&mut *scratch) {
-                        flush(sums, row.blocks, *moduli);
+                    for (row, (slot, sums)) in rows.iter_mut().zip(&mut *scratch) {
+                        finish(part, row.node, slot, sums, row.blocks);
                     }
                 }
             },

@@ -14,7 +14,7 @@ mod moduli;
 mod neo_lanes;
 mod nodal;
 mod order;
-mod path;
+pub(crate) mod path;
 mod plain;
 mod pressing;
 mod quad;

@@ -86,4 +86,4 @@ macro_rules! on_path {
         }
     };
 }
-pub(super) use on_path;
+pub(crate) use on_path;

@@ -20,7 +20,7 @@ impl<'a> Frames<'a> {
     /// Starts undeformed.
     pub fn new(problem: &'a StaticProblem<'a>, params: &'a StaticParams) -> Result<Frames<'a>, StaticError> {
         Ok(Frames {
-            newton: Newton::new(problem, &params.newton)?,
+            newton: Newton::new(problem, &params.newton)?.repeat(),
             state: State::start(problem),
             before: None,
             augmentations: params.augmentations,
@@ -30,6 +30,11 @@ impl<'a> Frames<'a> {
 
     /// Equilibrium at `time` (part of the load, above 0): in one step, or in halves of it where that fails.
     pub fn to(&mut self, time: f64) -> Result<Step, StaticError> {
+        // On a thread of the pool: from outside each of an iteration's twenty loops would have to wake one.
+        rayon::scope(|_| self.go(time))
+    }
+
+    fn go(&mut self, time: f64) -> Result<Step, StaticError> {
         let mut target = time;
         loop {
             let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
@@ -37,7 +42,11 @@ impl<'a> Frames<'a> {
             match near(!state.pressure.is_empty(), &mut way).or_else(|_| way(Descent::Down)) {
                 Ok((reached, step)) => {
                     self.newton.keep_scale();
-                    self.before = Some(std::mem::replace(&mut self.state, reached));
+                    let last = std::mem::replace(&mut self.state, reached);
+                    // A frame without motion tells nothing of the way.
+                    if last.time != self.state.time {
+                        self.before = Some(last);
+                    }
                     if target == time {
                         return Ok(step);
                     }

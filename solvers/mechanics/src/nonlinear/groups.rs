@@ -2,9 +2,10 @@
 //! Volume changes that points share: which point has which share in which group, and means over groups.
 
 use rayon::prelude::*;
-use shape::DilationGroups;
+use shape::{DilationGroups, Rows};
 
 use super::{Inverted, Solid};
+use crate::pattern::Connectivity;
 
 /// For each point its (group, place in the flat pair list, share): the transpose of the groups.
 pub(crate) struct Pairs {
@@ -14,10 +15,13 @@ pub(crate) struct Pairs {
     /// For each entry of the groups' own list its place in `of_point`.
     place: Vec<usize>,
     group_offsets: Vec<usize>,
+    /// Nodes that the points of each group see, ascending.
+    nodes: Vec<u32>,
+    node_offsets: Vec<usize>,
 }
 
 impl Pairs {
-    pub fn new(groups: &DilationGroups) -> Pairs {
+    pub fn new(groups: &DilationGroups, rows: &Rows) -> Pairs {
         let points = groups.point_count();
         let mut offsets = vec![0usize; points + 1];
         let mut group_offsets = vec![0];
@@ -40,7 +44,21 @@ impl Pairs {
                 *at += 1;
             }
         }
-        Pairs { offsets, of_point, place, group_offsets }
+        let (mut nodes, mut node_offsets) = (Vec::new(), vec![0]);
+        let mut mark = vec![u32::MAX; rows.node_count()];
+        for a in 0..groups.len() {
+            let start = nodes.len();
+            for &q in groups.group(a).0 {
+                for &node in rows.row(q as usize).0 {
+                    if std::mem::replace(&mut mark[node as usize], a as u32) != a as u32 {
+                        nodes.push(node);
+                    }
+                }
+            }
+            nodes[start..].sort_unstable();
+            node_offsets.push(nodes.len());
+        }
+        Pairs { offsets, of_point, place, group_offsets, nodes, node_offsets }
     }
 
     pub fn of(&self, q: usize) -> &[(u32, f64)] {
@@ -50,6 +68,16 @@ impl Pairs {
     /// Places in the pair list of a group's entries.
     pub fn places(&self, group: usize) -> &[usize] {
         &self.place[self.group_offsets[group]..self.group_offsets[group + 1]]
+    }
+
+    /// Nodes that the points of a group see, ascending.
+    pub fn nodes(&self, group: usize) -> &[u32] {
+        &self.nodes[self.node_offsets[group]..self.node_offsets[group + 1]]
+    }
+
+    /// The groups with their nodes as rows.
+    pub fn connectivity(&self) -> Connectivity<'_> {
+        Connectivity { offsets: &self.node_offsets, nodes: &self.nodes, seen_by: &[] }
     }
 }
 

@@ -4,6 +4,7 @@ mod error;
 mod frames;
 mod groups;
 mod in_time;
+mod lanes;
 mod newton;
 mod relaxing;
 mod separated;

@@ -8,20 +8,25 @@ use shape::DilationGroups;
 
 use super::Inverted;
 use super::groups::Pairs;
+use super::lanes::{GroupRow, Lanes, add_row};
 use super::separated::Volumetric;
 use super::solid::{Kinematics, Solid};
 use super::split::{Split, add_dilation_hessian, cofactor};
+use crate::explicit::LanePath;
 use crate::material::Tangent;
 use crate::{Matrix3, Vector3};
 
-/// The share of one dilation group in the second derivatives; rows by ascending node.
+/// Groups per task.
+const GROUPS: usize = 8;
+/// Points that the groups of a task go through together: of a cloud with 35 neighbours each 140 KB of rows.
+const POINTS: usize = 64;
+
+/// The share of one dilation group in the second derivatives: `k b b^T + b m^T + m b^T`, of rank two, is `b n^T + n b^T`
+/// with `n = m + k b / 2`. Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` carried to the nodes (N) and `k` is
+/// `d2 psi / d theta2` over the group (J).
 pub(crate) struct GroupHessian {
-    /// `dJ_a / du`, 1/m.
-    pub b: Vec<Vector3>,
-    /// `d2 psi / dF d theta` carried to the nodes, N.
-    pub m: Vec<Vector3>,
-    /// `d2 psi / d theta2` over the group, J.
-    pub k: f64,
+    /// By the nodes of the group, ascending.
+    pub rows: Vec<GroupRow>,
 }
 
 /// A solid at a displacement, with the dilations its points share.
@@ -145,107 +150,148 @@ impl<'a> Shared<'a> {
     }
 
     fn hessian_by_point(&self, parts: &[Volumetric]) -> (Vec<Tangent>, Vec<GroupHessian>) {
-        let shape: Vec<(f64, Matrix3, Tangent)> = self.points(|q| {
-            let (law, split) = (self.solid.law(q), self.split(q, 0.0));
-            let (first, second) = split.second(law);
-            (split.energy(law), first.by_F, second.by_FF * self.at_point(q, |a| parts[a].A[0]))
-        });
+        let (shape, point): (Vec<(f64, Matrix3)>, Vec<Tangent>) = (0..self.kinematics.H.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|q| {
+                let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+                let (first, second) = split.second(law);
+                let scale = self.at_point(q, |a| parts[a].A[0]);
+                ((split.energy(law), first.by_F), second.by_FF * scale)
+            })
+            .unzip();
         let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
         let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
-        let point = self.point_tangents(&pressure, |q| shape[q].2);
-        // P grad N of every neighbour, the same for all groups of a point.
-        let carried: Vec<Vec<Vector3>> =
-            self.points(|q| self.solid.volume.row(q).1.iter().map(|g| shape[q].1 * g).collect());
+        let point = self.point_tangents(&pressure, point);
+        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        let rows = self.solid.volume.rows();
+        let mixed: Vec<Vec<Lanes>> = (0..shape.len().div_ceil(POINTS))
+            .into_par_iter()
+            .map(|tile| {
+                let points = tile * POINTS..((tile + 1) * POINTS).min(shape.len());
+                points.flat_map(|q| self.mixed_rows(q, shape[q].1)).collect()
+            })
+            .collect();
+        let of_point = |q: usize| {
+            let (tile, range) = (q / POINTS, rows.range(q));
+            let first = rows.offsets()[tile * POINTS];
+            &mixed[tile][range.start - first..range.end - first]
+        };
+        let path = LanePath::best();
         let groups = self.group_hessians(
-            |a| self.solid.group_volume(self.groups, a) * (parts[a].A[2] * energy[a] + parts[a].U[2]),
-            |a, q, _, k, _| carried[q][k] * parts[a].A[1],
+            |a| {
+                let volume = self.solid.group_volume(self.groups, a);
+                (volume * (parts[a].A[2] * energy[a] + parts[a].U[2]), parts[a].A[1])
+            },
+            |q, _, share, slot, sums| add_row(path, rows.row(q).0, of_point(q), share, slot, sums),
         );
         (point, groups)
     }
 
     fn hessian_by_pair(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
         let weights = self.solid.volume.weights();
-        let each: Vec<(Tangent, Vec<PairSecond>)> = self.points(|q| {
-            let law = self.solid.law(q);
-            let mut D = Tangent::zeros();
-            let mut of_pair = Vec::with_capacity(self.pairs.of(q).len());
-            for &(a, share) in self.pairs.of(q) {
-                let (first, second) = self.split(q, self.theta[a as usize]).second(law);
-                D += second.by_FF * share;
-                let by_theta = first.by_theta;
-                let (by_theta_theta, by_F_theta) = (second.by_theta_theta, second.by_F_theta);
-                of_pair.push(PairSecond { by_theta, by_theta_theta, by_F_theta });
-            }
-            (D, of_pair)
-        });
-        let of_pair: Vec<&PairSecond> = each.iter().flat_map(|e| &e.1).collect();
+        let (point, each): (Vec<Tangent>, Vec<Vec<PairSecond>>) = self
+            .points(|q| {
+                let law = self.solid.law(q);
+                let mut D = Tangent::zeros();
+                let mut of_pair = Vec::with_capacity(self.pairs.of(q).len());
+                for &(a, share) in self.pairs.of(q) {
+                    let (first, second) = self.split(q, self.theta[a as usize]).second(law);
+                    D += second.by_FF * share;
+                    let by_theta = first.by_theta;
+                    let (by_theta_theta, by_F_theta) = (second.by_theta_theta, second.by_F_theta);
+                    of_pair.push(PairSecond { by_theta, by_theta_theta, by_F_theta });
+                }
+                (D, of_pair)
+            })
+            .into_iter()
+            .unzip();
+        let of_pair: Vec<&PairSecond> = each.iter().flatten().collect();
         let pressure = self.solid.group_mean(self.groups, self.pairs, |_, at| of_pair[at].by_theta);
-        let point = self.point_tangents(&pressure, |q| each[q].0);
+        let point = self.point_tangents(&pressure, point);
         let stiffness = |a: usize| {
             let (points, shares) = self.groups.group(a);
-            (points.iter().zip(shares).zip(self.pairs.places(a)))
+            let k = (points.iter().zip(shares).zip(self.pairs.places(a)))
                 .map(|((&q, s), &at)| s * weights[q as usize] * of_pair[at].by_theta_theta)
-                .sum()
+                .sum();
+            (k, 1.0)
         };
-        (point, self.group_hessians(stiffness, |_, _, at, _, g| of_pair[at].by_F_theta * g))
+        let (rows, path) = (self.solid.volume.rows(), LanePath::best());
+        let groups = self.group_hessians(stiffness, |q, at, share, slot, sums| {
+            let mixed: Vec<Lanes> = self.mixed_rows(q, of_pair[at].by_F_theta).collect();
+            add_row(path, rows.row(q).0, &mixed, share, slot, sums);
+        });
+        (point, groups)
     }
 
     /// `w D` with what the change of J itself adds.
-    fn point_tangents(
-        &self,
-        pressure: &[f64],
-        by_FF: impl Fn(usize) -> Tangent + Sync + Send,
-    ) -> Vec<Tangent> {
-        self.points(|q| {
-            let (p, mut D) = (self.at_point(q, |a| pressure[a]), by_FF(q));
-            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, &mut D);
-            D * self.solid.volume.weights()[q]
-        })
+    fn point_tangents(&self, pressure: &[f64], mut point: Vec<Tangent>) -> Vec<Tangent> {
+        point.par_iter_mut().with_min_len(64).enumerate().for_each(|(q, D)| {
+            let p = self.at_point(q, |a| pressure[a]);
+            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, D);
+            *D *= self.solid.volume.weights()[q];
+        });
+        point
     }
 
-    /// By the stiffness of a group, and `d2 psi / dF d theta` times the gradient of a neighbour: by group, point, place
-    /// in the pair list, place in the point's row and gradient.
+    /// What the neighbours of a point have of `b` and, with `by_F_theta`, of `m`.
+    fn mixed_rows(&self, q: usize, by_F_theta: Matrix3) -> impl Iterator<Item = Lanes> + '_ {
+        let (cofactor, weight) = (self.cofactor(q), self.solid.volume.weights()[q]);
+        let of_node = move |g: &Vector3| Lanes::pair(&(cofactor * g * weight), &(by_F_theta * g * weight));
+        self.solid.volume.row(q).1.iter().map(of_node)
+    }
+
+    /// `stiffness` tells k of a group and a factor of its m; `add` adds what a point has of b and m to the sums of the group,
+    /// at the slot of each node: by point, place in the pair list and share.
     fn group_hessians(
         &self,
-        stiffness: impl Fn(usize) -> f64 + Sync + Send,
-        mixed: impl Fn(usize, usize, usize, usize, &Vector3) -> Vector3 + Sync + Send,
+        stiffness: impl Fn(usize) -> (f64, f64) + Sync + Send,
+        add: impl Fn(usize, usize, f64, &[u32], &mut [Lanes]) + Sync + Send,
     ) -> Vec<GroupHessian> {
-        let (volume, nodes) = (self.solid.volume, self.solid.node_count());
-        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
-        let cof: Vec<Vec<Vector3>> = self.points(|q| {
-            let cof = self.cofactor(q);
-            volume.row(q).1.iter().map(|g| cof * g).collect()
-        });
-        (0..self.groups.len())
+        let scratch = || vec![(vec![0; self.solid.node_count()], Vec::new()); GROUPS];
+        let count = self.groups.len();
+        let tasks: Vec<Vec<GroupHessian>> = (0..count.div_ceil(GROUPS))
             .into_par_iter()
-            .map_init(
-                || (vec![[Vector3::zeros(); 2]; nodes], vec![false; nodes]),
-                |(scratch, seen), a| {
-                    let (points, shares) = self.groups.group(a);
-                    let whole = self.solid.group_volume(self.groups, a);
-                    let mut touched = Vec::new();
-                    for ((&q, share), &at) in points.iter().zip(shares).zip(self.pairs.places(a)) {
-                        let q = q as usize;
-                        let dv = share * volume.weights()[q];
-                        let (row, grads) = volume.row(q);
-                        for (k, (&node, g)) in row.iter().zip(grads).enumerate() {
-                            if !std::mem::replace(&mut seen[node as usize], true) {
-                                touched.push(node);
-                            }
-                            let [b, m] = &mut scratch[node as usize];
-                            *b += cof[q][k] * (dv / whole);
-                            *m += mixed(a, q, at, k, g) * dv;
+            .map_init(scratch, |scratch, task| {
+                let groups = task * GROUPS..((task + 1) * GROUPS).min(count);
+                for (a, (slot, sums)) in groups.clone().zip(&mut *scratch) {
+                    let nodes = self.pairs.nodes(a);
+                    nodes.iter().enumerate().for_each(|(at, &node)| slot[node as usize] = at as u32);
+                    sums.clear();
+                    sums.resize(nodes.len(), Lanes::ZERO);
+                }
+                // All groups go through a tile of points before the next one, so that its rows stay in the cache.
+                let mut done = [0; GROUPS];
+                let next = |done: &[usize]| {
+                    groups
+                        .clone()
+                        .zip(done)
+                        .filter_map(|(a, &k)| self.groups.group(a).0.get(k))
+                        .min()
+                        .copied()
+                };
+                while let Some(first) = next(&done) {
+                    let end = first + POINTS as u32;
+                    for ((a, k), (slot, sums)) in groups.clone().zip(&mut done).zip(&mut *scratch) {
+                        let ((points, shares), places) = (self.groups.group(a), self.pairs.places(a));
+                        while *k < points.len() && points[*k] < end {
+                            add(points[*k] as usize, places[*k], shares[*k], slot, sums);
+                            *k += 1;
                         }
                     }
-                    touched.sort_unstable();
-                    touched.iter().for_each(|&n| seen[n as usize] = false);
-                    let (b, m) = touched
-                        .iter()
-                        .map(|&n| std::mem::replace(&mut scratch[n as usize], [Vector3::zeros(); 2]).into())
-                        .unzip();
-                    GroupHessian { b, m, k: stiffness(a) }
-                },
-            )
-            .collect()
+                }
+                let row = |a: usize, sums: &[Lanes]| {
+                    let (volume, (k, factor)) = (self.solid.group_volume(self.groups, a), stiffness(a));
+                    let of_node = |sum: &Lanes| {
+                        let (b, m) = sum.of_pair();
+                        let b = b / volume;
+                        GroupRow::new(&b, &(m * factor + b * (0.5 * k)))
+                    };
+                    GroupHessian { rows: sums.iter().map(of_node).collect() }
+                };
+                groups.zip(&*scratch).map(|(a, (_, sums))| row(a, sums)).collect()
+            })
+            .collect();
+        tasks.into_iter().flatten().collect()
     }
 }

@@ -54,7 +54,7 @@ pub(crate) struct Internal {
 pub(crate) struct Hessian {
     /// Per point (9, 9), J: `w d2/dF2` with everything local to the point.
     pub point: Vec<Tangent>,
-    /// Per group: rows `b` and `m` and the scalar `k` of `k b b^T + b m^T + m b^T`.
+    /// Per group: the rows of `b n^T + n b^T`.
     pub groups: Vec<GroupHessian>,
     /// Per point with a pressure field: `w d2/(dF dp)` (3, 3), m^3, and `-w d2/dp2`, m^3/Pa.
     pub pressure: Vec<(Matrix3, f64)>,
@@ -88,7 +88,7 @@ impl Solid<'_> {
 
     pub(crate) fn pairs(&self) -> Option<Pairs> {
         match self.dilation {
-            Dilation::Groups(groups) => Some(Pairs::new(groups)),
+            Dilation::Groups(groups) => Some(Pairs::new(groups, self.volume.rows())),
             _ => None,
         }
     }

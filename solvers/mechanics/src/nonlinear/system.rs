@@ -4,16 +4,22 @@
 use rayon::prelude::*;
 
 use super::groups::Pairs;
+use super::lanes::{BlockSum, PointTangent, Vector4, group_products, point_products};
 use super::solid::{Hessian, Internal};
 use super::sorted::Sorted;
 use super::{Dilation, Solid};
+use crate::explicit::LanePath;
 use crate::linear_solver::Symmetric;
-use crate::pattern::{BlockPattern, Connectivity, Incidence};
+use crate::pattern::{BlockPattern, Incidence};
 use crate::stiffness::Stiffness;
 use crate::{Matrix3, Vector3};
 
 /// Place of a held degree of freedom among the unknowns.
 pub(crate) const HELD: usize = usize::MAX;
+
+/// Gradients of points that the rows of a task go through together: with the tangents of their points 500 KB at most, which
+/// stay in the second-level cache.
+const TILE: usize = 4096;
 
 /// Values on a surface (or of any quadrature whose values alone count) with its weights, ready for assembly.
 #[derive(Clone, Debug)]
@@ -78,9 +84,10 @@ impl SurfaceTable {
 pub(crate) struct System<'a> {
     solid: Solid<'a>,
     pub pairs: Option<Pairs>,
-    points: Sorted<Vector3>,
+    /// Gradients, 1/m, and a zero each.
+    points: Sorted<Vector4>,
     points_of: Incidence,
-    groups: Option<(Vec<usize>, Vec<u32>, Incidence)>,
+    groups_of: Option<Incidence>,
     /// Pressure nodes: the (point, value) pairs that each sees.
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
@@ -100,31 +107,12 @@ impl<'a> System<'a> {
         let rows = solid.volume.rows();
         let points = Sorted::new((0..rows.len()).map(|q| {
             let (nodes, grads) = solid.volume.row(q);
-            nodes.iter().copied().zip(grads.iter().copied())
+            nodes.iter().copied().zip(grads.iter().map(|g| g.push(0.0)))
         }));
         let points_of = points.incidence(nodes);
-        let groups = match solid.dilation {
-            Dilation::Groups(groups) => {
-                let (mut offsets, mut of_groups) = (vec![0], Vec::new());
-                let mut mark = vec![u32::MAX; nodes];
-                for a in 0..groups.len() {
-                    let start = of_groups.len();
-                    for &q in groups.group(a).0 {
-                        for &node in points.row(q as usize).0 {
-                            if std::mem::replace(&mut mark[node as usize], a as u32) != a as u32 {
-                                of_groups.push(node);
-                            }
-                        }
-                    }
-                    of_groups[start..].sort_unstable();
-                    offsets.push(of_groups.len());
-                }
-                let connectivity = Connectivity { offsets: &offsets, nodes: &of_groups, seen_by: &[] };
-                let incidence = Incidence::new(nodes, connectivity, 0..groups.len());
-                Some((offsets, of_groups, incidence))
-            }
-            _ => None,
-        };
+        let pairs = solid.pairs();
+        let groups = pairs.as_ref().map(Pairs::connectivity);
+        let groups_of = groups.map(|groups| Incidence::new(nodes, groups, 0..groups.offsets.len() - 1));
         let mut pressure_of = vec![Vec::new(); solid.pressure_count()];
         if let Dilation::Mixed(pressure) = solid.dilation {
             for q in 0..pressure.len() {
@@ -137,9 +125,7 @@ impl<'a> System<'a> {
             }
         }
         let mut tables = vec![(points.connectivity(), &points_of)];
-        if let Some((offsets, nodes, of)) = &groups {
-            tables.push((Connectivity { offsets, nodes, seen_by: &[] }, of));
-        }
+        tables.extend(groups.zip(groups_of.as_ref()));
         tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
         let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
         let mut free = 0;
@@ -153,13 +139,12 @@ impl<'a> System<'a> {
                 free - 1
             })
             .collect();
-        let pairs = solid.pairs();
         System {
             solid,
             pairs,
             points,
             points_of,
-            groups,
+            groups_of,
             pressure_of,
             surfaces,
             stiffness,
@@ -178,10 +163,10 @@ impl<'a> System<'a> {
     pub fn internal_force(&self, internal: &Internal) -> Vec<Vector3> {
         (0..self.solid.node_count())
             .into_par_iter()
-            .with_min_len(64)
+            .with_min_len(8)
             .map(|i| {
                 (self.points_of.of(i).iter())
-                    .map(|&(q, k)| internal.stress[q as usize] * self.points.data[k as usize])
+                    .map(|&(q, k)| internal.stress[q as usize] * self.points.data[k as usize].xyz())
                     .sum()
             })
             .collect()
@@ -196,37 +181,21 @@ impl<'a> System<'a> {
 
     /// The matrix at `hessian` with `surface[s][q] = -w dt/dx` (symmetric part taken) on each surface.
     pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) -> Symmetric {
-        let System { points, points_of, groups, surfaces, stiffness, .. } = self;
-        let groups = groups.as_ref();
-        stiffness.clear();
-        stiffness.for_each_row(|i, slot, row| {
-            for &(q, k) in points_of.of(i) {
-                let (q, k) = (q as usize, k as usize);
-                let D = &hessian.point[q];
-                let g = &points.data[k];
-                // M_l = sum_k g_k D_kl: three 3x3 blocks, then K_ij = sum_l M_l g_jl.
-                let M: [Matrix3; 3] = std::array::from_fn(|l| {
-                    D.fixed_view::<3, 3>(0, 3 * l) * g.x
-                        + D.fixed_view::<3, 3>(3, 3 * l) * g.y
-                        + D.fixed_view::<3, 3>(6, 3 * l) * g.z
-                });
-                for j in points.offsets[q]..=k {
-                    let gj = &points.data[j];
-                    row[slot[points.nodes[j] as usize] as usize] += M[0] * gj.x + M[1] * gj.y + M[2] * gj.z;
-                }
+        let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
+        let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
+        let path = LanePath::best();
+        let tangents: Vec<PointTangent> =
+            hessian.point.par_iter().with_min_len(64).map(PointTangent::new).collect();
+        let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
+            point_products(path, points, &tangents, seen, slot, sums);
+        };
+        let (all, per_tile) = (0..points.len(), TILE * points.len() / points.nodes.len().max(1) + 1);
+        stiffness.by_tiles(points_of, &[all], per_tile, BlockSum::ZERO, gather, |_, i, slot, sums, row| {
+            if let Some((nodes, of)) = groups {
+                group_products(path, nodes, &hessian.groups, of.of(i), slot, sums);
             }
-            if let Some((offsets, nodes, of)) = groups {
-                for &(a, at) in of.of(i) {
-                    let group = &hessian.groups[a as usize];
-                    let start = offsets[a as usize];
-                    let here = at as usize - start;
-                    let (b, m) = (group.b[here], group.m[here]);
-                    for j in 0..=here {
-                        let (bj, mj) = (&group.b[j], &group.m[j]);
-                        row[slot[nodes[start + j] as usize] as usize] +=
-                            b * (bj * group.k + mj).transpose() + m * bj.transpose();
-                    }
-                }
+            for (block, sum) in row.iter_mut().zip(sums) {
+                *block = std::mem::replace(sum, BlockSum::ZERO).block();
             }
             for (table, blocks) in surfaces.iter().zip(surface) {
                 for &(q, k) in table.of_node.of(i) {
@@ -259,7 +228,7 @@ impl<'a> System<'a> {
                 let (row, grads) = self.points.row(q);
                 for (&node, g) in row.iter().zip(grads) {
                     touched.push(node);
-                    sum[node as usize] += B * g * v;
+                    sum[node as usize] += B * g.xyz() * v;
                 }
                 let (row, values) = pressure.row(q);
                 for (&other, w) in row.iter().zip(values).filter(|(o, w)| **o as usize <= m && **w != 0.0) {
@@ -360,7 +329,7 @@ impl<'a> System<'a> {
         let of_point: Vec<f64> = (hessian.pressure.iter().enumerate())
             .map(|(q, (B, _))| {
                 let (nodes, grads) = self.points.row(q);
-                nodes.iter().zip(grads).map(|(&n, g)| (B * g).dot(&step[n as usize])).sum()
+                nodes.iter().zip(grads).map(|(&n, g)| (B * g.xyz()).dot(&step[n as usize])).sum()
             })
             .collect();
         for (right, seen) in right.iter_mut().zip(&self.pressure_of) {

@@ -14,6 +14,9 @@ impl Newton<'_> {
     /// that work grows on the way, is doubled as long as more than half of it is left. With a pressure field
     /// [`Descent::Guarded`] cuts the step where the factor it came from makes a step of the new residual that is no
     /// shorter; else full steps go.
+    ///
+    /// In a simulator's loop a step that was cut ends where less than half of the work is left (Matthies & Strang 1979): with
+    /// more no point touches that the full step met, its stiffness is not in the next tangent, and that step is cut again.
     pub(super) fn search(
         &mut self,
         state: &mut State,
@@ -45,6 +48,8 @@ impl Newton<'_> {
             self.descent == Descent::Down && self.indefinite && slope > 0.0 && !saddle && !approaches;
         let mut reached: Option<(State, Balance, f64)> = None;
         let mut length = 1.0;
+        // Work left at the farthest step that is too short, and at the nearest that is too long.
+        let (mut low, mut high) = ((0.0, slope), (1.0, slope));
         for trial in 0.. {
             state.u.clone_from(&start.0);
             state.pressure.clone_from(&start.1);
@@ -92,18 +97,17 @@ impl Newton<'_> {
             if reached.is_some() {
                 break;
             }
-            if now.abs() <= (1.0 - 0.2 * length) * slope.abs()
-                || smaller
-                || held_move.is_some()
-                || saddle
-                || approaches
-                || trial >= 6
-            {
+            let short = self.repeats && high.1 < 0.0 && now > 0.5 * slope && trial < 6;
+            let less = smaller || now.abs() <= (1.0 - 0.2 * length) * slope.abs();
+            if less && !short || held_move.is_some() || saddle || approaches || trial >= 6 {
                 return Ok((balance, length));
             }
-            // Secant between slope at 0 and now at `length`, kept between a tenth and a half of it.
-            let secant = length * slope / (slope - now);
-            length = if secant.is_finite() { secant.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
+            // Secant between the ends, kept between a tenth and a half of the way; a secant to the far side of a touch comes to it
+            // in steps too small.
+            *(if short { &mut low } else { &mut high }) = (length, now);
+            let part = low.1 / (low.1 - high.1);
+            let part = if part.is_finite() && !short { part.clamp(0.1, 0.5) } else { 0.5 };
+            length = low.0 + part * (high.0 - low.0);
         }
         let (farthest, balance, length) =
             reached.expect("the loop ends early only with a step that goes down");
