@@ -7,7 +7,7 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, Par};
 
-use super::{FactorError, Symmetric, check_pivots};
+use super::{FactorError, Symmetric, check_pivots, zeroed};
 use crate::SolveError;
 
 /// Eigenvalues, the largest first, and their vectors with `x^T A x = 1`.
@@ -26,8 +26,8 @@ pub(crate) fn shifted(stiffness: &Symmetric, mass: &Symmetric, shift: f64) -> Re
     add(stiffness, 1.0, &mut lower);
     add(mass, shift, &mut lower);
     let diagonal: Vec<f64> = (0..n).map(|j| lower[(j, j)]).collect();
-    let mut memory =
-        MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(n, par, Default::default()));
+    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, par, Default::default());
+    let mut memory = zeroed(MemBuffer::new(scratch));
     let stack = MemStack::new(&mut memory);
     llt::factor::cholesky_in_place(lower.as_mut(), Default::default(), par, stack, Default::default())
         .map_err(|_| FactorError::NotDefinite)?;
@@ -44,7 +44,7 @@ pub(crate) fn shifted(stiffness: &Symmetric, mass: &Symmetric, shift: f64) -> Re
     let mut values = Diag::<f64>::zeros(n);
     let mut vectors = Mat::zeros(n, n);
     let scratch = self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, par, Default::default());
-    let mut memory = MemBuffer::new(scratch);
+    let mut memory = zeroed(MemBuffer::new(scratch));
     let stack = MemStack::new(&mut memory);
     self_adjoint_evd(inner.as_ref(), values.as_mut(), Some(vectors.as_mut()), par, stack, Default::default())
         .map_err(|_| SolveError::NoEigenvalues { dofs: n })?;

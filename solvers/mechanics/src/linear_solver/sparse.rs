@@ -11,7 +11,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{FactorError, Kind, Symmetric, check_pivots, ordering};
+use super::{FactorError, Kind, Symmetric, check_pivots, ordering, zeroed};
 use crate::SolveError;
 
 /// Multiplications of a factorisation from which it takes all threads: below, they cost more than they save. Threads share
@@ -94,7 +94,7 @@ impl Sparse {
             let a = SparseColMatRef::new(pattern(matrix), &matrix.values);
             let params = Default::default();
             let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, params);
-            let mut memory = MemBuffer::try_new(scratch).map_err(no_memory)?;
+            let mut memory = zeroed(MemBuffer::try_new(scratch).map_err(no_memory)?);
             let stack = MemStack::new(&mut memory);
             cholesky
                 .factorize_numeric_llt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
@@ -106,7 +106,7 @@ impl Sparse {
             let a = SparseColMatRef::new(pattern(matrix), regularised.as_ref().unwrap_or(&matrix.values));
             let params = Default::default();
             let scratch = cholesky.factorize_numeric_ldlt_scratch::<f64>(par, params);
-            let mut memory = MemBuffer::try_new(scratch).map_err(no_memory)?;
+            let mut memory = zeroed(MemBuffer::try_new(scratch).map_err(no_memory)?);
             let stack = MemStack::new(&mut memory);
             cholesky
                 .factorize_numeric_ldlt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
