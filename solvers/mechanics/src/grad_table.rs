@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use crate::body::region_of;
 use crate::dilation::group_bulk;
-use crate::explicit::locality_order;
+use crate::explicit::path::on_path;
+use crate::explicit::{LanePath, locality_order};
 use crate::pattern::{Connectivity, Incidence};
 use crate::{Body, Matrix3, SolveError, Vector3};
 
@@ -216,130 +217,23 @@ impl GradTable {
         &self.laws
     }
 
-    /// `G_ij += w g_i g_j^T` over the bundles `seen` by node i and their nodes j <= i, the inner loop of assembly; `G` is the sum
-    /// of two halves. Blocks of nodes that only other points of a bundle see have no `slot`, and get zeros wherever that leads.
-    ///
-    /// For two points three stores and three products and sums of eight lanes: 3 cycles per pair of nodes with AVX-512, what one
-    /// point takes alone.
-    pub fn gather(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") {
-                // SAFETY: the processor has the feature that the function requires, just checked; so below.
-                return unsafe { self.gather_avx512(seen, slot, sums) };
-            }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.gather_avx2(seen, slot, sums) };
-            }
-        }
-        self.gather_plain(seen, slot, sums)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f")]
-    fn gather_avx512(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
-        self.gather_plain(seen, slot, sums)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn gather_avx2(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
-        self.gather_plain(seen, slot, sums)
-    }
-
-    /// The same arithmetic in the same order on every path, so the same bits: multiply and add stay apart.
-    #[inline(always)]
-    fn gather_plain(&self, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
-        let last = sums.len() - 1;
-        for &(b, k) in seen {
-            let (b, k) = (b as usize, k as usize);
-            let start = self.offsets[b];
-            let (own, weight) = (&self.grads[k], &self.weights[b]);
-            let mut x = [[0.0; 8]; 3];
-            for axis in 0..3 {
-                for l in 0..8 {
-                    x[axis][l] = weight[l] * own[l / 4 * 4 + axis];
-                }
-            }
-            for (&j, gj) in self.nodes[start..=k].iter().zip(&self.grads[start..=k]) {
-                let G = &mut sums[(slot[j as usize] as usize).min(last)];
-                for axis in 0..3 {
-                    for l in 0..8 {
-                        G[axis][l] += x[axis][l] * gj[l];
-                    }
-                }
-            }
-        }
-    }
-
     /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
     ///
     /// Gradients come from the outermost cache, so they are read once: a bundle's forces are summed while its gradients are near.
     /// Tasks are the same at any number of threads.
     pub fn subtract_force(&self, u: &[Vector3], force: &mut [Vector3]) {
+        let path = LanePath::best();
         let tasks: Vec<usize> = (0..self.weights.len()).step_by(self.bundles_of(TASK)).collect();
         let of_task = |scratch: &mut Forces, &first: &usize| {
             let end = (first + self.bundles_of(TASK)).min(self.weights.len());
             scratch.start(&self.nodes[self.offsets[first]..self.offsets[end]]);
-            self.add_force(first..end, u, scratch);
+            add_force(path, self, first..end, u, scratch);
             scratch.finish()
         };
         let start = || Forces { slot: vec![u32::MAX; force.len()], nodes: Vec::new(), sums: Vec::new() };
         let parts: Vec<Vec<(u32, Vector3)>> = tasks.par_iter().map_init(start, of_task).collect();
         for (node, part) in parts.into_iter().flatten() {
             force[node as usize] -= part;
-        }
-    }
-
-    /// Adds the forces of some bundles.
-    fn add_force(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") {
-                // SAFETY: the processor has the feature that the function requires, just checked; so below.
-                return unsafe { self.add_force_avx512(bundles, u, forces) };
-            }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.add_force_avx2(bundles, u, forces) };
-            }
-        }
-        self.add_force_plain(bundles, u, forces)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f")]
-    fn add_force_avx512(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
-        self.add_force_plain(bundles, u, forces)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn add_force_avx2(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
-        self.add_force_plain(bundles, u, forces)
-    }
-
-    #[inline(always)]
-    fn add_force_plain(&self, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) {
-        for bundle in bundles {
-            let range = self.offsets[bundle]..self.offsets[bundle + 1];
-            let (nodes, grads) = (&self.nodes[range.clone()], &self.grads[range]);
-            let base = u[nodes[0] as usize];
-            let mut H = [[0.0; 8]; 3];
-            for (&node, g) in nodes.iter().zip(grads) {
-                // Gradients of a partition of unity sum to zero: only differences of displacements count.
-                let difference = u[node as usize] - base;
-                for (row, d) in H.iter_mut().zip(&difference) {
-                    *row = add_product(*row, &[*d; 8], g);
-                }
-            }
-            // Row a of w sigma at the points of the bundle, zero beyond them.
-            let stress = self.stress(bundle, &H);
-            for (&node, g) in nodes.iter().zip(grads) {
-                let sum = &mut forces.sums[forces.slot[node as usize] as usize];
-                for (sum, row) in sum.iter_mut().zip(&stress) {
-                    *sum = add_product(*sum, row, g);
-                }
-            }
         }
     }
 
@@ -358,6 +252,79 @@ impl GradTable {
             }
         }
         stress
+    }
+}
+
+on_path! {
+    /// `G_ij += w g_i g_j^T` over the bundles `seen` by node i and their nodes j <= i, the inner loop of assembly; `G` is the sum
+    /// of two halves. Blocks of nodes that only other points of a bundle see have no `slot`, and get zeros wherever that leads.
+    ///
+    /// For two points three stores and three products and sums of eight lanes: 3 cycles per pair of nodes with AVX-512, what one
+    /// point takes alone. The same arithmetic in the same order on every path, so the same bits: multiply and add stay apart.
+    pub(crate) fn gather(
+        table: &GradTable,
+        seen: &[(u32, u32)],
+        slot: &[u32],
+        sums: &mut [[Pair; 3]],
+    ) = gather_in
+}
+
+#[inline(always)]
+fn gather_in<const FMA: bool>(table: &GradTable, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+    let last = sums.len() - 1;
+    for &(b, k) in seen {
+        let (b, k) = (b as usize, k as usize);
+        let start = table.offsets[b];
+        let (own, weight) = (&table.grads[k], &table.weights[b]);
+        let mut x = [[0.0; 8]; 3];
+        for axis in 0..3 {
+            for l in 0..8 {
+                x[axis][l] = weight[l] * own[l / 4 * 4 + axis];
+            }
+        }
+        for (&j, gj) in table.nodes[start..=k].iter().zip(&table.grads[start..=k]) {
+            let G = &mut sums[(slot[j as usize] as usize).min(last)];
+            for axis in 0..3 {
+                for l in 0..8 {
+                    G[axis][l] += x[axis][l] * gj[l];
+                }
+            }
+        }
+    }
+}
+
+on_path! {
+    /// Adds the forces of some bundles; the same bits on every path.
+    fn add_force(table: &GradTable, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) = add_force_in
+}
+
+#[inline(always)]
+fn add_force_in<const FMA: bool>(
+    table: &GradTable,
+    bundles: Range<usize>,
+    u: &[Vector3],
+    forces: &mut Forces,
+) {
+    for bundle in bundles {
+        let range = table.offsets[bundle]..table.offsets[bundle + 1];
+        let (nodes, grads) = (&table.nodes[range.clone()], &table.grads[range]);
+        let base = u[nodes[0] as usize];
+        let mut H = [[0.0; 8]; 3];
+        for (&node, g) in nodes.iter().zip(grads) {
+            // Gradients of a partition of unity sum to zero: only differences of displacements count.
+            let difference = u[node as usize] - base;
+            for (row, d) in H.iter_mut().zip(&difference) {
+                *row = add_product(*row, &[*d; 8], g);
+            }
+        }
+        // Row a of w sigma at the points of the bundle, zero beyond them.
+        let stress = table.stress(bundle, &H);
+        for (&node, g) in nodes.iter().zip(grads) {
+            let sum = &mut forces.sums[forces.slot[node as usize] as usize];
+            for (sum, row) in sum.iter_mut().zip(&stress) {
+                *sum = add_product(*sum, row, g);
+            }
+        }
     }
 }
 
@@ -434,18 +401,6 @@ mod tests {
         vec![of(&[3, 0, 2]), of(&[0, 2, 3]), of(&[2, 4, 2, 0]), of(&[5, 1]), of(&[4, 3, 0]), of(&[0, 3, 4])]
     }
 
-    type Gather = fn(&GradTable, &[(u32, u32)], &[u32], &mut [[Pair; 3]]);
-
-    fn paths() -> Vec<Gather> {
-        let mut paths: Vec<Gather> = vec![GradTable::gather, GradTable::gather_plain];
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked.
-            paths.push(|table, seen, slot, sums| unsafe { table.gather_avx2(seen, slot, sums) });
-        }
-        paths
-    }
-
     #[test]
     fn bundles_sum_what_their_points_do_by_law_on_every_path() {
         let (rows, node_count) = (rows(), 6);
@@ -463,11 +418,11 @@ mod tests {
             for i in 0..node_count {
                 let seen: Vec<(u32, u32)> =
                     incidence.of(i).iter().copied().filter(|of| bundles.contains(&(of.0 as usize))).collect();
-                let sums: Vec<Vec<[Pair; 3]>> = paths()
-                    .iter()
-                    .map(|gather| {
+                let sums: Vec<Vec<[Pair; 3]>> = LanePath::available()
+                    .into_iter()
+                    .map(|path| {
                         let mut sums = vec![[[0.0; 8]; 3]; node_count];
-                        gather(&table, &seen, &slot, &mut sums);
+                        gather(path, &table, &seen, &slot, &mut sums);
                         sums
                     })
                     .collect();

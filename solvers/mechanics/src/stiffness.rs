@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::grad_table::{GradTable, Pair};
+use crate::explicit::LanePath;
+use crate::grad_table::{GradTable, Pair, gather};
 use crate::pattern::{BlockPattern, Incidence};
 use crate::{Matrix3, Vector3};
 
@@ -117,8 +118,9 @@ impl Stiffness {
     /// `K_ij += lambda G + mu G^T + mu tr(G) I` is formed once per law: a third of the arithmetic.
     pub(crate) fn add_volume(&mut self, table: &GradTable, incidence: &Incidence) {
         let laws: Vec<Range<usize>> = table.laws().iter().map(|law| law.0.clone()).collect();
+        let path = LanePath::best();
         let gather =
-            |seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]| table.gather(seen, slot, sums);
+            |seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]| gather(path, table, seen, slot, sums);
         self.by_tiles(
             incidence,
             &laws,

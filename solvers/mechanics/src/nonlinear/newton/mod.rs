@@ -436,6 +436,7 @@ impl<'a> Newton<'a> {
             // Eisenstat & Steihaug 1982), and far from equilibrium more digits are thrown away.
             self.forcing = (0.1 * residual).clamp(1e-7, 1e-2);
             let chord = self.params.chords
+                && last.is_some()
                 && held_move.is_none()
                 && chord_suffices(&log[first..], residual, self.params.tolerance);
             let direction = match last.take().filter(|_| chord) {
