@@ -1,6 +1,6 @@
 //! Axes: where a value goes on paper, its ticks and its frame.
 
-use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE};
+use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
 use crate::text::tick;
 
 /// Size of every ordinary text, points.
@@ -109,6 +109,19 @@ fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
     ticks.into_iter().map(|v| (v, tick(v))).collect()
 }
 
+/// Which of some texts on a line, by middle and width, are written: where two would touch, the longer gives way.
+fn apart(texts: &[(f64, f64)]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..texts.len()).collect();
+    order.sort_by(|&a, &b| texts[a].1.total_cmp(&texts[b].1));
+    let mut written = vec![false; texts.len()];
+    for a in order {
+        let (at, width) = texts[a];
+        let touches = |b: usize| (at - texts[b].0).abs() < (width + texts[b].1) / 2.0 + 2.0;
+        written[a] = !(0..texts.len()).any(|b| written[b] && touches(b));
+    }
+    written
+}
+
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |range, v| match range {
         None => Some((v, v)),
@@ -136,11 +149,14 @@ impl Panel {
     /// Grid, frame, ticks, axis labels and title.
     pub(crate) fn draw(&self, canvas: &mut Canvas, title: &str) {
         let (left, top, right, bottom) = self.frame;
-        for (value, text) in &self.x.ticks {
-            let (at, _) = self.at(*value, self.y.low);
-            canvas.line(&[(at, top), (at, bottom)], PALE, 0.5);
-            canvas.line(&[(at, bottom), (at, bottom + 3.0)], BLACK_INK, 0.6);
-            canvas.text((at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
+        let across = |(value, text): &(f64, String)| (self.at(*value, self.y.low).0, text_width(text, TEXT));
+        let places: Vec<(f64, f64)> = self.x.ticks.iter().map(across).collect();
+        for (((at, _), written), (_, text)) in places.iter().zip(apart(&places)).zip(&self.x.ticks) {
+            canvas.line(&[(*at, top), (*at, bottom)], PALE, 0.5);
+            canvas.line(&[(*at, bottom), (*at, bottom + 3.0)], BLACK_INK, 0.6);
+            if written {
+                canvas.text((*at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
+            }
         }
         for (value, text) in &self.y.ticks {
             let (_, at) = self.at(self.x.low, *value);
@@ -159,7 +175,16 @@ impl Panel {
 
 #[cfg(test)]
 mod tests {
-    use super::log_ticks;
+    use super::{apart, log_ticks};
+
+    #[test]
+    fn texts_that_would_touch_give_way_to_shorter_ones() {
+        assert_eq!(
+            apart(&[(0.0, 30.0), (20.0, 16.0), (45.0, 20.0), (80.0, 16.0)]),
+            [false, true, true, true]
+        );
+        assert_eq!(apart(&[(0.0, 30.0), (26.0, 16.0)]), [true, true]);
+    }
 
     #[test]
     fn every_logarithmic_axis_has_three_ticks() {
