@@ -308,7 +308,8 @@ fn add_force_in<const FMA: bool>(
     for bundle in bundles {
         let range = table.offsets[bundle]..table.offsets[bundle + 1];
         let (nodes, grads) = (&table.nodes[range.clone()], &table.grads[range]);
-        let base = u[nodes[0] as usize];
+        let Some(&first) = nodes.first() else { continue };
+        let base = u[first as usize];
         let mut H = [[0.0; 8]; 3];
         for (&node, g) in nodes.iter().zip(grads) {
             // Gradients of a partition of unity sum to zero: only differences of displacements count.
