@@ -130,9 +130,8 @@ pub(crate) fn go_on(
         if let Some(pressing) = &mut pressing {
             pressing.drive(setup.tools.iter().map(|set| part_of(set.drive, load)));
         }
-        let found = rayon::scope(|_| {
-            relax_under(&mut force, &mass, &fixed, &mut external, pressing.as_mut(), u.clone(), RELAXATION)
-        });
+        let found =
+            relax_under(&mut force, &mass, &fixed, &mut external, pressing.as_mut(), u.clone(), RELAXATION);
         let info = match found {
             Ok((rest, info)) => {
                 u = rest;

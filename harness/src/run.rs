@@ -111,7 +111,20 @@ pub(crate) struct Solution {
 }
 
 /// Runs one method.
+///
+/// All of it runs on a thread of the pool: from outside, whatever is done in parallel is handed over and waited for, which takes
+/// 0.03 to 0.1 ms each time, as long as the forces of 6000 elements.
 pub fn run(
+    identity: Identity,
+    plan: Vec<Stage>,
+    method: &Discretisation,
+    setup: &Setup,
+    asks: &Asks,
+) -> Result<Solved, Failure> {
+    rayon::scope(|_| on_pool(identity, plan, method, setup, asks))
+}
+
+fn on_pool(
     identity: Identity,
     plan: Vec<Stage>,
     method: &Discretisation,

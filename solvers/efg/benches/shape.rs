@@ -9,19 +9,21 @@
 //! | linear, 24 | 2 900 (24 x 112, 220 for factors and condition) | 1 700 (32 per candidate of 50 and 36 per entry) | 0.10 us | 0.09 us |
 //! | quadratic, 35 | 10 900 (35 x 240, 2 500) | 3 500 | 0.36 us | 0.18 us |
 //!
-//! Measured beside busy neighbours, the least of 20 000: 0.40 us (linear) and 1.0 us (quadratic), 4 and 3 times the arithmetic.
-//! Of the linear point about a quarter is the search, which keeps every second candidate, a quarter the way of neighbours into
-//! lanes and of values out of them, one number at a time, and a fifth the joining of chunks into one checked table.
-//! Functions of maximum entropy take 4.3 us at 89 neighbours (gamma = 1.8) and 2.4 us at 27 (gamma = 4) beside 0.44 us of the linear
-//! point at 24: 48 ns for each neighbour, 18 there, since each step of Newton's method comes by all of them.
+//! Measured at 2.6 GHz beside busy neighbours, medians: 0.38 us (linear) and 0.90 us (quadratic), 4 and 2.5 times the arithmetic
+//! (10 and 12 times less than the plain loop, which does not search).
+//! Of the linear point about a quarter is the search, which keeps every second candidate, and a quarter the way of neighbours into
+//! lanes and of values out of them, one number at a time. Handing such a batch to the pool and waiting would take 0.6 us per point:
+//! it stays on the calling thread. What a run on 83 nodes prepares takes two threads 2.7 ms (6144 points, 29 neighbours).
+//! Functions of maximum entropy take 4.8 us at 89 neighbours (gamma = 1.8) and 2.9 us at 27 (gamma = 4) beside 0.38 us of the linear
+//! point at 24: 54 ns for each neighbour, 16 there, since each step of Newton's method comes by all of them.
 //! Not covered: search structures of millions of nodes, other kernels.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Bencher, Criterion, Throughput, criterion_group, criterion_main};
 use efg::{Approximation, Basis, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows, smoothed_rows};
 use geometry::generate::kidney_mesh;
-use geometry::{CellKind, cloud_from_mesh};
+use geometry::{CellKind, Kidney, cloud};
 use nalgebra::{DMatrix, DVector};
 use shape::{Point3, Vector3};
 
@@ -135,26 +137,31 @@ fn entropy(criterion: &mut Criterion) {
     }
 }
 
+/// On a thread of the pool, where a run is.
+fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {
+    rayon::scope(|_| bencher.iter(make));
+}
+
+/// What a run on 83 nodes prepares, the kidney in 1536 cells.
 fn prepare(criterion: &mut Criterion) {
-    // 83 nodes of a kidney mesh's cloud would need the cloud generator; the mesh of 3 intervals has about as many.
-    let background = kidney_mesh(CellKind::Tet4, 3).unwrap();
-    let cloud = cloud_from_mesh(&background);
+    let background = kidney_mesh(CellKind::Tet4, 4).unwrap();
+    let cloud = cloud(&Kidney, 83, 1, &[]).unwrap();
     let make = || {
         let radii = Support::Dilatation { factor: 1.6 }.radii(&cloud.points, &cloud.spacing).unwrap();
         Approximation::new(cloud.points.clone(), radii, Kernel::CubicSpline, Basis::Linear).unwrap()
     };
     let name = format!("prepare-{}-nodes-{}-cells", cloud.points.len(), background.cell_count());
     let mut group = criterion.benchmark_group(name);
-    group.bench_function("supports-and-buckets", |b| b.iter(make));
-    group.bench_function("gauss-4", |b| b.iter(|| gauss_rows(&make(), &background, 4).unwrap()));
+    group.bench_function("supports-and-buckets", |b| on_pool(b, make));
+    group.bench_function("gauss-4", |b| on_pool(b, || gauss_rows(&make(), &background, 4).unwrap()));
     group.bench_function("cell-smoothed", |b| {
-        b.iter(|| smoothed_rows(&make(), &background, Smoothing::Constant, 1).unwrap())
+        on_pool(b, || smoothed_rows(&make(), &background, Smoothing::Constant, 1).unwrap())
     });
     group.bench_function("cell-smoothed-order-2", |b| {
-        b.iter(|| smoothed_rows(&make(), &background, Smoothing::Linear, 6).unwrap())
+        on_pool(b, || smoothed_rows(&make(), &background, Smoothing::Linear, 6).unwrap())
     });
     group.bench_function("node-smoothed-stabilised", |b| {
-        b.iter(|| node_smoothed_rows(&make(), &background, 0.05, 1).unwrap())
+        on_pool(b, || node_smoothed_rows(&make(), &background, 0.05, 1).unwrap())
     });
     group.finish();
 }

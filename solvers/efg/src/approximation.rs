@@ -225,21 +225,29 @@ impl Approximation {
         let expected = if small { 0 } else { self.expected_entries(points) };
         let mut rows = RowList::with_capacity(points.len(), expected, if GRAD { expected } else { 0 });
         let mut tally = Tally::with_capacity(points.len());
-        let mut join = |chunks: &[Chunk]| {
+        let mut join = |chunks: &mut [Chunk]| {
+            for outcome in chunks.iter().flat_map(|chunk| &chunk.outcomes) {
+                tally.add(outcome);
+            }
+            if let [whole] = chunks
+                && rows.is_empty()
+            {
+                rows = std::mem::take(&mut whole.rows);
+                return;
+            }
             let entries = chunks.iter().map(|chunk| chunk.rows.nodes.len()).sum();
             rows.reserve(entries, if GRAD { entries } else { 0 });
-            for chunk in chunks {
-                rows.append(&chunk.rows);
-                chunk.outcomes.iter().for_each(|met| tally.add(met));
-            }
+            chunks.iter().for_each(|chunk| rows.append(&chunk.rows));
         };
         let (mut next, mut filled) = (Vec::new(), Vec::new());
         for wave in points.chunks(wave) {
-            let (done, ()) = rayon::join(|| self.fill_wave::<GRAD>(wave, &mut next), || join(&filled));
+            let mut fill = || self.fill_wave::<GRAD>(wave, &mut next);
+            // Beside the first there is nothing to join; a batch of one chunk then never leaves the calling thread.
+            let done = if filled.is_empty() { fill() } else { rayon::join(fill, || join(&mut filled)).0 };
             done?;
             std::mem::swap(&mut next, &mut filled);
         }
-        join(&filled);
+        join(&mut filled);
         let RowList { offsets, nodes, values, grads } = rows;
         let rows = Rows::new(self.nodes.len(), offsets, nodes, values, UNITY)?;
         Ok((rows, grads, tally.info()))
@@ -253,6 +261,9 @@ impl Approximation {
     ) -> Result<(), EfgError> {
         let parts = points.par_chunks(CHUNK);
         chunks.resize_with(parts.len(), Chunk::default);
+        if let [chunk] = &mut chunks[..] {
+            return self.fill::<GRAD>(points, chunk);
+        }
         let fill = |(chunk, part)| self.fill::<GRAD>(part, chunk);
         let done: Vec<Result<(), EfgError>> = chunks.par_iter_mut().zip(parts).map(fill).collect();
         done.into_iter().collect()

@@ -49,6 +49,11 @@ impl RowList {
         self.grads.reserve_exact(grads);
     }
 
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.offsets.len() == 1
+    }
+
     /// Entry range of one row.
     pub fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.offsets[row]..self.offsets[row + 1]

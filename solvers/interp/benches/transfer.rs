@@ -1,41 +1,36 @@
 //! Build, pack and apply per scheme, at the size of the paper: 83 nodes to about 1330 points of the kidney.
 //!
-//! Packed, a full table is 0.88 MB of weights, each used for three components. Read from the second-level cache and beyond at 104 GB/s
-//! they take 8.4 us; three products and three sums of eight lanes, each kind on two pipes of 256 bits, take 3 cycles per eight
-//! weights, 11 us at 3.7 GHz. Measured beside busy neighbours, the least of 800, in us; a full table unpacked takes 80:
+//! Packed, a full table is 0.88 MB of weights, each used for three components. Read from the second-level cache at 104 GB/s they take
+//! 8.4 us; three products and three sums of eight lanes, on two pipes of 512 bits, take 3 cycles per eight weights, 16 us at
+//! 2.6 GHz. Medians beside busy neighbours, in us, of one thread, of builds the wall's time of two; a full table unpacked takes
+//! 80:
 //!
-//! | scheme | entries | apply |
-//! |---|---|---|
-//! | nearest | 1 331 | 2.2 |
-//! | inverse-distance | 5 324 | 4.0 |
-//! | shepard, mls-linear | 33 453 | 9.3 |
-//! | mls-quadratic | 73 589 | 15.1 |
-//! | mls-modified | 52 282 | 11.8 |
-//! | radial bases | 110 473 | 18 |
-//! | natural-neighbour | 13 094 | 5.8 |
-//! | barycentric | 5 324 | 4.4 |
+//! | scheme | entries | build | pack | apply |
+//! |---|---|---|---|---|
+//! | nearest | 1 331 | 115 | 43 | 2.0 |
+//! | inverse-distance | 5 324 | 228 | 37 | 4.0 |
+//! | shepard | 33 453 | 420 | 175 | 10 |
+//! | mls-linear | 33 453 | 480 | 175 | 10 |
+//! | mls-quadratic | 73 589 | 745 | 275 | 15.4 |
+//! | mls-modified | 52 282 | 630 | 225 | 13.5 |
+//! | radial bases | 110 473 | 1150 to 1550 | 198 | 18.8 |
+//! | natural-neighbour | 13 094 | 870 to 1020 | 128 | 6.3 |
+//! | barycentric | 5 324 | 550 | 42 | 5.2 |
 //!
-//! To build and to pack takes, in ms of one processor at 2.5 GHz, itself shared, the least of some 200. Packing is one
-//! thread's work. Two threads, where others leave the machine to them, build in the time (the wall's) of the last column:
-//!
-//! | scheme | build | pack | build, two threads |
-//! |---|---|---|---|
-//! | nearest | 0.29 | 0.07 | 0.18 |
-//! | inverse-distance | 0.57 | 0.09 | 0.38 |
-//! | shepard | 0.90 | 0.28 | 0.58 |
-//! | mls-linear | 1.3 | 0.34 | 0.81 |
-//! | mls-quadratic | 2.0 | 0.53 | 1.35 |
-//! | mls-modified | 1.9 | 0.42 | 1.13 |
-//! | radial bases | 2.9 to 4.1 | 0.40 | |
-//! | natural-neighbour | 2.8 | 0.23 | 1.85 |
-//! | barycentric | 1.3 | 0.13 | |
+//! One thread builds mls-quadratic in 1200 and natural neighbours in 1380. A thread that sleeps is awake after 35 us; some builds
+//! have three loops in parallel.
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
 use interp::Scheme;
 use shape::{RowBlocks, Vector3};
 use std::hint::black_box;
+
+/// On a thread of the pool, where a run is.
+fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {
+    rayon::scope(|_| bencher.iter(make));
+}
 
 fn transfer(criterion: &mut Criterion) {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
@@ -47,7 +42,7 @@ fn transfer(criterion: &mut Criterion) {
         let (nodes, mesh) =
             if scheme == Scheme::Barycentric { (mesh.points(), Some(&mesh)) } else { (&nodes[..], None) };
         let build = || scheme.rows(nodes, mesh, &targets).expect("a sound cloud");
-        group.bench_function(format!("build/{}", scheme.name()), |b| b.iter(|| black_box(build())));
+        group.bench_function(format!("build/{}", scheme.name()), |b| on_pool(b, build));
         let (rows, _) = build();
         group.bench_function(format!("pack/{}", scheme.name()), |b| {
             b.iter(|| RowBlocks::new(black_box(rows.rows())))

@@ -42,6 +42,8 @@ struct Cell {
     neighbours: [u32; 4],
     /// Circumspheres of the neighbours: all are asked when a cell is, side by side.
     around: Spheres<4>,
+    /// Planes of the faces, `n . x - d`, positive on the cell's side; always on the hull.
+    walls: [Lanes<4>; 4],
     /// Three times the volume that is each corner's.
     shares: [f64; 4],
 }
@@ -81,9 +83,12 @@ pub(crate) struct Workspace {
     listed: Vec<bool>,
     seen: Vec<u32>,
     stamp: u32,
+    /// Cells that are opened, the first `cells` of a list with room for all and for four written beyond.
     cavity: Vec<u32>,
-    /// Faces.
+    cells: usize,
+    /// Faces around them, likewise.
     rim: Vec<u32>,
+    faces: usize,
     last: u32,
 }
 
@@ -100,8 +105,10 @@ impl Workspace {
             // One more for what is beyond the hull.
             seen: vec![0; cells + 1],
             stamp: 0,
-            cavity: Vec::new(),
-            rim: Vec::new(),
+            cavity: vec![0; cells + 4],
+            cells: 0,
+            rim: vec![0; 4 * cells + 4],
+            faces: 0,
             last: 0,
         }
     }
@@ -129,13 +136,21 @@ impl Voronoi {
         }
         // Beyond the hull there is no sphere.
         spheres.push((Vector3::zeros(), Vector3::zeros(), f64::NEG_INFINITY));
-        let cells = (mesh.cells.iter().zip(&mesh.neighbours).zip(shares))
-            .map(|((&corners, neighbours), shares)| {
+        let cells = (mesh.cells.iter().zip(&mesh.neighbours).zip(shares).zip(faces.as_chunks::<4>().0))
+            .map(|(((&corners, neighbours), shares), faces)| {
+                let mut walls = [Lanes::all(0.0); 4];
+                walls[3] = Lanes::all(f64::NEG_INFINITY);
+                for k in (0..4).filter(|&k| neighbours[k] != NONE) {
+                    let face: &Face = &faces[k];
+                    (0..3).for_each(|axis| walls[axis].0[k] = face.normal[axis]);
+                    walls[3].0[k] = face.normal.dot(&nodes[face.nodes[0] as usize].coords);
+                }
                 let neighbours = neighbours.map(|n| if n == NONE { count as u32 } else { n });
                 Cell {
                     corners,
                     neighbours,
                     around: Spheres::new(neighbours.map(|n| &spheres[n as usize])),
+                    walls,
                     shares,
                 }
             })
@@ -183,20 +198,22 @@ impl Voronoi {
         gap
     }
 
-    /// The cell that holds the point, by walking towards it: its circumsphere does, too.
+    /// The cell that holds the point, by walking towards it, each time through the face beyond which the point is farthest: its
+    /// circumsphere does, too.
     #[inline(always)]
     fn locate(&self, x: &Point3, start: u32) -> u32 {
         let mut cell = start;
-        'walk: for _ in 0..self.cells.len() {
-            let neighbours = &self.cells[cell as usize].neighbours;
-            for (face, &across) in self.faces[4 * cell as usize..][..4].iter().zip(neighbours) {
-                let on = &self.nodes[face.nodes[0] as usize];
-                if (across as usize) < self.cells.len() && face.normal.dot(&(x - on)) < 0.0 {
-                    cell = across;
-                    continue 'walk;
-                }
+        for _ in 0..self.cells.len() {
+            let Cell { walls: [x_of, y_of, z_of, from], neighbours, .. } = &self.cells[cell as usize];
+            let mut deepest = (0.0, cell);
+            for k in 0..4 {
+                let height = x_of.0[k] * x.x + y_of.0[k] * x.y + z_of.0[k] * x.z - from.0[k];
+                deepest = if height < deepest.0 { (height, neighbours[k]) } else { deepest };
             }
-            break;
+            if deepest.1 == cell {
+                break;
+            }
+            cell = deepest.1;
         }
         // A flat cell may seem to hold any point of its plane, or turn the walk in a circle.
         let sphere_holds = |cell: &u32| {
@@ -229,14 +246,11 @@ impl Voronoi {
         };
         at.seen[start as usize] = at.stamp;
         let Workspace { cavity, rim, seen, stamp, .. } = at;
-        cavity.clear();
-        cavity.push(start);
+        cavity[0] = start;
         let (mut next, mut cells, mut faces) = (0, 1, 0);
         while next < cells {
             let cell = cavity[next];
             next += 1;
-            cavity.resize(cavity.len().max(cells + 4), 0);
-            rim.resize(rim.len().max(faces + 4), 0);
             let (found, open) = (&mut cavity[cells..cells + 4], &mut rim[faces..faces + 4]);
             let (mut new, mut closed) = (0, 0);
             let Cell { neighbours, around, .. } = &self.cells[cell as usize];
@@ -255,14 +269,13 @@ impl Voronoi {
             cells += new;
             faces += closed;
         }
-        cavity.truncate(cells);
-        rim.truncate(faces);
+        (at.cells, at.faces) = (cells, faces);
     }
 
     /// Three times the volumes that the point takes from its neighbours.
     #[inline(always)]
     fn volumes(&self, x: &Point3, at: &mut Workspace) {
-        for &cell in &at.cavity {
+        for &cell in &at.cavity[..at.cells] {
             let Cell { corners, shares, .. } = &self.cells[cell as usize];
             let listed = at.nodes.len();
             at.nodes.extend_from_slice(corners);
@@ -274,7 +287,7 @@ impl Voronoi {
             }
             at.nodes.truncate(listed + new);
         }
-        for group in at.rim.chunks(LANES) {
+        for group in at.rim[..at.faces].chunks(LANES) {
             // Lanes beyond the last face repeat it, and are not read.
             let mut tets = Tetrahedra::new();
             let mut nodes = [[0; 3]; LANES];

@@ -5,6 +5,11 @@ use crate::{Rows, Vector3};
 /// Eight f64 fill one AVX-512 register or two of AVX2.
 const LANES: usize = 8;
 
+/// One number of each row of a block, on one line of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
+struct Lanes([f64; LANES]);
+
 /// A table packed for repeated products: rows that share most of their nodes side by side, eight to a block, each block over the
 /// nodes that any of its rows names, with zeros where a row does not (register blocks; Im, Yelick and Vuduc 2004).
 ///
@@ -28,10 +33,10 @@ pub struct RowBlocks {
     node_count: usize,
     /// Rows in the order of their lanes; the last block may have lanes to spare.
     order: Vec<u32>,
-    /// Of each block among `nodes` and `values`, blocks + 1 entries.
+    /// Of each block among `nodes` and `values`, blocks + 1 entries; an even number of blocks.
     offsets: Vec<usize>,
     nodes: Vec<u32>,
-    values: Vec<[f64; LANES]>,
+    values: Vec<Lanes>,
 }
 
 impl RowBlocks {
@@ -47,14 +52,18 @@ impl RowBlocks {
             named.drain_into(&mut nodes);
             offsets.push(nodes.len());
         }
+        if offsets.len() % 2 == 0 {
+            // Blocks go in pairs; the last may be beside one of no rows.
+            offsets.push(nodes.len());
+        }
         // Filled by node and lane, then read by ascending node: each value is moved twice, and none is looked for.
         let mut values = Vec::with_capacity(nodes.len());
-        let mut of_nodes = vec![[0.0; LANES]; rows.node_count()];
+        let mut of_nodes = vec![Lanes::default(); rows.node_count()];
         for (block, range) in order.chunks(LANES).zip(offsets.windows(2)) {
             for (lane, &row) in block.iter().enumerate() {
                 let (nodes, values) = rows.row(row as usize);
                 for (&node, &value) in nodes.iter().zip(values) {
-                    of_nodes[node as usize][lane] += value;
+                    of_nodes[node as usize].0[lane] += value;
                 }
             }
             let taken = nodes[range[0]..range[1]].iter();
@@ -103,20 +112,44 @@ impl RowBlocks {
         self.apply_plain(u, field)
     }
 
+    /// Two blocks side by side: a sum waits for the one before, four cycles, and the sums and products for a node of one block take
+    /// three. All six sums in one array, and no function between: else the compiler shuffles them at every node.
     #[inline(always)]
     fn apply_plain(&self, u: &[Vector3], field: &mut [Vector3]) {
-        for (block, rows) in self.offsets.windows(2).zip(self.order.chunks(LANES)) {
-            let mut sums = [[0.0; LANES]; 3];
-            for (&node, values) in self.nodes[block[0]..block[1]].iter().zip(&self.values[block[0]..block[1]])
-            {
-                let (values, u) = (*values, u[node as usize]);
+        let block = |range: std::ops::Range<usize>| (&self.nodes[range.clone()], &self.values[range]);
+        for (starts, rows) in self.offsets.windows(3).step_by(2).zip(self.order.chunks(2 * LANES)) {
+            let (first, second) = (block(starts[0]..starts[1]), block(starts[1]..starts[2]));
+            let both = first.0.len().min(second.0.len());
+            let mut sums = [[0.0; LANES]; 6];
+            for k in 0..both {
+                let (u, v) = (u[first.0[k] as usize], u[second.0[k] as usize]);
+                let (of_u, of_v) = (first.1[k].0, second.1[k].0);
                 for axis in 0..3 {
                     for l in 0..LANES {
-                        sums[axis][l] += values[l] * u[axis];
+                        sums[axis][l] += of_u[l] * u[axis];
+                    }
+                }
+                for axis in 0..3 {
+                    for l in 0..LANES {
+                        sums[3 + axis][l] += of_v[l] * v[axis];
                     }
                 }
             }
-            scatter(&sums, rows, field);
+            let [ax, ay, az, bx, by, bz] = sums;
+            let (rows, others) = rows.split_at(rows.len().min(LANES));
+            for (mut sums, (nodes, values), rows) in
+                [([ax, ay, az], first, rows), ([bx, by, bz], second, others)]
+            {
+                for (&node, values) in nodes[both..].iter().zip(&values[both..]) {
+                    let (values, u) = (values.0, u[node as usize]);
+                    for axis in 0..3 {
+                        for l in 0..LANES {
+                            sums[axis][l] += values[l] * u[axis];
+                        }
+                    }
+                }
+                scatter(&sums, rows, field);
+            }
         }
     }
 }

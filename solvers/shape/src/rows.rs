@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use crate::Vector3;
 
-/// Rows that one task checks at least: some microseconds.
-const CHECKED_TOGETHER: usize = 512;
+/// Rows that one task checks at least: some microseconds. So many alone are checked by the calling thread: to hand them over
+/// takes as long.
+const CHECKED_TOGETHER: usize = 2048;
 
 /// What the maker of a table promises about the sum of each row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +131,9 @@ impl Rows {
         &self,
         of: impl Fn(usize) -> Option<ShapeError> + Sync + Send,
     ) -> Option<ShapeError> {
+        if self.len() <= CHECKED_TOGETHER {
+            return (0..self.len()).find_map(of);
+        }
         (0..self.len()).into_par_iter().with_min_len(CHECKED_TOGETHER).find_map_first(of)
     }
 
