@@ -61,26 +61,15 @@ mod tests {
     use crate::select::runs;
 
     fn record(method: &str, seed: u64, quantity: &str, value: f64) -> Record {
-        let words = |s: &str| s.to_string();
         Record {
-            case: words("block"),
-            method: words(method),
-            family: words("efg"),
-            variant: words("cubic-spline"),
-            parameters: words(""),
-            poisson: 0.3,
-            level: 0,
+            case: "block".into(),
+            method: method.into(),
+            family: "efg".into(),
             nodes: 83,
-            elements: 0,
-            points: 0,
-            dofs: 0,
-            spacing: 0.01,
             seed,
-            quantity: words(quantity),
-            unit: words("1"),
-            phase: words(""),
-            statistic: words("value"),
+            quantity: quantity.into(),
             value,
+            ..Record::blank()
         }
     }
 

@@ -123,20 +123,14 @@ pub(crate) mod tests {
             method: method.into(),
             family: family.into(),
             variant: method.into(),
-            parameters: String::new(),
-            poisson: 0.495,
-            level: 0,
             nodes,
-            elements: 0,
-            points: 0,
             dofs: 3 * nodes,
             spacing: (nodes as f64).powf(-1.0 / 3.0),
-            seed: 0,
             quantity: quantity.into(),
-            unit: "1".into(),
             phase: phase.into(),
             statistic: statistic.into(),
             value,
+            ..Record::blank()
         }
     }
 

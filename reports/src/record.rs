@@ -326,3 +326,30 @@ pub struct RunSet {
     /// Runs that failed.
     pub failures: Vec<Failure>,
 }
+
+#[cfg(test)]
+impl Record {
+    /// What tests fill in: a value of a run of no size.
+    pub(crate) fn blank() -> Record {
+        Record {
+            case: String::new(),
+            method: String::new(),
+            family: String::new(),
+            variant: String::new(),
+            parameters: String::new(),
+            poisson: 0.495,
+            level: 0,
+            nodes: 0,
+            elements: 0,
+            points: 0,
+            dofs: 0,
+            spacing: 0.0,
+            seed: 0,
+            quantity: String::new(),
+            unit: "m".into(),
+            phase: String::new(),
+            statistic: "value".into(),
+            value: 0.0,
+        }
+    }
+}

@@ -110,25 +110,18 @@ mod tests {
 
     fn record(who: [&str; 4], nodes: u64, quantity: &str, value: f64) -> Record {
         let [method, family, variant, parameters] = who.map(String::from);
+        let (case, quantity, elements) = ("kidney".into(), quantity.into(), 10 * nodes);
         Record {
-            case: "kidney".into(),
+            case,
             method,
             family,
             variant,
             parameters,
-            poisson: 0.495,
-            level: 0,
             nodes,
-            elements: 10 * nodes,
-            points: 0,
-            dofs: 0,
-            spacing: 0.0,
-            seed: 0,
-            quantity: quantity.into(),
-            unit: "m".into(),
-            phase: String::new(),
-            statistic: "value".into(),
+            elements,
+            quantity,
             value,
+            ..Record::blank()
         }
     }
 

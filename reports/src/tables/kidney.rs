@@ -234,26 +234,8 @@ mod tests {
 
     fn record(case: &str, who: [&str; 4], nodes: u64, quantity: &str, value: f64) -> Record {
         let [method, family, variant, parameters] = who.map(String::from);
-        Record {
-            case: case.into(),
-            method,
-            family,
-            variant,
-            parameters,
-            poisson: 0.495,
-            level: 0,
-            nodes,
-            elements: 0,
-            points: 0,
-            dofs: 0,
-            spacing: 0.0,
-            seed: 0,
-            quantity: quantity.into(),
-            unit: "m".into(),
-            phase: String::new(),
-            statistic: "value".into(),
-            value,
-        }
+        let (case, quantity) = (case.into(), quantity.into());
+        Record { case, method, family, variant, parameters, nodes, quantity, value, ..Record::blank() }
     }
 
     #[test]
