@@ -189,8 +189,9 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         }
     }
     let chosen = |m: &&Method| run.methods.is_empty() || run.methods.contains(&m.id);
-    let cloud = |m: &'_ Method| if let Family::Efg(efg) = &m.family { Some(efg.clone()) } else { None };
-    let efgs: Vec<Efg> = scene.methods.iter().filter(chosen).filter_map(cloud).collect();
+    let efgs: Vec<&Efg> = (scene.methods.iter().filter(chosen))
+        .filter_map(|m| if let Family::Efg(efg) = &m.family { Some(efg) } else { None })
+        .collect();
     let clouds = !efgs.is_empty();
     for (name, given) in [
         ("nodes", !run.nodes.is_empty()),
@@ -207,7 +208,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         if let Some(what) = unheld(essential, scene.procedure.kind) {
             report.add(&key, Problem::new(format!("{what} is not available yet")).help(HELD));
         }
-        let linear = |efg: &Efg| {
+        let linear = |efg: &&Efg| {
             matches!(efg.functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. })
                 && !matches!(efg.cloud, Cloud::Refined { .. })
         };
