@@ -14,7 +14,7 @@
 //! | mls-quadratic | 73 589 | 745 | 275 | 15.4 |
 //! | mls-modified | 52 282 | 630 | 225 | 13.5 |
 //! | radial bases | 110 473 | 1150 to 1550 | 198 | 18.8 |
-//! | natural-neighbour | 13 094 | 870 to 1020 | 128 | 6.3 |
+//! | natural-neighbour | 13 094 | 880 to 1050 | 128 | 6.3 |
 //! | barycentric | 5 324 | 550 | 42 | 5.2 |
 //!
 //! One thread builds mls-quadratic in 1200 and natural neighbours in 1380. A thread that sleeps is awake after 35 us; some builds
