@@ -1,12 +1,79 @@
-//! Hands the compiler's version to the provenance of every table.
+//! Fixes at build time what a program is: its commit, whether the sources were changed since, its compiler, target and features.
+//!
+//! What git says when the program runs is of another moment: somebody may have checked out another commit since.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What the program is made of, from the workspace's folder. Changes elsewhere (scenes, tests, docs) make no other program.
+const SOURCES: [&str; 9] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "rust-toolchain.toml",
+    "cases/src",
+    "harness/src",
+    "harness/build.rs",
+    "reports/src",
+    "reports/assets",
+    "solvers",
+];
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    let version = std::process::Command::new(rustc)
-        .arg("--version")
-        .output()
-        .map(|out| String::from_utf8_lossy(&out.stdout).trim().to_string())
-        .unwrap_or_else(|_| "unknown".into());
+    let version = output(Command::new(rustc).arg("--version")).unwrap_or_else(|| "unknown".into());
     println!("cargo::rustc-env=TISSUEBENCH_RUSTC={version}");
+    let variable = |name: &str| std::env::var(name).unwrap_or_default();
+    println!("cargo::rustc-env=TISSUEBENCH_TARGET={}", variable("TARGET"));
+    println!("cargo::rustc-env=TISSUEBENCH_FEATURES={}", variable("CARGO_CFG_TARGET_FEATURE"));
+    // All of these are compiled into the program: what reruns this script would build it anew anyway.
+    for source in SOURCES.iter().filter(|source| **source != "solvers") {
+        watch(&root.join(source));
+    }
+    for room in std::fs::read_dir(root.join("solvers")).into_iter().flatten().flatten() {
+        watch(&room.path().join("src"));
+    }
+    let (commit, dirty) = match commit(&root) {
+        Some(commit) => (commit, changed(&root)),
+        None => ("unknown".into(), false),
+    };
+    println!("cargo::rustc-env=TISSUEBENCH_COMMIT={commit}");
+    println!("cargo::rustc-env=TISSUEBENCH_DIRTY={dirty}");
+}
+
+/// Runs this script again when a file changes. One that does not exist would rerun it at every build.
+fn watch(path: &Path) {
+    if path.exists() {
+        println!("cargo::rerun-if-changed={}", path.display());
+    }
+}
+
+/// The commit checked out, if this file is part of a git repository: a tarball inside another one's folder is not.
+fn commit(root: &Path) -> Option<String> {
+    git(root, &["ls-files", "--error-unmatch", "harness/build.rs"])?;
+    // Every commit, checkout and reset writes a line to the log of HEAD; without a log the branch's own file changes.
+    let at = |name: &str| git(root, &["rev-parse", "--git-path", name]).map(|path| root.join(path));
+    let log = at("logs/HEAD").filter(|path| path.exists());
+    let branch = || git(root, &["symbolic-ref", "-q", "HEAD"]).and_then(|name| at(&name));
+    let watched: Vec<PathBuf> = match log {
+        Some(log) => vec![log],
+        None => [at("HEAD"), branch(), at("packed-refs")].into_iter().flatten().collect(),
+    };
+    watched.iter().for_each(|path| watch(path));
+    git(root, &["rev-parse", "HEAD"])
+}
+
+/// Whether the sources differ from the commit.
+fn changed(root: &Path) -> bool {
+    let status = ["status", "--porcelain", "--untracked-files=no", "--"];
+    git(root, &[&status[..], &SOURCES].concat()).is_none_or(|changes| !changes.is_empty())
+}
+
+fn git(root: &Path, args: &[&str]) -> Option<String> {
+    output(Command::new("git").arg("-C").arg(root).args(args))
+}
+
+fn output(command: &mut Command) -> Option<String> {
+    let out = command.output().ok()?;
+    out.status.success().then(|| String::from_utf8_lossy(&out.stdout).trim().to_string())
 }

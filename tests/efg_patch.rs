@@ -4,11 +4,12 @@
 mod common;
 
 use common::*;
-use efg::{Approximation, Basis, Kernel, Smoothing, Support};
+use efg::{Approximation, Basis, CubicSpline, Kernel, Smoothing, Support};
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Facet, Mesh, cloud_from_mesh};
-use mechanics::{Body, LinearProblem, Load, Matrix3, Point3, SolveError, Vector3, Weak, WeakSupport};
 use shape::{DilationGroups, TraceRows, VolumeRows};
+use shape::{Matrix3, Point3, Vector3};
+use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
 /// A cube of 20 mm, 5 x 5 x 5 cells of six tetrahedra, inner nodes jittered by a quarter of the spacing.
 fn cube() -> Mesh {
@@ -103,10 +104,10 @@ fn errors(
         trace: trace.as_ref(),
     }];
     let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
-    let solution = mechanics::assemble(&problem)?.factor()?.solve(1.0)?;
+    let solution = statics::assemble(&problem)?.factor()?.solve(1.0)?;
     let found = volume.rows().apply(&solution.u);
     let exact: Vec<Vector3> = volume.points().iter().map(affine).collect();
-    let stress: Vec<Matrix3> = mechanics::body_stress(&body, &solution.u)?;
+    let stress: Vec<Matrix3> = statics::body_stress(&body, &solution.u)?;
     let squares =
         |f: &dyn Fn(usize) -> f64| volume.weights().iter().enumerate().map(|(q, w)| w * f(q)).sum::<f64>();
     let displacement =
@@ -119,7 +120,7 @@ fn errors(
 fn cell_smoothing_with_nitsche_passes_at_every_dilatation() {
     let mesh = cube();
     for dilatation in [1.2, 1.6, 2.0, 2.5] {
-        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline);
+        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline(CubicSpline));
         for face_points in [1, 3] {
             let volume = CONSTANT.volume(&mls, &mesh, face_points);
             for poisson in [0.3, 0.45, 0.495, 0.4999] {
@@ -150,7 +151,7 @@ fn cell_smoothing_with_nitsche_passes_at_every_dilatation() {
 fn the_other_conforming_rules_pass_with_nitsche_too() {
     let mesh = cube();
     for dilatation in [1.2, 1.6, 2.5] {
-        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline);
+        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline(CubicSpline));
         let rules = [Rule::Cells(Smoothing::Linear), Rule::Vertices(0.0), Rule::Vertices(0.05)];
         for (rule, face_points) in rules.into_iter().zip([6, 1, 3]) {
             let volume = rule.volume(&mls, &mesh, face_points);
@@ -180,7 +181,7 @@ fn the_other_conforming_rules_pass_with_nitsche_too() {
 #[test]
 fn every_kernel_passes_with_cell_smoothing() {
     let mesh = cube();
-    for kernel in Kernel::ALL {
+    for kernel in Kernel::all() {
         let mls = approximation(&mesh, 1.6, kernel);
         let volume = CONSTANT.volume(&mls, &mesh, 1);
         let errors = errors(&mesh, &mls, &volume, CONSTANT, 1, Held::All, 0.3, false).unwrap();
@@ -194,7 +195,7 @@ fn every_kernel_passes_with_cell_smoothing() {
 fn plain_quadrature_stays_in_its_band_and_falls_with_more_points() {
     let mesh = cube();
     for dilatation in [1.2, 1.6, 2.0, 2.5] {
-        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline);
+        let mls = approximation(&mesh, dilatation, Kernel::CubicSpline(CubicSpline));
         let error = |points: usize| {
             let rule = Rule::Gauss(points);
             let volume = rule.volume(&mls, &mesh, 6);
@@ -210,13 +211,14 @@ fn plain_quadrature_stays_in_its_band_and_falls_with_more_points() {
 #[test]
 fn the_patch_test_sees_one_halved_support_and_one_lost_cell() {
     let mesh = cube();
-    let mls = approximation(&mesh, 1.6, Kernel::CubicSpline);
+    let mls = approximation(&mesh, 1.6, Kernel::CubicSpline(CubicSpline));
     let volume = CONSTANT.volume(&mls, &mesh, 1);
     // Volume rows of one cloud, boundary rows of the same cloud with one support halved.
     let mut radii: Vec<f64> = (0..mls.nodes().len()).map(|n| mls.radius(n)).collect();
     radii[43] *= 0.5;
     let spoiled =
-        Approximation::new(mls.nodes().to_vec(), radii, Kernel::CubicSpline, Basis::Linear).unwrap();
+        Approximation::new(mls.nodes().to_vec(), radii, Kernel::CubicSpline(CubicSpline), Basis::Linear)
+            .unwrap();
     let errors = |mls, volume| errors(&mesh, mls, volume, CONSTANT, 1, Held::All, 0.3, false).unwrap()[0];
     let halved = errors(&spoiled, &volume);
     assert!(halved > 1e-6, "{halved:e}");

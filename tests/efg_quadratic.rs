@@ -7,11 +7,12 @@ use std::collections::BTreeMap;
 
 use cases::exact::{Params, exact_by_name};
 use common::*;
-use efg::{Approximation, Basis, Kernel, Smoothing, Support};
+use efg::{Approximation, Basis, CubicSpline, Kernel, Smoothing, Support};
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, cloud_from_mesh};
-use mechanics::{Body, LinearProblem, Load, Point3, Vector3, Weak, WeakSupport};
 use shape::VolumeRows;
+use shape::{Point3, Vector3};
+use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
 /// Relative errors of displacement and stress over the integration points.
 fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f64) -> [f64; 2] {
@@ -22,7 +23,8 @@ fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f6
     let mesh = box_mesh(CellKind::Tet4, Point3::origin(), high, [3; 3], [1.0; 3], jitter).unwrap();
     let cloud = cloud_from_mesh(&mesh);
     let radii = Support::Dilatation { factor: dilatation }.radii(&cloud.points, &cloud.spacing).unwrap();
-    let mls = Approximation::new(cloud.points, radii, Kernel::CubicSpline, Basis::Quadratic).unwrap();
+    let mls =
+        Approximation::new(cloud.points, radii, Kernel::CubicSpline(CubicSpline), Basis::Quadratic).unwrap();
     let (volume, info): (VolumeRows, _) = match gauss {
         Some(points) => efg::gauss_rows(&mls, &mesh, points).unwrap(),
         None => efg::smoothed_rows(&mls, &mesh, Smoothing::Linear, face_points).unwrap(),
@@ -46,9 +48,9 @@ fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f6
     let body =
         Body { nodes: mls.nodes(), volume: &volume, materials: &materials, region: &[], dilation: None };
     let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
-    let u = mechanics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
+    let u = statics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
     let known: Vec<Vector3> = volume.points().iter().map(|x| exact.displacement(x)).collect();
-    let stress = mechanics::body_stress(&body, &u).unwrap();
+    let stress = statics::body_stress(&body, &u).unwrap();
     let (mut off, mut whole) = (0.0, 0.0);
     for (q, x) in volume.points().iter().enumerate() {
         let s = exact.stress(x);

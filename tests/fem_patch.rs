@@ -6,8 +6,9 @@ mod common;
 use common::*;
 use fem::{SurfaceRule, VolumeRule};
 use geometry::{CellKind, Facet, Mesh};
-use mechanics::{Body, FixedDof, LinearProblem, Load, SolveError, Vector3, Weak, WeakSupport};
 use shape::{DilationGroups, VolumeRows};
+use shape::{FixedDof, Vector3};
+use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
 /// Volumetric treatments that every element must pass with.
 const TREATMENTS: [&str; 3] = ["standard", "element-mean", "nodal-mean"];
@@ -73,14 +74,14 @@ fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Resu
         }
     }
     let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &weak };
-    let solution = mechanics::assemble(&problem)?.factor()?.solve(1.0)?;
+    let solution = statics::assemble(&problem)?.factor()?.solve(1.0)?;
     let exact: Vec<Vector3> = nodes.iter().map(affine).collect();
-    let stress = mechanics::body_stress(&body, &solution.u)?;
+    let stress = statics::body_stress(&body, &solution.u)?;
     let energy = volume.weights().iter().sum::<f64>() * materials[0].energy_density(&gradient());
     Ok([
         relative_error(&solution.u, &exact),
         stress_error(&stress, &sigma),
-        (mechanics::strain_energy(&body, &solution.u)? / energy - 1.0).abs(),
+        (statics::strain_energy(&body, &solution.u)? / energy - 1.0).abs(),
     ])
 }
 
@@ -141,7 +142,7 @@ fn the_patch_tests_see_a_spoiled_table() {
         })
         .collect();
     let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
-    let solution = mechanics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
+    let solution = statics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
     let exact: Vec<Vector3> = mesh.points().iter().map(affine).collect();
     let error = relative_error(&solution.u, &exact);
     assert!(error > 1e-7, "{error:e}");

@@ -3,12 +3,13 @@
 mod common;
 
 use common::*;
-use efg::{Approximation, Basis, Kernel, Support};
+use efg::{Approximation, Basis, CubicSpline, Kernel, Support, WendlandC2};
 use fem::VolumeRule;
 use geometry::{CellKind, Mesh, cloud_from_mesh};
-use mechanics::{Body, LinearProblem, Vector3};
 use nalgebra::DMatrix;
+use shape::Vector3;
 use shape::{DilationGroups, VolumeRows};
+use statics::{Body, LinearProblem};
 
 /// The stiffness of the free body; the six holds are what the assembly asks for, and no part of it.
 fn stiffness(
@@ -21,7 +22,7 @@ fn stiffness(
     let body = Body { nodes: mesh.points(), volume, materials: &materials, region: &[], dilation };
     let fixed = six_holds(mesh, |_| Vector3::zeros());
     let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
-    let assembled = mechanics::assemble(&problem).unwrap();
+    let assembled = statics::assemble(&problem).unwrap();
     let n = mesh.points().len();
     let mut dense = DMatrix::zeros(3 * n, 3 * n);
     for i in 0..n {
@@ -40,7 +41,7 @@ fn check(name: &str, mesh: &Mesh, k: &DMatrix<f64>) {
     assert!((k - k.transpose()).amax() <= 1e-14 * scale, "{name}: not symmetric");
     for mode in 0..6 {
         let axis = Vector3::ith(mode % 3, 1.0);
-        let motion = |x: &mechanics::Point3| {
+        let motion = |x: &shape::Point3| {
             if mode < 3 { axis } else { axis.cross(&(x - mesh.points()[0])) / 0.02 }
         };
         let u = DMatrix::from_iterator(
@@ -94,9 +95,11 @@ fn a_single_layer_of_quadratic_cells_with_mean_dilation_has_a_seventh() {
 fn six_for_every_integration_of_a_cloud() {
     let mesh = jittered_box(CellKind::Tet4, 2);
     let cloud = cloud_from_mesh(&mesh);
-    for (kernel, dilatation) in
-        [(Kernel::CubicSpline, 1.2), (Kernel::CubicSpline, 1.6), (Kernel::WendlandC2, 1.6)]
-    {
+    for (kernel, dilatation) in [
+        (Kernel::CubicSpline(CubicSpline), 1.2),
+        (Kernel::CubicSpline(CubicSpline), 1.6),
+        (Kernel::WendlandC2(WendlandC2), 1.6),
+    ] {
         let radii = Support::Dilatation { factor: dilatation }.radii(&cloud.points, &cloud.spacing).unwrap();
         let mls = Approximation::new(cloud.points.clone(), radii, kernel, Basis::Linear).unwrap();
         let (gauss, _) = efg::gauss_rows(&mls, &mesh, 4).unwrap();

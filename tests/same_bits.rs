@@ -3,12 +3,13 @@
 mod common;
 
 use common::*;
-use efg::{Approximation, Basis, Kernel, Support};
+use efg::{Approximation, Basis, CubicSpline, Kernel, Support};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::{CellKind, Mesh, Point3, cloud_from_mesh};
 use interp::Scheme;
-use mechanics::{Body, LinearProblem, Load, Vector3, Weak, WeakSupport};
+use shape::Vector3;
 use shape::{DilationGroups, FluxRows, PointRows, SurfaceRows, VolumeRows};
+use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
 /// Everything a run computes.
 #[derive(PartialEq)]
@@ -37,10 +38,10 @@ fn run(mesh: &Mesh, tables: impl Fn(&Mesh) -> (VolumeRows, FluxRows, SurfaceRows
         [WeakSupport { flux: &flux, axes: [true; 3], values, region: &[], method, h: 5e-3, trace: None }];
     let loads = [Load::Pressure { surface: &surface, values: vec![2e3; surface.weights().len()] }];
     let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
-    let u = mechanics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
+    let u = statics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
     let targets: Vec<Point3> = volume.points().iter().step_by(3).copied().collect();
     let transfers =
-        Scheme::ALL.map(|scheme| scheme.rows(mesh.points(), Some(mesh), &targets).unwrap().0).into();
+        Scheme::all().map(|scheme| scheme.rows(mesh.points(), Some(mesh), &targets).unwrap().0).collect();
     Run { volume, flux, surface, u, transfers }
 }
 
@@ -61,7 +62,8 @@ fn elements(mesh: &Mesh) -> (VolumeRows, FluxRows, SurfaceRows) {
 fn cloud(mesh: &Mesh) -> (VolumeRows, FluxRows, SurfaceRows) {
     let cloud = cloud_from_mesh(mesh);
     let radii = Support::Dilatation { factor: 1.6 }.radii(&cloud.points, &cloud.spacing).unwrap();
-    let mls = Approximation::new(cloud.points, radii, Kernel::CubicSpline, Basis::Linear).unwrap();
+    let mls =
+        Approximation::new(cloud.points, radii, Kernel::CubicSpline(CubicSpline), Basis::Linear).unwrap();
     let (held, loaded) = (mesh.group("z-min").unwrap(), mesh.group("z-max").unwrap());
     (
         efg::smoothed_rows(&mls, mesh, efg::Smoothing::Constant, 3).unwrap().0,

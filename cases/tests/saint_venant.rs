@@ -5,7 +5,9 @@ use fem::{SurfaceRule, VolumeRule, surface_rows, volume_rows};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use geometry::quadrature::gauss_legendre;
-use mechanics::{Body, FixedDof, LinearElastic, LinearProblem, Load, assemble};
+use material::LinearElastic;
+use shape::FixedDof;
+use statics::{Body, LinearProblem, Load, assemble};
 
 const LENGTH: f64 = 5.0;
 

@@ -1,11 +1,12 @@
 //! Bounds on numbers: of one run, or of a family of runs at several levels.
 
-use cases::scene::{Bound, Check, Needs};
-use reports::{Check as Verdict, Record, Status};
+use cases::scene::{Bound, Check};
+use catalogue::metric::Needs;
+use reports::{Check as Verdict, Family, Record, Status};
 
 /// The SI value a check's metric names, among the records of one run.
 pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
-    let own = |r: &&Record| r.family != "interp";
+    let own = |r: &&Record| r.family != Family::Interp;
     if let Some(phase) = metric.strip_prefix("time-") {
         let median = |r: &&Record| r.quantity == "time" && r.phase == phase && r.statistic == "median";
         return records.iter().filter(own).find(median).map(|r| r.value);
@@ -15,8 +16,10 @@ pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
         return records.iter().filter(|r| r.quantity == metric).map(|r| r.value).reduce(f64::max);
     }
     let quantity = if metric == "condition" { "condition-max" } else { metric };
-    // The history's records have the phase of their step.
-    let plain = |r: &&Record| r.quantity == quantity && r.statistic == "value" && r.phase.is_empty();
+    let plain = |r: &&Record| {
+        let whole = r.phase.is_empty() && r.step.is_none() && r.mode.is_none();
+        whole && r.quantity == quantity && r.statistic == "value"
+    };
     records.iter().filter(own).find(plain).map(|r| r.value)
 }
 

@@ -43,6 +43,8 @@ pub enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
+    Baseline(BaselineArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
     /// List cases, elements, kernels, transfer schemes and exact solutions
@@ -121,6 +123,25 @@ pub struct VerifyArgs {
     /// Where to put records, tables, figures and the report
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+}
+
+/// Arguments of `baseline`.
+#[derive(Args)]
+pub struct BaselineArgs {
+    /// A folder that `verify` wrote
+    pub results: PathBuf,
+    /// The accepted numbers
+    #[arg(long, value_name = "FILE", default_value = "tests/baseline/quick.toml")]
+    pub file: PathBuf,
+    /// Accept the differences whose text contains this, or all; without it a terminal asks for each
+    #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
+    pub accept: Option<String>,
+    /// Ask nothing: print the differences and exit with 1 if there are any
+    #[arg(long, conflicts_with = "accept")]
+    pub check: bool,
+    /// The results are a part of the study: runs that are not in them are not missing
+    #[arg(long)]
+    pub part: bool,
 }
 
 /// What `run` prints.

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use reports::{RunSet, Status};
 
+use crate::baseline::baseline;
 use crate::cli::{Cli, Command, Format, ReferenceArgs, RunArgs, VerifyArgs};
 use crate::group::{Extras, Group, case_name};
 use crate::json::RunObject;
@@ -14,7 +15,7 @@ use crate::outcome::{Outcome, Unfinished};
 use crate::run::Repeats;
 use crate::stored::Stored;
 use crate::study::{self, Plan};
-use crate::{Failure, check, list, mesh_files, provenance};
+use crate::{Failure, check, folder, list, mesh_files, provenance};
 
 /// Repeats of a single run's timings.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
@@ -35,6 +36,10 @@ pub fn main(cli: Cli) -> u8 {
             let out = out.unwrap_or_else(|| results.join("report"));
             report(&results, &out)
         }
+        Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| {
+            eprintln!("tissuebench: {bad}");
+            2
+        }),
         Command::Reference(args) => match reference(&args) {
             Ok(()) => 0,
             Err(code) => code,
@@ -96,7 +101,11 @@ fn run(args: &RunArgs) -> u8 {
         Ok(opened) => opened,
         Err(code) => return code,
     };
-    let case = case_name(&scene);
+    let (case, machine) = (case_name(&scene), provenance::machine());
+    if let Some(Err(taken)) = args.out.as_deref().map(|out| folder::free_for(&args.scene, out)) {
+        eprintln!("tissuebench: {taken}");
+        return 2;
+    }
     let group = match Group::new(&scene, None, REPEATS) {
         Ok(group) => group,
         Err(failure) => {
@@ -185,7 +194,8 @@ fn run(args: &RunArgs) -> u8 {
     set.records.extend(study::reference_records(&scene));
     if let Some(out) = &args.out {
         let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
-        set.provenance = provenance::provenance(&[(case, text)], 0);
+        set.provenance = provenance::provenance(machine, &[(case, text)]);
+        set.provenance.source = folder::source(&args.scene);
         match reports::write_run(out, &set) {
             Ok(()) => code = code.max(report(out, &out.join("report"))),
             Err(bad) => {
@@ -301,13 +311,18 @@ fn verify(args: &VerifyArgs) -> u8 {
         Err(errors) => return refuse(&errors),
     };
     plan.select(args);
+    if let Err(taken) = folder::free_for(&path, &args.out) {
+        eprintln!("tissuebench: {taken}");
+        return 2;
+    }
     if plan.is_empty() {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
     }
     eprintln!("{}: {} runs", path.display(), plan.len());
     let finished = plan.execute(args);
-    let set = finished.set;
+    let mut set = finished.set;
+    set.provenance.source = folder::source(&path);
     if let Err(bad) = reports::write_run(&args.out, &set) {
         eprintln!("tissuebench: {bad}");
         return 3;

@@ -157,6 +157,7 @@ pub struct Coupled {
 
 /// One method on one body.
 #[derive(Clone)]
+#[allow(clippy::large_enum_variant, reason = "a run has one, never an array of them")]
 pub enum Discretisation {
     /// Finite elements.
     Fem(Fem),

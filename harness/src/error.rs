@@ -19,16 +19,16 @@ pub enum Failure {
     Efg(#[from] efg::EfgError),
     /// Assembly or solution failed.
     #[error(transparent)]
-    Solve(#[from] mechanics::SolveError),
+    Solve(#[from] statics::SolveError),
     /// A static procedure carried nothing.
     #[error(transparent)]
-    Static(Box<mechanics::StaticError>),
+    Static(Box<statics::StaticError>),
     /// Explicit dynamics could not start or go on.
     #[error(transparent)]
-    Explicit(Box<mechanics::ExplicitError>),
+    Explicit(Box<explicit::ExplicitError>),
     /// Implicit dynamics could not start or go on.
     #[error(transparent)]
-    InTime(Box<mechanics::TimeError>),
+    InTime(Box<statics::TimeError>),
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
@@ -116,7 +116,7 @@ impl Failure {
 
     /// The status of a run that this ended early, its numbers kept up to there.
     pub fn early_status(&self) -> &'static str {
-        use mechanics::ExplicitError::{ContactAt, Inverted, InvertedAt, LightTool, NotFinite, StepTooLarge};
+        use explicit::ExplicitError::{ContactAt, Inverted, InvertedAt, LightTool, NotFinite, StepTooLarge};
         let Failure::Explicit(error) = self else { return "stalled" };
         match **error {
             Inverted(_) | InvertedAt { .. } => "inverted",
@@ -137,22 +137,22 @@ impl Failure {
     }
 }
 
-impl From<mechanics::StaticError> for Failure {
-    fn from(error: mechanics::StaticError) -> Failure {
+impl From<statics::StaticError> for Failure {
+    fn from(error: statics::StaticError) -> Failure {
         Failure::Static(Box::new(error))
     }
 }
 
-impl From<mechanics::ExplicitError> for Failure {
-    fn from(error: mechanics::ExplicitError) -> Failure {
+impl From<explicit::ExplicitError> for Failure {
+    fn from(error: explicit::ExplicitError) -> Failure {
         Failure::Explicit(Box::new(error))
     }
 }
 
-impl From<mechanics::TimeError> for Failure {
-    fn from(error: mechanics::TimeError) -> Failure {
+impl From<statics::TimeError> for Failure {
+    fn from(error: statics::TimeError) -> Failure {
         match error {
-            mechanics::TimeError::Static(error) => error.into(),
+            statics::TimeError::Static(error) => error.into(),
             error => Failure::InTime(Box::new(error)),
         }
     }

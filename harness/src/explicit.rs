@@ -2,12 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use geometry::Vector3;
-use mechanics::{
-    Balance, ContactSurface, Drive, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External,
-    InternalForce, LanczosParams, LanePath, Lumping, Matrix3, MovingTool, Prescribed, SolveError, Springs,
-    Tools, critical_step_touching, lumped_mass, nodal_forces,
+use contact::{ContactSurface, Drive};
+use explicit::{
+    Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
+    Lumping, MovingTool, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
 };
+use geometry::Vector3;
+use lanes::LanePath;
+use shape::Matrix3;
+use statics::{SolveError, nodal_forces};
 
 use crate::Failure;
 use crate::motion::Motion;
@@ -63,6 +66,7 @@ pub fn solve(
         groups: volume.groups.as_ref(),
     };
     let mut force = InternalForce::new(body, LanePath::best())?;
+    let kernel = force.info();
     work.mass_nodes += mass.len() as u64;
 
     let ramp = |t: f64| if t < params.ramp { t / params.ramp } else { 1.0 };
@@ -163,6 +167,7 @@ pub fn solve(
         pressure: Vec::new(),
         last,
         metrics,
+        forces: Some(kernel),
         failure: failure.map(Failure::from),
     })
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use geometry::{Point3, msh};
-use interp::{Radial, Scheme};
+use interp::Scheme;
 
 use crate::discretise::Discretisation;
-use crate::outcome::{LoadStep, Outcome, Size as Sizes, Stage, Unfinished};
+use crate::outcome::{LoadStep, Outcome, SchemeSettings, Size as Sizes, Stage, Unfinished};
 use crate::plan::{Wants, plan};
 use crate::run::{self, Asks, Repeats, Solved, run};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, rule};
 use crate::stored::Stored;
 use crate::work::Work;
 use crate::{Failure, body, reach};
@@ -22,7 +22,7 @@ pub struct Group<'a> {
     poisson: Option<f64>,
     probes: Vec<Point3>,
     targets: Vec<Point3>,
-    schemes: Vec<(String, Scheme)>,
+    schemes: Vec<(SchemeSettings, Scheme)>,
     reference: Option<run::Reference>,
     beside: Option<run::Reference>,
     reference_work: Work,
@@ -76,7 +76,7 @@ impl<'a> Group<'a> {
             poisson: None,
             targets: targets(scene, &probes)?,
             probes,
-            schemes: schemes(scene)?,
+            schemes: schemes(scene),
             reference: None,
             beside: None,
             reference_work: Work::default(),
@@ -209,7 +209,9 @@ impl<'a> Group<'a> {
             integrated: integrated.as_ref(),
             repeated: self.scene.output.repeated.as_ref().filter(|_| extras.frames),
         };
-        match run(scenario.identity(), stages.clone(), &discretisation, &setup, &asks) {
+        let mut identity = scenario.identity();
+        identity.split = integrated.as_ref().and(extras.split).map(rule);
+        match run(identity, stages.clone(), &discretisation, &setup, &asks) {
             Ok(mut solved) => {
                 let locate = |failure| scenario.locate(failure);
                 solved.outcome.stalled = solved.outcome.stalled.map(locate);
@@ -235,7 +237,7 @@ impl<'a> Group<'a> {
         Wants { targets, schemes: targets && !self.schemes.is_empty() }
     }
 
-    fn schemes_for(&self, method: &Discretisation) -> &[(String, Scheme)] {
+    fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
         match method {
             Discretisation::Efg(_) => &self.schemes,
             Discretisation::Fem(_) => &[],
@@ -292,64 +294,15 @@ fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
 }
 
 /// Schemes with their settings; the method's own rows are always compared with them.
-fn schemes(scene: &Scene) -> Result<Vec<(String, Scheme)>, Failure> {
+fn schemes(scene: &Scene) -> Vec<(SchemeSettings, Scheme)> {
+    let named = scene.output.transfers.iter().filter_map(|transfer| transfer.scheme.as_ref());
     let mut list = Vec::new();
-    for (index, transfer) in scene.output.transfers.iter().enumerate() {
-        if transfer.scheme == scene::SchemeName::Own {
-            continue;
+    for (scheme, values) in named {
+        let scheme = (SchemeSettings::of(values), *scheme);
+        // One that is asked for twice is one scheme.
+        if !list.contains(&scheme) {
+            list.push(scheme);
         }
-        let default = Scheme::from_name(transfer.scheme.name()).ok_or_else(|| {
-            let key = transfer_key(scene, index, "scheme");
-            Failure::of_scene(scene, ErrorKind::NotAvailable, &key, "is not available", "")
-        })?;
-        list.push(with_settings(default, transfer));
     }
-    Ok(list)
-}
-
-/// The scheme as the scene sets it, and its settings as records have them.
-fn with_settings(default: Scheme, given: &scene::Transfer) -> (String, Scheme) {
-    let dilatation = |default: f64| given.dilatation.unwrap_or(default);
-    let shape = |default: f64| given.shape.unwrap_or(default);
-    let polynomial = |default: bool| given.polynomial.unwrap_or(default);
-    match default {
-        Scheme::InverseDistance { neighbours, power } => {
-            let (n, p) = (given.neighbours.unwrap_or(neighbours), given.power.unwrap_or(power));
-            (format!("neighbours={n};power={p}"), Scheme::InverseDistance { neighbours: n, power: p })
-        }
-        Scheme::Shepard { dilatation: d } => {
-            let d = dilatation(d);
-            (format!("dilatation={d}"), Scheme::Shepard { dilatation: d })
-        }
-        Scheme::MlsLinear { dilatation: d } => {
-            let d = dilatation(d);
-            (format!("dilatation={d}"), Scheme::MlsLinear { dilatation: d })
-        }
-        Scheme::MlsQuadratic { dilatation: d } => {
-            let d = dilatation(d);
-            (format!("dilatation={d}"), Scheme::MlsQuadratic { dilatation: d })
-        }
-        Scheme::MlsModified { dilatation: d } => {
-            let d = dilatation(d);
-            (format!("dilatation={d}"), Scheme::MlsModified { dilatation: d })
-        }
-        Scheme::Radial(Radial::Multiquadric { shape: c }) => {
-            let c = shape(c);
-            (format!("shape={c}"), Scheme::Radial(Radial::Multiquadric { shape: c }))
-        }
-        Scheme::Radial(Radial::Gaussian { shape: c, polynomial: p }) => {
-            let (shape, polynomial) = (shape(c), polynomial(p));
-            let settings = format!("shape={shape};polynomial={polynomial}");
-            (settings, Scheme::Radial(Radial::Gaussian { shape, polynomial }))
-        }
-        Scheme::Radial(Radial::WendlandC2 { support, polynomial: p }) => {
-            let (support, polynomial) = (dilatation(support), polynomial(p));
-            let settings = format!("dilatation={support};polynomial={polynomial}");
-            (settings, Scheme::Radial(Radial::WendlandC2 { support, polynomial }))
-        }
-        Scheme::Nearest
-        | Scheme::Radial(Radial::ThinPlate | Radial::Cubic)
-        | Scheme::NaturalNeighbour
-        | Scheme::Barycentric => (String::new(), default),
-    }
+    list
 }

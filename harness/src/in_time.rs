@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use contact::ContactSurface;
 use geometry::Vector3;
-use mechanics::{
-    ContactSurface, Inertia, Mass, Prony, Ramp, Ramps, TimeError, TimeParams, TimeProblem, TimeStep,
-    solve_in_time,
-};
+use material::Prony;
+use statics::{Inertia, Mass, Ramp, Ramps, TimeError, TimeParams, TimeProblem, TimeStep, solve_in_time};
 
 use crate::Failure;
 use crate::discretise::Discretisation;
@@ -119,6 +118,7 @@ pub fn solve(
         fields,
         last,
         metrics,
+        forces: None,
         failure: path.failure.map(Failure::from),
     })
 }

@@ -30,6 +30,15 @@ pub struct RunObject<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
     plan: &'a [Stage],
+    /// What evaluated the internal forces of explicit dynamics or relaxation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    force_kernel: Option<&'a str>,
+    /// Instructions of its lanes; absent where it is the plain loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lane_path: Option<&'a str>,
+    /// What solved the equations of a linear procedure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    linear_solver: Option<&'a str>,
     /// Counts of what was done; all 0 in a run that failed.
     work: Work,
 }
@@ -103,7 +112,10 @@ impl<'a> RunObject<'a> {
             elements: outcome.size.elements,
             dofs: outcome.size.dofs,
             metrics,
-            phases: outcome.phases.iter().map(|(name, s)| ((*name).into(), s.median)).chain(frames).collect(),
+            phases: (outcome.phases.iter())
+                .map(|timed| (timed.phase.into(), timed.summary().median))
+                .chain(frames)
+                .collect(),
             probes: outcome
                 .probes
                 .iter()
@@ -134,6 +146,9 @@ impl<'a> RunObject<'a> {
                 })
                 .collect(),
             plan: &outcome.plan,
+            force_kernel: outcome.identity.force_kernel.as_deref(),
+            lane_path: outcome.identity.lane_path.as_deref(),
+            linear_solver: outcome.identity.linear_solver.as_deref(),
             work: outcome.work,
         }
     }
@@ -154,6 +169,9 @@ impl<'a> RunObject<'a> {
             tools: Vec::new(),
             steps: Vec::new(),
             plan: &run.plan,
+            force_kernel: None,
+            lane_path: None,
+            linear_solver: None,
             work: Work::default(),
         }
     }

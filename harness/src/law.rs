@@ -1,7 +1,7 @@
 //! From a scene's material to the law that the solvers take, and to its limit at small strain.
 
 use cases::scene::{ErrorKind, Material};
-use mechanics::{
+use material::{
     Hencky, Law, LinearElastic, Material as _, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
     Ogden, SaintVenantKirchhoff,
 };

@@ -4,6 +4,7 @@
 //! [`discretise::Discretisation`], these the tables of [`prepare::prepare`], and the solution of [`run::run`] an
 //! [`outcome::Outcome`] of records. Nothing here draws; nothing in `reports` solves.
 
+mod baseline;
 pub mod body;
 pub mod check;
 pub mod cli;
@@ -13,6 +14,7 @@ mod course;
 pub mod discretise;
 pub mod error;
 pub mod explicit;
+mod folder;
 mod grading;
 pub mod group;
 pub mod in_time;
@@ -32,6 +34,7 @@ pub mod picture;
 pub mod place;
 pub mod plan;
 pub mod prepare;
+mod progress;
 pub mod provenance;
 pub mod reach;
 pub mod refine;

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use cases::exact::{exact_names, exact_parameters};
-use cases::scene::{Basis, Element, KernelName, Mass, Metric, SchemeName, SupportShape};
+use cases::scene::{Basis, Element, Mass, SupportShape};
+use catalogue::{metric::METRICS, names};
 use reports::{Check, Status};
 
 use crate::outcome::{Outcome, Stage};
@@ -16,13 +17,13 @@ pub fn print() {
         "elements    {}",
         [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex20].map(Element::name).join(", ")
     );
-    println!("kernels     {}", KernelName::ALL.map(KernelName::name).join(", "));
+    println!("kernels     {}", names(efg::KERNELS).join(", "));
     println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
     println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
     println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
     println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
     println!("essential   nitsche, penalty, multipliers, elimination, coupling");
-    println!("transfer    {}", SchemeName::ALL.map(SchemeName::name).join(", "));
+    println!("transfer    {}, own", names(interp::SCHEMES).join(", "));
     println!("exact solutions, with their parameters");
     for name in exact_names() {
         let parameters = exact_parameters(name).unwrap_or_default();
@@ -33,7 +34,7 @@ pub fn print() {
         println!("  {name:24} {}", list.join(", "));
     }
     println!("metrics");
-    for metric in Metric::ALL {
+    for metric in METRICS {
         println!("  {:24} {}", metric.name, metric.meaning);
     }
     let mut scenes: Vec<String> = std::fs::read_dir("cases")
@@ -143,7 +144,7 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
 }
 
 fn phase(outcome: &Outcome, name: &str) -> Option<f64> {
-    outcome.phases.iter().find(|(n, _)| *n == name).map(|(_, s)| s.median)
+    outcome.phases.iter().find(|timed| timed.phase == name).map(|timed| timed.summary().median)
 }
 
 /// Four significant digits, in exponents where plain digits would hide them.

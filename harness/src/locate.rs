@@ -1,8 +1,10 @@
 //! From what stopped a run to the key of the scene that caused it: file, line and value.
 
+use algebra::AlgebraError;
 use cases::scene::{Cloud, ErrorKind, Family, Functions, Scene, SupportRule};
 use efg::EfgError;
-use mechanics::{ExplicitError, SolveError, StaticError, TimeError};
+use explicit::ExplicitError;
+use statics::{SolveError, StaticError, TimeError};
 
 use crate::Failure;
 use crate::error::{Finding, Key};
@@ -47,8 +49,8 @@ impl Scenario<'_> {
     fn of_cloud(&self, error: &EfgError) -> Finding {
         let support = match &self.method.family {
             Family::Efg(efg) => match efg.functions {
-                Functions::MovingLeastSquares { support: SupportRule::Dilatation(_), .. } => {
-                    Key::Method("dilatation")
+                Functions::MovingLeastSquares { support: SupportRule::Scale(_), .. } => {
+                    Key::Method("support_scale")
                 }
                 Functions::MovingLeastSquares { support: SupportRule::Neighbours { .. }, .. } => {
                     Key::Method("neighbours")
@@ -157,7 +159,7 @@ impl Scenario<'_> {
             SolveError::Inconsistent { .. }
             | SolveError::Dependent { .. }
             | SolveError::BadWeak { .. }
-            | SolveError::ZeroPivot => {
+            | SolveError::Algebra(AlgebraError::ZeroPivot) => {
                 finding(ErrorKind::NotRun, if cloud { essential } else { supports(self.scene) }, text, "")
             }
             SolveError::NotPositiveDefinite | SolveError::OrphanNode { .. } if cloud => finding(
@@ -171,7 +173,9 @@ impl Scenario<'_> {
                 let help = "every node of the mesh has to belong to a cell";
                 finding(ErrorKind::NotRun, Key::Size(""), text, help)
             }
-            SolveError::TooLarge { .. } => finding(ErrorKind::NotRun, Key::Size(""), text, "make it coarser"),
+            SolveError::Algebra(AlgebraError::TooLarge { .. }) => {
+                finding(ErrorKind::NotRun, Key::Size(""), text, "make it coarser")
+            }
             _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
         }
     }

@@ -1,8 +1,9 @@
 //! Mean pressure `p = -tr(sigma) / 3` (Pa) as the method itself has it: of the law, of the projected dilation, or of a
 //! pressure field of its own. A plain derivative of the displacement would show a pressure the projected methods never used.
 
-use mechanics::{Law, Material as _, Matrix3, volume_change};
+use material::{Law, Material as _, volume_change};
 use shape::DilationGroups;
+use shape::Matrix3;
 
 use crate::discretise::Volume;
 

@@ -1,7 +1,8 @@
 //! What a finished run is told in: errors, maxima, energies, counts, probes.
 
 use geometry::{Matrix3, Point3, Vector3};
-use mechanics::{Body, Law};
+use material::Law;
+use statics::Body;
 
 use crate::Failure;
 use crate::discretise::{Discretisation, Efg, Essential};
@@ -81,7 +82,7 @@ pub(crate) fn measure(
     let energy = match (&solution.path, &solution.motion) {
         (Some(path), _) => path.last.strain_energy,
         (_, Some(motion)) => motion.last.strain_energy,
-        (None, None) => Some(mechanics::strain_energy(&body, &solution.u)?),
+        (None, None) => Some(statics::strain_energy(&body, &solution.u)?),
     };
     if let Some(energy) = energy {
         push(metrics, "strain-energy", energy, "J");
@@ -150,7 +151,7 @@ pub(crate) fn probes(
     // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
     // its past, which is followed at quadrature points only.
     let stress: Vec<Option<Matrix3>> = if setup.is_linear() {
-        mechanics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
+        statics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
     } else {
         let known = |h: &Matrix3| (!setup.relaxes()).then(|| cauchy(&setup.laws[0], h));
         rows.displacement_gradients(u).iter().map(known).collect()

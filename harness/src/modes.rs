@@ -2,8 +2,9 @@
 
 use cases::exact::Vibrations;
 use cases::scene;
+use explicit::{Lumping, lumped_mass};
 use geometry::{Point3, Vector3};
-use mechanics::{Lumping, Mass, Modes, lumped_mass, modes};
+use statics::{Mass, Modes, modes};
 
 use crate::Failure;
 use crate::discretise::Discretisation;

@@ -1,5 +1,6 @@
 //! What dynamics came to, explicit or implicit.
 
+use explicit::KernelInfo;
 use geometry::Vector3;
 
 use crate::Failure;
@@ -21,6 +22,8 @@ pub struct Motion {
     pub last: LoadStep,
     /// Numbers of the whole motion.
     pub metrics: Vec<Metric>,
+    /// What evaluated the internal forces of explicit dynamics.
+    pub forces: Option<KernelInfo>,
     /// Why it ended early, if it did.
     pub failure: Option<Failure>,
 }

@@ -1,8 +1,9 @@
 //! Errors against an exact solution.
 
 use cases::exact::Exact;
-use mechanics::{Body, LinearElastic};
+use material::LinearElastic;
 use shape::{Matrix3, Point3, Vector3, VolumeRows};
+use statics::Body;
 
 use crate::Failure;
 
@@ -69,10 +70,10 @@ pub fn norms(
         gradient_scale += fine.weights()[q] * exact.gradient(x).norm_squared();
     }
     let (points, weights, region, stress) = if body.dilation.is_some() {
-        let stress = mechanics::body_stress(body, u)?;
+        let stress = statics::body_stress(body, u)?;
         (body.volume.points(), body.volume.weights(), body.region, stress)
     } else {
-        let stress = mechanics::stress(fine.at(), u, body.materials, fine_region)?;
+        let stress = statics::stress(fine.at(), u, body.materials, fine_region)?;
         (fine.points(), fine.weights(), fine_region, stress)
     };
     let (mut energy, mut pressure, mut all) = (Ratio::default(), Ratio::default(), Ratio::default());

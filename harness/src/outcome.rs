@@ -1,34 +1,45 @@
 //! What one run leaves: who it was, its numbers, its times, its fields.
 
+use catalogue::Values;
+use contact::{Tool, ToolState};
 use geometry::{Matrix3, Point3, Vector3};
-use mechanics::{Tool, ToolState};
-use reports::{PlanEntry, Record, SurfaceField};
+use reports::{Family, PlanEntry, Record, SurfaceField};
 use serde::Serialize;
 
 use crate::Failure;
 use crate::repeated::Latency;
-use crate::timing::Summary;
+use crate::timing::{Summary, Timed};
 use crate::work::Work;
 
-/// The identity of a run: what distinguishes it from every other one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Identity {
-    /// Scene name: the file's stem.
-    pub case: String,
-    /// Method id.
-    pub method: String,
-    /// `fem` or `efg`.
-    pub family: &'static str,
-    /// Element or kernel.
-    pub variant: String,
-    /// Further settings, `key=value` joined by `;`, sorted by key.
-    pub parameters: String,
-    /// Poisson's ratio of the first material.
-    pub poisson: f64,
-    /// Refinement level; 0 where the size was given otherwise.
-    pub level: u32,
-    /// Seed of jitter and cloud.
-    pub seed: u64,
+/// Which run: its record without size and number.
+pub type Identity = Record;
+
+/// Settings of a transfer scheme, as far as it has them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SchemeSettings {
+    /// Neighbours of each target.
+    pub neighbours: Option<u64>,
+    /// Power of the distance.
+    pub power: Option<f64>,
+    /// Support radius over the node spacing.
+    pub support_scale: Option<f64>,
+    /// Width of radial functions over the mean node spacing.
+    pub shape: Option<f64>,
+    /// Whether they have a linear polynomial with them.
+    pub polynomial: Option<bool>,
+}
+
+impl SchemeSettings {
+    /// The values that a scheme's parameters have, defaults included.
+    pub fn of(values: &Values) -> SchemeSettings {
+        SchemeSettings {
+            neighbours: values.get("neighbours").map(|n| n as u64),
+            power: values.get("power"),
+            support_scale: values.get("support_scale"),
+            shape: values.get("shape"),
+            polynomial: values.takes("polynomial").then(|| values.flag("polynomial")),
+        }
+    }
 }
 
 /// Sizes of a discretisation.
@@ -163,14 +174,12 @@ pub struct Stage {
 pub struct Transfer {
     /// Scheme name; `own-rows` for the method's own shape functions.
     pub scheme: String,
-    /// Settings, as in [`Identity::parameters`].
-    pub parameters: String,
+    /// Its settings.
+    pub settings: SchemeSettings,
     /// Errors and counts.
     pub metrics: Vec<Metric>,
-    /// Seconds to build the table and to pack it for repeated use.
-    pub build: Summary,
-    /// Seconds to apply the packed table to one field.
-    pub apply: Summary,
+    /// Seconds to build the table and to pack it for repeated use (`prepare`), and to apply it to one field (`transfer`).
+    pub times: Vec<Timed>,
     /// Number of targets.
     pub targets: usize,
 }
@@ -184,8 +193,8 @@ pub struct Outcome {
     pub size: Size,
     /// Numbers that two runs of one input share to the bit.
     pub metrics: Vec<Metric>,
-    /// Seconds per phase; the last entry is the total.
-    pub phases: Vec<(&'static str, Summary)>,
+    /// Seconds per phase and repeat, the total among them.
+    pub phases: Vec<Timed>,
     /// Seconds per frame of the loop after the first solution, where the scene asks for one.
     pub latencies: Vec<Latency>,
     /// Most memory allocated at once in the run beyond its input, bytes.
@@ -242,67 +251,66 @@ impl Outcome {
 
     /// The run as rows of the long table.
     pub fn records(&self) -> Vec<Record> {
-        let mut records: Vec<Record> =
-            self.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
-        for (phase, summary) in &self.phases {
-            records.extend(self.times(phase, summary));
-        }
+        let own = self.row();
+        let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
+        self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
         for latency in &self.latencies {
-            let told = latency.statistics().into_iter();
-            records.extend(told.map(|(s, unit, value)| self.record("time", unit, latency.phase, s, value)));
+            let phase = Record { quantity: "time".into(), phase: latency.phase.into(), ..own.clone() };
+            rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {
+                unit: unit.into(),
+                statistic: statistic.into(),
+                value,
+                ..phase.clone()
+            }));
         }
-        records.push(self.record("memory", "B", "", "value", self.memory as f64));
-        for transfer in &self.transfers {
-            records.extend(self.transfer_records(transfer));
+        rows.push(number(&own, &metric("memory", self.memory as f64, "B")));
+        self.transfers.iter().for_each(|transfer| rows.extend(self.transfer_records(&own, transfer)));
+        rows.extend(self.step_records(&own));
+        for (index, metrics) in self.modes.iter().enumerate() {
+            let mode = Record { mode: Some(index as u64 + 1), ..own.clone() };
+            rows.extend(metrics.iter().map(|m| number(&mode, m)));
         }
-        records.extend(self.step_records());
-        for (number, metrics) in self.modes.iter().enumerate() {
-            let phase = format!("mode-{}", number + 1);
-            records.extend(metrics.iter().map(|m| self.record(&m.name, m.unit, &phase, "value", m.value)));
-        }
-        records
+        rows
     }
 
-    /// The history, under the phases `step-0` (the start) to `step-N`. The first tool's numbers are
-    /// `closure` and `tool-force`, the second's `closure-2` and `tool-force-2`.
-    fn step_records(&self) -> Vec<Record> {
+    /// What all rows of the run share.
+    fn row(&self) -> Record {
+        let size = &self.size;
+        let own = Record {
+            nodes: size.nodes,
+            elements: size.elements,
+            points: size.points,
+            dofs: size.dofs,
+            spacing: size.spacing,
+            ..self.identity.clone()
+        };
+        Record { run: run_id(&own), ..own }
+    }
+
+    /// The history, from step 0, the start. The first tool's numbers are `closure` and `tool-force`, the second's `closure-2` and
+    /// `tool-force-2`.
+    fn step_records(&self, own: &Record) -> Vec<Record> {
+        let at = |step: usize| Record { step: Some(step as u64), ..own.clone() };
         let mut rows = Vec::new();
+        let start = at(0);
         if !self.steps.is_empty() {
             for index in 0..self.tools.len() {
-                rows.push(self.record(&of_tool("closure", index), "m", "step-0", "value", 0.0));
-                rows.push(self.record(&of_tool("tool-force", index), "N", "step-0", "value", 0.0));
+                rows.push(number(&start, &metric(&of_tool("closure", index), 0.0, "m")));
+                rows.push(number(&start, &metric(&of_tool("tool-force", index), 0.0, "N")));
             }
         }
         // Dynamics starts from rest and undeformed: no time, no energy.
         if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
             if first.strain_energy.is_some() {
-                rows.push(self.record("strain-energy", "J", "step-0", "value", 0.0));
+                rows.push(number(&start, &metric("strain-energy", 0.0, "J")));
             }
-            for metric in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
-                rows.push(self.record(&metric.name, metric.unit, "step-0", "value", 0.0));
+            for known in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
+                rows.push(number(&start, &metric(&known.name, 0.0, known.unit)));
             }
         }
-        for (number, step) in self.steps.iter().enumerate() {
-            let phase = format!("step-{}", number + 1);
-            let mut push = |name: &str, unit: &str, value: f64| {
-                rows.push(self.record(name, unit, &phase, "value", value))
-            };
-            push("load-carried", "1", step.load);
-            if let Some(energy) = step.strain_energy {
-                push("strain-energy", "J", energy);
-            }
-            push("smallest-j", "1", step.smallest_j);
-            if step.iterations > 0 {
-                push("newton-iterations", "1", step.iterations as f64);
-            }
-            for (index, tool) in step.tools.iter().enumerate() {
-                push(&of_tool("closure", index), "m", tool.closure);
-                push(&of_tool("tool-force", index), "N", tool.pushed);
-                push(&of_tool("contact-points", index), "1", tool.active as f64);
-            }
-            for metric in step.more.iter().chain(&step.against) {
-                push(&metric.name, metric.unit, metric.value);
-            }
+        for (index, step) in self.steps.iter().enumerate() {
+            let here = at(index + 1);
+            rows.extend(of_step(step).iter().map(|m| number(&here, m)));
         }
         rows
     }
@@ -321,55 +329,105 @@ impl Outcome {
             .collect()
     }
 
-    fn record(&self, quantity: &str, unit: &str, phase: &str, statistic: &str, value: f64) -> Record {
-        let (identity, size) = (&self.identity, &self.size);
-        Record {
-            case: identity.case.clone(),
-            method: identity.method.clone(),
-            family: identity.family.into(),
-            variant: identity.variant.clone(),
-            parameters: identity.parameters.clone(),
-            poisson: identity.poisson,
-            level: identity.level,
-            nodes: size.nodes,
-            elements: size.elements,
-            points: size.points,
-            dofs: size.dofs,
-            spacing: size.spacing,
-            seed: identity.seed,
-            quantity: quantity.into(),
-            unit: unit.into(),
-            phase: phase.into(),
-            statistic: statistic.into(),
-            value,
-        }
-    }
-
-    fn times(&self, phase: &str, summary: &Summary) -> Vec<Record> {
-        [("median", summary.median), ("spread", summary.spread), ("min", summary.min)]
-            .into_iter()
-            .map(|(statistic, value)| self.record("time", "s", phase, statistic, value))
-            .collect()
-    }
-
-    fn transfer_records(&self, transfer: &Transfer) -> Vec<Record> {
-        let mut rows: Vec<Record> =
-            transfer.metrics.iter().map(|m| self.record(&m.name, m.unit, "", "value", m.value)).collect();
-        rows.extend(self.times("prepare", &transfer.build));
-        rows.extend(self.times("transfer", &transfer.apply));
-        // One method id may stand for many kernels: without theirs, transfers from two of them would be one row.
-        let from = format!("from={};kernel={}", self.identity.method, self.identity.variant);
-        let parameters =
-            if transfer.parameters.is_empty() { from } else { format!("{from};{}", transfer.parameters) };
-        for row in &mut rows {
-            row.family = "interp".into();
-            row.variant = transfer.scheme.clone();
-            row.method = transfer.scheme.clone();
-            row.parameters = parameters.clone();
-            row.points = transfer.targets as u64;
-        }
+    /// A transfer is a run of its own: by its scheme, from this method.
+    fn transfer_records(&self, own: &Record, transfer: &Transfer) -> Vec<Record> {
+        let SchemeSettings { neighbours, power, support_scale, shape, polynomial } = transfer.settings;
+        let row = Record {
+            case: own.case.clone(),
+            purpose: own.purpose,
+            published: own.published.clone(),
+            method: transfer.scheme.clone(),
+            series: transfer.scheme.clone(),
+            family: Family::Interp,
+            variant: transfer.scheme.clone(),
+            from: Some(own.method.clone()),
+            // One method id may stand for many kernels.
+            kernel: Some(own.variant.clone()),
+            neighbours,
+            power,
+            support_scale,
+            shape,
+            polynomial,
+            points: transfer.targets as u64,
+            poisson: own.poisson,
+            level: own.level,
+            nodes: own.nodes,
+            elements: own.elements,
+            dofs: own.dofs,
+            spacing: own.spacing,
+            seed: own.seed,
+            ..Record::default()
+        };
+        // Settings of the method that a scheme's row has no column for tell its runs apart all the same.
+        let row = Record { run: digest(&format!("{} {}", own.run, run_id(&row))), ..row };
+        let mut rows: Vec<Record> = transfer.metrics.iter().map(|m| number(&row, m)).collect();
+        transfer.times.iter().for_each(|timed| rows.extend(times(&row, timed)));
         rows
     }
+}
+
+/// Id of the run that a row belongs to: of its case, method, settings and size, so that it is the same in every study.
+pub(crate) fn run_id(row: &Record) -> String {
+    let size = (row.poisson.to_bits(), row.level, row.nodes, row.elements, row.seed);
+    digest(&format!("{:?}", (&row.case, &row.method, row.family, &row.variant, row.settings(), size)))
+}
+
+fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex()[..16].to_string()
+}
+
+fn metric(name: &str, value: f64, unit: &'static str) -> Metric {
+    Metric { name: name.into(), value, unit }
+}
+
+/// A plain value as a row.
+fn number(row: &Record, metric: &Metric) -> Record {
+    Record {
+        quantity: metric.name.clone(),
+        unit: metric.unit.into(),
+        statistic: "value".into(),
+        value: metric.value,
+        ..row.clone()
+    }
+}
+
+/// Every repeat of a phase on the wall's clock and of the processors, and what they come to.
+fn times(row: &Record, timed: &Timed) -> Vec<Record> {
+    let of = |quantity: &str, statistic: &str, repeat: Option<usize>, value: f64| Record {
+        quantity: quantity.into(),
+        unit: "s".into(),
+        phase: timed.phase.into(),
+        statistic: statistic.into(),
+        repeat: repeat.map(|r| r as u64 + 1),
+        value,
+        ..row.clone()
+    };
+    let Summary { median, spread, min } = timed.summary();
+    let mut rows: Vec<Record> = [("median", median), ("spread", spread), ("min", min)]
+        .map(|(statistic, value)| of("time", statistic, None, value))
+        .into();
+    rows.extend(timed.cpu_median().map(|median| of("cpu-time", "median", None, median)));
+    for (quantity, all) in [("time", &timed.wall), ("cpu-time", &timed.cpu)] {
+        rows.extend(all.iter().enumerate().map(|(r, &value)| of(quantity, "repeat", Some(r), value)));
+    }
+    rows
+}
+
+/// What is recorded of a step.
+fn of_step(step: &LoadStep) -> Vec<Metric> {
+    let mut all = vec![metric("load-carried", step.load, "1")];
+    all.extend(step.strain_energy.map(|energy| metric("strain-energy", energy, "J")));
+    all.push(metric("smallest-j", step.smallest_j, "1"));
+    if step.iterations > 0 {
+        all.push(metric("newton-iterations", step.iterations as f64, "1"));
+    }
+    for (index, tool) in step.tools.iter().enumerate() {
+        all.push(metric(&of_tool("closure", index), tool.closure, "m"));
+        all.push(metric(&of_tool("tool-force", index), tool.pushed, "N"));
+        all.push(metric(&of_tool("contact-points", index), tool.active as f64, "1"));
+    }
+    all.extend(step.more.iter().chain(&step.against).cloned());
+    all
 }
 
 /// The name of a tool's quantity: the bare one for the first tool, numbered from 2 for the others.

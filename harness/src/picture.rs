@@ -1,8 +1,8 @@
 //! What a run leaves for the pictures: the deformed surface, the tools where they stand, and a section between them with its
 //! pressure.
 
+use contact::ToolShape;
 use geometry::{Mesh, Point3, Vector3};
-use mechanics::ToolShape;
 use reports::{Section, SectionCell, SurfaceField, ToolHull};
 
 use crate::Failure;
@@ -59,6 +59,7 @@ pub fn picture(
     Ok(SurfaceField {
         case: identity.case.clone(),
         method: identity.method.clone(),
+        family: identity.family,
         title: format!("{} ({} nodes)", identity.method, method.nodes().len()),
         points: used.iter().map(|&n| mesh.points()[n as usize].coords.into()).collect(),
         triangles,

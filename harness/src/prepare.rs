@@ -3,11 +3,12 @@
 use cases::scene::ConstraintRows;
 use geometry::quadrature;
 use geometry::{Mesh, Point3, Vector3};
-use mechanics::{
-    Assembled, Body, ConstraintRow, Factored, FixedDof, HeldSurface, LinearProblem, Load, SolveError, Weak,
+use shape::FixedDof;
+use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
+use statics::{
+    Assembled, Body, ConstraintRow, Factored, HeldSurface, LinearProblem, Load, SolveError, Weak,
     WeakSupport, multiplier_rows,
 };
-use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
 
 use crate::Failure;
 use crate::discretise::{Coupled, Discretisation, Efg, Essential, Volume};

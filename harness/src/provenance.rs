@@ -1,61 +1,87 @@
-//! Where the numbers come from: source, compiler, processor, threads.
+//! Where the numbers come from: the program, fixed when it was built, and the machine, as it is when a run begins.
 
-use std::process::Command;
-
-use reports::{Provenance, SceneHash};
+use reports::{Machine, Program, Provenance, SceneHash};
 
 /// BLAKE3 of a scene's text, in hexadecimal digits.
 pub fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Reads what this process can know of its own making. `scenes` are (case name, file text).
-pub fn provenance(scenes: &[(String, String)], seed: u64) -> Provenance {
+/// The program, as it was built.
+pub fn program() -> Program {
+    Program {
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: env!("TISSUEBENCH_COMMIT").into(),
+        dirty: env!("TISSUEBENCH_DIRTY") == "true",
+        rustc: env!("TISSUEBENCH_RUSTC").into(),
+        target: env!("TISSUEBENCH_TARGET").into(),
+        features: env!("TISSUEBENCH_FEATURES").into(),
+        profile: if cfg!(debug_assertions) { "dev".into() } else { "release".into() },
+    }
+}
+
+/// Part of the processors that may be busy on a quiet machine.
+const QUIET: f64 = 0.2;
+
+/// The machine, as it is now: asked before the first run, its load is that of others.
+pub fn machine() -> Machine {
+    let load = load();
+    let processors = std::thread::available_parallelism().map_or(1, |n| n.get()) as f64;
+    Machine {
+        cpu: cpu(),
+        instructions: instructions(),
+        threads: rayon::current_num_threads() as u32,
+        load,
+        quiet: load.map(|load| load <= QUIET * processors),
+    }
+}
+
+/// Of a study or a single run, whose file the caller names; `scenes` are (case name, file text).
+pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
     let mut hashes: Vec<SceneHash> =
         scenes.iter().map(|(case, text)| SceneHash { case: case.clone(), blake3: hash(text) }).collect();
     hashes.sort_by(|a, b| a.case.cmp(&b.case));
     hashes.dedup();
-    Provenance {
-        version: env!("CARGO_PKG_VERSION").into(),
-        commit: commit(),
-        rustc: env!("TISSUEBENCH_RUSTC").into(),
-        cpu: cpu(),
-        threads: rayon::current_num_threads() as u32,
-        seed,
-        features: features(),
-        profile: if cfg!(debug_assertions) { "dev".into() } else { "release".into() },
-        scenes: hashes,
-    }
+    Provenance { source: String::new(), program: program(), machine, scenes: hashes }
 }
 
-/// The commit of the source tree this binary was built in, if that tree still exists and is a git checkout.
-fn commit() -> String {
-    let git = |args: &[&str]| {
-        let out = Command::new("git").args(["-C", env!("CARGO_MANIFEST_DIR")]).args(args).output().ok()?;
-        out.status.success().then(|| String::from_utf8_lossy(&out.stdout).trim().to_string())
-    };
-    match git(&["rev-parse", "HEAD"]) {
-        Some(hash) => match git(&["status", "--porcelain", "--untracked-files=no"]) {
-            Some(changes) if changes.is_empty() => hash,
-            _ => format!("{hash}+"),
-        },
-        None => "unknown".into(),
-    }
+/// Processes that ran or waited to run in the last minute, on average; unknown where the system does not tell.
+fn load() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }
 
 fn cpu() -> String {
-    std::fs::read_to_string("/proc/cpuinfo")
-        .ok()
-        .and_then(|text| {
-            text.lines().find_map(|line| {
-                line.strip_prefix("model name")?.split_once(": ").map(|(_, name)| name.to_string())
-            })
-        })
-        .unwrap_or_else(|| std::env::consts::ARCH.to_string())
+    cpuinfo("model name").unwrap_or_else(|| std::env::consts::ARCH.to_string())
+}
+
+/// The kind of processor, as far as it decides the last bits of a result: instruction sets, and caches, by whose size matrix
+/// products are blocked. Virtual machines hide the model's name: family and model number tell more.
+pub fn processor() -> String {
+    let of = |field| cpuinfo(field).unwrap_or_else(|| "unknown".into());
+    let cache = |index| {
+        std::fs::read_to_string(format!("/sys/devices/system/cpu/cpu0/cache/index{index}/size"))
+            .map_or("unknown".into(), |size| size.trim().to_string())
+    };
+    let caches = [0, 2, 3].map(cache).join("/");
+    format!(
+        "{}, family {}, model {}, caches {caches}, {}",
+        cpu(),
+        of("cpu family"),
+        of("model"),
+        instructions()
+    )
+}
+
+fn cpuinfo(field: &str) -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    text.lines().find_map(|line| {
+        let (name, value) = line.split_once(':')?;
+        (name.trim() == field).then(|| value.trim().to_string())
+    })
 }
 
 /// Instruction sets that the linear algebra chooses between at run time: they change the last bits of a result.
-fn features() -> String {
+fn instructions() -> String {
     #[cfg(target_arch = "x86_64")]
     {
         let found = [

@@ -1,11 +1,14 @@
 //! Beyond a limit point: dynamic relaxation from the last equilibrium to the load steps that are left.
 
-use geometry::Vector3;
-use mechanics::{
-    ContactHistory, ContactSurface, Drive, ExplicitBody, ExplicitError, FixedDof, InternalForce,
-    LanczosParams, LanePath, Lumping, Pressing, PressingTool, RelaxationParams, lumped_mass, nodal_forces,
-    relax_under,
+use contact::{ContactHistory, ContactSurface, Drive};
+use explicit::{
+    ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
+    RelaxationParams, lumped_mass, relax_under,
 };
+use geometry::Vector3;
+use lanes::LanePath;
+use shape::FixedDof;
+use statics::nodal_forces;
 
 use crate::Failure;
 use crate::discretise::{Dilation, Discretisation};
@@ -49,6 +52,8 @@ pub struct Relaxed {
     pub fields: Vec<Vec<Vector3>>,
     /// Steps of the relaxation over all of them.
     pub made: u64,
+    /// What evaluated the internal forces.
+    pub forces: KernelInfo,
     /// Why it ended early, if it did.
     pub failure: Option<ExplicitError>,
 }
@@ -115,7 +120,8 @@ pub(crate) fn go_on(
         });
         Pressing::new(surface, tools.collect())
     });
-    let mut done = Relaxed { steps: Vec::new(), fields: Vec::new(), made: 0, failure: None };
+    let mut done =
+        Relaxed { steps: Vec::new(), fields: Vec::new(), made: 0, forces: force.info(), failure: None };
     let mut u = from.u;
     for number in 1..=count {
         let load = number as f64 / count as f64;

@@ -4,9 +4,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use cases::scene::Repeated;
+use contact::ContactSurface;
 use geometry::{Point3, Vector3};
-use mechanics::{ContactSurface, Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
 use shape::{Rows, Unity};
+use statics::{Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
 
 use crate::Failure;
 use crate::discretise::Discretisation;

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
+use ::statics::{SolveInfo, assemble};
 use cases::scene::Repeated;
 use geometry::{Point3, Vector3};
 use interp::Scheme;
-use mechanics::{SolveInfo, assemble};
 
 use crate::Failure;
 use crate::course::history;
@@ -16,8 +16,9 @@ use crate::measure::{measure, of_tables, probes, push};
 use crate::memory::Baseline;
 use crate::modes::{self, Told};
 use crate::motion::Motion;
-use crate::outcome::{Identity, LoadStep, Outcome, Probe, Size, Stage};
+use crate::outcome::{Identity, LoadStep, Outcome, Probe, SchemeSettings, Size, Stage};
 use crate::picture::{State, picture};
+use crate::plan;
 use crate::prepare::{Prepared, prepare};
 use crate::refine::refined;
 use crate::relaxation;
@@ -65,7 +66,7 @@ pub struct Asks<'a> {
     /// Points where displacements are compared; the method's own nodes if empty.
     pub targets: &'a [Point3],
     /// Schemes that carry a cloud's displacement to the targets.
-    pub schemes: &'a [(String, Scheme)],
+    pub schemes: &'a [(SchemeSettings, Scheme)],
     /// Whether the surface displacement is kept for pictures.
     pub picture: bool,
     /// Repeats of the timed part.
@@ -125,8 +126,8 @@ pub fn run(
 }
 
 fn on_pool(
-    identity: Identity,
-    plan: Vec<Stage>,
+    mut identity: Identity,
+    mut plan: Vec<Stage>,
     method: &Discretisation,
     setup: &Setup,
     asks: &Asks,
@@ -155,15 +156,22 @@ fn on_pool(
         return Ok(unloaded(identity, plan, method, prepared, told, (timings, memory, work)));
     }
     let field = displacement(method, &prepared, &solution.u, asks, &mut timings, &mut work)?;
-    let mut phases = timings.summaries();
-    phases.push(("total", timings.total()));
-    if let (true, Some((_, solve))) =
-        (setup.explicit.is_some() && work.time_steps > 0, phases.iter().find(|(name, _)| *name == "solve"))
+    let mut phases = timings.phases().to_vec();
+    phases.push(timings.total());
+    if let (true, Some(solve)) =
+        (setup.explicit.is_some() && work.time_steps > 0, phases.iter().find(|timed| timed.phase == "solve"))
     {
         let each = 1.0 / (work.time_steps as f64 * method.mesh().cell_count() as f64);
-        phases.push(("element-step", solve.times(each)));
+        phases.push(solve.part("element-step", each));
     }
 
+    let relaxed = || solution.path.as_ref().and_then(|path| Some(path.relaxed.as_ref()?.forces));
+    if let Some(forces) = solution.motion.as_ref().and_then(|motion| motion.forces).or_else(relaxed) {
+        identity.force_kernel = Some(forces.kernel.name().into());
+        identity.lane_path = forces.path.map(|path| path.name().into());
+        plan::say_what_ran(&mut plan, forces);
+    }
+    identity.linear_solver = solution.info.as_ref().map(|info| info.path.name().into());
     let size = size(method, &prepared, solution.dofs);
     let u = solution.u.clone();
     let pressure = match (&mut solution.path, &mut solution.motion) {
@@ -201,7 +209,6 @@ fn on_pool(
         (None, Some(_)) => "relaxed",
         (None, None) => "ok",
     };
-    let mut plan = plan;
     relaxation::conclude(&mut plan, &work);
     let tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     let probes = probes(method, setup, &prepared, &u, asks.probes)?;
@@ -273,8 +280,8 @@ fn unloaded(
     (timings, memory, work): (Timings, u64, Work),
 ) -> Solved {
     of_tables(&mut metrics, &prepared);
-    let mut phases = timings.summaries();
-    phases.push(("total", timings.total()));
+    let mut phases = timings.phases().to_vec();
+    phases.push(timings.total());
     let outcome = Outcome {
         identity,
         size: size(method, &prepared, dofs),
@@ -353,7 +360,7 @@ fn solve(
         let solution = Solution { u, dofs, motion: Some(motion), ..Solution::default() };
         return Ok((prepared, solution));
     }
-    let mechanics::Solution { u, info, .. } = solve_linear(method, setup, &prepared, timings, work)?;
+    let ::statics::Solution { u, info, .. } = solve_linear(method, setup, &prepared, timings, work)?;
     let (dofs, residual) = (info.dofs, info.residual);
     Ok((prepared, Solution { u, dofs, residual, info: Some(info), ..Solution::default() }))
 }
@@ -365,7 +372,7 @@ pub(crate) fn solve_linear(
     prepared: &Prepared,
     timings: &mut Timings,
     work: &mut Work,
-) -> Result<mechanics::Solution, Failure> {
+) -> Result<::statics::Solution, Failure> {
     let (loads, weak) = (prepared.loads(), prepared.weak());
     let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
     let assembled = timings.time("assemble", || assemble(&problem))?;

@@ -4,10 +4,12 @@ mod discretise;
 mod identity;
 mod procedure;
 
+pub(crate) use identity::{purpose, rule};
+
 use cases::exact::{Exact, Params, exact_by_name};
 use cases::scene::{self, LoadKind, OnStall, Prescribed, ProcedureKind, Reference, Scene, VectorField};
 use geometry::{Point3, Vector3};
-use mechanics::{Law, LinearElastic};
+use material::{Law, LinearElastic};
 
 use crate::error::Key;
 use crate::setup::{Acting, Applied, Held, Setup};

@@ -2,7 +2,8 @@
 
 use cases::exact::Exact;
 use geometry::{Point3, Vector3};
-use mechanics::{Law, LinearElastic, StaticParams};
+use material::{Law, LinearElastic};
+use statics::StaticParams;
 
 use crate::explicit::ExplicitParams;
 use crate::in_time::InTimeParams;

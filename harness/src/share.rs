@@ -5,8 +5,8 @@
 //! constant traction, by whatever rule the surface is integrated, if it is the rule of the energy.
 
 use geometry::{Facet, Mesh, Point3, Vector3, closest_on_triangle};
-use mechanics::ConstraintRow;
 use shape::SurfaceRows;
+use statics::ConstraintRow;
 
 /// Normals that differ by more than this belong to two sides of an edge, each with a traction of its own: 37 degrees.
 const SAME_SIDE: f64 = 0.8;

@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+use contact::{ContactSurface, DrivenTool};
 use geometry::Vector3;
-use mechanics::{
-    ContactSurface, Dilation, DrivenTool, Solid, StaticError, StaticParams, StaticProblem, Step, solve_static,
-};
+use statics::{Dilation, Solid, StaticError, StaticParams, StaticProblem, Step, solve_static};
 
 use crate::Failure;
 use crate::discretise::Discretisation;

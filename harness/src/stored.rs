@@ -6,12 +6,12 @@ use std::path::Path;
 
 use cases::scene::{Body, ErrorKind, Scene};
 use geometry::{Point3, Vector3};
-use reports::Record;
+use reports::{Family, Record};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::group::{Group, case_name};
-use crate::outcome::{LoadStep, ToolStep, of_tool};
+use crate::outcome::{LoadStep, ToolStep, of_tool, run_id};
 use crate::provenance;
 use crate::run::Reference;
 
@@ -21,7 +21,7 @@ use crate::run::Reference;
 pub struct Stored {
     /// The scene it was made from.
     pub case: String,
-    /// BLAKE3 of that scene without its title, source and methods: what the solutions are solutions of.
+    /// BLAKE3 of that scene without its title, source, purpose and methods: what the solutions are solutions of.
     pub problem: String,
     /// Version and commit of the program that made it.
     pub program: String,
@@ -73,7 +73,7 @@ impl Asked {
                 methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
             }
         }
-        for words in ["title", "source"] {
+        for words in ["title", "source", "purpose", "published"] {
             table.remove(words);
         }
         Asked { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
@@ -150,13 +150,13 @@ impl Stored {
             probe_band: 0.0,
         };
         let displacement = points.iter().zip(&solution.targets);
-        let provenance = provenance::provenance(&[], 0);
+        let (program, machine) = (provenance::program(), provenance::machine());
         let Asked { problem, methods } = Asked::of(text);
         Ok(Stored {
             case: case_name(scene),
             problem,
-            program: format!("tissuebench {} ({})", provenance.version, provenance.commit),
-            made_on: format!("{}; {}", provenance.rustc, provenance.features),
+            program: format!("tissuebench {} ({})", program.version, program.revision()),
+            made_on: format!("{}; {}", program.rustc, machine.instructions),
             source: Source {
                 method: solution.method.clone(),
                 nodes: solution.nodes,
@@ -277,38 +277,31 @@ impl Stored {
         }
     }
 
-    /// Its forces and their bands as rows of the long table.
-    pub fn records(&self, case: &str, poisson: f64) -> Vec<Record> {
-        let row = |quantity: String, unit: &str, phase: &str, statistic: &str, value: f64| Record {
-            case: case.into(),
+    /// Its forces and their bands as rows of the long table; `case` has the name and purpose of the case and its Poisson's ratio.
+    pub fn records(&self, case: &Record) -> Vec<Record> {
+        let own = Record {
             method: "reference".into(),
-            family: "reference".into(),
+            series: "reference".into(),
+            family: Family::Reference,
             variant: self.source.method.clone(),
-            parameters: String::new(),
-            poisson,
-            level: 0,
             nodes: self.source.nodes as u64,
-            elements: 0,
-            points: 0,
-            dofs: 0,
-            spacing: 0.0,
-            seed: 0,
-            quantity,
-            unit: unit.into(),
-            phase: phase.into(),
-            statistic: statistic.into(),
-            value,
+            ..case.clone()
         };
+        let own = Record { run: run_id(&own), ..own };
         let mut rows = Vec::new();
         for (number, step) in self.steps.iter().enumerate() {
-            let phase = format!("step-{}", number + 1);
+            let mut push = |quantity: String, unit: &str, statistic: &str, value: f64| {
+                let (unit, statistic) = (unit.into(), statistic.into());
+                let step = Some(number as u64 + 1);
+                rows.push(Record { quantity, unit, step, statistic, value, ..own.clone() });
+            };
             for (index, tool) in step.tools.iter().enumerate() {
-                rows.push(row(of_tool("closure", index), "m", &phase, "value", tool.closure));
+                push(of_tool("closure", index), "m", "value", tool.closure);
                 for (statistic, value) in [("value", tool.force), ("low", tool.low), ("high", tool.high)] {
-                    rows.push(row(of_tool("tool-force", index), "N", &phase, statistic, value));
+                    push(of_tool("tool-force", index), "N", statistic, value);
                 }
             }
-            rows.push(row("probe-band".into(), "m", &phase, "value", step.probe_band));
+            push("probe-band".into(), "m", "value", step.probe_band);
         }
         rows
     }

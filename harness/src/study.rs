@@ -1,37 +1,30 @@
 //! A study: many scenes and methods, run in a fixed order, checked, written out.
 
+mod tasks;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cases::scene::{self, Check, Scene, Size, Study};
-use indicatif::{ProgressBar, ProgressStyle};
-use reports::{Check as Verdict, Record, RunSet, SurfaceField};
+use cases::scene::{self, Check, ErrorKind, Scene, Size, Study};
+use reports::{Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
 use crate::cli::VerifyArgs;
-use crate::group::{Extras, Group, case_name, resize};
+use crate::group::{Extras, Group, case_name};
+use crate::progress::Progress;
 use crate::run::Repeats;
+use crate::scenario::purpose;
 use crate::stored::Stored;
 use crate::task::{self, TaskResult};
 use crate::work::Work;
-use crate::{Failure, check};
+use crate::{Failure, check, provenance};
+use tasks::{Task, list};
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
 /// Repeats in the quick tier, whose purpose is the checks: medians of three for runs below 20 ms.
 const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
-
-/// One run of a study.
-struct Task {
-    /// Index of the study's run table it belongs to.
-    run: usize,
-    scene: usize,
-    method: scene::Method,
-    level: u32,
-    poisson: Option<f64>,
-    picture: bool,
-}
 
 /// A study with its scenes read.
 pub struct Plan {
@@ -69,6 +62,13 @@ impl Plan {
                     }
                     Ok(scene) => {
                         let text = std::fs::read_to_string(&run.scene).unwrap_or_default();
+                        let named =
+                            |(_, _, other): &&(PathBuf, String, Scene)| case_name(other) == case_name(&scene);
+                        if let Some((path, ..)) = scenes.iter().find(named) {
+                            let problem = format!("is in a file of the same name as {}", path.display());
+                            let help = "rename one of them: results are filed under the names of scenes";
+                            errors.push(scene.error(ErrorKind::Invalid, "title", &problem, Some(help)));
+                        }
                         scenes.push((run.scene.clone(), text, scene));
                         scenes.len() - 1
                     }
@@ -86,15 +86,24 @@ impl Plan {
     /// Keeps the runs that the arguments select.
     pub fn select(&mut self, args: &VerifyArgs) {
         let (runs, scenes) = (&self.study.runs, &self.scenes);
-        self.tasks.retain(|task| {
-            let wanted = (!args.quick || runs[task.run].quick)
-                && args.filter.as_deref().is_none_or(|text| {
-                    case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text)
-                });
+        self.tasks.retain_mut(|task| {
             // Shares deal out whole run tables, so that orders see all their levels.
-            let mine = args.shard.is_none_or(|(k, n)| task.run % n == k - 1);
-            wanted && mine
+            let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
+            task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
+            let fits =
+                |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
+            !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
         });
+    }
+
+    /// The run tables that ask for a task.
+    fn tables<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a scene::Run> {
+        task.runs.iter().map(|&run| &self.study.runs[run])
+    }
+
+    /// Whether it is asked for as one of many clouds only.
+    fn is_one_of_many(&self, task: &Task) -> bool {
+        self.tables(task).all(|run| run.seeds > 0)
     }
 
     /// Number of runs.
@@ -110,8 +119,9 @@ impl Plan {
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
     pub fn execute(&self, args: &VerifyArgs) -> Finished {
         let store = args.out.join("tasks");
-        let program = task::program();
-        let bar = progress(self.tasks.len());
+        let machine = provenance::machine();
+        let runner = task::runner(&provenance::program(), &machine);
+        let progress = Progress::new(self.tasks.len());
         let groups = self.groups();
         let next = AtomicUsize::new(0);
         let done: Mutex<BTreeMap<usize, TaskResult>> = Mutex::new(BTreeMap::new());
@@ -119,13 +129,13 @@ impl Plan {
             for _ in 0..args.jobs {
                 scope.spawn(|| {
                     while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        self.group(members, args, &store, &program, &bar, &done);
+                        self.group(members, args, &store, &runner, &progress, &done);
                     }
                 });
             }
         });
-        bar.finish_and_clear();
-        self.collect(done.into_inner().expect("no worker panicked"))
+        progress.finish();
+        self.collect(done.into_inner().expect("no worker panicked"), machine)
     }
 
     /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
@@ -146,8 +156,8 @@ impl Plan {
         members: &[usize],
         args: &VerifyArgs,
         store: &Path,
-        program: &str,
-        bar: &ProgressBar,
+        runner: &str,
+        progress: &Progress,
         done: &Mutex<BTreeMap<usize, TaskResult>>,
     ) {
         let first = &self.tasks[members[0]];
@@ -157,24 +167,25 @@ impl Plan {
         let mut group: Option<Result<Group, Failure>> = None;
         for &index in members {
             let task = &self.tasks[index];
-            bar.set_message(format!("{case} {}", task.method.id));
-            let split = self.study.runs[task.run].split;
-            let what =
-                format!("{:?} {} {:?} {} {split:?}", task.method, task.level, task.poisson, task.picture);
-            let key = task::key(program, text, &files(scene), &what);
+            progress.running(format!("{case} {}", task.method.id));
+            let split = self.tables(task).find_map(|run| run.split);
+            // Clouds of many seeds are of one kind: one loop is enough for them all.
+            let frames = !args.quick && !self.is_one_of_many(task);
+            let repeats = if args.quick { QUICK } else { REPEATS };
+            let Task { method, level, poisson, picture, .. } = task;
+            let what = format!("{method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
+            let key = task::key(runner, text, &files(scene), &what);
             let stored = if args.resume { TaskResult::load(store, &key) } else { None };
             let known = stored.is_some();
             let result = stored.unwrap_or_else(|| {
                 let mut shared = Work::default();
                 let group = group.get_or_insert_with(|| {
-                    let group = Group::new(scene, task.poisson, if args.quick { QUICK } else { REPEATS });
+                    let group = Group::new(scene, task.poisson, repeats);
                     shared = group.as_ref().map_or(shared, Group::reference_work);
                     group
                 });
                 let outcome = match group {
                     Ok(group) => {
-                        // Clouds of many seeds are of one kind: one loop is enough for them all.
-                        let frames = !args.quick && self.study.runs[task.run].seeds == 0;
                         let extras = Extras { picture: task.picture, frames, split };
                         group.run(&group.scenario(task.method.clone(), task.level), extras)
                     }
@@ -195,14 +206,14 @@ impl Plan {
                 result
             });
             if !known && let Err(bad) = result.store(store, &key) {
-                bar.println(format!("warning: {} could not be stored: {bad}", store.display()));
+                progress.warn(format!("warning: {} could not be stored: {bad}", store.display()));
             }
             done.lock().expect("no worker panicked").insert(index, result);
-            bar.inc(1);
+            progress.done();
         }
     }
 
-    fn collect(&self, results: BTreeMap<usize, TaskResult>) -> Finished {
+    fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
         let mut set = RunSet::default();
         let mut failed = Vec::new();
         let mut work = Work::default();
@@ -226,7 +237,7 @@ impl Plan {
                 set.failures.push(failure.clone());
                 // Of many clouds one may stall: how many did is a result. One without any numbers is in no count. So is
                 // a path known to end where it does.
-                let counted = self.study.runs[task.run].seeds > 0 && !result.records.is_empty();
+                let counted = self.is_one_of_many(task) && !result.records.is_empty();
                 let known =
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
                 if !counted && !verdicts.iter().any(known) {
@@ -241,14 +252,14 @@ impl Plan {
         set.checks.extend(self.family_verdicts(&results));
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
-        set.provenance = crate::provenance::provenance(&texts, 0);
+        set.provenance = provenance::provenance(machine, &texts);
         Finished { set, failed, ran: results.len(), work }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
     fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
         let scene = &self.scenes[task.scene].2;
-        let label = label(task, &result.records, self.study.runs[task.run].seeds > 0);
+        let label = label(task, &result.records, self.is_one_of_many(task));
         self.checks(task)
             .filter(|check| !check::needs_levels(check))
             .map(|check| {
@@ -264,38 +275,38 @@ impl Plan {
 
     fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
         let scene = &self.scenes[task.scene].2;
-        let run = &self.study.runs[task.run];
         // A scene's checks are of its own cloud.
-        let own = if run.seeds == 0 { &scene.checks[..] } else { &[] };
-        let all = own.iter().chain(&run.checks);
+        let own = if self.is_one_of_many(task) { &[] } else { &scene.checks[..] };
+        let all = own.iter().chain(self.tables(task).flat_map(|run| &run.checks));
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }
 
     /// Checks of orders: once for each method and Poisson's ratio of a run table.
     fn family_verdicts(&self, results: &BTreeMap<usize, TaskResult>) -> Vec<Verdict> {
         let mut verdicts = Vec::new();
-        let mut seen: Vec<(usize, &str, Option<u64>)> = Vec::new();
-        for &index in results.keys() {
-            let task = &self.tasks[index];
-            let family = (task.run, task.method.id.as_str(), task.poisson.map(f64::to_bits));
-            if seen.contains(&family) {
-                continue;
+        // In the order of the first result of each.
+        let mut families: Vec<(usize, &Task)> = Vec::new();
+        let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
+        for task in results.keys().map(|&index| &self.tasks[index]) {
+            for &run in &task.runs {
+                if !families.iter().any(|(other, first)| *other == run && same(first, task)) {
+                    families.push((run, task));
+                }
             }
-            seen.push(family);
-            let members: Vec<&[Record]> = results
-                .iter()
-                .filter(|(i, _)| {
-                    let t = &self.tasks[**i];
-                    (t.run, t.method.id.as_str(), t.poisson.map(f64::to_bits)) == family
-                })
+        }
+        for (run, first) in families {
+            let of = |task: &Task| task.runs.contains(&run) && same(first, task);
+            let members: Vec<&[Record]> = (results.iter())
+                .filter(|(index, _)| of(&self.tasks[**index]))
                 .map(|(_, result)| result.records.as_slice())
                 .collect();
-            let case = case_name(&self.scenes[task.scene].2);
-            for check in self.checks(task).filter(|c| check::needs_levels(c)) {
+            let case = case_name(&self.scenes[first.scene].2);
+            let own = |c: &&Check| c.methods.is_empty() || c.methods.contains(&first.method.id);
+            for check in self.study.runs[run].checks.iter().filter(own).filter(|c| check::needs_levels(c)) {
                 let value = check::order(check.metric.name, &members);
-                let label = match task.poisson {
-                    Some(poisson) => format!("{} nu={poisson}", task.method.id),
-                    None => task.method.id.clone(),
+                let label = match first.poisson {
+                    Some(poisson) => format!("{} nu={poisson}", first.method.id),
+                    None => first.method.id.clone(),
                 };
                 verdicts.push(check::judge(check, &case, &label, value));
             }
@@ -307,126 +318,14 @@ impl Plan {
 /// The rows of a stored reference; one that can't be read has failed every method that asked for it.
 pub fn reference_records(scene: &Scene) -> Vec<Record> {
     let Some(scene::Reference::Record(path)) = &scene.reference else { return Vec::new() };
-    let poisson = scene.material.elastic().map_or(0.0, |e| e.poisson);
-    Stored::load(scene, path).map(|s| s.records(&case_name(scene), poisson)).unwrap_or_default()
-}
-
-/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times dilatations, times essential
-/// conditions, times seeds, times Poisson's ratios.
-fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
-    let ratios: Vec<Option<f64>> =
-        if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
-    // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
-    let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
-    let plain = run.kernels.is_empty()
-        && run.dilatations.is_empty()
-        && run.nodes.is_empty()
-        && run.essentials.is_empty();
-    let picture = organ && plain && run.seeds == 0;
-    for &poisson in &ratios {
-        for method in &scene.methods {
-            if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
-                continue;
-            }
-            for (level, sized) in sizes(run, method) {
-                let shaped = kernels(run, sized).into_iter().flat_map(|method| dilatations(run, method));
-                let held = shaped.flat_map(|method| essentials(run, method));
-                for method in held.flat_map(|method| seeds(run, method)) {
-                    // The scene's own cloud may have been asked for before.
-                    let same = |t: &Task| (t.scene, t.poisson) == (at, poisson) && t.method == method;
-                    if run.seeds == 0 || !tasks.iter().any(same) {
-                        tasks.push(Task { run: index, scene: at, method, level, poisson, picture });
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The method at each level or node count that the run table names; as it is where it names none.
-fn sizes(run: &scene::Run, method: &scene::Method) -> Vec<(u32, scene::Method)> {
-    let sized = |size: Size| {
-        let mut method = method.clone();
-        resize(&mut method, &size);
-        method
+    let case = Record {
+        case: case_name(scene),
+        purpose: purpose(scene.purpose),
+        published: scene.published.map_or("", |p| p.name()).into(),
+        poisson: scene.material.elastic().map_or(0.0, |e| e.poisson),
+        ..Record::default()
     };
-    if !run.levels.is_empty() {
-        return run.levels.iter().map(|&level| (level, sized(Size::Level(level)))).collect();
-    }
-    if let (scene::Family::Efg(_), false) = (&method.family, run.nodes.is_empty()) {
-        return run.nodes.iter().map(|&nodes| (0, sized(Size::Nodes(nodes)))).collect();
-    }
-    vec![(own_level(method), method.clone())]
-}
-
-fn own_level(method: &scene::Method) -> u32 {
-    let size = match &method.family {
-        scene::Family::Fem(fem) => &fem.size,
-        scene::Family::Efg(efg) => match &efg.cloud {
-            scene::Cloud::Mesh { size, .. } => size,
-            scene::Cloud::Uniform { .. }
-            | scene::Cloud::Graded { .. }
-            | scene::Cloud::Refined { .. }
-            | scene::Cloud::File { .. } => {
-                return 0;
-            }
-        },
-    };
-    if let Size::Level(level) = size { *level } else { 0 }
-}
-
-/// The method with each kernel that the run table names.
-fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    each(&run.kernels, method, |kernel, _, &name| {
-        *kernel = scene::Kernel { name, alpha: None, power: None, eps: None };
-    })
-}
-
-/// The method with each dilatation that the run table names.
-fn dilatations(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    each(&run.dilatations, method, |_, support, &factor| *support = scene::SupportRule::Dilatation(factor))
-}
-
-/// The method held in each of the ways that the run table names.
-fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    if run.essentials.is_empty() || !matches!(method.family, scene::Family::Efg(_)) {
-        return vec![method];
-    }
-    let held = |&essential: &scene::Essential| {
-        let mut method = method.clone();
-        if let scene::Family::Efg(efg) = &mut method.family {
-            efg.essential = essential;
-        }
-        method
-    };
-    run.essentials.iter().map(held).collect()
-}
-
-/// Moving least squares changed by each of `values`; the method as it is where there are none, or where it is of another kind.
-fn each<T>(
-    values: &[T],
-    method: scene::Method,
-    change: impl Fn(&mut scene::Kernel, &mut scene::SupportRule, &T),
-) -> Vec<scene::Method> {
-    let with = |value: &T| {
-        let mut method = method.clone();
-        let scene::Family::Efg(efg) = &mut method.family else { return None };
-        let scene::Functions::MovingLeastSquares { kernel, support, .. } = &mut efg.functions else {
-            return None;
-        };
-        change(kernel, support, value);
-        Some(method)
-    };
-    let changed: Vec<scene::Method> = values.iter().filter_map(with).collect();
-    if changed.is_empty() { vec![method] } else { changed }
-}
-
-/// The method on a cloud of each seed that the run table names.
-fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    match run.seeds {
-        0 => vec![method],
-        count => (1..=count).filter_map(|seed| method.seeded(seed)).collect(),
-    }
+    Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
 }
 
 /// Method id with what tells this run from others of the same id.
@@ -484,13 +383,4 @@ fn files(scene: &Scene) -> Vec<PathBuf> {
     found.sort();
     found.dedup();
     found
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress(len: usize) -> ProgressBar {
-    let bar = ProgressBar::new(len as u64);
-    let style =
-        ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}").expect("a valid template");
-    bar.set_style(style);
-    bar
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reports::{Failure as FailedRun, PlanEntry, Record, SurfaceField};
+use reports::{Failure as FailedRun, Machine, PlanEntry, Program, Record, SurfaceField};
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::Outcome;
@@ -61,11 +61,11 @@ fn file(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("{key}.json"))
 }
 
-/// Hash of everything a run depends on: the program itself, the scene's text, the files it names, and what the study
+/// Hash of everything a run depends on: who runs it (see [`runner`]), the scene's text, the files it names, and what the study
 /// changes of it.
-pub fn key(program: &str, scene_text: &str, files: &[PathBuf], what: &str) -> String {
+pub fn key(runner: &str, scene_text: &str, files: &[PathBuf], what: &str) -> String {
     let mut hasher = blake3::Hasher::new();
-    for part in [program, scene_text, what] {
+    for part in [runner, scene_text, what] {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }
@@ -76,8 +76,33 @@ pub fn key(program: &str, scene_text: &str, files: &[PathBuf], what: &str) -> St
     hasher.finalize().to_hex()[..32].to_string()
 }
 
-/// Hash of the running program: results of another build are not taken for this one's.
-pub fn program() -> String {
+/// The running program by its bytes, the processor and the number of threads: results of another build, and times of another
+/// machine, are not taken for this one's. The load is none of it: a study is resumed at another moment.
+pub fn runner(program: &Program, machine: &Machine) -> String {
     let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    blake3::hash(&bytes).to_hex().to_string()
+    let Machine { cpu, instructions, threads, .. } = machine;
+    format!("{program:?}, {}; {cpu}, {instructions}, {threads} threads", blake3::hash(&bytes).to_hex())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_program_machine_or_number_of_threads_runs_anew() {
+        let (program, machine) = (Program::default(), Machine { threads: 2, ..Machine::default() });
+        let key = |program: &Program, machine: &Machine| {
+            super::key(&runner(program, machine), "scene", &[], "what")
+        };
+        let known = key(&program, &machine);
+        assert_eq!(known, key(&program, &Machine { load: Some(3.0), quiet: Some(false), ..machine.clone() }));
+        for other in [
+            key(&Program { commit: "another".into(), ..program.clone() }, &machine),
+            key(&Program { dirty: true, ..program.clone() }, &machine),
+            key(&program, &Machine { threads: 1, ..machine.clone() }),
+            key(&program, &Machine { cpu: "another".into(), ..machine.clone() }),
+        ] {
+            assert_ne!(known, other);
+        }
+    }
 }

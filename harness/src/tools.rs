@@ -1,8 +1,9 @@
 //! From a scene's tools to those of the solver.
 
 use cases::scene::{self, ErrorKind};
+use contact::{ContactError, ContactLaw, Drive, Tool, ToolShape};
 use geometry::{Point3, Vector3};
-use mechanics::{ContactError, ContactLaw, Drive, Matrix3, Tool, ToolShape};
+use shape::Matrix3;
 
 use crate::Failure;
 use crate::error::Key;

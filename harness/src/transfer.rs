@@ -9,7 +9,7 @@ use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{push, push_difference};
 use crate::norms::difference;
-use crate::outcome::{Metric, Transfer};
+use crate::outcome::{Metric, SchemeSettings, Transfer};
 use crate::prepare::Prepared;
 use crate::run::Asks;
 use crate::timing::Timings;
@@ -39,7 +39,7 @@ pub fn transfers(
     let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
     asks.schemes
         .iter()
-        .map(|(parameters, scheme)| {
+        .map(|(settings, scheme)| {
             let name = scheme.name();
             // A mesh serves barycentric interpolation only if its nodes are the cloud's.
             let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
@@ -70,7 +70,7 @@ pub fn transfers(
             push(&mut metrics, "linear-rms", error.rms_magnitude, "m");
             push(&mut metrics, "outside", info.outside as f64, "1");
             push(&mut metrics, "fallbacks", info.fallbacks as f64, "1");
-            Ok(transfer(name, parameters, metrics, timing, asks))
+            Ok(transfer(name, *settings, metrics, timing, asks))
         })
         .chain(std::iter::once_with(|| {
             let build = || method.at_points(&prepared.volume, asks.targets);
@@ -83,19 +83,23 @@ pub fn transfers(
             if let Some(beside) = asks.beside {
                 push_difference(&mut metrics, "beside-rms", &own, &beside.targets);
             }
-            Ok(transfer(OWN_ROWS, "", metrics, timing, asks))
+            Ok(transfer(OWN_ROWS, SchemeSettings::default(), metrics, timing, asks))
         }))
         .collect()
 }
 
-fn transfer(scheme: &str, parameters: &str, metrics: Vec<Metric>, timings: Timings, asks: &Asks) -> Transfer {
-    let summaries = timings.summaries();
+fn transfer(
+    scheme: &str,
+    settings: SchemeSettings,
+    metrics: Vec<Metric>,
+    timings: Timings,
+    asks: &Asks,
+) -> Transfer {
     Transfer {
         scheme: scheme.into(),
-        parameters: parameters.into(),
+        settings,
         metrics,
-        build: summaries[0].1,
-        apply: summaries[1].1,
+        times: timings.phases().to_vec(),
         targets: asks.targets.len(),
     }
 }
@@ -115,17 +119,17 @@ fn timed<T, E: Into<Failure>>(
         let blocks = RowBlocks::new(rows(&table));
         Ok((table, blocks))
     };
-    let (mut table, mut blocks) = timings.time("build", &mut make).map_err(E::into)?;
+    let (mut table, mut blocks) = timings.time("prepare", &mut make).map_err(E::into)?;
     let mut out = vec![Vector3::zeros(); blocks.len()];
     for repeat in 1..=asks.repeats.most {
         let start = Instant::now();
         for _ in 0..APPLIES {
             blocks.apply_into(std::hint::black_box(field), &mut out);
         }
-        timings.book("apply", start.elapsed().as_secs_f64() / APPLIES as f64);
+        timings.book("transfer", start.elapsed().as_secs_f64() / APPLIES as f64);
         std::hint::black_box(&out);
         if repeat < asks.repeats.most && begin.elapsed().as_secs_f64() < asks.repeats.seconds {
-            (table, blocks) = timings.time("build", &mut make).map_err(E::into)?;
+            (table, blocks) = timings.time("prepare", &mut make).map_err(E::into)?;
         }
     }
     Ok((table, timings))

@@ -13,7 +13,7 @@ body = {{ shape = "box", size = ["30 mm", "20 mm", "20 mm"] }}
 material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
 support = [{{ on = "surface", move = "exact" }}]
 reference = {{ exact = "affine" }}
-method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = {{ rule = "cell-smoothed", points = 1 }}, essential = "nitsche", {cloud} }}]
+method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = {{ rule = "cell-smoothed", points = 1 }}, essential = "nitsche", {cloud} }}]
 "#
     )
 }
@@ -67,5 +67,5 @@ fn what_disagrees_is_refused_with_numbers() {
     refused(r#"cloud = { file = "nodes.csv" }"#, &sound, "unit");
     refused(r#"cloud = { file = "none.csv", unit = "mm" }"#, &sound, "can't be found");
     refused(&format!("{file}, seed = 3"), &sound, "nodes that are given need none");
-    refused(&format!("{file}, support = \"adapted\""), &sound, "the nodes of this cloud have none");
+    refused(&format!("{file}, neighbourhood = \"ellipsoid\""), &sound, "the nodes of this cloud have none");
 }

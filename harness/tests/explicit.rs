@@ -32,6 +32,10 @@ fn states_are_recorded_with_energies_that_balance() {
     assert_eq!(objects.len(), 2);
     for object in &objects {
         assert_eq!(object["status"], "ok");
+        let (kernel, path) =
+            (object["force_kernel"].as_str().unwrap(), object["lane_path"].as_str().unwrap());
+        let said = format!("internal forces: {kernel} kernel in {path} lanes");
+        assert!(object["plan"].to_string().contains(&said), "{said}");
         let states = object["steps"].as_array().unwrap();
         assert_eq!(states.len(), 4);
         for (k, state) in states.iter().enumerate() {
@@ -61,9 +65,9 @@ fn states_are_recorded_with_energies_that_balance() {
         let each = object["phases"]["element-step"].as_f64().unwrap();
         assert!(each > 1e-10 && each < object["phases"]["solve"].as_f64().unwrap());
     }
-    let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
-    let count = |name: &str| records.lines().filter(|l| l.contains(",step-4,") && l.contains(name)).count();
-    for name in ["kinetic-energy", "strain-energy", "smallest-j", "external-work", "time,s"] {
+    let records = reports::read_run(std::path::Path::new(&out)).unwrap().records;
+    let count = |name: &str| records.iter().filter(|r| r.step == Some(4) && r.quantity == name).count();
+    for name in ["kinetic-energy", "strain-energy", "smallest-j", "external-work", "time"] {
         assert_eq!(count(name), 2, "{name}");
     }
     assert_eq!(count("newton-iterations"), 0);

@@ -36,7 +36,7 @@ id = "efg"
 family = "efg"
 nodes = 60
 kernel = "cubic-spline"
-dilatation = 1.6
+support_scale = 1.6
 basis = "linear"
 integration = { rule = "gauss", points = 4 }
 essential = "nitsche"
@@ -192,9 +192,9 @@ const CASES: &[Case] = &[
         name: "supports of a cloud too narrow",
         // Nodes on two faces 40 mm apart, 5 mm from each other.
         base: &[("nodes = 60", "size = { cells = [1, 8, 8] }")],
-        edit: ("dilatation = 1.6", "dilatation = 1.2 #<"),
+        edit: ("support_scale = 1.6", "support_scale = 1.2 #<"),
         code: 3,
-        key: "method[1].dilatation",
+        key: "method[1].support_scale",
         says: &["'1.2'", "neighbours", "wider"],
         stops: &["efg"],
         ..SOUND
@@ -202,7 +202,7 @@ const CASES: &[Case] = &[
     Case {
         name: "neighbours of a cloud too near",
         base: &[("nodes = 60", "size = { cells = [1, 8, 8] }")],
-        edit: ("dilatation = 1.6", "neighbours = 4 #<"),
+        edit: ("support_scale = 1.6", "neighbours = 4 #<"),
         code: 3,
         key: "method[1].neighbours",
         says: &["'4'", "neighbours", "wider"],
@@ -212,8 +212,8 @@ const CASES: &[Case] = &[
     Case {
         name: "a cloud of fewer nodes than its basis has terms",
         edit: (
-            "nodes = 60\nkernel = \"cubic-spline\"\ndilatation = 1.6\nbasis = \"linear\"",
-            "nodes = 8 #<\nkernel = \"cubic-spline\"\ndilatation = 1.6\nbasis = \"quadratic\"",
+            "nodes = 60\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\nbasis = \"linear\"",
+            "nodes = 8 #<\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\nbasis = \"quadratic\"",
         ),
         key: "method[1].nodes",
         says: &["'8'", "at least 10"],

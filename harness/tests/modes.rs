@@ -13,7 +13,7 @@ method = [
     { id = "hex8", family = "fem", element = "hex8", size = { level = 1 }, mass = "consistent" },
     { id = "hex8-lumped", family = "fem", element = "hex8", size = { level = 1 }, mass = "lumped" },
     { id = "hex8-transformed", family = "fem", element = "hex8", size = { level = 1 }, mass = "transformed" },
-    { id = "efg", family = "efg", size = { level = 1 }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "nitsche", mass = "transformed" },
+    { id = "efg", family = "efg", size = { level = 1 }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "nitsche", mass = "transformed" },
 ]
 "#;
 

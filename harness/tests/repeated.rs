@@ -36,18 +36,10 @@ fn frames_of_a_static_path_come_to_its_end() {
     let (path, out) = (write(&dir, "plates.toml", &scene), common::inside(&dir, "out"));
     let done = tissuebench(&["run", &path, "--method", "hex8", "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
+    let records = reports::read_run(std::path::Path::new(&out)).unwrap().records;
     let told = |statistic: &str| -> f64 {
-        let line = records.lines().find(|l| l.contains(&format!(",repeated,{statistic},")));
-        let line = line.unwrap_or_else(|| panic!("no {statistic}"));
-        line.split(&format!(",repeated,{statistic},"))
-            .nth(1)
-            .unwrap()
-            .split(',')
-            .next()
-            .unwrap()
-            .parse()
-            .unwrap()
+        let found = records.iter().find(|r| r.phase == "repeated" && r.statistic == statistic);
+        found.unwrap_or_else(|| panic!("no {statistic}")).value
     };
     assert_eq!(told("frames"), 30.0);
     assert!(told("iterations") >= 1.0);

@@ -8,8 +8,8 @@ use serde_json::Value;
 const METHODS: &str = r#"method = [
     { id = "tet4-nodal", family = "fem", element = "tet4", dilation = "nodal-mean", size = { cells = [4, 4, 2] } },
     { id = "hex20", family = "fem", element = "hex20", size = { cells = [4, 4, 2] } },
-    { id = "uniform", family = "efg", nodes = 90, cloud = "uniform", seed = 3, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" },
-    { id = "smoothed", family = "efg", size = { cells = [4, 4, 2] }, jitter = { fraction = 0.45, seed = 2 }, kernel = "wendland-c2", dilatation = 1.6, basis = "linear", integration = { rule = "cell-smoothed", points = 1 }, essential = "nitsche" },
+    { id = "uniform", family = "efg", nodes = 90, cloud = "uniform", seed = 3, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" },
+    { id = "smoothed", family = "efg", size = { cells = [4, 4, 2] }, jitter = { fraction = 0.45, seed = 2 }, kernel = "wendland-c2", support_scale = 1.6, basis = "linear", integration = { rule = "cell-smoothed", points = 1 }, essential = "nitsche" },
     { id = "quadratic", family = "efg", size = { cells = [4, 4, 2] }, kernel = "quartic-spline", neighbours = 30, factor = 1.3, basis = "quadratic", integration = { rule = "gauss", points = 4 }, essential = "multipliers" },
 ]
 "#;
@@ -89,7 +89,7 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
     for (name, cloud, most) in [
         (
             "jitter",
-            r#"dilatation = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.3, seed = 7 }"#,
+            r#"support_scale = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.3, seed = 7 }"#,
             1e-11,
         ),
         (
@@ -100,13 +100,17 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
         ("flat", r#"neighbours = 20, factor = 1.5, size = { cells = [36, 2, 2] }"#, 1e-9),
         (
             "steep, adapted",
-            r#"support = "adapted", neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
+            r#"neighbourhood = "ellipsoid", neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
             1e-12,
         ),
-        ("flat, adapted", r#"support = "adapted", dilatation = 1.6, size = { cells = [40, 2, 2] }"#, 1e-12),
+        (
+            "flat, adapted",
+            r#"neighbourhood = "ellipsoid", support_scale = 1.6, size = { cells = [40, 2, 2] }"#,
+            1e-12,
+        ),
         (
             "less flat, adapted",
-            r#"support = "adapted", neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
+            r#"neighbourhood = "ellipsoid", neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
             1e-12,
         ),
     ] {
@@ -136,10 +140,10 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
     }
     // The nodes are those of a mesh, whose cells may turn inside out.
     let wild =
-        patch(r#"dilatation = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.45, seed = 7 }"#);
+        patch(r#"support_scale = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.45, seed = 7 }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &wild)]);
     assert_fails(&done, 2, "key 'method[0].jitter.fraction': '0.45' gives a mesh in which element");
-    let lost = patch(r#"dilatation = 0.6, size = { cells = [5, 5, 5] }"#);
+    let lost = patch(r#"support_scale = 0.6, size = { cells = [5, 5, 5] }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &lost)]);
-    assert_fails(&done, 2, "'0.6' is no dilatation; 1.2 to 3 is usual");
+    assert_fails(&done, 2, "'0.6' is no support scale; 1.2 to 3 is usual");
 }

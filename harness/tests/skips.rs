@@ -36,7 +36,7 @@ fn check(outcome: &Outcome) -> BTreeSet<(&'static str, bool)> {
 fn all_at_once() -> Scene {
     let parts = [
         BLOCK.trim_end_matches("]\n"),
-        r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "multipliers" }]
+        r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "multipliers" }]
 "#,
         r#"region = [{ name = "soft", where = "x <= 20 mm", material = { law = "linear", young = "5 kPa", poisson = 0.3 } }]
 "#,

@@ -2,16 +2,16 @@
 
 mod common;
 
-use cases::scene::{self, Scene, SchemeName};
+use cases::scene::{self, Scene};
 use common::BLOCK;
 use harness::group::{Extras, Group};
-use harness::outcome::{Metric, Transfer};
+use harness::outcome::{Metric, SchemeSettings, Transfer};
 use harness::run::Repeats;
 use interp::Scheme;
 
 /// A cloud on the nodes of a mesh, its displacement carried to the given targets by the given schemes.
 fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
-    let cloud = r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]"#;
+    let cloud = r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]"#;
     let list: Vec<String> =
         schemes.iter().map(|s| format!("{{ to = \"{targets}\", scheme = {s} }}")).collect();
     let text = format!(
@@ -33,14 +33,11 @@ fn value(metrics: &[Metric], name: &str) -> f64 {
 
 #[test]
 fn every_scheme_runs_by_its_name() {
-    let named: Vec<SchemeName> =
-        SchemeName::ALL.into_iter().filter(|&name| name != SchemeName::Own).collect();
-    let known: Vec<&str> = Scheme::ALL.iter().map(|s| s.name()).collect();
-    assert_eq!(named.iter().map(|s| s.name()).collect::<Vec<_>>(), known);
+    let known: Vec<&str> = interp::SCHEMES.iter().map(|entry| entry.name).collect();
     let list: Vec<String> = known.iter().map(|name| format!("\"{name}\"")).collect();
     let transfers = transfers("reference-nodes", &list);
     assert_eq!(transfers.len(), known.len() + 1, "and the cloud's own rows");
-    for (transfer, scheme) in transfers.iter().zip(Scheme::ALL) {
+    for (transfer, scheme) in transfers.iter().zip(Scheme::all()) {
         assert_eq!(transfer.scheme, scheme.name());
         let linear = value(&transfer.metrics, "linear-rms");
         // The field is of 1e-3 m; what is not exact is off by 1e-5 and more on this cloud.
@@ -53,24 +50,26 @@ fn every_scheme_runs_by_its_name() {
 #[test]
 fn settings_reach_the_schemes_and_the_records() {
     let list = [
-        "\"mls-modified\", dilatation = 1.8",
+        "\"mls-modified\", support_scale = 1.8",
         "\"multiquadric\", shape = 0.5",
         "\"gaussian\", shape = 0.9, polynomial = false",
-        "\"wendland-c2\", dilatation = 3",
-        "\"wendland-c2\", dilatation = 3, polynomial = false",
+        "\"wendland-c2\", support_scale = 3",
+        "\"wendland-c2\", support_scale = 3, polynomial = false",
         "\"natural-neighbour\"",
     ];
     let transfers = transfers("probes", &list.map(String::from));
-    let settings: Vec<&str> = transfers.iter().map(|t| t.parameters.as_str()).collect();
+    let settings: Vec<SchemeSettings> = transfers.iter().map(|t| t.settings).collect();
+    let none = SchemeSettings::default();
+    let scaled = |scale: f64| SchemeSettings { support_scale: Some(scale), ..none };
     assert_eq!(
         settings[..6],
         [
-            "dilatation=1.8",
-            "shape=0.5",
-            "shape=0.9;polynomial=false",
-            "dilatation=3;polynomial=true",
-            "dilatation=3;polynomial=false",
-            "",
+            scaled(1.8),
+            SchemeSettings { shape: Some(0.5), ..none },
+            SchemeSettings { shape: Some(0.9), polynomial: Some(false), ..none },
+            SchemeSettings { polynomial: Some(true), ..scaled(3.0) },
+            SchemeSettings { polynomial: Some(false), ..scaled(3.0) },
+            none,
         ]
     );
     let linear: Vec<bool> = transfers[..6].iter().map(|t| value(&t.metrics, "linear-rms") < 1e-15).collect();

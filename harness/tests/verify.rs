@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use common::{BLOCK, assert_fails, cases, inside, tissuebench, without, write};
-use reports::{Record, RunSet, Status, read_run};
+use reports::{Family, Record, RunSet, Status, read_run};
 use tempfile::TempDir;
 
 fn results(folder: &str) -> RunSet {
@@ -90,7 +90,7 @@ seeds = 3
     let mut found: Vec<(u64, f64)> = results(&out)
         .records
         .iter()
-        .filter(|r| r.quantity == "max" && r.family == "efg")
+        .filter(|r| r.quantity == "max" && r.family == Family::Efg)
         .map(|r| (r.seed, r.value))
         .collect();
     found.sort_by_key(|f| f.0);
@@ -131,7 +131,7 @@ fn a_cloud_is_held_in_every_way_that_is_named_and_elements_in_theirs() {
         ("elimination-means", true),
         ("coupling", true),
     ] {
-        let found: Vec<_> = l2.iter().filter(|r| r.parameter("essential") == Some(way)).collect();
+        let found: Vec<_> = l2.iter().filter(|r| r.essential.as_deref() == Some(way)).collect();
         // Smoothed cells pass the patch test however they are held, but for a penalty's own error of 4e-5.
         assert!(found.len() == 1 && (found[0].value < 1e-12) == exact, "{way}: {found:?}");
     }
@@ -221,7 +221,9 @@ fn stored_runs_are_kept_until_their_scene_changes() {
     let first = run(&[]);
     // Times of a second run are never the same to the last digit: these are the stored ones.
     assert!(first.records.iter().any(Record::is_measured));
-    assert_eq!(run(&["--resume"]), first);
+    assert_eq!(run(&["--resume"]).records, first.records);
+    // Times of another number of threads are not these.
+    assert!(run(&["--resume", "--threads", "1"]).records != run(&["--resume", "--threads", "2"]).records);
     let anew = run(&[]);
     assert!(anew.records != first.records, "without --resume all runs are done again");
     assert_eq!(exact(&anew), exact(&first));
@@ -230,4 +232,40 @@ fn stored_runs_are_kept_until_their_scene_changes() {
     let softer = run(&["--resume"]);
     let largest = |set: &RunSet| set.records.iter().find(|r| r.quantity == "max-z").unwrap().value;
     assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_program_knows_its_commit_without_asking_git() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
+    let done = std::process::Command::new(env!("CARGO_BIN_EXE_tissuebench"))
+        .args(["run", &scene, "--out", &out])
+        .env("PATH", "")
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
+    assert!(done.status.success());
+    let program = results(&out).provenance.program;
+    assert_eq!(program, harness::provenance::program());
+    let sound = program.commit.len() == 40 && program.commit.chars().all(|c| c.is_ascii_hexdigit());
+    assert!(sound || program.commit == "unknown", "{program:?}");
+    assert!(program.rustc.starts_with("rustc 1.") && !program.target.is_empty(), "{program:?}");
+}
+
+#[test]
+fn results_of_another_study_are_not_replaced() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = inside(&dir, "results");
+    let scene = write(&dir, "block.toml", BLOCK);
+    let study = "title = \"One\"\n[[run]]\nscene = \"block.toml\"\n";
+    let (one, two) = (write(&dir, "one.toml", study), write(&dir, "two.toml", study));
+    assert_eq!(tissuebench(&["verify", &one, "--out", &out]).code, 0);
+    let before = results(&out);
+    for other in [["verify", &two], ["run", &scene]] {
+        let refused = tissuebench(&[&other[..], &["--out", &out]].concat());
+        assert_eq!(refused.code, 2, "{}", refused.stderr);
+        assert!(refused.stderr.contains("holds the results of one.toml"), "{}", refused.stderr);
+    }
+    assert_eq!(results(&out), before);
+    assert_eq!(tissuebench(&["verify", &one, "--out", &out]).code, 0);
 }

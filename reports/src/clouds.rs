@@ -26,7 +26,8 @@ fn same_but_seed(a: &Run, b: &Run) -> bool {
     let (x, y) = (a.is, b.is);
     x.seed != y.seed
         && (&x.case, &x.method, &x.family, &x.variant) == (&y.case, &y.method, &y.family, &y.variant)
-        && (&x.parameters, x.level, x.nodes) == (&y.parameters, y.level, y.nodes)
+        && (x.level, x.nodes) == (y.level, y.nodes)
+        && x.settings() == y.settings()
         && x.poisson.total_cmp(&y.poisson).is_eq()
 }
 
@@ -57,20 +58,22 @@ impl Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::record::{Family, Record};
     use crate::select::runs;
 
     fn record(method: &str, seed: u64, quantity: &str, value: f64) -> Record {
         Record {
             case: "block".into(),
             method: method.into(),
-            family: "efg".into(),
+            series: method.into(),
+            family: Family::Efg,
             nodes: 83,
             seed,
             quantity: quantity.into(),
             value,
             ..Record::blank()
         }
+        .of_its_run()
     }
 
     #[test]

@@ -21,6 +21,18 @@ pub enum ReportError {
         /// The number.
         value: f64,
     },
+    /// Two records of one run are of the same quantity, phase, step, mode, statistic and repeat.
+    #[error("{case}, {method}: {quantity} was recorded twice in run {run}")]
+    Twice {
+        /// Case of the record.
+        case: String,
+        /// Method of the record.
+        method: String,
+        /// Quantity of the record.
+        quantity: String,
+        /// Id of the run.
+        run: String,
+    },
     /// A surface field's arrays don't fit together.
     #[error("surface field of {case}, {method}: {reason}")]
     Field {

@@ -107,12 +107,12 @@ pub(crate) fn pareto<T>(runs: impl IntoIterator<Item = T>, at: impl Fn(&T) -> (f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::record::{Family, Record};
     use crate::select::runs;
 
     /// One number of one run, its phase before a colon and its statistic after one: `time`, `total:median`.
     pub(crate) fn record(
-        (case, method, family): (&str, &str, &str),
+        (case, method, family): (&str, &str, Family),
         nodes: u64,
         (quantity, of): (&str, &str),
         value: f64,
@@ -121,7 +121,9 @@ pub(crate) mod tests {
         Record {
             case: case.into(),
             method: method.into(),
-            family: family.into(),
+            published: "saghaei-2016".into(),
+            series: method.into(),
+            family,
             variant: method.into(),
             nodes,
             dofs: 3 * nodes,
@@ -132,11 +134,12 @@ pub(crate) mod tests {
             value,
             ..Record::blank()
         }
+        .of_its_run()
     }
 
-    /// A run of `kidney-jaws`: its nodes stand for its size, its time in seconds, and an error by name.
-    pub(crate) fn run(is: (&str, &str), nodes: u64, seconds: f64, errors: &[(&str, f64)]) -> Vec<Record> {
-        let of = ("kidney-jaws", is.0, is.1);
+    /// A run of `jaws`: its nodes stand for its size, its time in seconds, and an error by name.
+    pub(crate) fn run(is: (&str, Family), nodes: u64, seconds: f64, errors: &[(&str, f64)]) -> Vec<Record> {
+        let of = ("jaws", is.0, is.1);
         let mut records = vec![record(of, nodes, ("time", "total:median"), seconds)];
         records.extend(errors.iter().map(|(name, value)| record(of, nodes, (name, ""), *value)));
         records
@@ -151,7 +154,7 @@ pub(crate) mod tests {
     #[test]
     fn a_case_answers_by_the_best_error_it_has() {
         let asked = |errors: &[(&str, f64)]| {
-            let records = run(("tet4", "fem"), 100, 1.0, errors);
+            let records = run(("tet4", Family::Fem), 100, 1.0, errors);
             let runs = runs(&records);
             QUESTIONS.each_ref().map(|question| question.error(&runs))
         };
@@ -169,8 +172,8 @@ pub(crate) mod tests {
     #[test]
     fn a_run_counts_if_it_was_timed_and_carried_its_load() {
         let point = |errors: &[(&str, f64)], clock| {
-            let mut records = run(("tet4", "fem"), 100, 2.0, errors);
-            records.push(record(("kidney-jaws", "tet4", "fem"), 100, ("time", "repeated:p99"), 0.02));
+            let mut records = run(("tet4", Family::Fem), 100, 2.0, errors);
+            records.push(record(("jaws", "tet4", Family::Fem), 100, ("time", "repeated:p99"), 0.02));
             super::point(&runs(&records)[0], "tool-force-error", clock)
         };
         let two = [("tool-force-error", 0.02), ("tool-force-error-2", 0.03)];

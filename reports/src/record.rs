@@ -1,43 +1,123 @@
-//! The one tidy long table every run is told in: one number per row, with everything needed to find it again.
+//! One tidy long table: one number a row, with everything that is needed to find it again.
 //!
 //! All values are SI (lengths in metres, times in seconds); millimetres appear only when a table or a figure is drawn.
 //!
-//! Conventions the tables and figures rely on:
-//! - errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`, `tool-force-error`) and plain
-//!   outcomes (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and `phase = ""`;
-//! - times are `quantity = "time"`, `unit = "s"`, one row per `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`,
-//!   `total`; within `solve` a static path's `solve-to-limit`) and per `statistic` (`median`, `spread`, `min`);
-//! - a loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` (s), and `frames`,
-//!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it;
-//! - a transfer scheme is `family = "interp"`, `variant` its name, `method` the scheme's id and `nodes` the number of source
-//!   nodes; `parameters` names the source with `from=METHOD` or the field with `field=linear`;
-//! - what is told step by step has one row per step and quantity, with `phase = "step-N"` (N counts from 0): `closure` (m) or
-//!   `time` (s) says where the step is, `tool-force` (N), `external-work`, `strain-energy`, `kinetic-energy`,
-//!   `contact-energy`, `friction-dissipation` and `damping-dissipation` (J) what was found there, `statistic = "value"`; a
-//!   reference (`family = "reference"`, `method` its source) adds `low` and `high` rows for its uncertainty;
-//! - the same approach at several sizes is one series: it differs in `level`, `nodes` and `spacing` only (a method id that
-//!   ends in its node count, as in `efg-83`, is read without that ending).
+//! - A row is found by `run`, `quantity`, `phase`, `step`, `mode`, `statistic` and `repeat`: no two rows agree in all of them.
+//! - Errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`, `tool-force-error`) and plain outcomes
+//!   (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and no phase, step or mode.
+//! - Times (`time`: by the clock on the wall; `cpu-time`: of all threads of the process, of other runs too where several go on at
+//!   once) have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` a static path's
+//!   `solve-to-limit`). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from 1), and so have their `median`, and of
+//!   `time` also `spread` (interquartile range) and `min`.
+//! - A loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` (s), and `frames`,
+//!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it.
+//! - A transfer scheme is a run of its own: `family = "interp"`, `variant` its name, `method` the scheme's id, `nodes` the number of
+//!   source nodes, `from` the method whose field it carries and `kernel` that method's kernel.
+//! - What is recorded step by step has one row per `step` (from 0, the start) and quantity: `closure` (m) or `time` (s, the
+//!   model's own) says where the step is, `tool-force` (N), `external-work`, `strain-energy`, `kinetic-energy`, `contact-energy`,
+//!   `friction-dissipation` and `damping-dissipation` (J) what was found there; a reference (`family = "reference"`) adds `low` and
+//!   `high` rows for its uncertainty. Modes of vibration have their number in `mode` (from 1).
+//! - The same approach at several sizes is one series: it differs in `level`, `nodes` and `spacing` only.
+//!
+//! Nothing is read out of a name: what a case is for is its `purpose`, what a method is its `family` and settings.
 
 use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
-use crate::history::step;
 
-/// One number of one run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What made a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Family {
+    /// Finite elements.
+    #[default]
+    Fem,
+    /// Element-free Galerkin.
+    Efg,
+    /// A transfer scheme.
+    Interp,
+    /// A stored or published reference.
+    Reference,
+}
+
+/// What a case is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Purpose {
+    /// A test of exactness: run times, locking and orders mean nothing.
+    Patch,
+    /// A smooth solution, whose errors fall with the order that theory promises.
+    #[default]
+    Smooth,
+    /// A solution that is not smooth: no order is promised.
+    Rough,
+    /// A reading of a published case, compared with its numbers; no order is promised.
+    Published,
+}
+
+/// One number of one run. Settings that a method does not have are `None`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
+    /// Id of the run: the same for all of its rows, and in every study that runs the same case with the same settings and size.
+    pub run: String,
     /// Case (scene) name, such as `pure-bending`.
     pub case: String,
+    /// What the case is for.
+    pub purpose: Purpose,
+    /// The published comparison that the case belongs to, such as `saghaei-2016`; empty where there is none.
+    pub published: String,
     /// Method id as the scene gives it, such as `tet4` or `efg-83`.
     pub method: String,
-    /// `fem`, `efg`, `interp` or `reference`.
-    pub family: String,
-    /// Element (`tet10`), kernel (`cubic-spline`) or transfer scheme (`inverse-distance`).
+    /// The name that the sizes of one approach share, such as `efg`.
+    pub series: String,
+    /// Finite elements, clouds, a transfer scheme or a reference.
+    pub family: Family,
+    /// Element (`tet10`), kernel (`cubic-spline`), transfer scheme (`inverse-distance`) or, of a reference, its method.
     pub variant: String,
-    /// Further settings as `key=value` pairs joined by `;` and sorted by key, such as `basis=linear;dilatation=1.6`.
-    pub parameters: String,
+    /// Polynomial basis of a cloud: `linear`, `quadratic` or `maximum-entropy`.
+    pub basis: Option<String>,
+    /// Support radius over the local node spacing.
+    pub support_scale: Option<f64>,
+    /// Neighbours that a support reaches to, or that a transfer scheme takes.
+    pub neighbours: Option<u64>,
+    /// Support radius over the distance to the last of these neighbours.
+    pub neighbour_factor: Option<f64>,
+    /// Shape of supports other than balls.
+    pub neighbourhood: Option<String>,
+    /// Locality of maximum-entropy functions.
+    pub gamma: Option<f64>,
+    /// Kernel of a cloud; of a transfer scheme that of the method whose field it carries.
+    pub kernel: Option<String>,
+    /// Volumetric projection, such as `standard` or `nodal-mean`.
+    pub dilation: Option<String>,
+    /// Rule of integration where a family has several, such as `gauss-4` or `cell-smoothed-1`.
+    pub integration: Option<String>,
+    /// How prescribed displacements are imposed on a cloud, such as `nitsche`.
+    pub essential: Option<String>,
+    /// Error indicator and steps by which a cloud was refined.
+    pub refine: Option<String>,
+    /// Rule of the second integration by which errors of integration and of discretisation are told apart.
+    pub split: Option<String>,
+    /// Material law at large strain.
+    pub law: Option<String>,
+    /// Mass of vibrations: `consistent`, `lumped` or `transformed`.
+    pub mass: Option<String>,
+    /// The method whose field a transfer scheme carries.
+    pub from: Option<String>,
+    /// Power of the distance in a transfer scheme.
+    pub power: Option<f64>,
+    /// Width of a scheme's radial functions over the mean node spacing.
+    pub shape: Option<f64>,
+    /// Whether a scheme's radial functions have a linear polynomial with them.
+    pub polynomial: Option<bool>,
+    /// Kernel that evaluated the internal forces of explicit dynamics.
+    pub force_kernel: Option<String>,
+    /// Lanes that it ran in, such as `avx2`, or `plain` for one element at a time.
+    pub lane_path: Option<String>,
+    /// Linear solver that ran, such as `sparse-llt`.
+    pub linear_solver: Option<String>,
     /// Poisson's ratio of the (first) material, dimensionless.
     pub poisson: f64,
     /// Refinement level, 1 the coarsest; 0 where the run belongs to no family of levels.
@@ -54,18 +134,27 @@ pub struct Record {
     pub spacing: f64,
     /// Seed of jitter and clouds; 0 where there is no randomness.
     pub seed: u64,
-    /// What was measured: `rms-x`, `rms-y`, `rms-z`, `rms`, `l2`, `energy`, `pressure`, `max-x`, `time`, `memory`,
-    /// `condition-median`, `condition-max`, `neighbours-mean`, `fallbacks`, `tip`, ...
+    /// What was measured: `rms-x`, `rms`, `l2`, `energy`, `pressure`, `max-x`, `time`, `memory`, `condition-max`, `tip`, ...
     pub quantity: String,
     /// SI unit as text: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
     pub unit: String,
-    /// `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`, `step-N`, or empty where no phase applies.
+    /// Phase of a time: `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`; empty where none applies.
     pub phase: String,
-    /// `value`, `median`, `spread` (interquartile range), `min`, `p99` and `p99.9` (quantiles), or the ends `low` and `high` of an uncertainty.
+    /// Load step or recorded state, 0 the start.
+    pub step: Option<u64>,
+    /// Mode of vibration, 1 the lowest.
+    pub mode: Option<u64>,
+    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `p99` and `p99.9` (quantiles), or the ends `low` and
+    /// `high` of an uncertainty.
     pub statistic: String,
+    /// Which repeat of a timing, from 1.
+    pub repeat: Option<u64>,
     /// The number, in `unit`; always finite.
     pub value: f64,
 }
+
+/// What finds a row: run, quantity, phase, step, mode, statistic, repeat.
+pub(crate) type Key<'a> = (&'a str, &'a str, &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
 
 impl Record {
     /// Refuses a record whose value, Poisson's ratio or spacing isn't finite.
@@ -87,269 +176,86 @@ impl Record {
     /// Whether the value depends on the machine and the moment (times and memory): such rows are left out when two runs
     /// are compared bit by bit.
     pub fn is_measured(&self) -> bool {
-        // Of a step, time is the model's own.
-        self.quantity == "time" && step(self).is_none() || self.quantity == "memory"
+        match self.quantity.as_str() {
+            // Of a step, time is the model's own.
+            "time" => self.step.is_none(),
+            "cpu-time" | "memory" => true,
+            _ => false,
+        }
     }
 
-    /// The value of one key in `parameters`.
-    pub fn parameter(&self, key: &str) -> Option<&str> {
-        self.parameters
-            .split(';')
-            .find_map(|pair| pair.split_once('=').filter(|(k, _)| *k == key).map(|(_, v)| v))
+    /// What no other row has.
+    pub(crate) fn key(&self) -> Key<'_> {
+        let Record { run, quantity, phase, step, mode, statistic, repeat, .. } = self;
+        (run, quantity, phase, *step, *mode, statistic, *repeat)
     }
 
-    /// Total order by every identifying field, then by value: the order of the stored table.
+    /// The settings that a method has, with their names in words. A kernel that is the variant is not repeated.
+    pub fn settings(&self) -> Vec<(&'static str, String)> {
+        let words = |value: &Option<String>| value.clone();
+        let number = |value: &Option<f64>| value.map(|v| v.to_string());
+        let all = [
+            ("basis", words(&self.basis)),
+            ("support scale", number(&self.support_scale)),
+            ("dilation", words(&self.dilation)),
+            ("essential", words(&self.essential)),
+            ("neighbour factor", number(&self.neighbour_factor)),
+            ("from", words(&self.from)),
+            ("gamma", number(&self.gamma)),
+            ("integration", words(&self.integration)),
+            ("kernel", words(&self.kernel).filter(|kernel| *kernel != self.variant)),
+            ("law", words(&self.law)),
+            ("mass", words(&self.mass)),
+            ("neighbours", self.neighbours.map(|n| n.to_string())),
+            ("polynomial", self.polynomial.map(|p| p.to_string())),
+            ("power", number(&self.power)),
+            ("refine", words(&self.refine)),
+            ("shape", number(&self.shape)),
+            ("split", words(&self.split)),
+            ("neighbourhood", words(&self.neighbourhood)),
+        ];
+        all.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
+    }
+
+    /// The order of the stored table: by run as a reader would look for it, then by what finds a row.
     pub fn order(&self, other: &Record) -> Ordering {
-        let key = |r: &Record| {
-            (
-                r.case.clone(),
-                r.family.clone(),
-                r.method.clone(),
-                r.variant.clone(),
-                r.parameters.clone(),
-                r.level,
-                r.nodes,
-            )
-        };
-        let detail = |r: &Record| (r.seed, r.quantity.clone(), r.phase.clone(), r.statistic.clone());
-        key(self)
-            .cmp(&key(other))
+        type Who<'a> = (&'a str, Family, &'a str, &'a str, u32, u64, u64);
+        fn who(r: &Record) -> Who<'_> {
+            (&r.case, r.family, &r.method, &r.variant, r.level, r.nodes, r.seed)
+        }
+        who(self)
+            .cmp(&who(other))
             .then(self.poisson.total_cmp(&other.poisson))
-            .then_with(|| detail(self).cmp(&detail(other)))
-            .then(self.spacing.total_cmp(&other.spacing))
+            .then_with(|| match self.run == other.run {
+                true => Ordering::Equal,
+                // Not by their ids alone, which the name of a case is part of.
+                false => self.settings().cmp(&other.settings()),
+            })
+            .then_with(|| self.key().cmp(&other.key()))
             .then(self.value.total_cmp(&other.value))
     }
-}
-
-/// Where, by what and from what a run's numbers came. Carries no date: two runs of one state are the same bytes.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Provenance {
-    /// Version of the program.
-    pub version: String,
-    /// Commit of the source, with `+` appended when the tree had changes.
-    pub commit: String,
-    /// Compiler version.
-    pub rustc: String,
-    /// Processor model.
-    pub cpu: String,
-    /// Threads the solvers used.
-    pub threads: u32,
-    /// Seed of the study.
-    pub seed: u64,
-    /// CPU and build features in use, such as `avx2,fma`.
-    pub features: String,
-    /// Build profile: `release` or `dev`.
-    pub profile: String,
-    /// Content hash (BLAKE3, hexadecimal) of each scene file, by scene name, sorted.
-    pub scenes: Vec<SceneHash>,
-}
-
-/// The content hash of one scene file.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SceneHash {
-    /// Scene (case) name.
-    pub case: String,
-    /// BLAKE3 hash of the file, hexadecimal.
-    pub blake3: String,
-}
-
-/// How a check came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Status {
-    /// The bound held.
-    Pass,
-    /// The bound didn't hold.
-    Fail,
-    /// The bound didn't hold and wasn't expected to; the reason says why.
-    KnownFailure,
-    /// The check couldn't be evaluated.
-    NotRun,
-}
-
-impl Status {
-    /// The word used in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Status::Pass => "pass",
-            Status::Fail => "fail",
-            Status::KnownFailure => "known-failure",
-            Status::NotRun => "not-run",
-        }
-    }
-
-    /// Reads the word back.
-    pub fn from_name(name: &str) -> Option<Status> {
-        [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun]
-            .into_iter()
-            .find(|s| s.name() == name)
-    }
-}
-
-/// One bound on one number, and whether it held.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Check {
-    /// Case name.
-    pub case: String,
-    /// Method id.
-    pub method: String,
-    /// The number that is bounded, such as `rms-x` or `order-l2`.
-    pub metric: String,
-    /// Its value in SI; `None` where it couldn't be computed.
-    pub value: Option<f64>,
-    /// The bound in words, such as `at most 1e-12`.
-    pub bound: String,
-    /// How it came out.
-    pub status: Status,
-    /// Why it failed, is known to fail, or wasn't run; empty for a pass.
-    pub reason: String,
-}
-
-/// Displacement on a body's surface, for the pictures.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SurfaceField {
-    /// Case name.
-    pub case: String,
-    /// Method id.
-    pub method: String,
-    /// Title above the picture.
-    pub title: String,
-    /// Surface points in the reference configuration, metres.
-    pub points: Vec<[f64; 3]>,
-    /// Corner indices into `points`, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// Displacement at each point, metres.
-    pub displacement: Vec<[f64; 3]>,
-    /// The tools of a scene where they stand in this state.
-    #[serde(default)]
-    pub tools: Vec<ToolHull>,
-    /// A section between the tools.
-    #[serde(default)]
-    pub section: Option<Section>,
-}
-
-/// A tool as points whose convex hull it is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ToolHull {
-    /// Name in the scene.
-    pub name: String,
-    /// The points, metres.
-    pub points: Vec<[f64; 3]>,
-}
-
-/// A plane cut through the undeformed body, shown deformed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Section {
-    /// Unit vector in the plane that is to the right on paper: the way of the first tool.
-    pub right: [f64; 3],
-    /// Unit vector in the plane that is upwards on paper.
-    pub up: [f64; 3],
-    /// The cells it cuts.
-    pub cells: Vec<SectionCell>,
-}
-
-/// A plane's cut through one cell.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SectionCell {
-    /// Deformed corners in the order around the cut, metres.
-    pub corners: Vec<[f64; 3]>,
-    /// Mean pressure over the whole cell, Pa, positive in compression.
-    pub pressure: f64,
-}
-
-impl SurfaceField {
-    /// Refuses a field whose arrays don't fit together or hold a number that isn't finite.
-    pub fn check(&self) -> Result<(), ReportError> {
-        let wrong = |reason: String| ReportError::Field {
-            case: self.case.clone(),
-            method: self.method.clone(),
-            reason,
-        };
-        let n = self.points.len();
-        if self.displacement.len() != n {
-            return Err(wrong(format!("{n} points but {} displacements", self.displacement.len())));
-        }
-        if let Some(t) = self.triangles.iter().flatten().find(|&&t| t as usize >= n) {
-            return Err(wrong(format!("a triangle names point {t} of {n}")));
-        }
-        if self.points.iter().chain(&self.displacement).flatten().any(|v| !v.is_finite()) {
-            return Err(wrong("a coordinate or a displacement isn't finite".into()));
-        }
-        let cells = || self.section.iter().flat_map(|s| &s.cells);
-        let more = self.tools.iter().flat_map(|t| &t.points).chain(cells().flat_map(|c| &c.corners));
-        if more.flatten().any(|v| !v.is_finite()) || cells().any(|c| !c.pressure.is_finite()) {
-            return Err(wrong("a tool or a section holds a number that isn't finite".into()));
-        }
-        Ok(())
-    }
-}
-
-/// One stage of one plan.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PlanEntry {
-    /// Case name.
-    pub case: String,
-    /// Method id.
-    pub method: String,
-    /// Stage, such as `contact search`.
-    pub stage: String,
-    /// Whether it ran.
-    pub ran: bool,
-    /// Why it ran or was skipped.
-    pub why: String,
-}
-
-/// A run that gave no numbers.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Failure {
-    /// Case name.
-    pub case: String,
-    /// Method id.
-    pub method: String,
-    /// What went wrong.
-    pub reason: String,
-}
-
-/// Everything one study leaves behind.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RunSet {
-    /// Where the numbers come from.
-    pub provenance: Provenance,
-    /// The numbers.
-    pub records: Vec<Record>,
-    /// The bounds.
-    pub checks: Vec<Check>,
-    /// Surface displacements for the pictures.
-    pub fields: Vec<SurfaceField>,
-    /// Stages run and skipped.
-    pub plans: Vec<PlanEntry>,
-    /// Runs that failed.
-    pub failures: Vec<Failure>,
 }
 
 #[cfg(test)]
 impl Record {
     /// What tests fill in: a value of a run of no size.
     pub(crate) fn blank() -> Record {
-        Record {
-            case: String::new(),
-            method: String::new(),
-            family: String::new(),
-            variant: String::new(),
-            parameters: String::new(),
-            poisson: 0.495,
-            level: 0,
-            nodes: 0,
-            elements: 0,
-            points: 0,
-            dofs: 0,
-            spacing: 0.0,
-            seed: 0,
-            quantity: String::new(),
-            unit: "m".into(),
-            phase: String::new(),
-            statistic: "value".into(),
-            value: 0.0,
-        }
+        Record { poisson: 0.495, unit: "m".into(), statistic: "value".into(), ..Record::default() }
+    }
+
+    /// With an id made of what tells runs of tests apart.
+    pub(crate) fn of_its_run(mut self) -> Record {
+        let who = (
+            &self.case,
+            &self.method,
+            &self.variant,
+            self.settings(),
+            self.poisson.to_bits(),
+            self.level,
+            self.nodes,
+            self.seed,
+        );
+        self.run = format!("{who:?}");
+        self
     }
 }

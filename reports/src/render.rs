@@ -10,7 +10,8 @@ use crate::clouds::{self, Clouds};
 use crate::error::ReportError;
 use crate::figures;
 use crate::findings;
-use crate::record::{Provenance, RunSet, Status};
+use crate::provenance::{Machine, Program, SceneHash};
+use crate::run_set::{RunSet, Status};
 use crate::select;
 use crate::store::{make_dir, read_run, remove_files, write_text};
 use crate::table::{Column, Table};
@@ -123,7 +124,9 @@ struct Counts {
 
 #[derive(Serialize)]
 struct PageView<'a> {
-    provenance: &'a Provenance,
+    program: &'a Program,
+    machine: &'a Machine,
+    scenes: &'a [SceneHash],
     findings: Vec<TopicView>,
     tables: Vec<TableView<'a>>,
     figures: &'a [FigureView],
@@ -162,7 +165,9 @@ fn page_text(
     let mut environment = Environment::new();
     environment.add_template("report.html", PAGE)?;
     let view = PageView {
-        provenance: &set.provenance,
+        program: &set.provenance.program,
+        machine: &set.provenance.machine,
+        scenes: &set.provenance.scenes,
         findings,
         tables,
         figures,

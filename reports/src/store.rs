@@ -2,14 +2,15 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `records.parquet`, `records.csv` | the long table, one number a row, SI; the same columns in both |
-//! | `provenance.json` | where the numbers come from, with the hash of every scene; also the Parquet key `provenance` |
+//! | `records.csv` | the long table, one number a row, SI |
+//! | `provenance.json` | where the numbers come from, with the hash of every scene |
 //! | `checks.csv`, `checks.json` | every bound and how it came out |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers |
 //! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |
 //!
 //! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -18,13 +19,16 @@ use serde::de::DeserializeOwned;
 
 use crate::error::ReportError;
 use crate::frame;
-use crate::record::RunSet;
+use crate::provenance::Provenance;
+use crate::record::Record;
+use crate::run_set::RunSet;
 use crate::table::csv_line;
 
 /// Writes a run to a folder, which is created where missing; surface fields of an earlier run there are removed.
 pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;
+    once(&run.records)?;
     for check in &run.checks {
         if let Some(value) = check.value.filter(|v| !v.is_finite()) {
             return Err(ReportError::NotFinite {
@@ -78,13 +82,32 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     Ok(())
 }
 
+/// Refuses rows that nothing tells apart.
+fn once(records: &[Record]) -> Result<(), ReportError> {
+    let mut seen = HashSet::with_capacity(records.len());
+    match records.iter().find(|r| !seen.insert(r.key())) {
+        None => Ok(()),
+        Some(r) => Err(ReportError::Twice {
+            case: r.case.clone(),
+            method: r.method.clone(),
+            quantity: r.quantity.clone(),
+            run: r.run.clone(),
+        }),
+    }
+}
+
+/// The study's or scene's file that the results in a folder are of; `None` where there are none.
+pub fn source_of(dir: &Path) -> Option<String> {
+    read_json::<Provenance>(&dir.join("provenance.json")).ok().map(|provenance| provenance.source)
+}
+
 /// Reads a run back from its folder; surface fields in the order of their file names.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     let fields_dir = dir.join("fields");
     let fields = if fields_dir.is_dir() { files_ending(&fields_dir, &["json"])? } else { Vec::new() };
     let run = RunSet {
         provenance: read_json(&dir.join("provenance.json"))?,
-        records: frame::read(&dir.join("records.parquet"))?,
+        records: frame::read(&dir.join("records.csv"))?,
         checks: read_json(&dir.join("checks.json"))?,
         fields: fields.iter().map(|path| read_json(path)).collect::<Result<_, _>>()?,
         plans: read_json(&dir.join("plans.json"))?,

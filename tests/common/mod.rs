@@ -4,7 +4,8 @@
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
-use mechanics::{LinearElastic, Matrix3, Point3, Vector3};
+use material::LinearElastic;
+use shape::{Matrix3, Point3, Vector3};
 
 /// Sides of every facet group of a box.
 pub const SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
@@ -47,7 +48,7 @@ pub fn stress_error(found: &[Matrix3], exact: &Matrix3) -> f64 {
 
 /// Six parameters that hold the rigid motions of a box and nothing else, at the values of a field: a corner
 /// along x, y, z, the next corner along x in y and z, and the next along y in z.
-pub fn six_holds(mesh: &Mesh, field: impl Fn(&Point3) -> Vector3) -> Vec<mechanics::FixedDof> {
+pub fn six_holds(mesh: &Mesh, field: impl Fn(&Point3) -> Vector3) -> Vec<shape::FixedDof> {
     let corner = |sides: [&str; 3]| {
         let on = |side: &str| mesh.facet_group_nodes(mesh.group(side).unwrap());
         let [a, b, c] = sides.map(on);
@@ -55,7 +56,7 @@ pub fn six_holds(mesh: &Mesh, field: impl Fn(&Point3) -> Vector3) -> Vec<mechani
     };
     let hold = |node: u32, axis: u8| {
         let value = field(&mesh.points()[node as usize])[axis as usize];
-        mechanics::FixedDof { node, axis, value }
+        shape::FixedDof { node, axis, value }
     };
     let origin = corner(["x-min", "y-min", "z-min"]);
     let along_x = corner(["x-max", "y-min", "z-min"]);

@@ -1,1 +1,6 @@
-//! integration
+//! What the tests across crates share: bodies with their tables, tools, and measures of error.
+
+pub mod block;
+pub mod cuboid;
+pub mod model;
+pub mod tools;

@@ -17,9 +17,18 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Build, run the verification study, write tables, figures and the report to results/
+    /// Build, run the quick tier of the verification study, write tables, figures and the report to results/
     Verify {
-        /// Further arguments of `tissuebench verify` (--quick, --filter TEXT, --resume, ...)
+        /// All runs of the study, not only the quick tier's: about 13 minutes
+        #[arg(long)]
+        full: bool,
+        /// Further arguments of `tissuebench verify` (STUDY, --filter TEXT, --resume, ...)
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<String>,
+    },
+    /// Run the quick tier and compare its numbers with those accepted in tests/baseline/quick.toml
+    Baseline {
+        /// Further arguments of `tissuebench baseline` (--accept TEXT, --check)
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
@@ -33,6 +42,8 @@ enum Task {
     Report,
     /// Verify in full, then refresh the figures and tables kept in reports/gallery for the README
     Gallery,
+    /// Write the book's reference pages anew, and build the book where mdbook is installed
+    Book,
     /// What continuous integration runs: format, lints, docs, tests, quick verification
     Ci,
 }
@@ -49,13 +60,19 @@ fn main() -> ExitCode {
 
 fn run(task: Task) -> Result<u8> {
     match task {
-        Task::Verify { args } => tissuebench("verify", &args),
+        Task::Verify { full, args } => verify(full, &args),
+        Task::Baseline { args } => {
+            // What the checks say is not asked here.
+            tissuebench("verify", &["--quick".into()])?;
+            tissuebench("baseline", &[&["results".into()], &args[..]].concat())
+        }
         Task::Bench { args } => cargo(&["bench", "--workspace"], &args),
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
-            let code = tissuebench("verify", &[])?;
+            let code = verify(true, &[])?;
             if code == 0 { keep_gallery().map(|()| 0) } else { Ok(code) }
         }
+        Task::Book => book(),
         Task::Ci => ci(),
     }
 }
@@ -75,29 +92,64 @@ fn ci() -> Result<u8> {
             return Ok(code);
         }
     }
-    tissuebench("verify", &["--quick".into()])
+    let code = verify(false, &[])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    tissuebench("baseline", &["results".into(), "--check".into()])
+}
+
+/// The quick tier, unless all runs are asked for; a study of the user's own has none.
+fn verify(full: bool, args: &[String]) -> Result<u8> {
+    let quick = "--quick".to_string();
+    let whole = full || args.contains(&quick) || args.iter().any(|a| a.ends_with(".toml"));
+    let args = if whole { args.to_vec() } else { [&[quick], args].concat() };
+    tissuebench("verify", &args)
 }
 
 /// Runs the release binary, building it first if needed.
 fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
-    let mut line =
-        vec!["run", "--release", "--locked", "--quiet", "--package", "tissuebench-harness", "--", command];
-    line.extend(args.iter().map(String::as_str));
-    eprintln!("xtask: building the release binary (minutes the first time), then: tissuebench {command}");
-    cargo(&line, &[])
+    eprintln!("xtask: building tissuebench (about 7 minutes the first time), then: tissuebench {command}");
+    let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
+    let code = cargo(&build, &[])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    let run = ["run", "--release", "--locked", "--quiet", "--package", "tissuebench-harness", "--", command];
+    cargo(&run, args)
+}
+
+/// The pages that the program writes about itself, then docs/book.
+fn book() -> Result<u8> {
+    let pages = ["test", "--locked", "--package", "tissuebench-harness", "--test", "docs", "reference"];
+    let status = cargo_command(&pages, &[]).env("TISSUEBENCH_BOOK", "write").status();
+    let code = code_of(status.context("could not start cargo test")?);
+    if code != 0 {
+        return Ok(code);
+    }
+    match Command::new("mdbook").arg("build").arg(root().join("docs")).status() {
+        Ok(status) => Ok(code_of(status)),
+        Err(_) => {
+            eprintln!("xtask: docs/src/reference is fresh; `cargo install mdbook` to build the book itself");
+            Ok(0)
+        }
+    }
 }
 
 fn cargo(args: &[&str], more: &[String]) -> Result<u8> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .args(args)
-        .args(more)
-        .env("RUSTDOCFLAGS", "-D warnings")
-        .env("CARGO_INCREMENTAL", "0")
-        .current_dir(root())
-        .status()
-        .with_context(|| format!("could not start cargo {}", args.join(" ")))?;
-    Ok(status.code().map_or(3, |code| code as u8))
+    let status = cargo_command(args, more).status();
+    Ok(code_of(status.with_context(|| format!("could not start cargo {}", args.join(" ")))?))
+}
+
+fn cargo_command(args: &[&str], more: &[String]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(args).args(more).current_dir(root());
+    command.env("RUSTDOCFLAGS", "-D warnings").env("CARGO_INCREMENTAL", "0");
+    command
+}
+
+fn code_of(status: std::process::ExitStatus) -> u8 {
+    status.code().map_or(3, |code| code as u8)
 }
 
 fn root() -> PathBuf {

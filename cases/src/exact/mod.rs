@@ -50,7 +50,7 @@ pub use thick_sphere::ThickSphere;
 pub use uniaxial_compression::UniaxialCompression;
 pub use vibrating_cantilever::VibratingCantilever;
 
-use crate::names::nearest;
+use catalogue::nearest;
 use params::Values;
 
 /// A position in the reference configuration, in metres.

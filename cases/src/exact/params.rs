@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::names::nearest;
+use catalogue::nearest;
 
 /// Material and case parameters, all in SI units.
 #[derive(Clone, Debug, PartialEq)]

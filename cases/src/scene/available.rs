@@ -1,6 +1,8 @@
 //! What a sound scene may ask for and can't have yet.
 
-use super::error::{ErrorKind, Problem, SceneError};
+use catalogue::Problem;
+
+use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::model::Scene;
 use super::procedure::ProcedureKind;

@@ -7,13 +7,17 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::names::suggest;
+use catalogue::suggest;
 
 use super::document::written;
-use super::error::Problem;
 use super::expression::Expression;
 use super::region::Region;
-use super::units::Dimension;
+use catalogue::Dimension;
+use catalogue::Problem;
+
+/// Keys that were renamed: old and new.
+const RENAMED: [(&str, &str); 3] =
+    [("dilatation", "support_scale"), ("dilatations", "support_scales"), ("support", "neighbourhood")];
 
 /// A problem at a place.
 #[derive(Debug)]
@@ -318,7 +322,11 @@ fn keys(
             any(value.get_ref(), value.span(), &join(path, name), schema, findings);
         } else {
             let names: Vec<&str> = known.keys().map(String::as_str).collect();
-            let problem = Problem::new("is not a known key").help(suggest(name, &names));
+            let now = RENAMED.iter().find(|(old, new)| *old == name && known.contains_key(*new));
+            let problem = match now {
+                Some((_, new)) => Problem::new("is an old name").help(format!("write {new}")),
+                None => Problem::new("is not a known key").help(suggest(name, &names)),
+            };
             findings.push(Finding { key: join(path, name), span: key.span(), problem });
         }
     }

@@ -1,6 +1,5 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
-use super::error::Problem;
 use super::field::{Prescribed, ScalarField, VectorField};
 use super::method::{Cloud, Dilation, Efg, Element, Family};
 use super::model::{LoadKind, Material, Relaxation, Scene};
@@ -8,6 +7,7 @@ use super::output::Reference;
 use super::procedure::ProcedureKind;
 use super::report::Report;
 use super::tool::Drive;
+use catalogue::Problem;
 
 /// Notes every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {

@@ -9,7 +9,9 @@ use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
 use super::conform;
-use super::error::{ErrorKind, Problem, SceneError, clip};
+use catalogue::{Problem, clip};
+
+use super::error::{ErrorKind, SceneError};
 
 /// Line and column of the keys of a file, for messages that come long after reading.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -55,36 +55,3 @@ impl fmt::Display for SceneError {
 }
 
 impl std::error::Error for SceneError {}
-
-/// A finding that doesn't know its place yet.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Problem {
-    pub found: Option<String>,
-    pub problem: String,
-    pub help: Option<String>,
-}
-
-impl Problem {
-    pub fn new(problem: impl Into<String>) -> Problem {
-        Problem { found: None, problem: problem.into(), help: None }
-    }
-
-    pub fn found(mut self, found: impl fmt::Display) -> Problem {
-        self.found = Some(clip(&found.to_string()));
-        self
-    }
-
-    pub fn help(mut self, help: impl Into<String>) -> Problem {
-        self.help = Some(help.into());
-        self
-    }
-}
-
-/// One line of at most 80 characters.
-pub(crate) fn clip(text: &str) -> String {
-    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    match line.char_indices().nth(80) {
-        Some((end, _)) => format!("{}...", &line[..end]),
-        None => line,
-    }
-}

@@ -11,9 +11,9 @@ use std::str::CharIndices;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 
-use crate::names::suggest;
+use catalogue::suggest;
 
-use super::error::Problem;
+use catalogue::Problem;
 
 /// An expression in the coordinates, compiled to postfix order.
 #[derive(Clone, Debug)]

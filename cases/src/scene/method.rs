@@ -12,6 +12,8 @@ use super::region::Region;
 pub struct Method {
     /// Unique within the scene.
     pub id: String,
+    /// Name shared with the methods that differ from it in size only: in reports they are one curve.
+    pub series: String,
     /// Its family and settings.
     pub family: Family,
     /// What moves in vibrations (`kind = "modes"`, which needs one).
@@ -91,7 +93,7 @@ pub enum Functions {
     /// Moving least squares.
     MovingLeastSquares {
         /// Kernel and its parameters.
-        kernel: Kernel,
+        kernel: efg::Kernel,
         /// Support radius.
         support: SupportRule,
         /// Balls, or ellipsoids that follow the cells of the mesh the cloud is taken from.
@@ -275,67 +277,11 @@ impl Method {
     }
 }
 
-/// Kernel names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // the names are the field's words
-pub enum KernelName {
-    CubicSpline,
-    QuarticSpline,
-    Gaussian,
-    Exponential,
-    WendlandC2,
-    WendlandC4,
-    WendlandC6,
-    RegularisedInterpolating,
-}
-
-impl KernelName {
-    /// Every kernel, in the order tables list them.
-    pub const ALL: [KernelName; 8] = [
-        KernelName::CubicSpline,
-        KernelName::QuarticSpline,
-        KernelName::Gaussian,
-        KernelName::Exponential,
-        KernelName::WendlandC2,
-        KernelName::WendlandC4,
-        KernelName::WendlandC6,
-        KernelName::RegularisedInterpolating,
-    ];
-
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            KernelName::CubicSpline => "cubic-spline",
-            KernelName::QuarticSpline => "quartic-spline",
-            KernelName::Gaussian => "gaussian",
-            KernelName::Exponential => "exponential",
-            KernelName::WendlandC2 => "wendland-c2",
-            KernelName::WendlandC4 => "wendland-c4",
-            KernelName::WendlandC6 => "wendland-c6",
-            KernelName::RegularisedInterpolating => "regularised-interpolating",
-        }
-    }
-}
-
-/// A kernel; parameters left out take the defaults of the kernel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kernel {
-    /// Which one.
-    pub name: KernelName,
-    /// Width relative to the support radius (gaussian, exponential).
-    pub alpha: Option<f64>,
-    /// Exponent (exponential).
-    pub power: Option<u32>,
-    /// Regularisation (regularised interpolating).
-    pub eps: Option<f64>,
-}
-
 /// How the support radius of a node is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SupportRule {
     /// This factor times the local spacing.
-    Dilatation(f64),
+    Scale(f64),
     /// This factor times the distance to the k-th neighbour.
     Neighbours {
         /// Which neighbour.
@@ -351,20 +297,20 @@ pub enum SupportRule {
 pub enum SupportShape {
     /// A ball.
     #[default]
-    Round,
+    Ball,
     /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic.
-    Adapted,
+    Ellipsoid,
 }
 
 impl SupportShape {
     /// Both, in the order they are listed.
-    pub const ALL: [SupportShape; 2] = [SupportShape::Round, SupportShape::Adapted];
+    pub const ALL: [SupportShape; 2] = [SupportShape::Ball, SupportShape::Ellipsoid];
 
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
-            SupportShape::Round => "round",
-            SupportShape::Adapted => "adapted",
+            SupportShape::Ball => "ball",
+            SupportShape::Ellipsoid => "ellipsoid",
         }
     }
 }

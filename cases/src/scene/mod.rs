@@ -13,11 +13,10 @@ mod expression;
 mod field;
 mod keys;
 mod method;
-mod metric;
 mod model;
 mod output;
 mod procedure;
-mod quantity;
+mod purpose;
 mod region;
 mod report;
 mod resolve;
@@ -25,6 +24,7 @@ mod study;
 mod tool;
 mod units;
 mod validate;
+mod vocabulary;
 
 use std::path::Path;
 
@@ -34,17 +34,15 @@ pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
-    Jitter, Kernel, KernelName, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
+    Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
-pub use metric::{Metric, Needs};
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
-pub use output::{Bound, Check, Output, Reference, Repeated, SchemeName, Target, Transfer};
+pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
-pub use quantity::{Exponents, Quantity};
+pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};
 pub use tool::{Drive, Friction, Tool, ToolShape};
-pub use units::Dimension;
 
 /// Reads the scene in a file. The name in messages is `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {

@@ -1,11 +1,14 @@
 //! A scene as the program works with it: every quantity an f64 in SI, every choice an enum.
 
 use super::document::Origin;
-use super::error::{ErrorKind, Problem, SceneError};
+use catalogue::Problem;
+
+use super::error::{ErrorKind, SceneError};
 use super::field::{Prescribed, ScalarField, VectorField};
 use super::method::{MeshFile, Method};
 use super::output::{Check, Output, Reference};
 use super::procedure::Procedure;
+use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::tool::Tool;
 
@@ -16,6 +19,10 @@ pub struct Scene {
     pub title: String,
     /// Where the case and its reference come from.
     pub source: Option<String>,
+    /// What the scene is for.
+    pub purpose: Purpose,
+    /// The published comparison that the results are set against.
+    pub published: Option<Publication>,
     /// The body in its undeformed state.
     pub body: Body,
     /// The material wherever no region has its own.

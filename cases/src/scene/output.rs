@@ -3,11 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::method::{MeshFile, Size};
-use super::metric::Metric;
+use catalogue::Values;
+use catalogue::metric::Metric;
 
 /// What a scene reports.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,18 +38,8 @@ pub struct Repeated {
 pub struct Transfer {
     /// The points.
     pub to: Target,
-    /// The scheme.
-    pub scheme: SchemeName,
-    /// Neighbours per point, where the scheme has them.
-    pub neighbours: Option<usize>,
-    /// Power of the inverse distance.
-    pub power: Option<f64>,
-    /// Support radius over the local spacing (for `wendland-c2` the mean one), where the scheme has one.
-    pub dilatation: Option<f64>,
-    /// Length of the shape parameter over the mean spacing, where the scheme has one.
-    pub shape: Option<f64>,
-    /// A linear polynomial beside the radial functions, where the scheme may do without.
-    pub polynomial: Option<bool>,
+    /// The scheme and the values of its parameters; `None` for the solver's own rows.
+    pub scheme: Option<(interp::Scheme, Values)>,
 }
 
 /// Points of a transfer.
@@ -63,68 +51,6 @@ pub enum Target {
     Probes,
     /// The nodes of a mesh file.
     File(MeshFile),
-}
-
-/// Transfer schemes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // the names are the field's words
-pub enum SchemeName {
-    Nearest,
-    InverseDistance,
-    Shepard,
-    MlsLinear,
-    MlsQuadratic,
-    MlsModified,
-    ThinPlate,
-    Cubic,
-    Multiquadric,
-    Gaussian,
-    WendlandC2,
-    NaturalNeighbour,
-    Barycentric,
-    /// The solver's own rows
-    Own,
-}
-
-impl SchemeName {
-    /// Every scheme, in the order tables list them.
-    pub const ALL: [SchemeName; 14] = [
-        SchemeName::Nearest,
-        SchemeName::InverseDistance,
-        SchemeName::Shepard,
-        SchemeName::MlsLinear,
-        SchemeName::MlsQuadratic,
-        SchemeName::MlsModified,
-        SchemeName::ThinPlate,
-        SchemeName::Cubic,
-        SchemeName::Multiquadric,
-        SchemeName::Gaussian,
-        SchemeName::WendlandC2,
-        SchemeName::NaturalNeighbour,
-        SchemeName::Barycentric,
-        SchemeName::Own,
-    ];
-
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            SchemeName::Nearest => "nearest",
-            SchemeName::InverseDistance => "inverse-distance",
-            SchemeName::Shepard => "shepard",
-            SchemeName::MlsLinear => "mls-linear",
-            SchemeName::MlsQuadratic => "mls-quadratic",
-            SchemeName::MlsModified => "mls-modified",
-            SchemeName::ThinPlate => "thin-plate",
-            SchemeName::Cubic => "cubic",
-            SchemeName::Multiquadric => "multiquadric",
-            SchemeName::Gaussian => "gaussian",
-            SchemeName::WendlandC2 => "wendland-c2",
-            SchemeName::NaturalNeighbour => "natural-neighbour",
-            SchemeName::Barycentric => "barycentric",
-            SchemeName::Own => "own",
-        }
-    }
 }
 
 /// What results are compared with.

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 
-use super::error::Problem;
-use super::units::Dimension;
+use catalogue::Dimension;
+use catalogue::Problem;
 
 /// A relation between a coordinate and a length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::names::nearest;
+use catalogue::nearest;
 
 use super::document::{Origin, sorted};
-use super::error::{ErrorKind, Problem, SceneError};
+use catalogue::Problem;
+
+use super::error::{ErrorKind, SceneError};
 
 /// Collects findings about one file.
 pub(crate) struct Report<'o> {

@@ -6,16 +6,19 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::available::{HELD, unheld};
-use super::error::{Problem, SceneError};
+use catalogue::{Problem, Values};
+
+use super::error::SceneError;
 use super::keys::{CheckKeys, EssentialKeys, IntegrationKeys};
-use super::method::{Basis, Cloud, Efg, Essential, Family, Functions, Integration, KernelName, Method};
-use super::metric::Needs;
+use super::method::{Basis, Cloud, Efg, Essential, Family, Functions, Integration, Method};
 use super::model::Scene;
 use super::output::Check;
 use super::report::Report;
 use super::resolve::{checks, essential, integration};
 use super::validate::{self, known_methods};
+use super::vocabulary::{Kernels, Word};
 use super::{document, load, text_of};
+use catalogue::metric::Needs;
 
 /// A study.
 #[derive(Clone, Debug)]
@@ -26,7 +29,7 @@ pub struct Study {
     pub runs: Vec<Run>,
 }
 
-/// One scene with what is varied of it: methods times levels (or node counts) times kernels times dilatations times essential
+/// One scene with what is varied of it: methods times levels (or node counts) times kernels times support scales times essential
 /// conditions times seeds times Poisson's ratios.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -41,9 +44,9 @@ pub struct Run {
     /// Node counts of clouds; their own where empty.
     pub nodes: Vec<usize>,
     /// Kernels of clouds; their own where empty.
-    pub kernels: Vec<KernelName>,
-    /// Dilatations of clouds; their own supports where empty.
-    pub dilatations: Vec<f64>,
+    pub kernels: Vec<efg::Kernel>,
+    /// Support scales of clouds: support radius over the local spacing; their own supports where empty.
+    pub support_scales: Vec<f64>,
     /// How prescribed displacements are imposed on clouds; their own way where empty.
     pub essentials: Vec<Essential>,
     /// Every cloud is solved once more, integrated by this rule: what that changes is its error of integration, what is left
@@ -87,10 +90,10 @@ pub(crate) struct RunKeys {
     pub nodes: Vec<u32>,
     /// Kernels of clouds
     #[serde(default)]
-    pub kernels: Vec<KernelName>,
-    /// Dilatations of clouds
+    pub kernels: Vec<Word<Kernels>>,
+    /// Support scales of clouds: support radius over the local spacing
     #[serde(default)]
-    pub dilatations: Vec<f64>,
+    pub support_scales: Vec<f64>,
     /// How prescribed displacements are imposed on clouds
     #[serde(default)]
     pub essentials: Vec<EssentialKeys>,
@@ -144,9 +147,9 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     report.require(sound, &at("poisson"), "holds a number that is no Poisson's ratio", help);
     let sound = keys.nodes.iter().all(|n| *n >= 4);
     report.require(sound, &at("nodes"), "holds a number that is no cloud", "give 4 nodes or more");
-    let sound = keys.dilatations.iter().all(|d| (1.0..=10.0).contains(d));
+    let sound = keys.support_scales.iter().all(|d| (1.0..=10.0).contains(d));
     let help = "1 to 10, as in a method; 1.2 to 3 is usual";
-    report.require(sound, &at("dilatations"), "holds a number that is no dilatation", help);
+    report.require(sound, &at("support_scales"), "holds a number that is no support scale", help);
     let sound = keys.seeds != 1 && keys.seeds <= 10_000;
     report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
@@ -160,8 +163,12 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         levels: keys.levels,
         poisson: keys.poisson,
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
-        kernels: keys.kernels,
-        dilatations: keys.dilatations,
+        kernels: keys
+            .kernels
+            .iter()
+            .filter_map(|word| (word.0.build)(&Values::new(word.0.parameters)).ok())
+            .collect(),
+        support_scales: keys.support_scales,
         essentials,
         split: keys.split.map(|keys| integration(keys, &at("split"), report)),
         seeds: keys.seeds.into(),
@@ -196,7 +203,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     for (name, given) in [
         ("nodes", !run.nodes.is_empty()),
         ("kernels", !run.kernels.is_empty()),
-        ("dilatations", !run.dilatations.is_empty()),
+        ("support_scales", !run.support_scales.is_empty()),
         ("essentials", !run.essentials.is_empty()),
         ("split", run.split.is_some()),
     ] {

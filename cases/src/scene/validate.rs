@@ -1,15 +1,16 @@
 //! What a scene's parts demand of each other.
 
 use crate::exact::{Params, exact_by_name};
-use crate::names::suggest;
+use catalogue::suggest;
 
-use super::error::Problem;
 use super::field::{Prescribed, VectorField};
-use super::metric::Needs;
 use super::model::{LoadKind, Place, Scene};
 use super::output::{Check, Reference, Target};
 use super::procedure::ProcedureKind;
+use super::purpose::Purpose;
 use super::report::{Report, which};
+use catalogue::Problem;
+use catalogue::metric::Needs;
 
 /// Notes every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {
@@ -26,6 +27,9 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             let problem = Problem::new("is no id").help("use letters, digits, '-', '_' and '.'");
             report.add(&format!("method[{i}].id"), problem);
         }
+    }
+    if scene.purpose == Purpose::Published && scene.published.is_none() {
+        report.missing("published", "name the published comparison: published = \"saghaei-2016\"");
     }
     for (i, region) in scene.regions.iter().enumerate() {
         if scene.regions[..i].iter().any(|other| other.name == region.name) {

@@ -83,7 +83,12 @@ const KEYS: &[Bad] = &[
     ("title = \"A block\"", "titel = \"A block\" #<", "titel", &["not a known key", "did you mean 'title'?"]),
     ("[procedure]", "[proccedure] #<", "proccedure", &["not a known key", "did you mean 'procedure'?"]),
     ("element = \"tet4\"", "elements = \"tet4\" #<", "method[0].elements", &["did you mean 'element'?"]),
-    ("dilatation = 1.6", "dilation = 1.6 #<", "method[1].dilation", &["'1.6' is a number", "\"nodal-mean\""]),
+    (
+        "support_scale = 1.6",
+        "dilation = 1.6 #<",
+        "method[1].dilation",
+        &["'1.6' is a number", "\"nodal-mean\""],
+    ),
     ("seed = 7 }", "sed = 7 } #<", "method[0].jitter.sed", &["did you mean 'seed'?"]),
     ("[material]\n", "[material]\nyoung = 1\nyoung = 2 #<\n", "", &["not valid TOML", "duplicate key"]),
     ("[material]\n", "[material #<\n", "", &["not valid TOML"]),
@@ -178,7 +183,7 @@ const KEYS: &[Bad] = &[
     (
         "size = { level = 2 }\nkernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"\n\
          integration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
-        "nodes = 83\ncloud = { refine = { by = \"gradient-error\" } } #<\nkernel = \"cubic-spline\"\ndilatation = 1.6\n\
+        "nodes = 83\ncloud = { refine = { by = \"gradient-error\" } } #<\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\n\
          basis = \"linear\"\nintegration = { rule = \"cell-smoothed\" }\nessential = \"coupling\"",
         "method[2].cloud.refine",
         &["does not go with essential = \"coupling\"", "\"elimination\""],
@@ -342,16 +347,21 @@ const METHODS: &[Bad] = &[
     ),
     ("cells = [4, 4, 2]", "cells = [4000, 4000, 2000] #<\n", "method[0].size.cells", &["20000000 in all"]),
     ("fraction = 0.2", "fraction = 0.6 #<\n", "method[0].jitter.fraction", &["'0.6' is no share of a cell"]),
-    ("dilatation = 1.6", "dilatation = 0.5 #<", "method[1].dilatation", &["'0.5' is no dilatation"]),
     (
-        "dilatation = 1.6",
-        "dilatation = 1.6\nneighbours = 15 #<",
-        "method[1].neighbours",
-        &["stands beside dilatation"],
+        "support_scale = 1.6",
+        "support_scale = 0.5 #<",
+        "method[1].support_scale",
+        &["'0.5' is no support scale"],
     ),
     (
-        "dilatation = 1.6",
-        "dilatation = 1.6\nfactor = 1.2 #<",
+        "support_scale = 1.6",
+        "support_scale = 1.6\nneighbours = 15 #<",
+        "method[1].neighbours",
+        &["stands beside support_scale"],
+    ),
+    (
+        "support_scale = 1.6",
+        "support_scale = 1.6\nfactor = 1.2 #<",
         "method[1].factor",
         &["goes with neighbours only"],
     ),
@@ -420,9 +430,9 @@ const OUTPUT: &[Bad] = &[
     ("neighbours = 4, power = 2", "neighbours = 0 #<\n", "output.transfer.neighbours", &["is zero"]),
     (
         "neighbours = 4, power = 2",
-        "dilatation = 2 #<\n",
-        "output.transfer.dilatation",
-        &["takes no dilatation"],
+        "support_scale = 2 #<\n",
+        "output.transfer.support_scale",
+        &["takes no support_scale"],
     ),
     (
         "scheme = \"inverse-distance\", neighbours = 4, power = 2",

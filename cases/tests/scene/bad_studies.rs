@@ -32,13 +32,13 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["'cubic' is not known"],
     ),
     (
-        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\ndilatations = [1.2, 0.5] #<",
-        "run[0].dilatations",
-        &["no dilatation", "1.2 to 3"],
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nsupport_scales = [1.2, 0.5] #<",
+        "run[0].support_scales",
+        &["no support scale", "1.2 to 3"],
     ),
     (
-        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet10\"]\ndilatations = [1.2] #<",
-        "run[0].dilatations",
+        "title = \"t\"\n[[run]]\nscene = \"first.toml\"\nmethods = [\"tet10\"]\nsupport_scales = [1.2] #<",
+        "run[0].support_scales",
         &["has no method to vary"],
     ),
     (

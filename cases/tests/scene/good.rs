@@ -54,8 +54,8 @@ fn methods_keep_every_setting() {
     let Family::Efg(efg) = &scene.methods[1].family else { panic!("efg") };
     assert_eq!(efg.cloud, Cloud::Uniform { nodes: 83, seed: 1 });
     let Functions::MovingLeastSquares { kernel, support, .. } = efg.functions else { panic!("a kernel") };
-    assert_eq!(kernel, Kernel { name: KernelName::Gaussian, alpha: Some(0.4), power: None, eps: None });
-    assert_eq!(support, SupportRule::Dilatation(1.6));
+    assert_eq!(Some(kernel), efg::Kernel::from_name("gaussian"));
+    assert_eq!(support, SupportRule::Scale(1.6));
     assert_eq!(efg.essential, Essential::Nitsche { factor: Some(10.0) });
     assert_eq!(efg.background, Some(Size::Spacing(0.005)));
     let Family::Efg(efg) = &scene.methods[2].family else { panic!("efg") };

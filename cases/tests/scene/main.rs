@@ -51,7 +51,7 @@ id = "efg-83"
 family = "efg"
 nodes = 83
 kernel = { name = "gaussian", alpha = 0.4 }
-dilatation = 1.6
+support_scale = 1.6
 basis = "linear"
 integration = { rule = "gauss", points = 4 }
 essential = { method = "nitsche", factor = 10 }

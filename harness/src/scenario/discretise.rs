@@ -14,7 +14,7 @@ use crate::{Failure, body, cloud_file};
 /// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
 const NITSCHE_SMOOTHED: f64 = 4.0;
 /// The same with other gradients and h the node spacing. 10 is too little at
-/// dilatation 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
+/// support scale 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
 const NITSCHE: f64 = 100.0;
 /// Penalty where the scene gives none: times E / h.
 const PENALTY: f64 = 1e4;
@@ -99,7 +99,7 @@ impl Scenario<'_> {
         };
         let adapted = matches!(
             efg.functions,
-            scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Adapted, .. }
+            scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Ellipsoid, .. }
         );
         let followed = cells.filter(|_| adapted).map(Box::new);
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
@@ -136,7 +136,7 @@ impl Scenario<'_> {
             shape,
             followed,
             refine,
-            functions: functions(efg.functions)?,
+            functions: functions(efg.functions),
             integration,
             essential,
             dilation: dilation(efg.dilation),
@@ -216,17 +216,17 @@ fn dilation(dilation: scene::Dilation) -> Dilation {
 }
 
 /// The shape functions that a scene names.
-fn functions(functions: scene::Functions) -> Result<Functions, Failure> {
-    Ok(match functions {
+fn functions(functions: scene::Functions) -> Functions {
+    match functions {
         scene::Functions::MovingLeastSquares { kernel, support, basis, .. } => {
             Functions::MovingLeastSquares {
-                kernel: self::kernel(kernel)?,
+                kernel,
                 basis: match basis {
                     scene::Basis::Linear => efg::Basis::Linear,
                     scene::Basis::Quadratic => efg::Basis::Quadratic,
                 },
                 support: match support {
-                    scene::SupportRule::Dilatation(factor) => efg::Support::Dilatation { factor },
+                    scene::SupportRule::Scale(factor) => efg::Support::Dilatation { factor },
                     scene::SupportRule::Neighbours { k, factor } => {
                         efg::Support::Neighbours { count: k, factor }
                     }
@@ -234,21 +234,5 @@ fn functions(functions: scene::Functions) -> Result<Functions, Failure> {
             }
         }
         scene::Functions::MaximumEntropy { gamma } => Functions::MaximumEntropy { gamma },
-    })
-}
-
-fn kernel(kernel: scene::Kernel) -> Result<efg::Kernel, Failure> {
-    use efg::Kernel;
-    let default = Kernel::from_name(kernel.name.name())
-        .ok_or_else(|| Failure::unavailable(Key::Method("kernel"), "is not available", ""))?;
-    Ok(match default {
-        Kernel::Gaussian { alpha } => Kernel::Gaussian { alpha: kernel.alpha.unwrap_or(alpha) },
-        Kernel::Exponential { alpha, power } => {
-            Kernel::Exponential { alpha: kernel.alpha.unwrap_or(alpha), power: kernel.power.unwrap_or(power) }
-        }
-        Kernel::RegularisedInterpolating { eps } => {
-            Kernel::RegularisedInterpolating { eps: kernel.eps.unwrap_or(eps) }
-        }
-        other => other,
-    })
+    }
 }

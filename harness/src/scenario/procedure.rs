@@ -1,7 +1,8 @@
 //! How a scenario is solved: the parameters of its procedure.
 
 use cases::scene::ProcedureKind;
-use mechanics::{NewtonParams, Prony, StaticParams, TimeParams};
+use material::Prony;
+use statics::{NewtonParams, StaticParams, TimeParams};
 
 use super::Scenario;
 use crate::Failure;
@@ -67,7 +68,7 @@ impl Scenario<'_> {
             .chain(regions.iter().enumerate().map(|(i, r)| (format!("region[{i}].material"), &r.prony)));
         let relaxation = series.map(|(key, terms)| {
             let terms: Vec<(f64, f64)> = terms.iter().map(|t| (t.g, t.tau)).collect();
-            let wrong = |bad: mechanics::MaterialError| {
+            let wrong = |bad: material::MaterialError| {
                 Failure::input(Key::Scene(format!("{key}.prony")), bad.to_string(), "")
             };
             if terms.is_empty() { Ok(None) } else { Prony::new(&terms).map(Some).map_err(wrong) }

@@ -31,7 +31,7 @@ method = [
     { id = "tet4-nodal", family = "fem", element = "tet4", dilation = "nodal-mean", size = { cells = [2, 2, 1] } },
     { id = "tet10-p1", family = "fem", element = "tet10", dilation = "mixed", size = { cells = [2, 2, 1] } },
     { id = "hex20-mixed", family = "fem", element = "hex20", dilation = "mixed", size = { cells = [1, 1, 1] } },
-    { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", dilatation = 1.6, basis = "linear", integration = { rule = "cell-smoothed" }, essential = "penalty" },
+    { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "cell-smoothed" }, essential = "penalty" },
 ]
 output = { probes = [["20 mm", "20 mm", "20 mm"]] }
 "#;

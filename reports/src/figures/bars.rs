@@ -4,8 +4,9 @@ use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
 use super::{Figure, representative};
-use crate::paper::{PUBLISHED, is_paper};
-use crate::select::{Run, groups, is_patch, kernels, labels, series};
+use crate::published::read_as;
+use crate::record::Family;
+use crate::select::{Run, competing, kernels, labels, series};
 use crate::store::slug;
 use crate::text::significant;
 
@@ -24,15 +25,14 @@ type Row = (String, [Option<f64>; 4], Colour);
 
 /// One figure per case that isn't a patch test: every run of the usual kernel, or the finest of each series where those are too many.
 pub(super) fn rms(runs: &[Run]) -> Vec<Figure> {
-    let cases = groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !is_patch(&c[0].is.case));
-    cases.filter_map(|case| figure(representative(case, 0.495))).collect()
+    competing(runs).filter_map(|case| figure(representative(case, 0.495))).collect()
 }
 
 fn figure(group: &[Run]) -> Option<Figure> {
     let is = group[0].is;
     let (usual, compared) = kernels(&series(group));
     let many = usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24;
-    let names = labels(&usual.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+    let names = labels(usual.iter().map(|s| s.is()));
     let mut rows: Vec<Row> = Vec::new();
     for (series, name) in usual.iter().zip(names) {
         let runs = if many { std::slice::from_ref(series.finest()) } else { &series.runs[..] };
@@ -40,7 +40,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
             let values = DIRECTIONS.map(|(q, _)| run.value(q).map(|v| v * 1e3));
             // An error of exactly nothing is the reference itself.
             if values.iter().flatten().any(|v| *v > 0.0) {
-                let colour = if run.is.family == "fem" { ELEMENTS } else { CLOUDS };
+                let colour = if run.is.family == Family::Fem { ELEMENTS } else { CLOUDS };
                 rows.push((format!("{name}, {} nodes", run.is.nodes), values, colour));
             }
         }
@@ -48,17 +48,15 @@ fn figure(group: &[Run]) -> Option<Figure> {
     if rows.iter().all(|r| r.1.iter().flatten().all(|v| *v < NOTHING)) {
         return None;
     }
-    // Of the published case alone: other kidneys bear other loads.
-    let kidney = is_paper(&is.case);
-    if kidney {
-        let published =
-            |q: &str| PUBLISHED.iter().find(|p| p.family == "efg" && p.quantity == q).map(|p| p.value * 1e3);
+    let publication = read_as(is);
+    if let Some(publication) = publication {
+        let published = |q: &str| publication.number(Family::Efg, q).map(|v| v * 1e3);
         rows.push(("published, EFG from FE".into(), DIRECTIONS.map(|(q, _)| published(q)), PAPER));
     }
     let mut caption = String::from(
         "Root mean square of the displacement difference from the reference, one scale for all columns; finite elements blue, meshfree methods green",
     );
-    if kidney {
+    if publication.is_some() {
         caption += ", orange what the publication's text gives for EFG against its own FE";
     }
     if usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24 {

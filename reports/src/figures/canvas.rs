@@ -1,4 +1,4 @@
-//! A drawing in points (1/72 inch), written as SVG by plotters and as PNG by resvg. The only file that names either.
+//! A drawing in points (1/72 inch), drawn by plotters as SVG and by resvg as PNG. The only file that names both.
 
 use std::sync::OnceLock;
 
@@ -7,7 +7,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
 
-use super::compact::compact;
+use super::backend::{LINE_HEIGHT, Paths, escaped};
 use crate::error::ReportError;
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
@@ -15,8 +15,6 @@ const BOLD: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf");
 const FONT: &str = "DejaVu Sans";
 /// plotters draws on whole numbers; ten of them to a point keep curves smooth.
 const UNITS: f64 = 10.0;
-/// SVG text is given its em size, plotters takes the line height.
-const LINE_HEIGHT: f64 = 1.24;
 /// Ascent and descent of DejaVu Sans over its em: plotters measures a font whose whole height is the size asked for.
 const FONT_HEIGHT: f64 = 1.164;
 
@@ -148,32 +146,27 @@ impl Canvas {
         let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
         fonts().map_err(|e| wrong(e.into()))?;
         let size = ((self.width * UNITS).round() as u32, (self.height * UNITS).round() as u32);
-        let mut svg = String::new();
+        let (width, height) = (self.width, self.height);
+        // For those who can't see it.
+        let title = escaped(title);
+        let mut svg = format!(
+            "<svg width=\"{width}pt\" height=\"{height}pt\" role=\"img\" viewBox=\"0 0 {} {}\" \
+             xmlns=\"http://www.w3.org/2000/svg\">\n<title>{title}</title>\n",
+            size.0, size.1
+        );
         {
-            let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+            let area = Paths::new(&mut svg, size).into_drawing_area();
             for shape in &self.shapes {
                 draw(&area, shape).map_err(&wrong)?;
             }
             area.present().map_err(|e| wrong(e.to_string()))?;
         }
-        let (head, body) =
-            svg.split_once('>').ok_or_else(|| wrong("plotters wrote no SVG element".into()))?;
-        let physical = head.replacen(
-            &format!("width=\"{}\" height=\"{}\"", size.0, size.1),
-            &format!("width=\"{}pt\" height=\"{}pt\" role=\"img\"", self.width, self.height),
-            1,
-        );
-        let title = title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        // Verdana has the same widths where DejaVu Sans isn't installed.
-        let body = body.replace(
-            &format!("font-family=\"{FONT}\""),
-            &format!("font-family=\"'{FONT}', Verdana, sans-serif\""),
-        );
-        Ok(format!("{physical}>\n<title>{title}</title>{}", compact(&body)))
+        svg.push_str("</svg>\n");
+        Ok(svg)
     }
 }
 
-fn draw(area: &DrawingArea<SVGBackend, plotters::coord::Shift>, shape: &Shape) -> Result<(), String> {
+fn draw(area: &DrawingArea<Paths, plotters::coord::Shift>, shape: &Shape) -> Result<(), String> {
     let unit = |v: f64| (v * UNITS).round() as i32;
     let scaled = |points: &[(f64, f64)]| points.iter().map(|p| (unit(p.0), unit(p.1))).collect::<Vec<_>>();
     let ink = |c: Colour| RGBColor(c[0], c[1], c[2]);

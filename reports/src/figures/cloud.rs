@@ -1,17 +1,14 @@
-//! Conditioning and neighbours of the meshfree methods against the dilatation.
+//! Conditioning and neighbours of the meshfree methods against the scale of supports.
 
 use super::axes::Axis;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Figure, PAGE, continued, paged};
-use crate::select::{Run, groups};
+use crate::record::Family;
+use crate::select::{Run, by_case};
 
-/// A kernel or case as `(label, (dilatation, value, low, high))`.
+/// A kernel or case as `(label, (support scale, value, low, high))`.
 type Line = (String, Vec<(f64, f64, f64, f64)>);
-
-fn dilatation(run: &Run) -> Option<f64> {
-    run.is.parameter("dilatation").and_then(|d| d.parse().ok()).filter(|d: &f64| d.is_finite() && *d > 0.0)
-}
 
 /// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
 pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
@@ -60,30 +57,32 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     }]
 }
 
-/// What must not change along a line besides the dilatation; the linear basis, being the usual one, goes unsaid.
+/// What must not change along a line besides the support scale; the linear basis, being the usual one, goes unsaid.
 fn settings(run: &Run) -> Vec<String> {
-    let of = |key| run.is.parameter(key).filter(|v| *v != "linear").map(str::to_string);
-    [of("basis"), of("integration")].into_iter().flatten().collect()
+    let basis = run.is.basis.clone().filter(|basis| basis != "linear");
+    [basis, run.is.integration.clone()].into_iter().flatten().collect()
 }
 
-/// Dilatations that make a sweep: a single one, or two that come from different methods, say nothing about it.
+/// Support scales that make a sweep: a single one, or two that come from different methods, say nothing about it.
 const SWEEP: usize = 3;
 
-/// By case, then by label: at the Poisson's ratio and node count with most dilatations; one run per dilatation.
+/// By case, then by label: at the Poisson's ratio and node count with most support scales; one run for each.
 fn panels(
     runs: &[Run],
     point: impl Fn(&Run) -> Option<(f64, f64, f64)>,
     label: impl Fn(&Run) -> String,
 ) -> Vec<(String, Vec<Line>)> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in by_case(runs) {
         let mut lines: Vec<Line> = Vec::new();
-        let mut labels: Vec<String> = case.iter().filter(|r| r.is.family == "efg").map(&label).collect();
+        let mut labels: Vec<String> =
+            case.iter().filter(|r| r.is.family == Family::Efg).map(&label).collect();
         labels.sort();
         labels.dedup();
         for name in labels {
             let mut best: Vec<(f64, f64, f64, f64)> = Vec::new();
-            let own: Vec<&Run> = case.iter().filter(|r| r.is.family == "efg" && label(r) == name).collect();
+            let own: Vec<&Run> =
+                case.iter().filter(|r| r.is.family == Family::Efg && label(r) == name).collect();
             let mut sizes: Vec<(u64, u64)> =
                 own.iter().map(|r| (r.is.nodes, r.is.poisson.to_bits())).collect();
             sizes.sort();
@@ -92,7 +91,9 @@ fn panels(
                 let mut points: Vec<(f64, f64, f64, f64)> = own
                     .iter()
                     .filter(|r| (r.is.nodes, r.is.poisson.to_bits()) == size)
-                    .filter_map(|r| point(r).zip(dilatation(r)).map(|((v, low, high), d)| (d, v, low, high)))
+                    .filter_map(|r| {
+                        point(r).zip(r.is.support_scale).map(|((v, low, high), d)| (d, v, low, high))
+                    })
                     .collect();
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 points.dedup_by(|a, b| a.0 == b.0);
@@ -147,7 +148,7 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
     multiples(contents, &styles, note)
 }
 
-/// Ticks at the dilatations themselves.
+/// Ticks at the scales themselves.
 fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
     values.sort_by(f64::total_cmp);
     let span = values.last().zip(values.first()).map_or(0.0, |(high, low)| high - low);

@@ -6,6 +6,7 @@ use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Figure, PAGE, chosen, continued, error_label, paged};
 use crate::order::ROUNDING;
+use crate::record::Family;
 use crate::select::{Run, Series, labels, series};
 
 /// One figure (or more pages) per error: L2, energy, pressure.
@@ -31,13 +32,12 @@ type Line = (String, bool, Vec<(f64, f64)>, Option<f64>);
 
 fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
     let all: Vec<Series> = series(runs);
-    let named: Vec<_> = all.iter().map(|s| (s.name, s.is())).collect();
-    labels(&named)
+    labels(all.iter().map(|s| s.is()))
         .into_iter()
         .zip(&all)
         .map(|(label, s)| {
             let points: Vec<_> = s.points(quantity).into_iter().filter(|(_, e)| *e > ROUNDING).collect();
-            (label, s.is().family != "fem", points, s.theory(quantity))
+            (label, s.is().family != Family::Fem, points, s.theory(quantity))
         })
         .filter(|(_, _, points, _)| points.len() > 1)
         .collect()

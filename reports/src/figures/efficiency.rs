@@ -6,6 +6,7 @@ use super::grid::{Content, scattered};
 use super::style::{Style, find, styles};
 use super::{Figure, PAGE, chosen, continued, error_label, paged};
 use crate::fronts::{Clock, DEADLINES, FLOOR, QUESTIONS, Question, pareto, point};
+use crate::record::Family;
 use crate::select::{Run, Series, kernels, labels, series};
 use crate::text::list;
 
@@ -37,7 +38,7 @@ fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
     for (title, group) in chosen(runs) {
         let Some(error) = question.error(group) else { continue };
         let (usual, every) = kernels(&series(group));
-        let names = labels(&usual.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        let names = labels(usual.iter().map(|s| s.is()));
         panels.push((title.clone(), error, clusters(&usual, &names, error, clock)));
         if clock == Clock::First && question.ending.is_empty() {
             let names: Vec<String> = every.iter().map(|s| s.is().variant.clone()).collect();
@@ -53,7 +54,7 @@ fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
 fn clusters(all: &[Series], names: &[String], error: &str, clock: Clock) -> Vec<Cluster> {
     let cluster = |(label, s): (&String, &Series)| {
         let points = s.runs.iter().filter_map(|run| point(run, error, clock));
-        (label.clone(), s.is().family != "fem", points.map(|(t, e)| (t, e.max(FLOOR))).collect())
+        (label.clone(), s.is().family != Family::Fem, points.map(|(t, e)| (t, e.max(FLOOR))).collect())
     };
     names.iter().zip(all).map(cluster).filter(|c: &Cluster| !c.2.is_empty()).collect()
 }

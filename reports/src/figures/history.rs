@@ -7,7 +7,8 @@ use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use super::{Figure, PAGE, continued, paged};
 use crate::history::{band, curve};
-use crate::select::{Run, groups, labels, series};
+use crate::record::Family;
+use crate::select::{Run, by_case, labels, series};
 
 /// Grey of an uncertainty, light enough for every line over it.
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
@@ -34,16 +35,16 @@ type Axes = (&'static str, &'static str);
 /// Tool force over closure: one panel per case, the finest run of every method, the reference with its uncertainty.
 pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in by_case(runs) {
         let mut all = series(case);
         // The reference lies below what is compared with it.
-        all.sort_by_key(|s| s.is().family != "reference");
-        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        all.sort_by_key(|s| s.is().family != Family::Reference);
+        let names = labels(all.iter().map(|s| s.is()));
         let lines = all.iter().zip(names).map(|(s, name)| {
             let run = s.finest();
             let points = curve(run, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
             let around = band(run, "closure", "tool-force").into_iter().map(|b| (b.0 * 1e3, b.1, b.2));
-            (name, run.is.family == "efg", points.collect(), around.collect())
+            (name, run.is.family == Family::Efg, points.collect(), around.collect())
         });
         panels.push((case[0].is.case.clone(), lines.filter(drawn).collect::<Vec<Line>>()));
     }
@@ -59,9 +60,9 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
 /// Energies over time: one panel for the finest run of every method that recorded them.
 pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in by_case(runs) {
         let all = series(case);
-        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        let names = labels(all.iter().map(|s| s.is()));
         for (s, name) in all.iter().zip(names) {
             let lines = ENERGIES.iter().map(|(quantity, label)| {
                 let points = curve(s.finest(), "time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
@@ -84,15 +85,15 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
 /// Computed over exact frequency, mode by mode: one panel for each mass of a case, the finest run of every method.
 pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in by_case(runs) {
         let all = series(case);
-        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+        let names = labels(all.iter().map(|s| s.is()));
         for mass in ["consistent", "lumped", "transformed"] {
-            let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().parameter("mass") == Some(mass));
+            let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().mass.as_deref() == Some(mass));
             let lines = of_mass.map(|(s, name)| {
                 let name = name.replacen(&format!("-{mass}"), "", 1);
                 let points = curve(s.finest(), "mode", "omega-ratio");
-                (name, s.is().family == "efg", points, Vec::new())
+                (name, s.is().family == Family::Efg, points, Vec::new())
             });
             panels.push((format!("{}, {mass} mass", case[0].is.case), lines.filter(drawn).collect()));
         }

@@ -7,7 +7,8 @@ use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Figure, PAGE, continued, error_label, paged};
 use crate::fronts::FLOOR;
-use crate::select::{Run, groups, is_patch, labels};
+use crate::record::Family;
+use crate::select::{Run, competing, labels};
 
 /// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.
 pub(crate) type Sweep<'r> = (String, bool, Vec<Run<'r>>);
@@ -18,8 +19,8 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
     for run in case {
         let same = |s: &&mut Vec<Run>| {
             let is = s[0].is;
-            (&is.method, &is.variant, &is.parameters, is.nodes, is.seed)
-                == (&run.is.method, &run.is.variant, &run.is.parameters, run.is.nodes, run.is.seed)
+            (&is.method, &is.variant, is.settings(), is.nodes, is.seed)
+                == (&run.is.method, &run.is.variant, run.is.settings(), run.is.nodes, run.is.seed)
         };
         match found.iter_mut().find(same) {
             Some(sweep) => sweep.push(run.clone()),
@@ -28,7 +29,7 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
     }
     found.retain(|s| s.len() > 1);
     let mut picked: Vec<Vec<Run<'r>>> = Vec::new();
-    let approximation = |s: &Vec<Run<'r>>| (s[0].name(), &s[0].is.variant, &s[0].is.parameters, s[0].is.seed);
+    let approximation = |s: &[Run<'r>]| (s[0].name(), &s[0].is.variant, s[0].is.settings(), s[0].is.seed);
     for sweep in &found {
         if picked.iter().any(|p| approximation(p) == approximation(sweep)) {
             continue;
@@ -40,20 +41,19 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
         sizes.sort_by_key(|s| s[0].is.nodes);
         picked.push(sizes[sizes.len() / 2].clone());
     }
-    let named: Vec<_> = picked.iter().map(|s| (s[0].name(), s[0].is)).collect();
-    let labels = labels(&named);
-    labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family != "fem", s)).collect()
+    let labels = labels(picked.iter().map(|s| s[0].is));
+    labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family != Family::Fem, s)).collect()
 }
 
 /// Displacement error, pressure error and tip deflection of every case with such sweeps.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in competing(runs) {
         let sweeps = sweeps(case);
         for quantity in ["l2", "pressure", "tip"] {
             let drawn =
                 sweeps.iter().any(|s| s.2.iter().filter(|r| usable(r, quantity).is_some()).count() > 1);
-            if drawn && !is_patch(&case[0].is.case) {
+            if drawn {
                 panels.push((case[0].is.case.clone(), quantity, sweeps.clone()));
             }
         }

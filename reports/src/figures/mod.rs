@@ -1,11 +1,11 @@
 //! Which figures there are, and what they share.
 
 mod axes;
+mod backend;
 mod bars;
 mod canvas;
 mod cloud;
 mod colour;
-mod compact;
 mod convergence;
 mod efficiency;
 mod grid;
@@ -20,8 +20,8 @@ mod transfer;
 pub(crate) use canvas::{Canvas, png};
 pub(crate) use locking::sweeps;
 
-use crate::record::RunSet;
-use crate::select::{Run, groups, is_patch};
+use crate::run_set::RunSet;
+use crate::select::{Run, competing, groups, solved};
 use crate::text::ratio;
 
 /// Panels on one figure.
@@ -43,7 +43,7 @@ struct Pictured {
 
 /// Every figure that has something to show, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
@@ -62,11 +62,8 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
 /// Solver runs of every case that isn't a patch test, titled, at the Poisson's ratios nearest 0.3 and 0.495.
 pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()) {
+    for case in competing(runs) {
         let name = &case[0].is.case;
-        if is_patch(name) {
-            continue;
-        }
         let several = case.iter().any(|r| r.is.poisson != case[0].is.poisson);
         let compressible = representative(case, 0.3);
         let tissue = representative(case, 0.495);

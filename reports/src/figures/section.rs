@@ -8,7 +8,7 @@ use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::surface::{Pose, carried, grasped};
-use crate::record::{Section, SurfaceField};
+use crate::run_set::{Section, SurfaceField};
 use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
@@ -110,13 +110,15 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::SectionCell;
+    use crate::record::Family;
+    use crate::run_set::SectionCell;
 
     #[test]
     fn one_wild_method_does_not_take_the_colours_of_the_others() {
         let of = |scale: f64| SurfaceField {
             case: "grasp".into(),
             method: "any".into(),
+            family: Family::Fem,
             title: String::new(),
             points: Vec::new(),
             triangles: Vec::new(),

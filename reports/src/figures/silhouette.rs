@@ -1,7 +1,7 @@
 //! Outlines of the tools on paper.
 
 use super::canvas::{Canvas, Colour};
-use crate::record::ToolHull;
+use crate::run_set::ToolHull;
 
 const METAL: Colour = [0xdd, 0xdd, 0xdd];
 const EDGE: Colour = [0x45, 0x45, 0x45];

@@ -6,7 +6,8 @@ use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::{Figure, Pictured};
-use crate::record::SurfaceField;
+use crate::record::Family;
+use crate::run_set::SurfaceField;
 use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
@@ -26,7 +27,7 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
         .map(|case| {
             let mut own: Vec<&SurfaceField> =
                 fields.iter().filter(|f| f.case == case && !f.triangles.is_empty()).collect();
-            own.sort_by_key(|f| (f.method.starts_with("efg"), &f.method));
+            own.sort_by_key(|f| (f.family, &f.method));
             (
                 case,
                 if own.iter().any(|f| !f.tools.is_empty()) { grasped(own, runs) } else { chosen(own, runs) },
@@ -58,7 +59,7 @@ fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceFie
         return fields;
     }
     let mut picked: Vec<&SurfaceField> = Vec::new();
-    let of = |family: &str| -> Vec<&'f SurfaceField> {
+    let of = |family: Family| -> Vec<&'f SurfaceField> {
         let error = |f: &&SurfaceField| {
             let run = |r: &&Run| r.is.case == f.case && r.is.method == f.method && r.is.family == family;
             runs.iter().find(run).and_then(|r| r.value("rms"))
@@ -67,7 +68,7 @@ fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceFie
         known.sort_by(|a, b| b.0.total_cmp(&a.0));
         known.into_iter().map(|k| k.1).collect()
     };
-    let families = [of("fem"), of("efg")];
+    let families = [of(Family::Fem), of(Family::Efg)];
     picked.extend(families.iter().filter_map(|f| f.first()));
     picked.extend(families.iter().filter(|f| f.len() > 1).filter_map(|f| f.last()));
     for field in fields.iter().take(SHOWN) {

@@ -7,23 +7,19 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
 use super::grid::WIDTH;
 use super::style::{legend, legend_height, styles};
-use crate::select::{Run, groups};
+use crate::findings::source;
+use crate::record::Family;
+use crate::select::{Run, by_case};
 use crate::store::slug;
 use crate::text::tick;
 
 /// Height of a row with several markers.
 const LINE: f64 = 20.0;
 
-/// One panel per case, one marker per field or source. Runs whose records contradict each other are left out.
+/// One panel per case, one marker per field or source.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
-    let schemes: Vec<Run> =
-        runs.iter().filter(|r| r.is.family == "interp" && !r.contradicts("rms")).cloned().collect();
-    groups(&schemes, |r| r.is.case.clone()).into_iter().filter_map(transfer_figure).collect()
-}
-
-fn source(run: &Run) -> String {
-    let field = run.is.parameter("field").map(|f| format!("{f} field"));
-    field.or(run.is.parameter("from").map(|f| format!("from {f}"))).unwrap_or_else(|| "transfer".into())
+    let schemes: Vec<Run> = runs.iter().filter(|r| r.is.family == Family::Interp).cloned().collect();
+    by_case(&schemes).filter_map(transfer_figure).collect()
 }
 
 fn transfer_figure(runs: &[Run]) -> Option<Figure> {
@@ -35,10 +31,8 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     .find(|(q, _, _)| runs.iter().any(|r| r.value(q).is_some()))?;
     let scheme = |r: &Run| {
         // The kernel is that of the method whose field is carried.
-        let other = ["from=", "field=", "kernel="];
-        let own = |p: &&str| !p.is_empty() && !other.iter().any(|o| p.starts_with(o));
-        let settings: Vec<String> =
-            r.is.parameters.split(';').filter(own).map(|p| p.replace('=', " ")).collect();
+        let own = r.is.settings().into_iter().filter(|(name, _)| !["from", "kernel"].contains(name));
+        let settings: Vec<String> = own.map(|(name, value)| format!("{name} {value}")).collect();
         if settings.is_empty() {
             r.is.variant.clone()
         } else {
@@ -90,7 +84,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
         title: format!("Transfer schemes compared, {case}"),
         caption: "Error of the displacement at the target points after each scheme carried it there: of a prescribed field it is the transfer's own, \
                   of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone. Several \
-                  markers of one source in a row are its kernels and numbers of nodes. Sources whose records contradict each other are left out"
+                  markers of one source in a row are its kernels and numbers of nodes"
             .into(),
         canvas,
     })

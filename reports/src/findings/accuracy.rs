@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::cases;
 use crate::figures::sweeps;
 use crate::order;
-use crate::select::{Run, groups, is_patch, labels, series};
+use crate::record::Purpose;
+use crate::select::{Run, by_case, competing, labels, series};
 use crate::text::{list, percent, plural, significant};
 
 /// An error that grows more than this from the most compressible to the least compressible material counts as locking.
@@ -14,7 +15,7 @@ const LOCKS: f64 = 2.0;
 /// Who locks, with numbers, and who does not.
 pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !is_patch(&c[0].is.case)) {
+    for case in competing(runs) {
         let (mut locked, mut free) = (Vec::new(), Vec::new());
         let mut span = None;
         for (label, _, sweep) in sweeps(case) {
@@ -61,10 +62,10 @@ const EXACT: f64 = 1e-12;
 /// How many methods pass each patch test.
 pub(super) fn patch(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| c[0].is.case.contains("patch")) {
-        let named: Vec<_> = case.iter().map(|r| (r.is.method.as_str(), r.is)).collect();
+    let patches = by_case(runs).filter(|c| c[0].is.purpose == Purpose::Patch);
+    for case in patches {
         let mut worst: BTreeMap<String, f64> = BTreeMap::new();
-        for (label, run) in labels(&named).into_iter().zip(case) {
+        for (label, run) in labels(case.iter().map(|r| r.is)).into_iter().zip(case) {
             if let Some(error) = run.value("l2") {
                 let entry = worst.entry(label).or_insert(error);
                 *entry = entry.max(error);
@@ -109,8 +110,7 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     let (mut held, mut below, mut short) = (0, Vec::new(), 0);
     for (name, group) in cases(runs) {
         let all = series(group);
-        let named: Vec<_> = all.iter().map(|s| (s.name, s.is())).collect();
-        for (label, s) in labels(&named).into_iter().zip(&all) {
+        for (label, s) in labels(all.iter().map(|s| s.is())).into_iter().zip(&all) {
             for quantity in ["l2", "energy"] {
                 let (Some(order), Some(theory)) = (order::observed(&s.points(quantity)), s.theory(quantity))
                 else {

@@ -2,6 +2,7 @@
 
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, point};
+use crate::record::Family;
 use crate::select::{Run, labels};
 use crate::text::{duration, list, percent, significant};
 
@@ -21,7 +22,7 @@ struct Timed<'a, 'r> {
 
 impl Timed<'_, '_> {
     fn is_fem(&self) -> bool {
-        self.run.is.family == "fem"
+        self.run.is.family == Family::Fem
     }
 }
 
@@ -29,7 +30,7 @@ impl Timed<'_, '_> {
 pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for (case, group) in chosen(runs) {
-        let labels = labels(&group.iter().map(|r| (r.name(), r.is)).collect::<Vec<_>>());
+        let labels = labels(group.iter().map(|r| r.is));
         let displacement = QUESTIONS[0].error(group);
         for (clock, after) in Clock::ALL.into_iter().zip(["", ", solved again and again"]) {
             for question in &QUESTIONS {
@@ -115,10 +116,10 @@ fn percent_of(tolerance: f64) -> String {
 mod tests {
     use super::cheapest;
     use crate::fronts::tests::{record, run};
-    use crate::record::Record;
+    use crate::record::{Family, Record};
     use crate::select::runs;
 
-    fn jaws(errors: &[(&str, &str, u64, f64, f64)], name: &str) -> Vec<Record> {
+    fn jaws(errors: &[(&str, Family, u64, f64, f64)], name: &str) -> Vec<Record> {
         errors
             .iter()
             .flat_map(|&(id, family, nodes, t, e)| run((id, family), nodes, t, &[(name, e)]))
@@ -129,19 +130,19 @@ mod tests {
     fn every_tolerance_has_the_best_of_both_families_or_nobody() {
         let records = jaws(
             &[
-                ("hex20", "fem", 100, 0.002, 0.05),
-                ("hex20", "fem", 900, 0.04, 0.02),
-                ("tet4", "fem", 500, 0.01, 0.09),
-                ("efg", "efg", 83, 0.001, 0.3),
-                ("efg", "efg", 332, 0.02, 0.04),
-                ("efg", "efg", 1331, 0.5, 0.006),
+                ("hex20", Family::Fem, 100, 0.002, 0.05),
+                ("hex20", Family::Fem, 900, 0.04, 0.02),
+                ("tet4", Family::Fem, 500, 0.01, 0.09),
+                ("efg", Family::Efg, 83, 0.001, 0.3),
+                ("efg", Family::Efg, 332, 0.02, 0.04),
+                ("efg", Family::Efg, 1331, 0.5, 0.006),
             ],
             "relative-rms",
         );
         assert_eq!(
             cheapest(&runs(&records)),
             [
-                "kidney-jaws, displacement: 10 % first by hex20 in 2.00 ms (100 nodes), by EFG with efg in 20.0 ms (332 nodes), 10 times as \
+                "jaws, displacement: 10 % first by hex20 in 2.00 ms (100 nodes), by EFG with efg in 20.0 ms (332 nodes), 10 times as \
               long; 3 % first by hex20 in 40.0 ms (900 nodes), by EFG with efg in 500 ms (1331 nodes), 12 times as long; 1 % first by \
               efg in 500 ms (1331 nodes), by no FEM; nobody reaches 0.3 %, the closest is efg in 500 ms (1331 nodes) with 0.600 %."
             ]
@@ -150,14 +151,14 @@ mod tests {
 
     #[test]
     fn tolerances_of_one_answer_share_it_and_an_absent_family_is_not_missed() {
-        let elements = [("hex20", "fem", 100, 0.002, 0.001), ("tet4", "fem", 100, 0.001, 0.2)];
+        let elements = [("hex20", Family::Fem, 100, 0.002, 0.001), ("tet4", Family::Fem, 100, 0.001, 0.2)];
         assert_eq!(
             cheapest(&runs(&jaws(&elements, "pressure"))),
-            ["kidney-jaws, pressure: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 2.00 ms (100 nodes)."]
+            ["jaws, pressure: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 2.00 ms (100 nodes)."]
         );
         // One method has nothing to be cheaper than, and the reference itself is none.
         assert!(cheapest(&runs(&jaws(&elements[..1], "pressure"))).is_empty());
-        let itself = [elements[0], ("tet10", "fem", 100, 0.001, 0.0)];
+        let itself = [elements[0], ("tet10", Family::Fem, 100, 0.001, 0.0)];
         assert!(cheapest(&runs(&jaws(&itself, "pressure"))).is_empty());
     }
 
@@ -165,15 +166,15 @@ mod tests {
     fn a_number_right_by_chance_is_told_with_its_field() {
         let both = |force, rms| [("tool-force-error", force), ("relative-rms", rms)];
         let records = [
-            run(("efg", "efg"), 83, 1.0, &both(0.02, 0.4)),
-            run(("tet4", "fem"), 100, 2.0, &both(0.05, 0.2)),
+            run(("efg", Family::Efg), 83, 1.0, &both(0.02, 0.4)),
+            run(("tet4", Family::Fem), 100, 2.0, &both(0.05, 0.2)),
         ]
         .concat();
         let found = cheapest(&runs(&records));
         assert_eq!(found.len(), 2);
         assert_eq!(
             found[1],
-            "kidney-jaws, jaw force: 10 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by FEM with tet4 in 2.00 s \
+            "jaws, jaw force: 10 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by FEM with tet4 in 2.00 s \
              (100 nodes), 2.0 times as long; 3 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by no FEM; nobody \
              reaches 1 % and 0.3 %, the closest is efg in 1.00 s (83 nodes, displacement off by 40.0 %) with 2.00 %."
         );
@@ -181,17 +182,17 @@ mod tests {
 
     #[test]
     fn repeated_solves_are_told_apart_by_their_own_times() {
-        let methods = [("hex20", "fem", 100, 0.002, 0.001), ("tet4", "fem", 100, 0.001, 0.002)];
+        let methods = [("hex20", Family::Fem, 100, 0.002, 0.001), ("tet4", Family::Fem, 100, 0.001, 0.002)];
         let mut records = jaws(&methods, "l2");
         for (method, t) in [("hex20", 1e-4), ("tet4", 2e-4)] {
-            records.push(record(("kidney-jaws", method, "fem"), 100, ("time", "repeated:p99"), t));
-            records.push(record(("kidney-jaws", method, "fem"), 100, ("time", "repeated:median"), 0.5 * t));
+            records.push(record(("jaws", method, Family::Fem), 100, ("time", "repeated:p99"), t));
+            records.push(record(("jaws", method, Family::Fem), 100, ("time", "repeated:median"), 0.5 * t));
         }
         assert_eq!(
             cheapest(&runs(&records)),
             [
-                "kidney-jaws, displacement: 10 %, 3 %, 1 % and 0.3 % first by tet4 in 1.00 ms (100 nodes).",
-                "kidney-jaws, displacement, solved again and again: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 100 µs (100 nodes)."
+                "jaws, displacement: 10 %, 3 %, 1 % and 0.3 % first by tet4 in 1.00 ms (100 nodes).",
+                "jaws, displacement, solved again and again: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 100 µs (100 nodes)."
             ]
         );
     }

@@ -4,14 +4,17 @@ mod accuracy;
 mod cheapest;
 mod claim;
 mod integration;
-mod kidney;
 mod outcome;
 mod placement;
+mod published;
+mod transfer;
 mod vibration;
 
+pub(crate) use transfer::source;
+
 use crate::clouds::Clouds;
-use crate::record::RunSet;
-use crate::select::{Run, groups, is_patch};
+use crate::run_set::RunSet;
+use crate::select::{Run, competing, groups, solved};
 
 /// Findings under one heading.
 pub(crate) struct Topic {
@@ -21,7 +24,7 @@ pub(crate) struct Topic {
 
 /// Every topic with something to say.
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     let topics = [
         Topic {
             title: "Cheapest way to an error",
@@ -29,10 +32,10 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
         },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },
-        Topic { title: "Kidney and grasper", sentences: kidney::kidney(runs) },
+        Topic { title: "Published case", sentences: published::published(runs) },
         Topic { title: "Node placement", sentences: placement::placement(clouds) },
         Topic { title: "Integration of clouds", sentences: integration::integration(runs) },
-        Topic { title: "Transfer", sentences: kidney::transfer(runs) },
+        Topic { title: "Transfer", sentences: transfer::transfer(runs) },
         Topic { title: "Patch tests", sentences: accuracy::patch(&solved) },
         Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },
         Topic { title: "Checks", sentences: outcome::checks(set) },
@@ -43,7 +46,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
 /// `case` or `case at ν = 0.3`, with its runs; patch tests left out.
 fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
-    for case in groups(runs, |r| r.is.case.clone()).into_iter().filter(|c| !is_patch(&c[0].is.case)) {
+    for case in competing(runs) {
         let by_ratio = groups(case, |r| r.is.poisson.to_bits());
         for group in &by_ratio {
             let is = group[0].is;

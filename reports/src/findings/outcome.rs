@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::record::{RunSet, Status};
+use crate::run_set::{RunSet, Status};
 use crate::text::significant;
 
 /// How many checks held, and every one that did not with its reason.

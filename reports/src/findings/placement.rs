@@ -1,6 +1,7 @@
 //! How far a result depends on where the nodes of a cloud happen to stand.
 
 use crate::clouds::{Clouds, Spread};
+use crate::record::Family;
 use crate::text::{list, significant};
 
 /// What a sentence tells of a method, the first that it has an error by, with words, unit and factor.
@@ -10,7 +11,7 @@ const ERRORS: [(&str, &str, &str, f64); 2] =
 /// A sentence for every method that ran on many clouds.
 pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
     let mut out = Vec::new();
-    for group in clouds.iter().filter(|g| g[0].is.family != "interp") {
+    for group in clouds.iter().filter(|g| g[0].is.family != Family::Interp) {
         let is = group[0].is;
         let error = ERRORS.iter().find_map(|(quantity, words, unit, scale)| {
             let spread = Spread::of(group, quantity)?;

@@ -1,6 +1,7 @@
 //! What each mass does to the frequencies.
 
 use super::cases;
+use crate::record::Family;
 use crate::select::{Run, labels, series};
 use crate::text::{list, significant};
 
@@ -11,12 +12,12 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
         // Methods at their finest.
         let all = series(runs);
         let finest: Vec<&Run> = all.iter().map(|s| s.finest()).collect();
-        for (family, called) in [("fem", "elements"), ("efg", "clouds")] {
+        for (family, called) in [(Family::Fem, "elements"), (Family::Efg, "clouds")] {
             let mut parts = Vec::new();
             for mass in ["consistent", "lumped", "transformed"] {
                 let mut errors: Vec<f64> = finest
                     .iter()
-                    .filter(|r| r.is.family == family && r.is.parameter("mass") == Some(mass))
+                    .filter(|r| r.is.family == family && r.is.mass.as_deref() == Some(mass))
                     .filter_map(|r| Some((r.value("frequency-ratio")? - 1.0) * 1e2))
                     .collect();
                 errors.sort_by(f64::total_cmp);
@@ -28,7 +29,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
                 out.push(format!("{case}: {called} miss the exact frequency by {}.", list(&parts)));
             }
         }
-        let names = labels(&finest.iter().map(|r| (r.name(), r.is)).collect::<Vec<_>>());
+        let names = labels(finest.iter().map(|r| r.is));
         let slow: Vec<String> = finest
             .iter()
             .zip(names)

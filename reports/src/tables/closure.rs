@@ -1,7 +1,8 @@
 //! Tool force against closure, step by step, beside the reference and its uncertainty.
 
 use crate::history::{band, curve, reference};
-use crate::select::{Run, groups, labels, series};
+use crate::record::Family;
+use crate::select::{Run, by_material, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
@@ -27,9 +28,9 @@ pub(super) fn force_closure(runs: &[Run]) -> Table {
             ("in the band", Words),
         ],
     );
-    for case in groups(runs, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
-        let all: Vec<_> = series(case).into_iter().filter(|s| s.is().family != "reference").collect();
-        let names = labels(&all.iter().map(|s| (s.name, s.is())).collect::<Vec<_>>());
+    for case in by_material(runs) {
+        let all: Vec<_> = series(case).into_iter().filter(|s| s.is().family != Family::Reference).collect();
+        let names = labels(all.iter().map(|s| s.is()));
         let known = reference(case);
         let force = known.map(|r| curve(r, "closure", "tool-force")).unwrap_or_default();
         let around = known.map(|r| band(r, "closure", "tool-force")).unwrap_or_default();

@@ -16,7 +16,7 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
             ("method", Words),
             ("kernel", Words),
             ("basis", Words),
-            ("dilatation [1]", Words),
+            ("support scale [1]", Words),
             ("integration", Words),
             ("nodes", Number),
             ("neighbours min", Number),
@@ -38,16 +38,18 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
         {
             continue;
         }
-        let setting = |key| Cell::Text(run.is.parameter(key).unwrap_or("—"));
+        let words = |value: &'_ Option<String>| value.clone().unwrap_or_else(|| "—".into());
+        let scale = run.is.support_scale.map_or("—".into(), |scale| scale.to_string());
+        let (basis, integration) = (words(&run.is.basis), words(&run.is.integration));
         let count = |quantity| Cell::Digits(run.value(quantity), 4);
         // Poisson's ratio plays no part here: one row for all of them.
         table.row_once(&[
             Cell::Text(&run.is.case),
             Cell::Text(run.name()),
             Cell::Text(&run.is.variant),
-            setting("basis"),
-            setting("dilatation"),
-            setting("integration"),
+            Cell::Text(&basis),
+            Cell::Text(&scale),
+            Cell::Text(&integration),
             Cell::Count(run.is.nodes),
             whole(run.value("neighbours-min")),
             count("neighbours-mean"),

@@ -80,30 +80,23 @@ pub(super) fn cost(runs: &[Run]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::record::{Family, Record};
     use crate::select::{runs, series};
 
     fn exponent(times: &[(u64, f64)]) -> Option<f64> {
-        let words = |s: &str| s.to_string();
-        let record = |&(nodes, value): &(u64, f64)| Record {
-            case: words("cube"),
-            method: words("efg"),
-            family: words("efg"),
-            variant: words("cubic-spline"),
-            parameters: words(""),
-            poisson: 0.3,
-            level: 0,
-            nodes,
-            elements: 0,
-            points: 0,
-            dofs: 0,
-            spacing: (nodes as f64).powf(-1.0 / 3.0),
-            seed: 1,
-            quantity: words("time"),
-            unit: words("s"),
-            phase: words("prepare"),
-            statistic: words("median"),
-            value,
+        let record = |&(nodes, value): &(u64, f64)| {
+            Record {
+                case: "cube".into(),
+                family: Family::Efg,
+                nodes,
+                spacing: (nodes as f64).powf(-1.0 / 3.0),
+                quantity: "time".into(),
+                phase: "prepare".into(),
+                statistic: "median".into(),
+                value,
+                ..Record::default()
+            }
+            .of_its_run()
         };
         let records: Vec<Record> = times.iter().map(record).collect();
         growth(&series(&runs(&records))[0], "prepare").map(|order| order.fit)

@@ -1,6 +1,7 @@
 //! Errors of clouds taken apart: reference, discretisation, integration, transfer.
 
 use super::{labelled, millimetres};
+use crate::record::Family;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -36,18 +37,18 @@ impl Parts<'_, '_> {
 
 /// Every cloud that was solved with its own rule and with a fine one.
 pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
-    let clouds = labelled(runs).into_iter().filter(|(run, _)| run.is.family == "efg");
+    let clouds = labelled(runs).into_iter().filter(|(run, _)| run.is.family == Family::Efg);
     clouds
         .filter_map(|(run, label)| {
             let same =
                 |r: &&Run| r.is.case == run.is.case && r.is.poisson.to_bits() == run.is.poisson.to_bits();
-            let elements = runs.iter().filter(same).filter(|r| r.is.family == "fem");
+            let elements = runs.iter().filter(same).filter(|r| r.is.family == Family::Fem);
             let from_reference = elements.filter_map(|r| r.value("rms")).filter(|rms| *rms > 0.0);
             let exact = run.value("l2").map(|_| 0.0);
             let carried = runs.iter().filter(same).find(|r| {
                 (r.is.variant.as_str(), r.is.nodes) == ("inverse-distance", run.is.nodes)
-                    && r.is.parameter("from") == Some(&run.is.method)
-                    && r.is.parameter("kernel") == Some(&run.is.variant)
+                    && r.is.from.as_ref() == Some(&run.is.method)
+                    && r.is.kernel.as_ref() == Some(&run.is.variant)
             });
             Some(Parts {
                 run,
@@ -108,31 +109,33 @@ mod tests {
     use crate::record::Record;
     use crate::select::runs;
 
-    fn record(who: [&str; 4], nodes: u64, quantity: &str, value: f64) -> Record {
-        let [method, family, variant, parameters] = who.map(String::from);
-        let (case, quantity, elements) = ("kidney".into(), quantity.into(), 10 * nodes);
+    fn record(who: (&str, Family, &str, Option<&str>), nodes: u64, quantity: &str, value: f64) -> Record {
+        let (method, family, variant, from) = who;
         Record {
-            case,
-            method,
+            case: "block".into(),
+            method: method.into(),
+            series: method.into(),
             family,
-            variant,
-            parameters,
+            variant: variant.into(),
+            from: from.map(String::from),
+            kernel: from.map(|_| "cubic-spline".into()),
             nodes,
-            elements,
-            quantity,
+            elements: 10 * nodes,
+            quantity: quantity.into(),
             value,
             ..Record::blank()
         }
+        .of_its_run()
     }
 
     #[test]
     fn parts_are_those_of_the_cloud_and_the_reference_is_as_good_as_the_elements_nearest_to_it() {
-        let efg = ["gauss", "efg", "cubic-spline", ""];
-        let smoothed = ["smoothed", "efg", "cubic-spline", ""];
-        let carried = ["inverse-distance", "interp", "inverse-distance", "from=gauss;kernel=cubic-spline"];
+        let efg = ("gauss", Family::Efg, "cubic-spline", None);
+        let smoothed = ("smoothed", Family::Efg, "cubic-spline", None);
+        let carried = ("inverse-distance", Family::Interp, "inverse-distance", Some("gauss"));
         let mut records = Vec::new();
         for (who, nodes, rms) in [("tet10", 900, 0.0), ("hex20", 300, 2e-5), ("hex8", 100, 7e-5)] {
-            records.push(record([who, "fem", who, ""], nodes, "rms", rms));
+            records.push(record((who, Family::Fem, who, None), nodes, "rms", rms));
         }
         for (who, nodes, integration, discretisation) in
             [(efg, 83, 1e-4, 4e-4), (efg, 332, 3e-4, 2e-4), (smoothed, 83, 5e-4, 4e-4)]
@@ -143,7 +146,7 @@ mod tests {
         }
         records.push(record(carried, 83, "transfer-rms", 6e-4));
         // A cloud that was not integrated twice is none of them.
-        records.push(record(["other", "efg", "cubic-spline", ""], 83, "rms", 1e-4));
+        records.push(record(("other", Family::Efg, "cubic-spline", None), 83, "rms", 1e-4));
         let runs = runs(&records);
         let parts = parts(&runs);
         let told: Vec<_> = parts.iter().map(|p| (p.label.as_str(), p.run.is.nodes, p.transfer)).collect();

@@ -1,7 +1,7 @@
 //! Errors and largest displacements of every run.
 
 use super::{labelled, millimetres};
-use crate::select::Run;
+use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
@@ -66,7 +66,7 @@ fn rows(
     scale: f64,
     cell: impl Fn(Option<f64>) -> Cell<'static>,
 ) -> Table {
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     let filled: Vec<&(&str, &str)> =
         columns.iter().filter(|(_, q)| solved.iter().any(|r| r.value(q).is_some())).collect();
     let mut header =

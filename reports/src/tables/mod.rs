@@ -5,23 +5,23 @@ mod conditioning;
 mod cost;
 mod error_split;
 mod errors;
-mod kidney;
 mod modes;
 mod orders;
 mod outcome;
 mod placement;
+mod published;
 mod repeated;
 mod timing;
 mod transfer;
 
 pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
-pub(crate) use kidney::{
-    Pair as KidneyPair, Split as KidneySplit, pairs as kidney_pairs, splits as kidney_splits,
+pub(crate) use published::{
+    Pair as PublishedPair, Split as PublishedSplit, pairs as published_pairs, splits as published_splits,
 };
 
 use crate::clouds::Clouds;
-use crate::record::RunSet;
-use crate::select::{Run, groups, labels};
+use crate::run_set::RunSet;
+use crate::select::{Run, by_material, labels};
 use crate::table::Table;
 
 /// Every table with at least one row, in the order of the report.
@@ -40,8 +40,8 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         error_split::error_split(runs),
         conditioning::conditioning(runs),
         placement::placement(clouds),
-        kidney::beside_the_paper(runs),
-        kidney::rms_parts(runs),
+        published::beside_ours(runs),
+        published::rms_parts(runs),
         closure::force_closure(runs),
         outcome::checks(set),
         outcome::failures(set),
@@ -53,9 +53,8 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
 /// Runs with a label each that tells them apart within their case and Poisson's ratio.
 fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
     let mut out = Vec::new();
-    for group in groups(runs, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
-        let named: Vec<_> = group.iter().map(|r| (r.name(), r.is)).collect();
-        out.extend(group.iter().zip(labels(&named)));
+    for group in by_material(runs) {
+        out.extend(group.iter().zip(labels(group.iter().map(|r| r.is))));
     }
     out
 }

@@ -29,7 +29,7 @@ pub(super) fn modes(runs: &[Run]) -> Table {
         ],
     );
     for (run, label) in labelled(runs) {
-        let Some(mass) = run.is.parameter("mass") else { continue };
+        let Some(mass) = &run.is.mass else { continue };
         let percent = |quantity: &str| run.value(quantity).map(|v| v * 1e2);
         let count = |quantity: &str| Cell::Digits(run.value(quantity), 3);
         let whole = |quantity: &str| run.value(quantity).map_or(count(quantity), |v| Cell::Count(v as u64));
@@ -55,6 +55,7 @@ pub(super) fn modes(runs: &[Run]) -> Table {
 mod tests {
     use super::modes;
     use crate::fronts::tests::record;
+    use crate::record::Family;
     use crate::select::runs;
 
     #[test]
@@ -62,12 +63,12 @@ mod tests {
         let mut records = Vec::new();
         for (mass, ratio) in [("consistent", 1.01), ("lumped", 0.5)] {
             for (quantity, value) in [("frequency-ratio", ratio), ("slow-modes", 3.0), ("rigid-modes", 6.0)] {
-                let mut record = record(("cube", "tet4", "fem"), 100, (quantity, ":value"), value);
-                record.parameters = format!("dilation=standard;mass={mass}");
-                records.push(record);
+                let mut record = record(("cube", "tet4", Family::Fem), 100, (quantity, ":value"), value);
+                record.mass = Some(mass.into());
+                records.push(record.of_its_run());
             }
         }
-        records.push(record(("cube", "still", "fem"), 100, ("l2", ":value"), 1.0));
+        records.push(record(("cube", "still", Family::Fem), 100, ("l2", ":value"), 1.0));
         let table = modes(&runs(&records));
         let rows: Vec<String> = table.shown().iter().map(|row| row[2..].join(" ")).collect();
         assert_eq!(rows, ["consistent 100 300 1.00 — — 3 6 — —", "lumped 100 300 -50.0 — — 3 6 — —"]);

@@ -1,7 +1,7 @@
 //! Observed orders of convergence and the grid convergence index.
 
 use crate::order;
-use crate::select::{Run, Series, groups, labels, series};
+use crate::select::{Run, Series, by_material, labels, series, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
@@ -115,12 +115,11 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
 
 /// Solver series with a label each that tells them apart within their case and Poisson's ratio.
 pub(super) fn labelled<'r>(runs: &[Run<'r>]) -> Vec<(String, Series<'r>)> {
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     let mut out = Vec::new();
-    for group in groups(&solved, |r| (r.is.case.clone(), r.is.poisson.to_bits())) {
+    for group in by_material(&solved) {
         let series = series(group);
-        let named: Vec<_> = series.iter().map(|s| (s.name, s.is())).collect();
-        out.extend(labels(&named).into_iter().zip(series));
+        out.extend(labels(series.iter().map(|s| s.is())).into_iter().zip(series));
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::record::RunSet;
+use crate::run_set::RunSet;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn reasons_that_differ_in_a_count_are_one() {
-        let entry = |why: &str| crate::record::PlanEntry {
+        let entry = |why: &str| crate::run_set::PlanEntry {
             case: "a".into(),
             method: "b".into(),
             stage: "supports".into(),

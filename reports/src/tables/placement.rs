@@ -1,6 +1,7 @@
 //! Results over many clouds of the same nodes in number, placed by different seeds.
 
 use crate::clouds::{Clouds, Spread};
+use crate::record::Family;
 use crate::select::groups;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -38,7 +39,7 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
         ],
     );
     for case in groups(clouds, |g| (g[0].is.case.clone(), g[0].is.poisson.to_bits())) {
-        for group in case.iter().filter(|g| g[0].is.family != "interp") {
+        for group in case.iter().filter(|g| g[0].is.family != Family::Interp) {
             for (quantity, name, scale) in QUANTITIES {
                 let Some(Spread { count, quantiles }) = Spread::of(group, quantity) else { continue };
                 let mut row = vec![

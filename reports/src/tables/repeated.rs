@@ -2,7 +2,7 @@
 
 use super::{labelled, millimetres as milliseconds};
 use crate::fronts::DEADLINES;
-use crate::select::Run;
+use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
@@ -28,7 +28,7 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
             (DEADLINES[1].name, Words),
         ],
     );
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     for (run, label) in labelled(&solved) {
         let times = ["median", "p99", "p99.9"].map(|s| run.time("repeated", s));
         if times.iter().all(Option::is_none) {
@@ -58,6 +58,7 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
 mod tests {
     use super::repeated;
     use crate::fronts::tests::record;
+    use crate::record::Family;
     use crate::select::runs;
 
     #[test]
@@ -68,12 +69,12 @@ mod tests {
             [("quick", [6e-4, 1e-3, 4e-3]), ("seen", [9e-4, 0.02, 0.05]), ("slow", [0.03, 0.04, 0.04])]
         {
             let times = of.iter().zip(times);
-            let is = ("kidney", method, "fem");
+            let is = ("loop", method, Family::Fem);
             records.extend(times.map(|(of, t)| record(is, 100, ("time", of.as_str()), t)));
         }
         // A run without a loop has no row; what was not measured is not judged.
-        records.push(record(("kidney", "once", "fem"), 100, ("time", "total:median"), 1.0));
-        records.push(record(("kidney", "unknown", "fem"), 100, ("time", "repeated:median"), 1e-4));
+        records.push(record(("loop", "once", Family::Fem), 100, ("time", "total:median"), 1.0));
+        records.push(record(("loop", "unknown", Family::Fem), 100, ("time", "repeated:median"), 1e-4));
         let table = repeated(&runs(&records));
         let rows: Vec<String> = table.shown().iter().map(|row| row[2..].join(" ")).collect();
         assert_eq!(

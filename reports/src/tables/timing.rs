@@ -1,7 +1,7 @@
 //! What every phase cost.
 
 use super::{labelled, millimetres as milliseconds};
-use crate::select::Run;
+use crate::select::{Run, solved};
 use crate::table::Column::{Number, Spread, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
@@ -30,7 +30,7 @@ pub(super) fn phases(runs: &[Run]) -> Table {
             ("memory [MB]", Number),
         ],
     );
-    let solved: Vec<Run> = runs.iter().filter(|r| r.is.family != "interp").cloned().collect();
+    let solved = solved(runs);
     for (run, label) in labelled(&solved) {
         let times: Vec<_> = PHASES.map(|p| (run.time(p, "median"), run.time(p, "spread"))).into();
         if times.iter().all(|(median, _)| median.is_none()) {

@@ -1,27 +1,19 @@
 //! Transfer schemes compared.
 
 use super::millimetres;
+use crate::record::Family;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
 /// Error and cost of every scheme, by what it carried over.
 pub(super) fn schemes(runs: &[Run]) -> Table {
-    let all = || runs.iter().filter(|r| r.is.family == "interp");
-    let mut caption = String::from(
-        "Error at the target points after the transfer, and its cost: building the weights (prepare) and applying them (transfer). Of a prescribed field \
-         the error is the transfer's own; of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone",
-    );
-    let lost = all().filter(|r| r.contradicts("rms")).count();
-    if lost > 0 {
-        caption += &format!(
-            ". Left out: {lost} rows whose records contradict each other, as they don't name the kernel of the method carried over"
-        );
-    }
+    let caption = "Error at the target points after the transfer, and its cost: building the weights (prepare) and applying them (transfer). Of a prescribed field \
+         the error is the transfer's own; of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone";
     let mut table = Table::new(
         "transfer",
         "Transfer schemes",
-        &caption,
+        caption,
         &[
             ("case", Words),
             ("of", Words),
@@ -38,7 +30,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             ("apply [ms]", Number),
         ],
     );
-    for run in all().filter(|r| !r.contradicts("rms")) {
+    for run in runs.iter().filter(|r| r.is.family == Family::Interp) {
         let (from, settings) = carried(run);
         table.row(&[
             Cell::Text(&run.is.case),
@@ -59,12 +51,9 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
     table
 }
 
-/// What a scheme carried over (a field or a method's result), and its remaining settings in words.
+/// The method whose field a scheme carried, and its remaining settings in words.
 fn carried(run: &Run) -> (String, String) {
-    let from = run.is.parameter("field").map(|f| format!("{f} field"));
-    let from = from.or(run.is.parameter("from").map(str::to_string)).unwrap_or_default();
-    let own = |pair: &&str| !pair.is_empty() && !pair.starts_with("from=") && !pair.starts_with("field=");
-    let settings: Vec<String> =
-        run.is.parameters.split(';').filter(own).map(|p| p.replace('=', " ")).collect();
-    (from, settings.join(", "))
+    let own = run.is.settings().into_iter().filter(|(name, _)| *name != "from");
+    let settings: Vec<String> = own.map(|(name, value)| format!("{name} {value}")).collect();
+    (run.is.from.clone().unwrap_or_default(), settings.join(", "))
 }

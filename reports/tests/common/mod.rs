@@ -1,30 +1,33 @@
 //! A made-up study that fills every table and every figure: power laws with fixed wiggles, never a random number.
 
 use reports::{
-    Check, Failure, PlanEntry, Provenance, Record, RunSet, SceneHash, Section, SectionCell, Status,
-    SurfaceField, ToolHull,
+    Check, Failure, Family, Machine, PlanEntry, Program, Provenance, Purpose, Record, RunSet, SceneHash,
+    Section, SectionCell, Status, SurfaceField, ToolHull,
 };
 
-fn base(case: &str, method: &str, family: &str, variant: &str, parameters: &str) -> Record {
+/// Basis, support scale, dilation and integration; empty or 0 where there is none.
+type Settings = (&'static str, f64, &'static str, &'static str);
+
+const PLAIN: Settings = ("", 0.0, "", "");
+const LINEAR: Settings = ("linear", 1.6, "", "");
+
+fn base(case: &str, method: &str, family: Family, variant: &str, settings: Settings) -> Record {
+    let (basis, support_scale, dilation, integration) = settings;
+    let text = |value: &str| (!value.is_empty()).then(|| value.to_string());
     Record {
         case: case.into(),
         method: method.into(),
-        family: family.into(),
+        series: method.into(),
+        family,
         variant: variant.into(),
-        parameters: parameters.into(),
+        basis: text(basis),
+        support_scale: (support_scale > 0.0).then_some(support_scale),
+        dilation: text(dilation),
+        integration: text(integration),
         poisson: 0.3,
-        level: 0,
-        nodes: 0,
-        elements: 0,
-        points: 0,
-        dofs: 0,
-        spacing: 0.0,
-        seed: 0,
-        quantity: String::new(),
         unit: "1".into(),
-        phase: String::new(),
         statistic: "value".into(),
-        value: 0.0,
+        ..Record::default()
     }
 }
 
@@ -46,26 +49,26 @@ fn push_times(set: &mut RunSet, run: &Record, phases: &[(&str, f64)]) {
 }
 
 /// Method id, family, variant, parameters, displacement order, error at h = 1 mm for nu = 0.3, whether it locks, cost per unknown.
-type Method = (&'static str, &'static str, &'static str, &'static str, f64, f64, bool, f64);
+type Method = (&'static str, Family, &'static str, Settings, f64, f64, bool, f64);
 
 const METHODS: [Method; 8] = [
-    ("tet4", "fem", "tet4", "", 2.0, 2e-3, true, 1.0),
-    ("tet4-nodal", "fem", "tet4", "dilation=nodal-mean", 2.0, 3e-3, false, 1.4),
-    ("tet10", "fem", "tet10", "", 3.0, 3e-5, false, 3.0),
-    ("hex8", "fem", "hex8", "", 2.0, 8e-4, true, 1.2),
-    ("hex20", "fem", "hex20", "", 3.0, 1e-5, false, 4.0),
-    ("efg", "efg", "cubic-spline", "basis=linear;dilatation=1.6", 2.0, 4e-4, false, 8.0),
+    ("tet4", Family::Fem, "tet4", PLAIN, 2.0, 2e-3, true, 1.0),
+    ("tet4-nodal", Family::Fem, "tet4", ("", 0.0, "nodal-mean", ""), 2.0, 3e-3, false, 1.4),
+    ("tet10", Family::Fem, "tet10", PLAIN, 3.0, 3e-5, false, 3.0),
+    ("hex8", Family::Fem, "hex8", PLAIN, 2.0, 8e-4, true, 1.2),
+    ("hex20", Family::Fem, "hex20", PLAIN, 3.0, 1e-5, false, 4.0),
+    ("efg", Family::Efg, "cubic-spline", LINEAR, 2.0, 4e-4, false, 8.0),
     (
         "efg-smoothed",
-        "efg",
+        Family::Efg,
         "cubic-spline",
-        "basis=linear;dilatation=1.6;integration=cell-smoothed",
+        ("linear", 1.6, "", "cell-smoothed"),
         2.0,
         9e-4,
         false,
         5.0,
     ),
-    ("efg-quadratic", "efg", "wendland-c2", "basis=quadratic;dilatation=2", 3.0, 2e-5, false, 20.0),
+    ("efg-quadratic", Family::Efg, "wendland-c2", ("quadratic", 2.0, "", ""), 3.0, 2e-5, false, 20.0),
 ];
 
 fn solid(set: &mut RunSet, case: &str, ratios: &[f64], size: f64) {
@@ -123,12 +126,13 @@ fn solid(set: &mut RunSet, case: &str, ratios: &[f64], size: f64) {
 
 fn patch(set: &mut RunSet) {
     for (method, family, variant, parameters, error) in [
-        ("tet4", "fem", "tet4", "", 2e-15),
-        ("hex20", "fem", "hex20", "", 7e-15),
-        ("efg-smoothed", "efg", "cubic-spline", "basis=linear;dilatation=1.6", 3e-15),
-        ("efg-gauss", "efg", "cubic-spline", "basis=linear;dilatation=1.6", 1.4e-3),
+        ("tet4", Family::Fem, "tet4", PLAIN, 2e-15),
+        ("hex20", Family::Fem, "hex20", PLAIN, 7e-15),
+        ("efg-smoothed", Family::Efg, "cubic-spline", LINEAR, 3e-15),
+        ("efg-gauss", Family::Efg, "cubic-spline", LINEAR, 1.4e-3),
     ] {
         let run = Record {
+            purpose: Purpose::Patch,
             nodes: 216,
             spacing: 0.2,
             ..base("patch-displacement", method, family, variant, parameters)
@@ -148,11 +152,16 @@ fn clouds(set: &mut RunSet) {
                 if dilatation < from {
                     continue;
                 }
-                let parameters = format!("basis={basis};dilatation={dilatation}");
                 let run = Record {
                     nodes: 332,
                     spacing: 5e-3,
-                    ..base("cloud-quality", &format!("efg-{kernel}"), "efg", kernel, &parameters)
+                    ..base(
+                        "cloud-quality",
+                        &format!("efg-{kernel}"),
+                        Family::Efg,
+                        kernel,
+                        (basis, dilatation, "", ""),
+                    )
                 };
                 let neighbours = 8.5 * f64::powi(dilatation, 3);
                 let condition =
@@ -170,85 +179,94 @@ fn clouds(set: &mut RunSet) {
 
 fn kidney(set: &mut RunSet) {
     let case = "kidney-paper";
-    let mut displacement =
-        |method: &str, family: &str, variant: &str, parameters: &str, nodes: u64, error: f64, time: f64| {
-            let spacing = 32e-3 / (nodes as f64).cbrt();
-            let run = Record {
-                poisson: 0.495,
-                nodes,
-                spacing,
-                dofs: 3 * nodes,
-                ..base(case, method, family, variant, parameters)
-            };
-            for (axis, max, rms) in [("x", 4.1e-3, 1.1), ("y", 2.2e-3, 0.7), ("z", 7.9e-3, 2.1)] {
-                push(set, &run, &format!("max-{axis}"), "m", max);
-                push(set, &run, &format!("rms-{axis}"), "m", rms * error);
-            }
-            push(set, &run, "rms", "m", 2.47 * error);
-            push(set, &run, "relative-rms", "1", 600.0 * error);
-            push(set, &run, "tool-force-error", "1", 200.0 * error);
-            push(set, &run, "tool-force-error-2", "1", 210.0 * error);
-            for (statistic, part) in [("median", 0.06), ("p99", 0.08), ("p99.9", 0.2)] {
-                set.records.push(Record {
-                    quantity: "time".into(),
-                    unit: "s".into(),
-                    phase: "repeated".into(),
-                    statistic: statistic.into(),
-                    value: part * time,
-                    ..run.clone()
-                });
-            }
-            push_times(
-                set,
-                &run,
-                &[
-                    ("prepare", 0.4 * time),
-                    ("assemble", 0.2 * time),
-                    ("factor", 0.3 * time),
-                    ("solve", 0.06 * time),
-                    ("transfer", 0.04 * time),
-                ],
-            );
+    let mut displacement = |(method, series): (&str, &str),
+                            family: Family,
+                            variant: &str,
+                            settings: Settings,
+                            nodes: u64,
+                            error: f64,
+                            time: f64| {
+        let spacing = 32e-3 / (nodes as f64).cbrt();
+        let run = Record {
+            purpose: Purpose::Published,
+            published: "saghaei-2016".into(),
+            series: series.into(),
+            poisson: 0.495,
+            nodes,
+            spacing,
+            dofs: 3 * nodes,
+            ..base(case, method, family, variant, settings)
         };
-    displacement("tet4", "fem", "tet4", "", 1331, 0.9e-3, 0.05);
-    displacement("tet10", "fem", "tet10", "", 9000, 0.05e-3, 1.4);
+        for (axis, max, rms) in [("x", 4.1e-3, 1.1), ("y", 2.2e-3, 0.7), ("z", 7.9e-3, 2.1)] {
+            push(set, &run, &format!("max-{axis}"), "m", max);
+            push(set, &run, &format!("rms-{axis}"), "m", rms * error);
+        }
+        push(set, &run, "rms", "m", 2.47 * error);
+        push(set, &run, "relative-rms", "1", 600.0 * error);
+        push(set, &run, "tool-force-error", "1", 200.0 * error);
+        push(set, &run, "tool-force-error-2", "1", 210.0 * error);
+        for (statistic, part) in [("median", 0.06), ("p99", 0.08), ("p99.9", 0.2)] {
+            set.records.push(Record {
+                quantity: "time".into(),
+                unit: "s".into(),
+                phase: "repeated".into(),
+                statistic: statistic.into(),
+                value: part * time,
+                ..run.clone()
+            });
+        }
+        push_times(
+            set,
+            &run,
+            &[
+                ("prepare", 0.4 * time),
+                ("assemble", 0.2 * time),
+                ("factor", 0.3 * time),
+                ("solve", 0.06 * time),
+                ("transfer", 0.04 * time),
+            ],
+        );
+    };
+    displacement(("tet4", "tet4"), Family::Fem, "tet4", PLAIN, 1331, 0.9e-3, 0.05);
+    displacement(("tet10", "tet10"), Family::Fem, "tet10", PLAIN, 9000, 0.05e-3, 1.4);
     for (i, nodes) in [83u64, 166, 332, 665, 1331].into_iter().enumerate() {
         for kernel in ["cubic-spline", "wendland-c2"] {
             let error = 1.6e-3 / (i + 1) as f64 * if kernel == "cubic-spline" { 1.0 } else { 0.93 };
-            let method = format!("efg-{kernel}-{nodes}");
+            let series = format!("efg-{kernel}");
             displacement(
-                &method,
-                "efg",
+                (&format!("{series}-{nodes}"), &series),
+                Family::Efg,
                 kernel,
-                "basis=linear;dilatation=1.6",
+                LINEAR,
                 nodes,
                 error,
                 0.008 * (nodes as f64 / 83.0).powf(1.3),
             );
         }
     }
-    for (i, (scheme, parameters, error)) in [
-        ("nearest", "", 0.9e-3),
-        ("inverse-distance", "neighbours=4;power=2", 0.5e-3),
-        ("shepard", "dilatation=1.6", 0.6e-3),
-        ("mls-linear", "dilatation=1.6", 2e-18),
-        ("thin-plate", "", 1e-18),
-        ("barycentric", "", 0.69e-3),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        for (field, scale) in [("field=linear", 1.0), ("field=bump", 0.8), ("from=efg-cubic-spline-83", 0.6)]
-        {
-            let parameters =
-                if parameters.is_empty() { field.to_string() } else { format!("{field};{parameters}") };
+    type Scheme = (&'static str, Option<u64>, Option<f64>, f64);
+    let schemes: [Scheme; 6] = [
+        ("nearest", None, None, 0.9e-3),
+        ("inverse-distance", Some(4), None, 0.5e-3),
+        ("shepard", None, Some(1.6), 0.6e-3),
+        ("mls-linear", None, Some(1.6), 2e-18),
+        ("thin-plate", None, None, 1e-18),
+        ("barycentric", None, None, 0.69e-3),
+    ];
+    for (i, (scheme, neighbours, support_scale, error)) in schemes.into_iter().enumerate() {
+        for (from, scale) in [("linear", 1.0), ("bump", 0.8), ("efg-cubic-spline-83", 0.6)] {
             let run = Record {
+                purpose: Purpose::Published,
+                published: "saghaei-2016".into(),
+                from: Some(from.into()),
+                neighbours,
+                support_scale,
                 poisson: 0.495,
                 nodes: 83,
                 points: 1331,
-                ..base(case, scheme, "interp", scheme, &parameters)
+                ..base(case, scheme, Family::Interp, scheme, PLAIN)
             };
-            let added = if field == "field=linear" { 0.0 } else { 0.2e-3 };
+            let added = if from == "linear" { 0.0 } else { 0.2e-3 };
             for (axis, share) in [("rms-x", 0.5), ("rms-y", 0.3), ("rms-z", 0.8), ("rms", 1.0)] {
                 push(set, &run, axis, "m", share * (scale * error + added));
             }
@@ -260,10 +278,10 @@ fn kidney(set: &mut RunSet) {
 /// A tool closing on a block: two methods step by step, a finer level of one, and a reference with its uncertainty.
 fn grasp(set: &mut RunSet) {
     for (method, family, nodes, stiffness) in [
-        ("hex8", "fem", 225, 1.08),
-        ("hex8", "fem", 1377, 1.03),
-        ("efg", "efg", 225, 0.97),
-        ("measured", "reference", 0, 1.0),
+        ("hex8", Family::Fem, 225, 1.08),
+        ("hex8", Family::Fem, 1377, 1.03),
+        ("efg", Family::Efg, 225, 0.97),
+        ("measured", Family::Reference, 0, 1.0),
     ] {
         for step in 0..=40u32 {
             let at = |statistic: &str, quantity: &str, unit: &str, value: f64| Record {
@@ -271,16 +289,16 @@ fn grasp(set: &mut RunSet) {
                 spacing: if nodes == 0 { 0.0 } else { 0.1 / (nodes as f64).cbrt() },
                 quantity: quantity.into(),
                 unit: unit.into(),
-                phase: format!("step-{step}"),
+                step: Some(step.into()),
                 statistic: statistic.into(),
                 value,
-                ..base("grasp", method, family, method, "")
+                ..base("grasp", method, family, method, PLAIN)
             };
             let closure = 0.25e-3 * f64::from(step);
             let force = stiffness * (120.0 * closure + 9e3 * closure * closure);
             set.records.push(at("value", "closure", "m", closure));
             set.records.push(at("value", "tool-force", "N", force));
-            if family == "reference" {
+            if family == Family::Reference {
                 set.records.push(at("low", "tool-force", "N", 0.92 * force));
                 set.records.push(at("high", "tool-force", "N", 1.08 * force));
                 continue;
@@ -302,7 +320,7 @@ fn grasp(set: &mut RunSet) {
 }
 
 /// A ball mapped to a bean, pressed flat in the middle of its length.
-fn bean(method: &str, title: &str, n: u32, amplitude: f64) -> SurfaceField {
+fn bean((method, family): (&str, Family), title: &str, n: u32, amplitude: f64) -> SurfaceField {
     let (mut points, mut displacement, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     let around = 2 * n;
     for i in 0..=n {
@@ -328,6 +346,7 @@ fn bean(method: &str, title: &str, n: u32, amplitude: f64) -> SurfaceField {
     SurfaceField {
         case: "kidney-paper".into(),
         method: method.into(),
+        family,
         title: title.into(),
         points,
         triangles,
@@ -338,7 +357,7 @@ fn bean(method: &str, title: &str, n: u32, amplitude: f64) -> SurfaceField {
 }
 
 /// The bean between two jaws, and its middle plane cut into squares of alternating pressure.
-fn grasped(method: &str, wild: f64) -> SurfaceField {
+fn grasped(of @ (method, _): (&str, Family), wild: f64) -> SurfaceField {
     let jaw = |side: f64| ToolHull {
         name: "jaw".into(),
         points: (0..8)
@@ -363,7 +382,7 @@ fn grasped(method: &str, wild: f64) -> SurfaceField {
         case: "kidney-grasped".into(),
         tools: vec![jaw(1.0), jaw(-1.0)],
         section: Some(Section { right: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], cells }),
-        ..bean(method, &format!("{method} (99 nodes)"), 12, 6e-3)
+        ..bean(of, &format!("{method} (99 nodes)"), 12, 6e-3)
     }
 }
 
@@ -391,14 +410,23 @@ fn check(
 pub fn study() -> RunSet {
     let mut set = RunSet {
         provenance: Provenance {
-            version: "0.1.0".into(),
-            commit: "0123456789ab".into(),
-            rustc: "1.95.0".into(),
-            cpu: "Example CPU <model> & co".into(),
-            threads: 2,
-            seed: 1,
-            features: "avx2,fma".into(),
-            profile: "release".into(),
+            source: "study.toml".into(),
+            program: Program {
+                version: "0.1.0".into(),
+                commit: "0123456789ab".into(),
+                dirty: false,
+                rustc: "1.95.0".into(),
+                target: "x86_64-unknown-linux-gnu".into(),
+                features: "fxsr,sse,sse2".into(),
+                profile: "release".into(),
+            },
+            machine: Machine {
+                cpu: "Example CPU <model> & co".into(),
+                instructions: "avx2,fma".into(),
+                threads: 2,
+                load: Some(0.25),
+                quiet: Some(true),
+            },
             scenes: vec![SceneHash { case: "pure-bending".into(), blake3: "ab".repeat(32) }],
         },
         ..RunSet::default()
@@ -459,10 +487,16 @@ pub fn study() -> RunSet {
         });
     }
     set.fields = vec![
-        grasped("efg", 0.0),
-        grasped("tet4", 3e4),
-        bean("efg-83", "EFG, 83 nodes", 24, 7e-3),
-        bean("tet4", "FE tet4, 1331 nodes", 24, 9e-3),
+        grasped(("efg", Family::Efg), 0.0),
+        grasped(("tet4", Family::Fem), 3e4),
+        bean(("efg-83", Family::Efg), "EFG, 83 nodes", 24, 7e-3),
+        bean(("tet4", Family::Fem), "FE tet4, 1331 nodes", 24, 9e-3),
     ];
+    for record in &mut set.records {
+        let settings =
+            (&record.basis, record.support_scale, &record.dilation, &record.integration, &record.from);
+        let size = (record.poisson.to_bits(), record.level, record.nodes);
+        record.run = format!("{} {} {} {settings:?} {size:?}", record.case, record.method, record.variant);
+    }
     set
 }

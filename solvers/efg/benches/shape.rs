@@ -21,13 +21,16 @@
 use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, Throughput, criterion_group, criterion_main};
-use efg::{Approximation, Basis, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows, smoothed_rows};
+use efg::{
+    Approximation, Basis, CubicSpline, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows,
+    smoothed_rows,
+};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
 use nalgebra::{DMatrix, DVector};
 use shape::{Point3, Vector3};
 
-const KERNEL: Kernel = Kernel::CubicSpline;
+const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 
 /// Points per measurement: one parallel task, so that one thread does the work.
 const POINTS: usize = 128;
@@ -148,7 +151,8 @@ fn prepare(criterion: &mut Criterion) {
     let cloud = cloud(&Kidney, 83, 1, &[]).unwrap();
     let make = || {
         let radii = Support::Dilatation { factor: 1.6 }.radii(&cloud.points, &cloud.spacing).unwrap();
-        Approximation::new(cloud.points.clone(), radii, Kernel::CubicSpline, Basis::Linear).unwrap()
+        Approximation::new(cloud.points.clone(), radii, Kernel::CubicSpline(CubicSpline), Basis::Linear)
+            .unwrap()
     };
     let name = format!("prepare-{}-nodes-{}-cells", cloud.points.len(), background.cell_count());
     let mut group = criterion.benchmark_group(name);

@@ -5,13 +5,13 @@ mod ladder;
 use std::cmp::Reverse;
 
 use geometry::Mesh;
+use lanes::{LANES, LanePath, on_path};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::buckets::Buckets;
 use crate::coupling::{Coupling, Layer, joined};
 use crate::info::{Outcome, Tally};
-use crate::lanes::LANES;
 use crate::max_entropy::{CUT, Neighbours, NoPoint};
 use crate::mls::{Ball, Group};
 use crate::row_list::{RowList, sample_step};
@@ -83,7 +83,6 @@ impl Approximation {
         kernel: Kernel,
         basis: Basis,
     ) -> Result<Approximation, EfgError> {
-        kernel.check()?;
         let functions = Functions::MovingLeastSquares(LeastSquares { kernel, basis, mu: 0.0 });
         Approximation::over(nodes, radii, functions, basis.terms())
     }
@@ -323,29 +322,10 @@ impl Approximation {
 
     /// Rows of the cloud's own functions.
     fn fill_own<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
-                // SAFETY: the processor has the features that the function requires, just checked; so below.
-                return unsafe { self.fill_avx512::<GRAD>(points, chunk) };
-            }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.fill_avx2::<GRAD>(points, chunk) };
-            }
+        match GRAD {
+            true => fill_gradients(LanePath::best(), self, points, chunk),
+            false => fill_values(LanePath::best(), self, points, chunk),
         }
-        self.fill_plain::<GRAD>(points, chunk)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512dq")]
-    fn fill_avx512<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        self.fill_plain::<GRAD>(points, chunk)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn fill_avx2<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        self.fill_plain::<GRAD>(points, chunk)
     }
 
     #[inline(always)]
@@ -449,22 +429,37 @@ impl Approximation {
     }
 }
 
+on_path! {
+    /// Values of the own functions at some points, in wide registers.
+    fn fill_values(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_values_in
+}
+
+#[inline(always)]
+fn fill_values_in<const FMA: bool>(
+    of: &Approximation,
+    points: &[Point3],
+    chunk: &mut Chunk,
+) -> Result<(), EfgError> {
+    of.fill_plain::<false>(points, chunk)
+}
+
+on_path! {
+    /// Values and gradients of the own functions at some points, in wide registers.
+    fn fill_gradients(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_gradients_in
+}
+
+#[inline(always)]
+fn fill_gradients_in<const FMA: bool>(
+    of: &Approximation,
+    points: &[Point3],
+    chunk: &mut Chunk,
+) -> Result<(), EfgError> {
+    of.fill_plain::<true>(points, chunk)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    type Fill = fn(&Approximation, &[Point3], &mut Chunk) -> Result<(), EfgError>;
-
-    /// Every way to the same bits that this machine has.
-    fn paths() -> Vec<(&'static str, Fill)> {
-        let mut paths: Vec<(&'static str, Fill)> = vec![("chosen", Approximation::fill::<true>)];
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked.
-            paths.push(("avx2", |mls, points, chunk| unsafe { mls.fill_avx2::<true>(points, chunk) }));
-        }
-        paths
-    }
 
     #[test]
     fn wide_registers_and_the_company_in_a_group_leave_the_bits_alone() {
@@ -478,7 +473,7 @@ mod tests {
         };
         let points: Vec<Point3> = (0..64).map(at).collect();
         let radii: Vec<f64> = (0..216).map(|i| 2.6 + 0.01 * (i % 7) as f64).collect();
-        for kernel in Kernel::ALL {
+        for kernel in Kernel::all() {
             for basis in Basis::ALL {
                 let mls = Approximation::new(nodes.clone(), radii.clone(), kernel, basis).unwrap();
                 let mut plain = Chunk::default();
@@ -493,10 +488,10 @@ mod tests {
                     one_by_one.outcomes.extend_from_slice(&alone.outcomes);
                 }
                 let mut others = vec![("one by one", one_by_one)];
-                for (path, fill) in paths() {
+                for path in LanePath::available() {
                     let mut chunk = Chunk::default();
-                    fill(&mls, &points, &mut chunk).unwrap();
-                    others.push((path, chunk));
+                    fill_gradients(path, &mls, &points, &mut chunk).unwrap();
+                    others.push((path.name(), chunk));
                 }
                 for (path, Chunk { rows, outcomes, .. }) in &others {
                     let label = format!("{path} {} {}", kernel.name(), basis.name());

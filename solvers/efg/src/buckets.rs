@@ -1,9 +1,9 @@
 //! Which supports cover a point? A uniform grid whose cells list the nodes whose support balls touch them: a query reads one
 //! list. Few nodes are all asked, side by side, in less time than it takes to gather those of a list.
 
+use lanes::{LANES, Lanes};
 use shape::Point3;
 
-use crate::lanes::{LANES, Lanes};
 use crate::mls::Ball;
 
 /// Up to so many nodes, all are asked.

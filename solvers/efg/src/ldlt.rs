@@ -1,6 +1,6 @@
 //! `A = L D L^T` of small symmetric matrices, one to a lane, with a pivot check.
 
-use crate::lanes::{LANES, Lanes};
+use lanes::{LANES, Lanes};
 
 /// `M` x `K` matrices, one to a lane.
 pub(crate) type Matrices<const M: usize, const K: usize> = [[Lanes; K]; M];

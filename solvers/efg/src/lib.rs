@@ -3,12 +3,12 @@
 //! comes out are shape tables, as from finite elements, so that assembly, supports and output are the same code.
 //!
 //! ```
-//! use efg::{Approximation, Basis, Kernel, Support};
+//! use efg::{Approximation, Basis, CubicSpline, Kernel, Support};
 //! use shape::Point3;
 //! let nodes: Vec<Point3> =
 //!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
 //! let radii = Support::Dilatation { factor: 1.6 }.radii(&nodes, &vec![1e-3; 27])?;
-//! let mls = Approximation::new(nodes, radii, Kernel::CubicSpline, Basis::Linear)?;
+//! let mls = Approximation::new(nodes, radii, Kernel::CubicSpline(CubicSpline), Basis::Linear)?;
 //! let (rows, info) = mls.point_rows(&[Point3::new(0.9e-3, 1.2e-3, 0.4e-3)])?;
 //! assert!(info.neighbours_min >= 4 && info.enlarged == 0);
 //! let x: f64 = rows.rows().row(0).0.iter().zip(rows.rows().row(0).1).map(|(&i, v)| (i % 3) as f64 * 1e-3 * v).sum();
@@ -30,7 +30,6 @@ mod gauss;
 mod grid;
 mod info;
 mod kernel;
-mod lanes;
 mod ldlt;
 mod max_entropy;
 mod mls;
@@ -49,7 +48,10 @@ pub use facets::{flux_rows, surface_rows};
 pub use gauss::{gauss_regions, gauss_rows};
 pub use grid::{GridInfo, grid_rows};
 pub use info::MlsInfo;
-pub use kernel::Kernel;
+pub use kernel::{
+    CubicSpline, Exponential, Gaussian, KERNELS, Kernel, KernelEntry, QuarticSpline,
+    RegularisedInterpolating, WendlandC2, WendlandC4, WendlandC6,
+};
 pub use node_smoothed::{node_smoothed_regions, node_smoothed_rows, node_smoothed_trace};
 pub use recovery::gradient_error;
 pub use smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};

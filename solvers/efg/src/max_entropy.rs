@@ -11,10 +11,10 @@
 //! weak Kronecker property): there the same problem is solved in the face's own plane, line or point. Gradients there are
 //! one-sided: those at a point [`INWARD`] inside.
 
+use lanes::{LANES, Lanes};
 use shape::{Matrix3, Point3, Vector3};
 
 use crate::exp::exp;
-use crate::lanes::{LANES, Lanes};
 
 /// Nodes count up to the distance at which `exp(-beta r^2)` has fallen to this: 2.8 spacings with `gamma = 1.8`.
 pub(crate) const CUT: f64 = 1e-6;

@@ -5,12 +5,12 @@
 //! with `A_,a c0` summed as a vector. Source: Belytschko, Krongauz, Organ, Fleming and Krysl (1996), in local coordinates.
 //! Shape functions that leave a part of their [`Moments`] to others have these for `e0` and their slopes for `e_a/s`.
 
+use lanes::{LANES, Lanes};
 use shape::{Point3, Vector3};
 
 use crate::Ellipsoid;
 use crate::basis::{PRODUCT, monomials, terms};
 use crate::kernel::Kernel;
-use crate::lanes::{LANES, Lanes};
 use crate::ldlt::{Ldlt, Matrices, norm};
 
 /// Smallest pivot relative to its diagonal entry; rounding leaves 1e-16 where neighbours do not span the basis.

@@ -4,7 +4,10 @@
 mod common;
 
 use common::{dilatation, jittered_box, on_mesh};
-use efg::{Approximation, Basis, Kernel, Smoothing, node_smoothed_rows, smoothed_rows, surface_rows};
+use efg::{
+    Approximation, Basis, CubicSpline, Kernel, Smoothing, WendlandC2, node_smoothed_rows, smoothed_rows,
+    surface_rows,
+};
 use geometry::{CellKind, Facet, Mesh};
 use shape::{Point3, SurfaceRows, Vector3, VolumeRows};
 
@@ -49,7 +52,7 @@ fn violation(inner: &[Vector3], outer: &[Vector3]) -> f64 {
 fn linear_smoothing_meets_all_four_conditions_in_every_cell() {
     for (place, mesh) in boxes() {
         for basis in Basis::ALL {
-            let mls = on_mesh(&mesh, dilatation(basis), Kernel::CubicSpline, basis);
+            let mls = on_mesh(&mesh, dilatation(basis), Kernel::CubicSpline(CubicSpline), basis);
             let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Linear, 6).unwrap();
             assert_eq!(info.fallbacks(), 0);
             let nodes = mls.nodes().len();
@@ -99,7 +102,7 @@ fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
         for (basis, name, rule) in
             Basis::ALL.into_iter().flat_map(|b| RULES.map(|(name, rule)| (b, name, rule)))
         {
-            let mls = on_mesh(&mesh, dilatation(basis), Kernel::WendlandC2, basis);
+            let mls = on_mesh(&mesh, dilatation(basis), Kernel::WendlandC2(WendlandC2), basis);
             let volume = rule(&mls, &mesh, 6);
             let off = imbalance(&mls, &mesh, &volume, 6);
             assert!(off < 1e-13, "{place}, {name}, {}: {off:e}", basis.name());
@@ -114,7 +117,8 @@ fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
 fn clouds_coupled_to_finite_elements_meet_it_too() {
     for (place, mesh) in boxes() {
         let held = mesh.facet_group_nodes(mesh.group("x-min").unwrap());
-        let mls = on_mesh(&mesh, 2.0, Kernel::WendlandC2, Basis::Linear).coupled(&mesh, &held).unwrap();
+        let mls =
+            on_mesh(&mesh, 2.0, Kernel::WendlandC2(WendlandC2), Basis::Linear).coupled(&mesh, &held).unwrap();
         for (name, rule) in RULES {
             let volume = rule(&mls, &mesh, 6);
             let off = imbalance(&mls, &mesh, &volume, 6);
@@ -129,7 +133,7 @@ fn units_and_origin_do_not_matter() {
     let all: Vec<(&str, Mesh)> = boxes().collect();
     for (name, rule) in RULES {
         let rows = |mesh: &Mesh| {
-            let mls = on_mesh(mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+            let mls = on_mesh(mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
             rule(&mls, mesh, 6)
         };
         let first = rows(&all[0].1);

@@ -3,7 +3,10 @@
 mod common;
 
 use common::{field, jittered_box, on_cloud, on_mesh};
-use efg::{Approximation, Basis, EfgError, Kernel, Support, coupled_nodes, surface_rows};
+use efg::{
+    Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support, WendlandC2, coupled_nodes,
+    surface_rows,
+};
 use geometry::generate::box_mesh;
 use geometry::shapes::Cuboid;
 use geometry::{CellKind, Facet, Mesh, cloud};
@@ -72,7 +75,7 @@ fn apply(rows: &GradRows, q: usize, of: &[f64]) -> (f64, Vector3) {
 fn linear_fields_and_their_gradients_are_reproduced_in_the_layer_and_beyond() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     let points = inner(&mesh);
-    for kernel in Kernel::ALL {
+    for kernel in Kernel::all() {
         for (name, coupled, _) in coupled(&mesh, kernel) {
             let (rows, _) = coupled.grad_rows(&points).unwrap();
             let of: Vec<f64> = coupled.nodes().iter().map(|p| field(Basis::Linear, p).0).collect();
@@ -94,7 +97,7 @@ fn gradients_are_those_of_the_values() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     let points = inner(&mesh);
     let h = 2e-7;
-    for (name, coupled, _) in coupled(&mesh, Kernel::QuarticSpline) {
+    for (name, coupled, _) in coupled(&mesh, Kernel::QuarticSpline(QuarticSpline)) {
         let (rows, _) = coupled.grad_rows(&points).unwrap();
         for axis in 0..3 {
             let moved =
@@ -121,7 +124,7 @@ fn gradients_are_those_of_the_values() {
 #[test]
 fn the_cloud_vanishes_on_what_is_held_and_the_hats_are_those_of_its_vertices() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    for (name, coupled, facets) in coupled(&mesh, Kernel::CubicSpline) {
+    for (name, coupled, facets) in coupled(&mesh, Kernel::CubicSpline(CubicSpline)) {
         let vertices = mesh.facet_group_nodes(&facets);
         let first = coupled.nodes().len() - vertices.len();
         let (rows, _) = surface_rows(&coupled, &mesh, &facets, 6).unwrap();
@@ -147,14 +150,15 @@ fn the_cloud_vanishes_on_what_is_held_and_the_hats_are_those_of_its_vertices() {
 fn cells_without_a_listed_vertex_have_the_cloud_s_own_functions_to_the_last_bit() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     let (_, vertices) = held(&mesh)[0].clone();
-    let coupled = uncoupled("of the mesh", &mesh, Kernel::WendlandC2).coupled(&mesh, &vertices).unwrap();
+    let coupled =
+        uncoupled("of the mesh", &mesh, Kernel::WendlandC2(WendlandC2)).coupled(&mesh, &vertices).unwrap();
     let left = coupled.nodes().len() - vertices.len();
     assert_eq!(left, mesh.points().len() - vertices.len());
-    let whole = uncoupled("of the mesh", &mesh, Kernel::WendlandC2);
+    let whole = uncoupled("of the mesh", &mesh, Kernel::WendlandC2(WendlandC2));
     let of_left = |n: usize| !vertices.contains(&(n as u32));
     let radii: Vec<f64> = (0..mesh.points().len()).filter(|&n| of_left(n)).map(|n| whole.radius(n)).collect();
     let nodes = coupled.nodes()[..left].to_vec();
-    let alone = Approximation::new(nodes, radii, Kernel::WendlandC2, Basis::Linear).unwrap();
+    let alone = Approximation::new(nodes, radii, Kernel::WendlandC2(WendlandC2), Basis::Linear).unwrap();
     let points = inner(&mesh);
     let beside = |q: usize| mesh.cell(q % mesh.cell_count()).iter().any(|v| vertices.contains(v));
     let far: Vec<Point3> = (0..points.len()).filter(|&q| !beside(q)).map(|q| points[q]).collect();
@@ -169,12 +173,12 @@ fn cells_without_a_listed_vertex_have_the_cloud_s_own_functions_to_the_last_bit(
 fn what_cannot_be_coupled_is_refused() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     let (_, vertices) = held(&mesh)[0].clone();
-    let quadratic = on_mesh(&mesh, 2.2, Kernel::CubicSpline, Basis::Quadratic);
+    let quadratic = on_mesh(&mesh, 2.2, Kernel::CubicSpline(CubicSpline), Basis::Quadratic);
     assert_eq!(quadratic.coupled(&mesh, &vertices).err(), Some(EfgError::NotCoupled));
     let spacing = vec![0.008; mesh.points().len()];
     let entropy = Approximation::maximum_entropy(mesh.points().to_vec(), &spacing, 1.8).unwrap();
     assert_eq!(entropy.coupled(&mesh, &vertices).err(), Some(EfgError::NotCoupled));
-    let linear = || on_mesh(&mesh, 2.0, Kernel::CubicSpline, Basis::Linear);
+    let linear = || on_mesh(&mesh, 2.0, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     let count = mesh.points().len();
     for (list, vertex) in [(vec![3, 1], 1), (vec![3, 3], 3), (vec![count as u32], count as u32)] {
         let refused = linear().coupled(&mesh, &list).err();

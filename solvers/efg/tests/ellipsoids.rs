@@ -3,7 +3,7 @@
 mod common;
 
 use common::{jittered_box, members};
-use efg::{Approximation, Basis, EfgError, Kernel, Support};
+use efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, Support};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, Mesh};
 use nalgebra::Matrix3;
@@ -95,8 +95,9 @@ fn supports_of_flat_cells_hold_as_many_neighbours_as_those_of_cubes() {
     let (flat, long) = (box_of([40, 2, 2]), box_of([4, 4, 4]));
     for rule in RULES {
         let neighbours = |mesh: &Mesh| {
-            let (_, info) =
-                adapted(mesh, rule, Kernel::CubicSpline, Basis::Linear).point_rows(&probes(mesh)).unwrap();
+            let (_, info) = adapted(mesh, rule, Kernel::CubicSpline(CubicSpline), Basis::Linear)
+                .point_rows(&probes(mesh))
+                .unwrap();
             assert_eq!(info.fallbacks(), 0);
             (info.neighbours_min, info.neighbours_max)
         };

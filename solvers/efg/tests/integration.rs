@@ -4,8 +4,8 @@ mod common;
 
 use common::{jittered_box, on_mesh};
 use efg::{
-    Basis, EfgError, Kernel, Smoothing, flux_rows, gauss_regions, gauss_rows, grid_rows, smoothed_regions,
-    smoothed_rows, smoothed_trace, surface_rows,
+    Basis, CubicSpline, EfgError, Kernel, Smoothing, WendlandC2, WendlandC4, flux_rows, gauss_regions,
+    gauss_rows, grid_rows, smoothed_regions, smoothed_rows, smoothed_trace, surface_rows,
 };
 use geometry::generate::{kidney_mesh, raise_order};
 use geometry::{CellKind, Facet, Mesh};
@@ -51,7 +51,7 @@ fn smoothing_meets_the_integration_constraint_to_rounding() {
         (jittered_box(CellKind::Tet4, 4), 2.5),
         (kidney_mesh(CellKind::Tet4, 3).unwrap(), 1.6),
     ] {
-        let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline, Basis::Linear);
+        let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline(CubicSpline), Basis::Linear);
         for face_points in [1, 3, 6] {
             let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, face_points).unwrap();
             let violation = constraint_violation(&mls, &mesh, &volume, face_points);
@@ -70,7 +70,7 @@ fn smoothing_meets_the_integration_constraint_to_rounding() {
 fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
     let mesh = jittered_box(CellKind::Tet4, 4);
     for basis in Basis::ALL {
-        let mls = on_mesh(&mesh, common::dilatation(basis), Kernel::WendlandC2, basis);
+        let mls = on_mesh(&mesh, common::dilatation(basis), Kernel::WendlandC2(WendlandC2), basis);
         let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 3).unwrap();
         assert_eq!(info.fallbacks(), 0);
         assert_eq!(volume.weights().len(), mesh.cell_count());
@@ -101,7 +101,7 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
 #[test]
 fn smoothed_gradients_are_cell_means() {
     let mesh = jittered_box(CellKind::Tet4, 3);
-    let mls = on_mesh(&mesh, 2.5, Kernel::WendlandC4, Basis::Linear);
+    let mls = on_mesh(&mesh, 2.5, Kernel::WendlandC4(WendlandC4), Basis::Linear);
     let (smoothed, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 12).unwrap();
     let (fine, _) = gauss_rows(&mls, &mesh, 24).unwrap();
     for cell in [0, 50, 100] {
@@ -126,7 +126,7 @@ fn gauss_weights_add_up_and_regions_follow_cells() {
         let mesh = jittered_box(kind, 3);
         let split = (0..mesh.cell_count()).map(|c| u16::from(c % 3 == 0)).collect();
         let mesh = mesh.with_regions(split, vec!["a".into(), "b".into()]);
-        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
         for points in counts {
             if kind == CellKind::Tet4 && geometry::quadrature::tet(points).is_none() {
                 let refused = gauss_rows(&mls, &mesh, points).unwrap_err();
@@ -149,7 +149,7 @@ fn gauss_weights_add_up_and_regions_follow_cells() {
 #[test]
 fn grids_fill_a_box_exactly_and_report_what_clipping_cost() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     let bounds = (Point3::origin(), Point3::new(0.04, 0.03, 0.03));
     let (volume, grid, _) = grid_rows(&mls, |_| true, bounds, 0.01, 2).unwrap();
     assert_eq!((grid.cells, grid.kept, grid.dropped), ([4, 3, 3], 288, 0));
@@ -180,7 +180,7 @@ fn grids_fill_a_box_exactly_and_report_what_clipping_cost() {
 fn surfaces_have_their_area_and_outward_normals() {
     for (kind, face_points) in [(CellKind::Tet4, 3), (CellKind::Hex8, 4)] {
         let mesh = jittered_box(kind, 3);
-        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
         for (name, normal, area) in
             [("x-max", Vector3::x(), 9e-4), ("y-min", -Vector3::y(), 1.2e-3), ("z-max", Vector3::z(), 1.2e-3)]
         {
@@ -199,7 +199,7 @@ fn surfaces_have_their_area_and_outward_normals() {
 #[test]
 fn backgrounds_it_cannot_use_are_refused() {
     let mesh = jittered_box(CellKind::Tet4, 3);
-    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     let curved = raise_order(&mesh);
     let hexes = jittered_box(CellKind::Hex8, 3);
     assert!(matches!(
@@ -231,7 +231,7 @@ fn backgrounds_it_cannot_use_are_refused() {
 #[test]
 fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
     let mesh = jittered_box(CellKind::Tet4, 3);
-    for kernel in Kernel::ALL {
+    for kernel in Kernel::all() {
         let mls = on_mesh(&mesh, 2.2, kernel, Basis::Quadratic);
         let error = |face_points| {
             let (volume, info) = smoothed_rows(&mls, &mesh, Smoothing::Linear, face_points).unwrap();
@@ -260,7 +260,7 @@ fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
 #[test]
 fn traces_are_exact_and_bounded() {
     let mesh = jittered_box(CellKind::Tet4, 2);
-    let mls = on_mesh(&mesh, 2.2, Kernel::CubicSpline, Basis::Quadratic);
+    let mls = on_mesh(&mesh, 2.2, Kernel::CubicSpline(CubicSpline), Basis::Quadratic);
     let facets = mesh.boundary();
     let (surface, _) = surface_rows(&mls, &mesh, &facets, 6).unwrap();
     for smoothing in [Smoothing::Constant, Smoothing::Linear] {

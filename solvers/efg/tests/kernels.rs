@@ -1,12 +1,13 @@
 //! One list of properties for every kernel.
 
-use efg::{Approximation, Basis, EfgError, Kernel};
+use catalogue::{Value, Values, find};
+use efg::{KERNELS, Kernel};
 use proptest::prelude::*;
-use shape::Point3;
 
 #[test]
 fn one_at_the_centre_zero_from_the_rim_on_and_names_go_round() {
-    for kernel in Kernel::ALL {
+    assert_eq!(Kernel::all().count(), KERNELS.len());
+    for kernel in Kernel::all() {
         let (w, dw) = kernel.eval(0.0);
         assert!((w - 1.0).abs() < 1e-15 && dw == 0.0, "{}: {w} {dw}", kernel.name());
         for q in [1.0, 1.0 + 1e-12, 1.5, f64::INFINITY] {
@@ -46,7 +47,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn positive_decreasing_and_differentiated_rightly(q in 0.02f64..0.98) {
-        for kernel in Kernel::ALL {
+        for kernel in Kernel::all() {
             let (w, dw) = kernel.eval(q);
             prop_assert!(w > 0.0 && dw < 0.0, "{} at {q}: {w} {dw}", kernel.name());
             // Fourth-order differences: 1e-12 of the slope from the formula, 1e-11 from rounding.
@@ -63,15 +64,25 @@ proptest! {
 
 #[test]
 fn parameters_that_make_no_kernel_are_refused() {
-    let nodes: Vec<Point3> =
-        (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64)).collect();
-    for kernel in [
-        Kernel::Gaussian { alpha: 0.0 },
-        Kernel::Gaussian { alpha: f64::NAN },
-        Kernel::Exponential { alpha: 0.5, power: 0 },
-        Kernel::RegularisedInterpolating { eps: -1.0 },
+    for (name, parameter, value) in [
+        ("gaussian", "alpha", 0.0),
+        ("gaussian", "alpha", f64::NAN),
+        ("exponential", "alpha", 10.1),
+        ("exponential", "power", 0.0),
+        ("exponential", "power", 1.5),
+        ("regularised-interpolating", "eps", -1.0),
     ] {
-        let made = Approximation::new(nodes.clone(), vec![2.0; 27], kernel, Basis::Linear);
-        assert!(matches!(made, Err(EfgError::BadParameter { .. })), "{kernel:?}");
+        let mut values = Values::new(find(KERNELS, name).unwrap().parameters);
+        assert!(values.give(parameter, Value::Number(value)).is_err(), "{name} {parameter} {value}");
     }
+}
+
+#[test]
+fn parameters_reach_their_kernel() {
+    let entry = find(KERNELS, "exponential").unwrap();
+    let mut values = Values::new(entry.parameters);
+    values.give("power", Value::Number(1.0)).unwrap();
+    values.give("alpha", Value::Number(0.4)).unwrap();
+    let exponential = (entry.build)(&values).unwrap();
+    assert_eq!(exponential.eval(0.3), Kernel::from_name("gaussian").unwrap().eval(0.3));
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{field, jittered_box, on_mesh};
-use efg::{Approximation, Basis, EfgError, Kernel, Support};
+use efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support};
 use geometry::{CellKind, cloud_from_mesh};
 use shape::{Point3, Vector3};
 
@@ -28,14 +28,18 @@ fn small_supports_are_enlarged_and_counted() {
     let mesh = jittered_box(CellKind::Tet4, 3);
     let points = [Point3::new(0.011, 0.013, 0.017), Point3::new(0.02, 0.02, 0.011)];
     for basis in Basis::ALL {
-        let mls = on_mesh(&mesh, 0.5, Kernel::CubicSpline, basis);
+        let mls = on_mesh(&mesh, 0.5, Kernel::CubicSpline(CubicSpline), basis);
         let (error, info) = linear_error(&mls, &points);
         assert_eq!(info.enlarged, 2, "{info:?}");
         assert!(error < 1e-11 && info.neighbours_min >= 2 * basis.terms(), "{error} {info:?}");
     }
     // At a sound dilatation nothing is counted.
     assert_eq!(
-        on_mesh(&mesh, 2.2, Kernel::CubicSpline, Basis::Quadratic).point_rows(&points).unwrap().1.fallbacks(),
+        on_mesh(&mesh, 2.2, Kernel::CubicSpline(CubicSpline), Basis::Quadratic)
+            .point_rows(&points)
+            .unwrap()
+            .1
+            .fallbacks(),
         0
     );
 }
@@ -45,7 +49,7 @@ fn far_from_the_cloud_is_an_error_with_numbers() {
     let mesh = jittered_box(CellKind::Tet4, 3);
     let far = Point3::new(0.3, 0.0, 0.0);
     for basis in Basis::ALL {
-        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, basis);
+        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), basis);
         match mls.point_rows(&[Point3::new(0.01, 0.01, 0.01), far]) {
             Err(EfgError::TooFewNeighbours { point, found: 0, needed, enlargement }) => {
                 assert_eq!((point, needed, enlargement), (far, basis.terms(), 3.0));
@@ -63,7 +67,9 @@ fn two_planes_regularise_the_quadratic_block() {
     let nodes: Vec<Point3> = (0..72)
         .map(|i| Point3::new((i % 6) as f64 * 0.005, (i / 6 % 6) as f64 * 0.005, (i / 36) as f64 * 0.005))
         .collect();
-    let mls = Approximation::new(nodes, vec![0.013; 72], Kernel::QuarticSpline, Basis::Quadratic).unwrap();
+    let mls =
+        Approximation::new(nodes, vec![0.013; 72], Kernel::QuarticSpline(QuarticSpline), Basis::Quadratic)
+            .unwrap();
     let points = [Point3::new(0.0121, 0.0133, 0.0022)];
     let (error, info) = linear_error(&mls, &points);
     assert_eq!((info.regularised, info.reduced), (1, 0), "{info:?}");
@@ -75,7 +81,8 @@ fn one_plane_is_an_error() {
     let nodes: Vec<Point3> =
         (0..36).map(|i| Point3::new((i % 6) as f64 * 0.005, (i / 6) as f64 * 0.005, 0.001)).collect();
     for basis in Basis::ALL {
-        let mls = Approximation::new(nodes.clone(), vec![0.013; 36], Kernel::CubicSpline, basis).unwrap();
+        let mls = Approximation::new(nodes.clone(), vec![0.013; 36], Kernel::CubicSpline(CubicSpline), basis)
+            .unwrap();
         let error = mls.grad_rows(&[Point3::new(0.012, 0.013, 0.001)]).unwrap_err();
         assert!(matches!(error, EfgError::SingularMoment { found: 20.., .. }), "{error}");
         assert!(error.to_string().contains("one plane"), "{error}");
@@ -90,7 +97,8 @@ fn a_duplicate_node_shares_its_value() {
     let mut nodes = cloud.points.clone();
     nodes.push(nodes[40]);
     let radii: Vec<f64> = cloud.spacing.iter().chain([&cloud.spacing[40]]).map(|h| 1.6 * h).collect();
-    let mls = Approximation::new(nodes.clone(), radii, Kernel::CubicSpline, Basis::Linear).unwrap();
+    let mls =
+        Approximation::new(nodes.clone(), radii, Kernel::CubicSpline(CubicSpline), Basis::Linear).unwrap();
     let (rows, info) = mls.point_rows(&[nodes[40] + Vector3::repeat(0.001)]).unwrap();
     assert_eq!(info.fallbacks(), 0);
     let (list, values) = rows.rows().row(0);
@@ -128,7 +136,7 @@ fn support_rules_give_what_they_say() {
 fn bad_clouds_are_refused() {
     let nodes = vec![Point3::origin(); 8];
     let make = |n: usize, radii: Vec<f64>, basis| {
-        Approximation::new(nodes[..n].to_vec(), radii, Kernel::CubicSpline, basis).err()
+        Approximation::new(nodes[..n].to_vec(), radii, Kernel::CubicSpline(CubicSpline), basis).err()
     };
     assert_eq!(make(3, vec![1.0; 3], Basis::Linear), Some(EfgError::TooFewNodes { found: 3, needed: 4 }));
     assert_eq!(make(8, vec![1.0; 8], Basis::Quadratic), Some(EfgError::TooFewNodes { found: 8, needed: 10 }));
@@ -136,6 +144,6 @@ fn bad_clouds_are_refused() {
     assert!(matches!(make(8, vec![f64::NAN; 8], Basis::Linear), Some(EfgError::BadRadius { node: 0, .. })));
     let mut bad = nodes.clone();
     bad[5].y = f64::INFINITY;
-    let made = Approximation::new(bad, vec![1.0; 8], Kernel::CubicSpline, Basis::Linear).err();
+    let made = Approximation::new(bad, vec![1.0; 8], Kernel::CubicSpline(CubicSpline), Basis::Linear).err();
     assert_eq!(made, Some(EfgError::NotFinite { node: 5 }));
 }

@@ -4,8 +4,8 @@ mod common;
 
 use common::{field, jittered_box, on_mesh};
 use efg::{
-    Basis, EfgError, Kernel, Smoothing, node_smoothed_regions, node_smoothed_rows, node_smoothed_trace,
-    smoothed_rows, surface_rows,
+    Basis, CubicSpline, EfgError, Kernel, Smoothing, WendlandC2, node_smoothed_regions, node_smoothed_rows,
+    node_smoothed_trace, smoothed_rows, surface_rows,
 };
 use geometry::{CellKind, Mesh};
 use shape::{Point3, Vector3};
@@ -23,7 +23,7 @@ fn dense(volume: &shape::VolumeRows, point: usize, nodes: usize) -> Vec<Vector3>
 fn points_are_the_vertices_and_gradients_the_means_of_the_cells_around() {
     let mesh = jittered_box(CellKind::Tet4, 3);
     // A cloud of its own, coarser than the background: vertices need not be nodes.
-    let mls = on_mesh(&jittered_box(CellKind::Tet4, 2), 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&jittered_box(CellKind::Tet4, 2), 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     let nodes = mls.nodes().len();
     let (cells, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 3).unwrap();
     let (volume, info) = node_smoothed_rows(&mls, &mesh, 0.0, 3).unwrap();
@@ -56,7 +56,7 @@ fn points_are_the_vertices_and_gradients_the_means_of_the_cells_around() {
 #[test]
 fn stabilisation_gives_the_cells_their_share() {
     let mesh = jittered_box(CellKind::Tet4, 3);
-    let mls = on_mesh(&mesh, 1.6, Kernel::WendlandC2, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::WendlandC2(WendlandC2), Basis::Linear);
     let (cells, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 1).unwrap();
     let (plain, _) = node_smoothed_rows(&mls, &mesh, 0.0, 1).unwrap();
     let (both, _) = node_smoothed_rows(&mls, &mesh, 0.25, 1).unwrap();
@@ -82,7 +82,7 @@ fn halves() -> Mesh {
 #[test]
 fn a_vertex_between_regions_has_a_point_for_each() {
     let mesh = halves();
-    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     for stabilisation in [0.0, 0.1] {
         let (volume, _) = node_smoothed_rows(&mls, &mesh, stabilisation, 1).unwrap();
         let regions = node_smoothed_regions(&mesh, stabilisation);
@@ -110,7 +110,7 @@ fn traces_are_exact_and_bounded() {
         let facets = mesh.boundary();
         (mesh, facets)
     }) {
-        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+        let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
         for (stabilisation, face_points) in [(0.0, 1), (0.0, 6), (0.3, 1), (0.3, 3)] {
             let (volume, _) = node_smoothed_rows(&mls, &mesh, stabilisation, face_points).unwrap();
             let (surface, _) = surface_rows(&mls, &mesh, &facets, face_points).unwrap();
@@ -150,7 +150,7 @@ fn traces_are_exact_and_bounded() {
 #[test]
 fn what_it_cannot_use_is_refused() {
     let mesh = jittered_box(CellKind::Tet4, 2);
-    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     for share in [-0.1, 1.0, f64::NAN] {
         let refused = node_smoothed_rows(&mls, &mesh, share, 1).unwrap_err();
         assert!(matches!(refused, EfgError::BadParameter { what: "stabilisation", .. }), "{refused}");
@@ -170,7 +170,7 @@ fn what_it_cannot_use_is_refused() {
 #[test]
 fn same_bits_at_any_thread_count() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline, Basis::Linear);
+    let mls = on_mesh(&mesh, 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     assert!(mesh.points().len() > 128, "several chunks");
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

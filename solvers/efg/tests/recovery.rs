@@ -3,13 +3,13 @@
 mod common;
 
 use common::{jittered_box, on_mesh};
-use efg::{Basis, Kernel, gauss_rows, gradient_error};
+use efg::{Basis, CubicSpline, Kernel, gauss_rows, gradient_error};
 use geometry::CellKind;
 use shape::{Point3, Vector3};
 
 fn errors(field: impl Fn(&Point3) -> Vector3, basis: Basis, dilatation: f64) -> (Vec<f64>, Vec<Point3>) {
     let mesh = jittered_box(CellKind::Tet4, 5);
-    let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline, basis);
+    let mls = on_mesh(&mesh, dilatation, Kernel::CubicSpline(CubicSpline), basis);
     let (volume, _) = gauss_rows(&mls, &mesh, 4).unwrap();
     let u: Vec<Vector3> = mls.nodes().iter().map(field).collect();
     (gradient_error(&volume, &u, mls.nodes()), mls.nodes().to_vec())

@@ -23,7 +23,7 @@
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
-use interp::Scheme;
+use interp::{Barycentric, Scheme};
 use shape::{RowBlocks, Vector3};
 use std::hint::black_box;
 
@@ -38,9 +38,12 @@ fn transfer(criterion: &mut Criterion) {
     // Barycentric transfer wants a mesh over its nodes: a coarse one, of 321 nodes and 1536 cells.
     let mesh = kidney_mesh(CellKind::Tet4, 4).unwrap();
     let mut group = criterion.benchmark_group("transfer");
-    for scheme in Scheme::ALL {
-        let (nodes, mesh) =
-            if scheme == Scheme::Barycentric { (mesh.points(), Some(&mesh)) } else { (&nodes[..], None) };
+    for scheme in Scheme::all() {
+        let (nodes, mesh) = if scheme == Scheme::Barycentric(Barycentric) {
+            (mesh.points(), Some(&mesh))
+        } else {
+            (&nodes[..], None)
+        };
         let build = || scheme.rows(nodes, mesh, &targets).expect("a sound cloud");
         group.bench_function(format!("build/{}", scheme.name()), |b| on_pool(b, build));
         let (rows, _) = build();

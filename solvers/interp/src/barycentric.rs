@@ -1,11 +1,47 @@
 //! Linear interpolation in a mesh of tetrahedra.
 
+use catalogue::Entry;
 use geometry::{Mesh, Point3, locate};
 use nalgebra::Matrix3;
 use shape::{GradRows, PointRows, Rows, Unity};
 
 use crate::neighbours::check_finite;
+use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::{InterpError, TransferInfo};
+
+/// [`barycentric`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Barycentric;
+
+pub(crate) const ENTRY: SchemeEntry = Entry {
+    name: "barycentric",
+    meaning: "linear interpolation in the tetrahedra of the mesh",
+    source: "",
+    parameters: &[],
+    build: |_| Ok(Barycentric.into()),
+};
+
+impl Transfer for Barycentric {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(1)
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        barycentric(source.mesh("barycentric")?, targets)
+    }
+
+    fn grad_rows(&self, source: Source, targets: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        barycentric_gradients(source.mesh("barycentric")?, targets)
+    }
+}
 
 /// `u(x) = sum_a lambda_a(x) u_a` over the four corners of the tetrahedron that holds the target, `lambda`
 /// its barycentric coordinates. Exact for linear fields, everywhere; interpolates; continuous within the

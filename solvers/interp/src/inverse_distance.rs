@@ -2,9 +2,58 @@
 
 use shape::{Point3, PointRows, Unity};
 
-use crate::InterpError;
+use catalogue::{Dimension, Entry, Kind, Parameter, Range};
+
+use crate::{InterpError, TransferInfo};
 use crate::neighbours::{Found, Neighbours, check_count, check_finite};
+use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
+
+/// [`inverse_distance`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InverseDistance {
+    /// How many nearest nodes count.
+    pub neighbours: usize,
+    /// Power `p` of the distance.
+    pub power: f64,
+}
+
+pub(crate) const ENTRY: SchemeEntry = Entry {
+    name: "inverse-distance",
+    meaning: "mean of the nearest nodes, weighted by a power of the inverse distance",
+    source: "Shepard (1968), over the nearest nodes",
+    parameters: &[NEIGHBOURS, POWER],
+    build: |values| {
+        let (neighbours, power) = (values.number("neighbours")? as usize, values.number("power")?);
+        Ok(InverseDistance { neighbours, power }.into())
+    },
+};
+
+const NEIGHBOURS: Parameter =
+    Parameter::default("neighbours", Dimension::None, 4.0, "how many nearest nodes count")
+        .of(Kind::Count)
+        .within(Range::AtLeast(1.0));
+const POWER: Parameter =
+    Parameter::default("power", Dimension::None, 2.0, "power of the distance").within(Range::Positive);
+
+impl Transfer for InverseDistance {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        let InverseDistance { neighbours, power } = *self;
+        Ok((inverse_distance(source.nodes, neighbours, power, targets)?, TransferInfo::default()))
+    }
+}
 
 /// `u(x) = sum_i u_i / d_i^p / sum_i 1 / d_i^p` over the `neighbours` nearest nodes, `d_i = |x - x_i|`, `p`
 /// the `power` (the paper's Eq. 5; Shepard 1968 over all nodes).

@@ -2,8 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Eight f64 fill one AVX-512 register or two of AVX2.
-pub(crate) const LANES: usize = 8;
+pub(crate) use lanes::LANES;
 
 /// `N` numbers.
 #[derive(Clone, Copy)]

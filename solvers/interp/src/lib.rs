@@ -7,7 +7,7 @@
 //! ([`Scheme::grad_rows`]).
 //!
 //! ```
-//! use interp::{Radial, Scheme};
+//! use interp::{InverseDistance, Radial, Scheme};
 //! use shape::{Point3, Vector3};
 //! let nodes: Vec<Point3> =
 //!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
@@ -17,39 +17,35 @@
 //!     let (rows, _) = scheme.rows(&nodes, None, &target)?;
 //!     Ok((rows.rows().apply(&field)[0] - 0.1 * target[0].coords).norm())
 //! };
-//! assert!(error(Scheme::Radial(Radial::Cubic))? < 1e-15); // exact for linear fields
-//! assert!(error(Scheme::InverseDistance { neighbours: 4, power: 2.0 })? > 1e-6); // exact for constants only
+//! assert!(error(Radial::Cubic.into())? < 1e-15); // exact for linear fields
+//! assert!(error(InverseDistance { neighbours: 4, power: 2.0 }.into())? > 1e-6); // exact for constants only
 //! # Ok::<(), interp::InterpError>(())
 //! ```
 
-mod barycentric;
 mod circumcentre;
 mod delaunay;
 mod error;
 mod frame;
 mod hull;
-mod inverse_distance;
 mod lanes;
-mod mls;
-mod natural_neighbour;
-mod nearest;
 mod neighbours;
-mod radial;
 mod scheme;
-mod shepard;
 mod sibson;
 mod table;
 mod twofold;
 
-pub use barycentric::{barycentric, barycentric_gradients};
 pub use error::InterpError;
-pub use inverse_distance::inverse_distance;
-pub use mls::{mls, mls_gradients, mls_modified, mls_modified_gradients};
-pub use natural_neighbour::natural_neighbour;
-pub use nearest::nearest;
-pub use radial::{Radial, radial, radial_gradients};
-pub use scheme::Scheme;
-pub use shepard::shepard;
+pub use scheme::SchemeEntry;
+
+scheme::schemes! {
+    nearest::{Nearest [ENTRY]},
+    inverse_distance::{InverseDistance [ENTRY]},
+    shepard::{Shepard [ENTRY]},
+    mls::{MlsLinear [MLS_LINEAR], MlsQuadratic [MLS_QUADRATIC], MlsModified [MLS_MODIFIED]},
+    radial::{Radial [THIN_PLATE, CUBIC, MULTIQUADRIC, GAUSSIAN, WENDLAND_C2]},
+    natural_neighbour::{NaturalNeighbour [ENTRY]},
+    barycentric::{Barycentric [ENTRY]},
+}
 
 /// What a scheme met on the way; nothing here is an error, and nothing is silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

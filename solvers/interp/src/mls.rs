@@ -1,12 +1,125 @@
 //! Moving least squares, linear and quadratic: the shape functions of element-free Galerkin used as a
 //! transfer.
 
-use efg::{Approximation, Basis, Kernel, MlsInfo, Support};
+use catalogue::Entry;
+use efg::{Approximation, Basis, CubicSpline, Kernel, MlsInfo, Support};
 use geometry::Cloud;
 use shape::{GradRows, Point3, PointRows};
 
 use crate::neighbours::{check_count, check_finite};
+use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
 use crate::{InterpError, TransferInfo};
+
+/// [`mls`] with the linear basis as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MlsLinear {
+    /// Support radius over mean spacing.
+    pub support_scale: f64,
+}
+
+pub(crate) const MLS_LINEAR: SchemeEntry = Entry {
+    name: "mls-linear",
+    meaning: "moving least squares, linear basis",
+    source: "Lancaster and Salkauskas (1981)",
+    parameters: &[support_scale(1.6)],
+    build: |values| Ok(MlsLinear { support_scale: values.number("support_scale")? }.into()),
+};
+
+impl Transfer for MlsLinear {
+    fn name(&self) -> &'static str {
+        MLS_LINEAR.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(1)
+    }
+
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        mls(source.nodes, Basis::Linear, scaled(self.support_scale), targets)
+    }
+
+    fn grad_rows(&self, source: Source, targets: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        mls_gradients(source.nodes, Basis::Linear, scaled(self.support_scale), targets)
+    }
+}
+
+/// [`mls`] with the quadratic basis as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MlsQuadratic {
+    /// Support radius over mean spacing.
+    pub support_scale: f64,
+}
+
+pub(crate) const MLS_QUADRATIC: SchemeEntry = Entry {
+    name: "mls-quadratic",
+    meaning: "moving least squares, quadratic basis",
+    source: "Lancaster and Salkauskas (1981)",
+    parameters: &[support_scale(2.5)],
+    build: |values| Ok(MlsQuadratic { support_scale: values.number("support_scale")? }.into()),
+};
+
+impl Transfer for MlsQuadratic {
+    fn name(&self) -> &'static str {
+        MLS_QUADRATIC.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(2)
+    }
+
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        mls(source.nodes, Basis::Quadratic, scaled(self.support_scale), targets)
+    }
+
+    fn grad_rows(&self, source: Source, targets: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        mls_gradients(source.nodes, Basis::Quadratic, scaled(self.support_scale), targets)
+    }
+}
+
+/// [`mls_modified`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MlsModified {
+    /// Support radius over mean spacing.
+    pub support_scale: f64,
+}
+
+pub(crate) const MLS_MODIFIED: SchemeEntry = Entry {
+    name: "mls-modified",
+    meaning: "moving least squares, quadratic basis with penalised second derivatives",
+    source: "Joldes et al. (2015)",
+    parameters: &[support_scale(2.0)],
+    build: |values| Ok(MlsModified { support_scale: values.number("support_scale")? }.into()),
+};
+
+impl Transfer for MlsModified {
+    fn name(&self) -> &'static str {
+        MLS_MODIFIED.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(1)
+    }
+
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        mls_modified(source.nodes, scaled(self.support_scale), targets)
+    }
+
+    fn grad_rows(&self, source: Source, targets: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        mls_modified_gradients(source.nodes, scaled(self.support_scale), targets)
+    }
+}
 
 /// Regularisation of the quadratic block in [`mls_modified`], relative to the sum of the weights.
 const MODIFIED: f64 = 1e-5;
@@ -84,7 +197,7 @@ fn approximation(
     check_count(scheme, nodes.len(), basis.terms())?;
     let cloud = Cloud::from_points(nodes.to_vec())?;
     let radii = support.radii(nodes, &cloud.spacing)?;
-    Ok(Approximation::new(cloud.points, radii, Kernel::CubicSpline, basis)?)
+    Ok(Approximation::new(cloud.points, radii, Kernel::CubicSpline(CubicSpline), basis)?)
 }
 
 fn counted<T>((rows, info): (T, MlsInfo)) -> (T, TransferInfo) {

@@ -1,14 +1,47 @@
 //! Natural neighbour interpolation.
 
+use catalogue::Entry;
+use lanes::{LanePath, on_path};
 use shape::{Point3, PointRows, Unity};
 
 use crate::delaunay::{Degenerate, Delaunay};
 use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::hull::{Hull, Place};
 use crate::neighbours::{check_count, check_finite};
+use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::sibson::{Voronoi, Workspace};
 use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
+
+/// [`natural_neighbour`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NaturalNeighbour;
+
+pub(crate) const ENTRY: SchemeEntry = Entry {
+    name: SCHEME,
+    meaning: "volumes that the target's Voronoi cell takes from those of the nodes; C1 but at the nodes",
+    source: "Sibson (1980, 1981)",
+    parameters: &[],
+    build: |_| Ok(NaturalNeighbour.into()),
+};
+
+impl Transfer for NaturalNeighbour {
+    fn name(&self) -> &'static str {
+        SCHEME
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(1)
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        natural_neighbour(source.nodes, targets)
+    }
+}
 
 const SCHEME: &str = "natural-neighbour";
 
@@ -54,40 +87,18 @@ pub fn natural_neighbour(
     let voronoi = Voronoi::new(cloud, &mesh);
 
     in_chunks(nodes.len(), targets, Unity::Within(1e-9), |chunk| {
-        batch(&chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi)
+        batch(LanePath::best(), &chunk.iter().map(scaled).collect::<Vec<_>>(), &hull, &voronoi)
     })
 }
 
-/// The same arithmetic in the same order on either path, so the same bits; fused multiply-add, which would change them, is
-/// left off.
-fn batch(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512dq") {
-            // SAFETY: the processor has the features that the function requires, just checked; so below.
-            return unsafe { batch_avx512(targets, hull, voronoi) };
-        }
-        if std::is_x86_feature_detected!("avx2") {
-            return unsafe { batch_avx2(targets, hull, voronoi) };
-        }
-    }
-    batch_plain(targets, hull, voronoi)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512dq")]
-fn batch_avx512(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-    batch_plain(targets, hull, voronoi)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn batch_avx2(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
-    batch_plain(targets, hull, voronoi)
+on_path! {
+    /// The same arithmetic in the same order on every path, so the same bits; fused multiply-add, which would change them, is
+    /// left off.
+    fn batch(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch = batch_in
 }
 
 #[inline(always)]
-fn batch_plain(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
+fn batch_in<const FMA: bool>(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch {
     let mut at = Workspace::new(voronoi);
     let mut info = TransferInfo::default();
     let (mut rows, mut nodes, mut values) = (vec![0..0; targets.len()], Vec::new(), Vec::new());
@@ -145,16 +156,11 @@ mod tests {
         let mesh = Delaunay::new(&nodes).unwrap();
         let (hull, voronoi) = (Hull::new(&nodes, &mesh), Voronoi::new(nodes, &mesh));
         let targets = points(601, 1.1);
-        let (chosen, plain) = (batch(&targets, &hull, &voronoi), batch_plain(&targets, &hull, &voronoi));
-        assert!((100..500).contains(&chosen.info.outside), "{:?}", chosen.info);
-        let mut wide = vec![chosen];
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked.
-            wide.push(unsafe { batch_avx2(&targets, &hull, &voronoi) });
-        }
-        for wide in wide {
-            assert!(wide == plain);
+        let on = |path| batch(path, &targets, &hull, &voronoi);
+        let plain = on(LanePath::PORTABLE);
+        assert!((100..500).contains(&plain.info.outside), "{:?}", plain.info);
+        for path in LanePath::available() {
+            assert!(on(path) == plain, "{}", path.name());
         }
     }
 }

@@ -2,9 +2,42 @@
 
 use shape::{Point3, PointRows, Unity};
 
-use crate::InterpError;
+use catalogue::Entry;
+
+use crate::{InterpError, TransferInfo};
 use crate::neighbours::{Found, Neighbours, check_count, check_finite};
+use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
+
+/// [`nearest`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest;
+
+pub(crate) const ENTRY: SchemeEntry = Entry {
+    name: "nearest",
+    meaning: "value of the nearest node; discontinuous",
+    source: "",
+    parameters: &[],
+    build: |_| Ok(Nearest.into()),
+};
+
+impl Transfer for Nearest {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        Ok((nearest(source.nodes, targets)?, TransferInfo::default()))
+    }
+}
 
 /// `u(x) = u_i`, `i` the nearest node (of two at one distance, the lower index). Exact for constants;
 /// interpolates; discontinuous.

@@ -1,14 +1,16 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) refuses a NaN as well
 //! Radial basis functions, with a linear polynomial or without: one dense, positive definite solve for all targets.
 
+use catalogue::{Dimension, Entry, Kind, Parameter, Range};
 use geometry::Cloud;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix4xX, MatrixXx4};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
-use crate::InterpError;
+use crate::{InterpError, TransferInfo};
 use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::neighbours::{check_count, check_finite};
+use crate::scheme::{SchemeEntry, Source, Transfer, support_scale};
 
 /// Radial function, positive definite in space with a linear polynomial beside it (Wendland 2005, theorems 8.5, 8.16 and
 /// 8.17), [`Radial::Gaussian`] and [`Radial::WendlandC2`] without one, too (theorems 6.10 and 9.13). Widths are in
@@ -105,6 +107,81 @@ impl Radial {
         }
     }
 }
+
+impl Transfer for Radial {
+    fn name(&self) -> &'static str {
+        Radial::name(*self)
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        self.polynomial().then_some(1)
+    }
+
+    fn interpolates(&self) -> bool {
+        true
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        Ok((radial(source.nodes, *self, targets)?, TransferInfo::default()))
+    }
+
+    fn grad_rows(&self, source: Source, targets: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        Ok((radial_gradients(source.nodes, *self, targets)?, TransferInfo::default()))
+    }
+}
+
+const fn width(default: f64) -> Parameter {
+    Parameter::default("shape", Dimension::None, default, "width c over mean spacing").within(Range::Positive)
+}
+
+const POLYNOMIAL: Parameter =
+    Parameter::default("polynomial", Dimension::None, 1.0, "with a linear polynomial").of(Kind::Flag);
+
+pub(crate) const THIN_PLATE: SchemeEntry = Entry {
+    name: "thin-plate",
+    meaning: "radial basis r^2 ln r with a linear polynomial",
+    source: "Wendland (2005), chapter 8",
+    parameters: &[],
+    build: |_| Ok(Radial::ThinPlate.into()),
+};
+
+pub(crate) const CUBIC: SchemeEntry = Entry {
+    name: "cubic",
+    meaning: "radial basis r^3 with a linear polynomial",
+    source: "Wendland (2005), chapter 8",
+    parameters: &[],
+    build: |_| Ok(Radial::Cubic.into()),
+};
+
+pub(crate) const MULTIQUADRIC: SchemeEntry = Entry {
+    name: "multiquadric",
+    meaning: "radial basis -sqrt(r^2 + c^2) with a linear polynomial",
+    source: "Hardy (1971)",
+    parameters: &[width(1.0)],
+    build: |values| Ok(Radial::Multiquadric { shape: values.number("shape")? }.into()),
+};
+
+pub(crate) const GAUSSIAN: SchemeEntry = Entry {
+    name: "gaussian",
+    meaning: "radial basis exp(-(r / c)^2)",
+    source: "Wendland (2005), theorem 6.10",
+    parameters: &[width(1.5), POLYNOMIAL],
+    build: |values| {
+        let (shape, polynomial) = (values.number("shape")?, values.flag("polynomial"));
+        Ok(Radial::Gaussian { shape, polynomial }.into())
+    },
+};
+
+pub(crate) const WENDLAND_C2: SchemeEntry = Entry {
+    name: "wendland-c2",
+    meaning: "radial basis (1 - q)^4 (4q + 1), zero from the support radius on",
+    source: "Wendland (1995)",
+    parameters: &[support_scale(4.0), POLYNOMIAL],
+    build: |values| {
+        let (support, polynomial) = (values.number("support_scale")?, values.flag("polynomial"));
+        Ok(Radial::WendlandC2 { support, polynomial }.into())
+    },
+};
 
 /// Entries of system and table together: 1 GiB of values.
 const MOST_ENTRIES: usize = 1 << 27;

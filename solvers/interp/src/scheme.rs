@@ -1,179 +1,153 @@
 //! The schemes as values: what a scene file names and a study sweeps.
+//!
+//! Each scheme is a file with its function, a type that implements [`Transfer`] and its entry, and a line of the list below.
 
-use efg::{Basis, Support};
+use catalogue::{Dimension, Entry, Parameter, Problem, Range, Values};
+use efg::Support;
 use geometry::Mesh;
 use shape::{GradRows, Point3, PointRows};
 
-use crate::{InterpError, Radial, TransferInfo};
+use crate::{InterpError, SCHEMES, Scheme, TransferInfo};
 
-/// A transfer scheme with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scheme {
-    /// [`crate::nearest`].
-    Nearest,
-    /// [`crate::inverse_distance`].
-    InverseDistance {
-        /// How many nearest nodes count.
-        neighbours: usize,
-        /// Power `p` of the distance.
-        power: f64,
-    },
-    /// [`crate::shepard`].
-    Shepard {
-        /// Support radius over mean spacing.
-        dilatation: f64,
-    },
-    /// [`crate::mls`] with the linear basis.
-    MlsLinear {
-        /// Support radius over mean spacing.
-        dilatation: f64,
-    },
-    /// [`crate::mls`] with the quadratic basis.
-    MlsQuadratic {
-        /// Support radius over mean spacing.
-        dilatation: f64,
-    },
-    /// [`crate::mls_modified`].
-    MlsModified {
-        /// Support radius over mean spacing.
-        dilatation: f64,
-    },
-    /// [`crate::radial`].
-    Radial(Radial),
-    /// [`crate::natural_neighbour`].
-    NaturalNeighbour,
-    /// [`crate::barycentric`].
-    Barycentric,
+/// A transfer scheme that scene files can name.
+pub type SchemeEntry = Entry<fn(&Values) -> Result<Scheme, Problem>>;
+
+/// Where a field is known.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    /// Its nodes, m.
+    pub nodes: &'a [Point3],
+    mesh: Option<&'a Mesh>,
 }
 
-impl Scheme {
-    /// Every scheme, in the order tables list them; parameters as in the transfer study of the kidney.
-    pub const ALL: [Scheme; 13] = [
-        Scheme::Nearest,
-        Scheme::InverseDistance { neighbours: 4, power: 2.0 },
-        Scheme::Shepard { dilatation: 1.6 },
-        Scheme::MlsLinear { dilatation: 1.6 },
-        Scheme::MlsQuadratic { dilatation: 2.5 },
-        Scheme::MlsModified { dilatation: 2.0 },
-        Scheme::Radial(Radial::ThinPlate),
-        Scheme::Radial(Radial::Cubic),
-        Scheme::Radial(Radial::Multiquadric { shape: 1.0 }),
-        Scheme::Radial(Radial::Gaussian { shape: 1.5, polynomial: true }),
-        Scheme::Radial(Radial::WendlandC2 { support: 4.0, polynomial: true }),
-        Scheme::NaturalNeighbour,
-        Scheme::Barycentric,
-    ];
-
-    /// The name used in scene files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Scheme::Nearest => "nearest",
-            Scheme::InverseDistance { .. } => "inverse-distance",
-            Scheme::Shepard { .. } => "shepard",
-            Scheme::MlsLinear { .. } => "mls-linear",
-            Scheme::MlsQuadratic { .. } => "mls-quadratic",
-            Scheme::MlsModified { .. } => "mls-modified",
-            Scheme::Radial(radial) => radial.name(),
-            Scheme::NaturalNeighbour => "natural-neighbour",
-            Scheme::Barycentric => "barycentric",
+impl<'a> Source<'a> {
+    /// The mesh, if there is one over these nodes.
+    pub fn mesh(self, scheme: &'static str) -> Result<&'a Mesh, InterpError> {
+        let mesh = self.mesh.ok_or(InterpError::NeedsMesh { scheme })?;
+        let points = mesh.points();
+        if points != self.nodes {
+            let first = points.iter().zip(self.nodes).take_while(|(a, b)| a == b).count();
+            return Err(InterpError::MeshMismatch { mesh: points.len(), nodes: self.nodes.len(), first });
         }
+        Ok(mesh)
+    }
+}
+
+/// What a scheme does.
+pub(crate) trait Transfer {
+    /// The name of its entry.
+    fn name(&self) -> &'static str;
+
+    /// Degree of the polynomials it transfers exactly; none if not even constants.
+    fn exact_degree(&self) -> Option<usize>;
+
+    /// True if a target at a node gets that node's value.
+    fn interpolates(&self) -> bool;
+
+    /// The table from the nodes to `targets` (m).
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError>;
+
+    /// The table with gradients (1/m); none unless a scheme has them in closed form.
+    fn grad_rows(&self, _: Source, _: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
+        Err(InterpError::NoGradient { scheme: self.name() })
+    }
+}
+
+/// Declares the schemes, each with its type and its entries.
+macro_rules! schemes {
+    ($($file:ident::{$($scheme:ident [$($entry:ident),*]),*},)*) => {
+        $(
+            mod $file;
+            pub use $file::*;
+            $(
+                impl From<$scheme> for Scheme {
+                    fn from(scheme: $scheme) -> Scheme {
+                        Scheme::$scheme(scheme)
+                    }
+                }
+            )*
+        )*
+
+        /// A transfer scheme with its parameters.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs)] // each is its type
+        pub enum Scheme {
+            $($($scheme($scheme),)*)*
+        }
+
+        /// Every scheme, in the order tables list them; defaults as in the transfer study of the kidney.
+        pub static SCHEMES: &[SchemeEntry] = &[$($($($file::$entry),*),*),*];
+
+        impl Scheme {
+            fn transfer(&self) -> &dyn scheme::Transfer {
+                match self {
+                    $($(Scheme::$scheme(scheme) => scheme,)*)*
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use schemes;
+
+impl Scheme {
+    /// Every scheme with its default parameters, in the order tables list them.
+    pub fn all() -> impl Iterator<Item = Scheme> {
+        // No parameter of a scheme is required.
+        SCHEMES.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
     }
 
-    /// The scheme of that name with the parameters of [`Scheme::ALL`].
+    /// The name used in scene files and tables.
+    pub fn name(&self) -> &'static str {
+        self.transfer().name()
+    }
+
+    /// The scheme of that name with its default parameters.
     pub fn from_name(name: &str) -> Option<Scheme> {
-        Scheme::ALL.into_iter().find(|scheme| scheme.name() == name)
+        Scheme::all().find(|scheme| scheme.name() == name)
     }
 
     /// Degree of the polynomials it transfers exactly: 0, 1 or 2; none if not even constants.
-    pub fn exact_degree(self) -> Option<usize> {
-        match self {
-            Scheme::Nearest | Scheme::InverseDistance { .. } | Scheme::Shepard { .. } => Some(0),
-            Scheme::Radial(radial) => radial.polynomial().then_some(1),
-            Scheme::MlsLinear { .. }
-            | Scheme::MlsModified { .. }
-            | Scheme::NaturalNeighbour
-            | Scheme::Barycentric => Some(1),
-            Scheme::MlsQuadratic { .. } => Some(2),
-        }
+    pub fn exact_degree(&self) -> Option<usize> {
+        self.transfer().exact_degree()
     }
 
     /// True if a target at a node gets that node's value.
-    pub fn interpolates(self) -> bool {
-        !matches!(
-            self,
-            Scheme::Shepard { .. }
-                | Scheme::MlsLinear { .. }
-                | Scheme::MlsQuadratic { .. }
-                | Scheme::MlsModified { .. }
-        )
+    pub fn interpolates(&self) -> bool {
+        self.transfer().interpolates()
     }
 
-    /// The table from `nodes` to `targets` (m). Only [`Scheme::Barycentric`] reads `mesh`, whose points
+    /// The table from `nodes` to `targets` (m). Only [`Barycentric`](crate::Barycentric) reads `mesh`, whose points
     /// `nodes` must be.
     pub fn rows(
-        self,
+        &self,
         nodes: &[Point3],
         mesh: Option<&Mesh>,
         targets: &[Point3],
     ) -> Result<(PointRows, TransferInfo), InterpError> {
-        let plain = |rows: PointRows| (rows, TransferInfo::default());
-        let by = |factor: f64| Support::Dilatation { factor };
-        match self {
-            Scheme::Nearest => crate::nearest(nodes, targets).map(plain),
-            Scheme::InverseDistance { neighbours, power } => {
-                crate::inverse_distance(nodes, neighbours, power, targets).map(plain)
-            }
-            Scheme::Shepard { dilatation } => crate::shepard(nodes, by(dilatation), targets),
-            Scheme::MlsLinear { dilatation } => crate::mls(nodes, Basis::Linear, by(dilatation), targets),
-            Scheme::MlsQuadratic { dilatation } => {
-                crate::mls(nodes, Basis::Quadratic, by(dilatation), targets)
-            }
-            Scheme::MlsModified { dilatation } => crate::mls_modified(nodes, by(dilatation), targets),
-            Scheme::Radial(radial) => crate::radial(nodes, radial, targets).map(plain),
-            Scheme::NaturalNeighbour => crate::natural_neighbour(nodes, targets),
-            Scheme::Barycentric => crate::barycentric(self.mesh_of(nodes, mesh)?, targets),
-        }
+        self.transfer().rows(Source { nodes, mesh }, targets)
     }
 
     /// The table with gradients (1/m) of its rows, for strain and stress at `targets` (m): moving least squares, radial bases
     /// and barycentric interpolation (constant in every tetrahedron) have them in closed form; the others have none, or
     /// none at the nodes, and say so.
     pub fn grad_rows(
-        self,
+        &self,
         nodes: &[Point3],
         mesh: Option<&Mesh>,
         targets: &[Point3],
     ) -> Result<(GradRows, TransferInfo), InterpError> {
-        let by = |factor: f64| Support::Dilatation { factor };
-        match self {
-            Scheme::MlsLinear { dilatation } => {
-                crate::mls_gradients(nodes, Basis::Linear, by(dilatation), targets)
-            }
-            Scheme::MlsQuadratic { dilatation } => {
-                crate::mls_gradients(nodes, Basis::Quadratic, by(dilatation), targets)
-            }
-            Scheme::MlsModified { dilatation } => {
-                crate::mls_modified_gradients(nodes, by(dilatation), targets)
-            }
-            Scheme::Radial(radial) => {
-                Ok((crate::radial_gradients(nodes, radial, targets)?, TransferInfo::default()))
-            }
-            Scheme::Barycentric => crate::barycentric_gradients(self.mesh_of(nodes, mesh)?, targets),
-            Scheme::Nearest
-            | Scheme::InverseDistance { .. }
-            | Scheme::Shepard { .. }
-            | Scheme::NaturalNeighbour => Err(InterpError::NoGradient { scheme: self.name() }),
-        }
+        self.transfer().grad_rows(Source { nodes, mesh }, targets)
     }
+}
 
-    /// The mesh, if there is one over these nodes.
-    fn mesh_of<'a>(self, nodes: &[Point3], mesh: Option<&'a Mesh>) -> Result<&'a Mesh, InterpError> {
-        let mesh = mesh.ok_or(InterpError::NeedsMesh { scheme: self.name() })?;
-        let points = mesh.points();
-        if points != nodes {
-            let first = points.iter().zip(nodes).take_while(|(a, b)| a == b).count();
-            return Err(InterpError::MeshMismatch { mesh: points.len(), nodes: nodes.len(), first });
-        }
-        Ok(mesh)
-    }
+/// A support radius of a multiple of the mean spacing.
+pub(crate) fn scaled(factor: f64) -> Support {
+    Support::Dilatation { factor }
+}
+
+/// The parameter of that radius.
+pub(crate) const fn support_scale(default: f64) -> Parameter {
+    Parameter::default("support_scale", Dimension::None, default, "support radius over mean spacing")
+        .within(Range::Positive)
 }

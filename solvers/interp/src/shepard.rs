@@ -1,10 +1,12 @@
 //! Shepard's method with compact kernels: moving least squares of order zero.
 
-use efg::{Kernel, Support};
+use catalogue::Entry;
+use efg::{CubicSpline, Kernel, Support};
 use geometry::Cloud;
 use shape::{Point3, PointRows, Unity};
 
 use crate::neighbours::{check_count, check_finite, squared_distances};
+use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
 use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
 
@@ -14,6 +16,39 @@ const ENLARGE: f64 = 1.25;
 /// Relative distance up to which a node counts as covering a target: beyond, its kernel is below 1e-8, and a
 /// row of such weights alone is noise.
 const RIM: f64 = 0.999;
+
+/// [`shepard`] as a scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shepard {
+    /// Support radius over mean spacing.
+    pub support_scale: f64,
+}
+
+pub(crate) const ENTRY: SchemeEntry = Entry {
+    name: "shepard",
+    meaning: "mean of the nodes that reach the target, weighted by cubic splines; smooth",
+    source: "Shepard (1968), with compact kernels",
+    parameters: &[support_scale(1.6)],
+    build: |values| Ok(Shepard { support_scale: values.number("support_scale")? }.into()),
+};
+
+impl Transfer for Shepard {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn exact_degree(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn interpolates(&self) -> bool {
+        false
+    }
+
+    fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
+        shepard(source.nodes, scaled(self.support_scale), targets)
+    }
+}
 
 /// `u(x) = sum_i w(d_i / R_i) u_i / sum_i w(d_i / R_i)`, `w` the cubic spline, `R_i` the node's support
 /// radius.
@@ -49,7 +84,7 @@ pub fn shepard(
                 batch.keep_below_one(&squares);
             }
             for value in &mut batch.values[start..] {
-                *value = Kernel::CubicSpline.eval(value.sqrt()).0;
+                *value = Kernel::CubicSpline(CubicSpline).eval(value.sqrt()).0;
             }
             batch.close_over_sum();
         }

@@ -83,7 +83,7 @@ pub(crate) struct Workspace {
     listed: Vec<bool>,
     seen: Vec<u32>,
     stamp: u32,
-    /// Cells that are opened, the first `cells` of a list with room for all and for four written beyond.
+    /// Cells that are opened, the first `cells` of a list that only grows: the next target writes over it.
     cavity: Vec<u32>,
     cells: usize,
     /// Faces around them, likewise.
@@ -105,9 +105,9 @@ impl Workspace {
             // One more for what is beyond the hull.
             seen: vec![0; cells + 1],
             stamp: 0,
-            cavity: vec![0; cells + 4],
+            cavity: vec![0; 64],
             cells: 0,
-            rim: vec![0; 4 * cells + 4],
+            rim: vec![0; 64],
             faces: 0,
             last: 0,
         }
@@ -251,6 +251,8 @@ impl Voronoi {
         while next < cells {
             let cell = cavity[next];
             next += 1;
+            grow(cavity, cells + 4);
+            grow(rim, faces + 4);
             let (found, open) = (&mut cavity[cells..cells + 4], &mut rim[faces..faces + 4]);
             let (mut new, mut closed) = (0, 0);
             let Cell { neighbours, around, .. } = &self.cells[cell as usize];
@@ -345,6 +347,14 @@ impl Voronoi {
                 *value += weight * (missing / total - slope.dot(&(offset(node) - mean)));
             }
         }
+    }
+}
+
+/// Room for so many, and for as many again.
+#[inline(always)]
+fn grow(list: &mut Vec<u32>, length: usize) {
+    if list.len() < length {
+        list.resize(2 * length, 0);
     }
 }
 

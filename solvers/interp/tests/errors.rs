@@ -3,7 +3,10 @@
 use efg::{EfgError, Support};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, CloudError, LocateError, Mesh};
-use interp::{InterpError, Radial, Scheme, shepard};
+use interp::{
+    Barycentric, InterpError, InverseDistance, MlsLinear, MlsModified, MlsQuadratic, NaturalNeighbour,
+    Radial, Scheme, Shepard, shepard,
+};
 use nalgebra::Vector3;
 use shape::Point3;
 
@@ -13,7 +16,7 @@ fn mesh(kind: CellKind) -> Mesh {
 
 /// The radial bases of the list.
 fn radial() -> impl Iterator<Item = Scheme> {
-    Scheme::ALL.into_iter().filter(|scheme| matches!(scheme, Scheme::Radial(_)))
+    Scheme::all().filter(|scheme| matches!(scheme, Scheme::Radial(_)))
 }
 
 #[test]
@@ -31,8 +34,8 @@ fn too_few_nodes() {
         Err(InterpError::NeedsMesh { .. }) => 0,
         Err(error) => panic!("{scheme:?}: {error}"),
     };
-    assert_eq!(Scheme::ALL.map(needed), [1, 4, 2, 4, 10, 10, 4, 4, 4, 4, 4, 4, 0]);
-    for scheme in Scheme::ALL {
+    assert_eq!(Scheme::all().map(needed).collect::<Vec<_>>(), [1, 4, 2, 4, 10, 10, 4, 4, 4, 4, 4, 4, 0]);
+    for scheme in Scheme::all() {
         assert!(scheme.rows(&[], None, &one).is_err(), "{scheme:?}");
     }
 }
@@ -43,12 +46,12 @@ fn numbers_that_are_not_finite() {
     let mut nodes = mesh.points().to_vec();
     let target = [Point3::new(0.011, 0.012, 0.013)];
     let bad = [target[0], Point3::new(0.0, f64::NAN, 0.0)];
-    for scheme in Scheme::ALL {
+    for scheme in Scheme::all() {
         let error = scheme.rows(&nodes, Some(&mesh), &bad).unwrap_err();
         assert_eq!(error, InterpError::NotFinite { what: "target", index: 1 }, "{scheme:?}");
     }
     nodes[17].z = f64::INFINITY;
-    for scheme in Scheme::ALL.into_iter().filter(|s| *s != Scheme::Barycentric) {
+    for scheme in Scheme::all().filter(|s| *s != Scheme::Barycentric(Barycentric)) {
         let error = scheme.rows(&nodes, None, &target).unwrap_err();
         assert_eq!(error, InterpError::NotFinite { what: "node", index: 17 }, "{scheme:?}");
     }
@@ -58,20 +61,20 @@ fn numbers_that_are_not_finite() {
 fn parameters_out_of_range() {
     let nodes = mesh(CellKind::Tet4).points().to_vec();
     for scheme in [
-        Scheme::InverseDistance { neighbours: 0, power: 2.0 },
-        Scheme::InverseDistance { neighbours: 4, power: 0.0 },
-        Scheme::InverseDistance { neighbours: 4, power: f64::NAN },
-        Scheme::InverseDistance { neighbours: 4, power: f64::INFINITY },
+        Scheme::InverseDistance(InverseDistance { neighbours: 0, power: 2.0 }),
+        Scheme::InverseDistance(InverseDistance { neighbours: 4, power: 0.0 }),
+        Scheme::InverseDistance(InverseDistance { neighbours: 4, power: f64::NAN }),
+        Scheme::InverseDistance(InverseDistance { neighbours: 4, power: f64::INFINITY }),
     ] {
         let error = scheme.rows(&nodes, None, &nodes).unwrap_err();
         assert!(matches!(error, InterpError::BadParameter { .. }), "{scheme:?}: {error}");
     }
     for dilatation in [0.0, -1.6, f64::NAN, f64::INFINITY] {
         for scheme in [
-            Scheme::Shepard { dilatation },
-            Scheme::MlsLinear { dilatation },
-            Scheme::MlsQuadratic { dilatation },
-            Scheme::MlsModified { dilatation },
+            Scheme::Shepard(Shepard { support_scale: dilatation }),
+            Scheme::MlsLinear(MlsLinear { support_scale: dilatation }),
+            Scheme::MlsQuadratic(MlsQuadratic { support_scale: dilatation }),
+            Scheme::MlsModified(MlsModified { support_scale: dilatation }),
         ] {
             let error = scheme.rows(&nodes, None, &nodes).unwrap_err();
             assert!(matches!(error, InterpError::Mls(EfgError::BadParameter { .. })), "{scheme:?}: {error}");
@@ -87,7 +90,7 @@ fn parameters_out_of_range() {
             assert!(matches!(error, InterpError::BadParameter { .. }), "{radial:?}: {error}");
         }
     }
-    let many = Scheme::InverseDistance { neighbours: 126, power: 2.0 };
+    let many = Scheme::InverseDistance(InverseDistance { neighbours: 126, power: 2.0 });
     let error = many.rows(&nodes, None, &nodes).unwrap_err();
     assert_eq!(error, InterpError::TooFewNodes { scheme: "inverse-distance", found: 125, needed: 126 });
 }
@@ -98,14 +101,14 @@ fn coincident_nodes() {
     nodes.push(nodes[60]);
     let targets = [Point3::new(0.011, 0.012, 0.013), nodes[60], nodes[0]];
     let u: Vec<_> = nodes.iter().map(|x| x.coords).collect();
-    for scheme in Scheme::ALL.into_iter().filter(|s| *s != Scheme::Barycentric) {
+    for scheme in Scheme::all().filter(|s| *s != Scheme::Barycentric(Barycentric)) {
         match scheme.rows(&nodes, None, &targets) {
             Ok((rows, _)) => {
                 let at_node = (rows.rows().apply(&u)[1] - nodes[60].coords).norm();
                 assert!(!scheme.interpolates() || at_node == 0.0, "{scheme:?}: {at_node:e}");
             }
             Err(InterpError::CoincidentNodes { first, second, distance, .. }) => {
-                assert!(matches!(scheme, Scheme::Radial(_) | Scheme::NaturalNeighbour));
+                assert!(matches!(scheme, Scheme::Radial(_) | Scheme::NaturalNeighbour(NaturalNeighbour)));
                 assert_eq!((first, second, distance), (60, 125, 0.0));
             }
             Err(InterpError::Cloud(error)) => {
@@ -180,7 +183,7 @@ fn functions_too_wide_for_the_nodes_are_refused() {
 fn a_flat_cloud_carries_no_linear_field() {
     let nodes: Vec<_> = (0..30).map(|i| Point3::new((i % 6) as f64, (i / 6) as f64, 0.5) * 1e-3).collect();
     let target = [Point3::new(2.2e-3, 1.3e-3, 0.5e-3)];
-    for scheme in radial().chain([Scheme::NaturalNeighbour]) {
+    for scheme in radial().chain([Scheme::NaturalNeighbour(NaturalNeighbour)]) {
         let error = scheme.rows(&nodes, None, &target).unwrap_err();
         assert!(
             matches!(error, InterpError::FlatCloud { thickness, .. } if thickness < 1e-15),
@@ -191,7 +194,7 @@ fn a_flat_cloud_carries_no_linear_field() {
     almost.iter_mut().step_by(2).for_each(|x| x.z += 1e-11);
     let error = Scheme::Radial(Radial::Cubic).rows(&almost, None, &target).unwrap_err();
     assert!(matches!(error, InterpError::FlatCloud { .. }), "{error}");
-    let linear = Scheme::MlsLinear { dilatation: 1.6 };
+    let linear = Scheme::MlsLinear(MlsLinear { support_scale: 1.6 });
     assert!(matches!(
         linear.rows(&nodes, None, &target),
         Err(InterpError::Mls(EfgError::SingularMoment { .. }))
@@ -211,7 +214,7 @@ fn a_dense_table_beyond_memory_is_refused_before_it_is_built() {
 
 #[test]
 fn a_mesh_is_needed_and_must_be_of_tetrahedra_over_the_nodes() {
-    let scheme = Scheme::Barycentric;
+    let scheme = Scheme::Barycentric(Barycentric);
     let tets = mesh(CellKind::Tet4);
     let hexes = mesh(CellKind::Hex8);
     let error = |nodes, mesh| scheme.rows(nodes, mesh, &[]).unwrap_err();
@@ -233,7 +236,7 @@ fn targets_outside_the_mesh_are_extrapolated_and_counted() {
         Point3::new(-0.01, -0.02, 0.01),
         Point3::new(0.02, 0.02, 0.02),
     ];
-    let (rows, info) = Scheme::Barycentric.rows(mesh.points(), Some(&mesh), &targets).unwrap();
+    let (rows, info) = Scheme::Barycentric(Barycentric).rows(mesh.points(), Some(&mesh), &targets).unwrap();
     assert_eq!((info.outside, info.fallbacks), (2, 0));
     let field = |x: &Point3| Vector3::new(0.3 * x.y, 0.1 - 0.2 * x.z, x.x + x.y);
     let nodal: Vec<_> = mesh.points().iter().map(field).collect();
@@ -246,15 +249,15 @@ fn targets_outside_the_mesh_are_extrapolated_and_counted() {
 fn targets_no_support_covers_are_counted() {
     let nodes = mesh(CellKind::Tet4).points().to_vec();
     let far = [Point3::new(0.011, 0.012, 0.013), Point3::new(0.05, 0.01, 0.01)];
-    let (rows, info) = Scheme::Shepard { dilatation: 1.2 }.rows(&nodes, None, &far).unwrap();
+    let (rows, info) = Scheme::Shepard(Shepard { support_scale: 1.2 }).rows(&nodes, None, &far).unwrap();
     assert_eq!(info.fallbacks, 1);
     // The nodes that count are those of the near face, x = 20 mm.
     assert!(rows.rows().row(1).0.iter().all(|&n| nodes[n as usize].x > 0.019), "{:?}", rows.rows().row(1));
     let near = [Point3::new(0.023, 0.01, 0.01)];
-    let (_, info) = Scheme::MlsLinear { dilatation: 1.2 }.rows(&nodes, None, &near).unwrap();
+    let (_, info) = Scheme::MlsLinear(MlsLinear { support_scale: 1.2 }).rows(&nodes, None, &near).unwrap();
     assert_eq!(info.fallbacks, 1);
     // Farther out moving least squares would extrapolate wildly, and says no.
-    let error = Scheme::MlsLinear { dilatation: 1.2 }.rows(&nodes, None, &far).unwrap_err();
+    let error = Scheme::MlsLinear(MlsLinear { support_scale: 1.2 }).rows(&nodes, None, &far).unwrap_err();
     assert!(matches!(error, InterpError::Mls(EfgError::TooFewNeighbours { .. })), "{error}");
 }
 

@@ -2,7 +2,9 @@
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
-use interp::{Radial, Scheme, TransferInfo};
+use interp::{
+    Barycentric, InverseDistance, MlsLinear, MlsModified, MlsQuadratic, Radial, Scheme, Shepard, TransferInfo,
+};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
@@ -17,13 +19,13 @@ fn mesh() -> Mesh {
 
 /// Every scheme of the list, and some with other parameters.
 fn schemes() -> Vec<Scheme> {
-    let mut all = Scheme::ALL.to_vec();
+    let mut all = Scheme::all().collect::<Vec<_>>();
     all.extend([
-        Scheme::InverseDistance { neighbours: 8, power: 1.0 },
-        Scheme::InverseDistance { neighbours: 210, power: 3.5 },
-        Scheme::Shepard { dilatation: 1.2 },
-        Scheme::MlsLinear { dilatation: 2.5 },
-        Scheme::MlsQuadratic { dilatation: 2.0 },
+        Scheme::InverseDistance(InverseDistance { neighbours: 8, power: 1.0 }),
+        Scheme::InverseDistance(InverseDistance { neighbours: 210, power: 3.5 }),
+        Scheme::Shepard(Shepard { support_scale: 1.2 }),
+        Scheme::MlsLinear(MlsLinear { support_scale: 2.5 }),
+        Scheme::MlsQuadratic(MlsQuadratic { support_scale: 2.0 }),
         Scheme::Radial(Radial::Multiquadric { shape: 0.5 }),
         Scheme::Radial(Radial::Gaussian { shape: 0.8, polynomial: false }),
         Scheme::Radial(Radial::WendlandC2 { support: 2.0, polynomial: false }),
@@ -130,7 +132,7 @@ proptest! {
         let moved = |x: &Point3| Point3::from((x.coords + Vector3::from(shift)) * scale);
         let mesh = unit_box.moved(moved).unwrap();
         let targets: Vec<_> = targets.iter().map(|x| moved(&Point3::from(x.coords * 25.0))).collect();
-        for scheme in schemes().into_iter().filter(|s| *s != Scheme::InverseDistance { neighbours: 210, power: 3.5 }) {
+        for scheme in schemes().into_iter().filter(|s| *s != Scheme::InverseDistance(InverseDistance { neighbours: 210, power: 3.5 })) {
             let origin = Vector3::from(shift) * scale;
             let field = |x: &Point3| h * (x.coords - origin) / scale + c;
             let linear = error(scheme, &mesh, &targets, field);
@@ -149,7 +151,7 @@ proptest! {
         // Strides without a common divisor with the 210 nodes visit each of them once.
         let order: Vec<usize> = (0..n).map(|i| i * stride % n).collect();
         let shuffled: Vec<Point3> = order.iter().map(|&i| mesh.points()[i]).collect();
-        for scheme in schemes().into_iter().filter(|s| *s != Scheme::Barycentric) {
+        for scheme in schemes().into_iter().filter(|s| *s != Scheme::Barycentric(Barycentric)) {
             let here = dense(&rows(scheme, &mesh, &targets).0);
             let there = dense(&scheme.rows(&shuffled, None, &targets).unwrap().0);
             for row in 0..targets.len() {
@@ -197,8 +199,8 @@ fn modified_least_squares_are_almost_exact_for_quadratic_fields() {
     let mesh = mesh();
     let targets: Vec<Point3> = mesh.points().iter().map(|x| Point3::from(x.coords * 0.97)).collect();
     let of = |scheme: Scheme| error(scheme, &mesh, &targets, quadratic);
-    let modified = of(Scheme::MlsModified { dilatation: 2.0 });
-    let linear = of(Scheme::MlsLinear { dilatation: 2.0 });
+    let modified = of(Scheme::MlsModified(MlsModified { support_scale: 2.0 }));
+    let linear = of(Scheme::MlsLinear(MlsLinear { support_scale: 2.0 }));
     assert!(modified < 1e-3 && modified > 1e-8, "{modified:e}");
     assert!(linear > 10.0 * modified, "{linear:e} {modified:e}");
 }
@@ -222,7 +224,7 @@ fn no_targets_make_an_empty_table() {
 
 #[test]
 fn names_are_unique_and_read_back() {
-    for scheme in Scheme::ALL {
+    for scheme in Scheme::all() {
         assert_eq!(Scheme::from_name(scheme.name()), Some(scheme));
     }
     assert_eq!(Scheme::from_name("kriging"), None);

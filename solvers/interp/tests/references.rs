@@ -1,7 +1,7 @@
 //! Numbers from elsewhere: worked by hand, from the textbook's own system, and known levels of error.
 
 use geometry::{Kidney, cloud};
-use interp::{Radial, Scheme};
+use interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme};
 use nalgebra::{DMatrix, Vector3};
 use shape::Point3;
 
@@ -10,7 +10,7 @@ fn inverse_distance_by_hand() {
     let nodes = [0.0, 3.0, 50.0].map(|x| Point3::new(x, 0.0, 0.0));
     let target = [Point3::new(1.0, 0.0, 0.0)];
     for (power, first) in [(1.0, 2.0 / 3.0), (2.0, 0.8), (3.0, 8.0 / 9.0)] {
-        let scheme = Scheme::InverseDistance { neighbours: 2, power };
+        let scheme = Scheme::InverseDistance(InverseDistance { neighbours: 2, power });
         let (rows, _) = scheme.rows(&nodes, None, &target).unwrap();
         assert_eq!(rows.rows().row(0).0, [0, 1]);
         let [a, b] = rows.rows().row(0).1 else { panic!("two neighbours") };
@@ -23,7 +23,7 @@ fn inverse_distance_stays_finite_beside_a_node() {
     let nodes = [0.0, 1.0, 2.0, 3.0].map(|x| Point3::new(x, 0.0, 0.0));
     for power in [1.0, 2.0, 40.0] {
         for gap in [1e-3, 1e-30, 1e-150, 1e-200, 5e-324] {
-            let scheme = Scheme::InverseDistance { neighbours: 4, power };
+            let scheme = Scheme::InverseDistance(InverseDistance { neighbours: 4, power });
             let (rows, _) = scheme.rows(&nodes, None, &[Point3::new(gap, 0.0, 0.0)]).unwrap();
             // The others keep the share gap^p (1 + 2^-p + 3^-p), up to rounding.
             let share = 1.0 - rows.rows().row(0).1[0];
@@ -35,7 +35,8 @@ fn inverse_distance_stays_finite_beside_a_node() {
 #[test]
 fn the_nearest_of_two_at_one_distance_is_the_first() {
     let nodes = [2.0, 0.0, 1.0, 0.0].map(|x| Point3::new(x, 0.0, 0.0));
-    let (rows, _) = Scheme::Nearest.rows(&nodes, None, &[Point3::new(0.5, 0.0, 0.0), nodes[1]]).unwrap();
+    let (rows, _) =
+        Scheme::Nearest(Nearest).rows(&nodes, None, &[Point3::new(0.5, 0.0, 0.0), nodes[1]]).unwrap();
     assert_eq!(rows.rows().nodes(), [1, 1]);
 }
 
@@ -118,14 +119,14 @@ fn inverse_distance_spoils_a_linear_field_on_the_kidney() {
         1e3 * rms(&gap)
     };
     for (neighbours, power) in [(4, 1.0), (8, 1.0), (4, 2.0), (8, 2.0)] {
-        let inverse_distance = error(Scheme::InverseDistance { neighbours, power });
+        let inverse_distance = error(Scheme::InverseDistance(InverseDistance { neighbours, power }));
         println!("inverse distance, {neighbours} neighbours, power {power}: {inverse_distance:.3} mm RMS");
         assert!((0.3..1.0).contains(&inverse_distance), "{neighbours}, {power}: {inverse_distance} mm");
     }
     for scheme in [
         Scheme::Radial(Radial::ThinPlate),
         Scheme::Radial(Radial::Cubic),
-        Scheme::MlsLinear { dilatation: 1.6 },
+        Scheme::MlsLinear(MlsLinear { support_scale: 1.6 }),
     ] {
         assert!(error(scheme) < 1e-11, "{scheme:?}: {} mm", error(scheme));
     }

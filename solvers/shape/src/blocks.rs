@@ -1,9 +1,8 @@
 //! Rows by eights, for tables applied again and again.
 
-use crate::{Rows, Vector3};
+use lanes::{LANES, LanePath, on_path};
 
-/// Eight f64 fill one AVX-512 register or two of AVX2.
-const LANES: usize = 8;
+use crate::{Rows, Vector3};
 
 /// One number of each row of a block, on one line of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -87,29 +86,7 @@ impl RowBlocks {
     pub fn apply_into(&self, u: &[Vector3], field: &mut [Vector3]) {
         assert_eq!(u.len(), self.node_count, "one vector per node");
         assert_eq!(field.len(), self.len(), "one vector per row");
-        #[cfg(target_arch = "x86_64")]
-        {
-            if std::is_x86_feature_detected!("avx512f") {
-                // SAFETY: the processor has the feature that the function requires, just checked; so below.
-                return unsafe { self.apply_avx512(u, field) };
-            }
-            if std::is_x86_feature_detected!("avx2") {
-                return unsafe { self.apply_avx2(u, field) };
-            }
-        }
-        self.apply_plain(u, field)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f")]
-    fn apply_avx512(&self, u: &[Vector3], field: &mut [Vector3]) {
-        self.apply_plain(u, field)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn apply_avx2(&self, u: &[Vector3], field: &mut [Vector3]) {
-        self.apply_plain(u, field)
+        apply(LanePath::best(), self, u, field)
     }
 
     /// Two blocks side by side: a sum waits for the one before, four cycles, and the sums and products for a node of one block take
@@ -152,6 +129,16 @@ impl RowBlocks {
             }
         }
     }
+}
+
+on_path! {
+    /// [`RowBlocks::apply_plain`] in wide registers; the same bits on every path: multiply and add stay apart.
+    fn apply(blocks: &RowBlocks, u: &[Vector3], field: &mut [Vector3]) = apply_in
+}
+
+#[inline(always)]
+fn apply_in<const FMA: bool>(blocks: &RowBlocks, u: &[Vector3], field: &mut [Vector3]) {
+    blocks.apply_plain(u, field)
 }
 
 /// Writes the vectors of a block. Apart, lest the compiler pair x and y of a row already in the sums: twice the time.
@@ -290,20 +277,6 @@ mod tests {
         Rows::new(83, offsets, nodes, values, Unity::NotPromised).unwrap()
     }
 
-    type Apply = fn(&RowBlocks, &[Vector3], &mut [Vector3]);
-
-    /// Every way to the same bits that this machine has.
-    fn paths() -> Vec<(&'static str, Apply)> {
-        let mut paths: Vec<(&'static str, Apply)> =
-            vec![("plain", RowBlocks::apply_plain), ("chosen", RowBlocks::apply_into)];
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just checked.
-            paths.push(("avx2", |blocks, u, field| unsafe { blocks.apply_avx2(u, field) }));
-        }
-        paths
-    }
-
     #[test]
     fn blocks_give_the_bits_of_rows_on_every_path() {
         let u: Vec<Vector3> = (0..83).map(|i| Vector3::new(i as f64, 1.0, -0.3).map(f64::cos)).collect();
@@ -312,10 +285,10 @@ mod tests {
             let rows = table(count);
             let blocks = RowBlocks::new(&rows);
             assert_eq!((blocks.len(), blocks.is_empty()), (count, count == 0));
-            for (path, apply) in paths() {
+            for path in LanePath::available() {
                 let mut field = vec![Vector3::repeat(f64::NAN); count];
-                apply(&blocks, &u, &mut field);
-                assert!(field == rows.apply(&u), "{path} {count}");
+                apply(path, &blocks, &u, &mut field);
+                assert!(field == rows.apply(&u), "{} {count}", path.name());
             }
         }
     }

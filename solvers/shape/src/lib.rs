@@ -8,12 +8,16 @@
 
 mod blocks;
 mod dilation;
+mod fixed;
+mod order;
 mod rows;
 mod tables;
 mod trace;
 
 pub use blocks::RowBlocks;
 pub use dilation::DilationGroups;
+pub use fixed::FixedDof;
+pub use order::locality_order;
 pub use rows::{Rows, ShapeError, Unity};
 pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
 pub use trace::TraceRows;

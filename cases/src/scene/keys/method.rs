@@ -3,9 +3,10 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{ConstraintRows, Dilation, Element, KernelName, Mass, SupportShape};
+use crate::scene::method::{ConstraintRows, Dilation, Element, Mass, SupportShape};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
+use crate::scene::vocabulary::{Given, Kernels, Word};
 
 /// How fine: one of nodes, spacing, level, cells and file
 #[derive(Deserialize, JsonSchema)]
@@ -46,6 +47,8 @@ pub(crate) enum MethodKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct FemKeys {
     pub id: String,
+    /// Methods of one series differ in size only; the id unless given
+    pub series: Option<String>,
     pub element: Element,
     pub dilation: Option<Dilation>,
     /// Hex20 with 2 x 2 x 2 instead of 3 x 3 x 3 points
@@ -61,6 +64,8 @@ pub(crate) struct FemKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct EfgKeys {
     pub id: String,
+    /// Methods of one series differ in size only; the id unless given
+    pub series: Option<String>,
     /// Exact number of nodes; or size
     pub nodes: Option<u32>,
     /// Size of the mesh whose nodes form the cloud; or nodes
@@ -75,12 +80,12 @@ pub(crate) struct EfgKeys {
     /// Not with basis = "maximum-entropy"
     pub kernel: Option<KernelKeys>,
     /// Support radius over the local spacing; or neighbours and factor
-    pub dilatation: Option<f64>,
+    pub support_scale: Option<f64>,
     /// Support radius over the distance to this neighbour
     pub neighbours: Option<u32>,
     pub factor: Option<f64>,
     /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
-    pub support: Option<SupportShape>,
+    pub neighbourhood: Option<SupportShape>,
     pub basis: BasisName,
     /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
     pub gamma: Option<f64>,
@@ -150,20 +155,15 @@ pub(crate) enum CloudName {
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum KernelKeys {
-    Name(KernelName),
+    Name(Word<Kernels>),
     Table(KernelTable),
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct KernelTable {
-    pub name: KernelName,
-    /// Width of a gaussian or exponential kernel relative to the support radius
-    pub alpha: Option<f64>,
-    /// Exponent of an exponential kernel
-    pub power: Option<u32>,
-    /// Regularisation of the regularised-interpolating kernel
-    pub eps: Option<f64>,
+    pub name: Word<Kernels>,
+    #[serde(flatten)]
+    pub settings: Given<Kernels>,
 }
 
 #[derive(Deserialize, JsonSchema)]

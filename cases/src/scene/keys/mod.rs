@@ -13,6 +13,7 @@ pub(crate) use method::*;
 pub(crate) use output::*;
 
 use super::procedure::{OnStall, ProcedureKind};
+use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::units::{Density, Length, Pressure, Q, Rate, Time, Unit};
 
@@ -24,6 +25,12 @@ pub(crate) struct SceneKeys {
     pub title: String,
     /// Where the case and its reference come from
     pub source: Option<String>,
+    /// What the scene is for: "patch" (exact in every method), "smooth" (the default: errors fall with the order of theory), "rough"
+    /// (no order is promised) or "published" (compared with the numbers of `published`)
+    #[serde(default)]
+    pub purpose: Purpose,
+    /// A published comparison of methods: its claim on run times and errors is tested by the results
+    pub published: Option<Publication>,
     pub body: BodyKeys,
     pub material: MaterialKeys,
     /// Parts of the body with a material of their own

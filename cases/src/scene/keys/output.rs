@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Names, SizeKeys};
-use crate::scene::output::SchemeName;
 use crate::scene::units::{Length, Q, Time, Unit};
+use crate::scene::vocabulary::{Given, Schemes, Word};
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -46,17 +46,26 @@ pub(crate) enum TransfersKeys {
 
 /// A transfer of nodal displacements to other points
 #[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct TransferKeys {
     pub to: TargetKeys,
-    pub scheme: SchemeName,
-    pub neighbours: Option<u32>,
-    pub power: Option<f64>,
-    pub dilatation: Option<f64>,
-    /// Width of multiquadrics and Gaussians, in mean spacings of the nodes
-    pub shape: Option<f64>,
-    /// Whether Gaussians and Wendland's functions have a linear polynomial beside them; they do unless given
-    pub polynomial: Option<bool>,
+    pub scheme: SchemeKeys,
+    #[serde(flatten)]
+    pub settings: Given<Schemes>,
+}
+
+/// A scheme, or "own": the solver's own rows
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum SchemeKeys {
+    Scheme(Word<Schemes>),
+    Own(OwnWord),
+}
+
+/// The solver's own rows
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum OwnWord {
+    Own,
 }
 
 /// "reference-nodes", "probes", or the nodes of a mesh file

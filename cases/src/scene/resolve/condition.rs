@@ -1,12 +1,12 @@
 //! Supports and loads.
 
-use crate::scene::error::Problem;
 use crate::scene::field::{Prescribed, ScalarField, VectorField};
 use crate::scene::keys::*;
 use crate::scene::model::{Load, LoadKind, Place, Support};
 use crate::scene::region::Region;
 use crate::scene::report::Report;
 use crate::scene::units::Dim;
+use catalogue::Problem;
 
 use super::names;
 

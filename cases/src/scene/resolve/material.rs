@@ -1,10 +1,10 @@
 //! Materials.
 
-use crate::scene::error::Problem;
 use crate::scene::keys::{ElasticKeys, MaterialKeys, MooneyRivlinKeys, OgdenKeys, PronyKeys};
 use crate::scene::model::{Elastic, Material, Relaxation};
 use crate::scene::report::Report;
 use crate::scene::units::{Density, Q};
+use catalogue::Problem;
 
 use super::positive;
 

@@ -1,10 +1,11 @@
 //! Methods and their sizes.
 
-use crate::scene::error::Problem;
 use crate::scene::keys::*;
 use crate::scene::method::*;
 use crate::scene::region::Region;
 use crate::scene::report::Report;
+use crate::scene::vocabulary::settings;
+use catalogue::{Problem, Values};
 
 use super::{MILLIMETRE, mesh_file, positive};
 
@@ -20,6 +21,7 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
             let jitter = jitter(fem.jitter, &key, report);
             let dilation = fem.dilation.unwrap_or(Dilation::Standard);
             Some(Method {
+                series: fem.series.unwrap_or_else(|| fem.id.clone()),
                 id: fem.id,
                 family: Family::Fem(Fem { element: fem.element, dilation, reduced, size: size?, jitter }),
                 mass: fem.mass,
@@ -57,16 +59,16 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let cloud = cloud(layout, key, report);
     let help = "take the nodes of a mesh: size = { level = 2 }";
     report.require(
-        keys.support.unwrap_or_default() == SupportShape::Round || with_cells,
-        &at("support"),
+        keys.neighbourhood.unwrap_or_default() == SupportShape::Ball || with_cells,
+        &at("neighbourhood"),
         "follows the cells around each node, and the nodes of this cloud have none",
         help,
     );
     let reach = Reach {
-        dilatation: keys.dilatation,
+        support_scale: keys.support_scale,
         neighbours: keys.neighbours,
         factor: keys.factor,
-        shape: keys.support,
+        shape: keys.neighbourhood,
     };
     let functions = functions(keys.basis, keys.kernel, reach, keys.gamma, key, report);
     let integration = integration(keys.integration, &at("integration"), report);
@@ -78,7 +80,8 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     }
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
     let efg = Efg { cloud, functions, integration, essential, dilation, background };
-    Some(Method { id: keys.id, family: Family::Efg(efg), mass: keys.mass })
+    let series = keys.series.unwrap_or_else(|| keys.id.clone());
+    Some(Method { id: keys.id, series, family: Family::Efg(efg), mass: keys.mass })
 }
 
 /// What clouds that are coupled to finite elements are made of.
@@ -194,7 +197,7 @@ fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
 
 /// What a file says of how far nodes reach.
 struct Reach {
-    dilatation: Option<f64>,
+    support_scale: Option<f64>,
     neighbours: Option<u32>,
     factor: Option<f64>,
     shape: Option<SupportShape>,
@@ -215,10 +218,10 @@ fn functions(
         BasisName::MaximumEntropy => {
             let given = [
                 ("kernel", kernel.is_some()),
-                ("dilatation", reach.dilatation.is_some()),
+                ("support_scale", reach.support_scale.is_some()),
                 ("neighbours", reach.neighbours.is_some()),
                 ("factor", reach.factor.is_some()),
-                ("support", reach.shape.is_some()),
+                ("neighbourhood", reach.shape.is_some()),
             ];
             for (name, given) in given {
                 let problem = "does not go with basis = \"maximum-entropy\"";
@@ -243,11 +246,11 @@ fn functions(
         return None;
     };
     let kernel = self::kernel(kernel, &at("kernel"), report);
-    Some(Functions::MovingLeastSquares { kernel, support: support?, shape, basis })
+    Some(Functions::MovingLeastSquares { kernel: kernel?, support: support?, shape, basis })
 }
 
 fn support(
-    Reach { dilatation, neighbours, factor, .. }: Reach,
+    Reach { support_scale, neighbours, factor, .. }: Reach,
     basis: Basis,
     key: &str,
     report: &mut Report,
@@ -255,15 +258,15 @@ fn support(
     let at = |name: &str| format!("{key}.{name}");
     let stray = factor.is_some() && neighbours.is_none();
     report.require(!stray, &at("factor"), "goes with neighbours only", "leave it out");
-    match (dilatation, neighbours) {
+    match (support_scale, neighbours) {
         (Some(d), None) => {
             report.require(
                 (1.0..=10.0).contains(&d),
-                &at("dilatation"),
-                "is no dilatation",
+                &at("support_scale"),
+                "is no support scale",
                 "1.2 to 3 is usual",
             );
-            Some(SupportRule::Dilatation(d))
+            Some(SupportRule::Scale(d))
         }
         (None, Some(k)) => {
             let factor = factor.unwrap_or(1.2);
@@ -283,38 +286,32 @@ fn support(
             Some(SupportRule::Neighbours { k: k as usize, factor })
         }
         (Some(_), Some(_)) => {
-            let help = "give dilatation, or neighbours and factor, not both";
-            report.add(&at("neighbours"), Problem::new("stands beside dilatation").help(help));
+            let help = "give support_scale, or neighbours and factor, not both";
+            report.add(&at("neighbours"), Problem::new("stands beside support_scale").help(help));
             None
         }
         (None, None) => {
-            report.missing(&at("dilatation"), "give dilatation = 1.6, or neighbours = 15 and factor = 1.2");
+            report.missing(
+                &at("support_scale"),
+                "give support_scale = 1.6, or neighbours = 15 and factor = 1.2",
+            );
             None
         }
     }
 }
 
-fn kernel(keys: KernelKeys, key: &str, report: &mut Report) -> Kernel {
-    let keys = match keys {
-        KernelKeys::Name(name) => return Kernel { name, alpha: None, power: None, eps: None },
-        KernelKeys::Table(keys) => keys,
-    };
-    let name = keys.name;
-    let wide = matches!(name, KernelName::Gaussian | KernelName::Exponential);
-    let given = [
-        ("alpha", keys.alpha, wide),
-        ("power", keys.power.map(f64::from), name == KernelName::Exponential),
-        ("eps", keys.eps, name == KernelName::RegularisedInterpolating),
-    ];
-    for (parameter, value, taken) in given {
-        let at = format!("{key}.{parameter}");
-        if let Some(value) = value {
-            let help = format!("{} takes no {parameter}: leave it out", name.name());
-            report.require(taken, &at, "does not belong to this kernel", &help);
-            positive(value, &at, report);
+fn kernel(keys: KernelKeys, key: &str, report: &mut Report) -> Option<efg::Kernel> {
+    let (word, values) = match keys {
+        KernelKeys::Name(word) => {
+            let values = Values::new(word.0.parameters);
+            (word, values)
         }
-    }
-    Kernel { name, alpha: keys.alpha, power: keys.power, eps: keys.eps }
+        KernelKeys::Table(keys) => {
+            let values = settings(&keys.name, keys.settings, key, report)?;
+            (keys.name, values)
+        }
+    };
+    (word.0.build)(&values).map_err(|bad| report.add(key, bad)).ok()
 }
 
 pub(crate) fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integration {

@@ -6,13 +6,13 @@ mod method;
 mod output;
 mod tool;
 
-use super::error::Problem;
 use super::keys::{BodyKeys, Names, ProcedureKeys, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
 use super::procedure::{Explicit, Implicit, MODES, Newton, OnStall, Procedure, ProcedureKind};
 use super::report::Report;
 use super::units::{Dim, Q};
+use catalogue::Problem;
 use condition::{load, place, support};
 use material::material;
 use method::method;
@@ -48,6 +48,8 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     Some(Scene {
         title: keys.title,
         source: keys.source,
+        purpose: keys.purpose,
+        published: keys.published,
         body: body?,
         material,
         prony,

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::exact::{exact_names, exact_parameters};
-use crate::names::suggest;
-use crate::scene::error::Problem;
 use crate::scene::keys::*;
-use crate::scene::metric::Metric;
-use crate::scene::output::{Bound, Check, Output, Reference, Repeated, SchemeName, Target, Transfer};
+use crate::scene::output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 use crate::scene::report::Report;
-use crate::scene::units::Dimension;
+use crate::scene::vocabulary::settings;
+use catalogue::Dimension;
+use catalogue::Problem;
+use catalogue::metric;
+use catalogue::suggest;
 
 use super::method::size;
 use super::{MILLIMETRE, mesh_file, names, positive, raw};
@@ -24,10 +25,10 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     }
     let transfers = match keys.transfer {
         None => Vec::new(),
-        Some(TransfersKeys::One(one)) => vec![transfer(one, "output.transfer", report)],
+        Some(TransfersKeys::One(one)) => transfer(one, "output.transfer", report).into_iter().collect(),
         Some(TransfersKeys::Several(several)) => {
             let each = several.into_iter().enumerate();
-            each.map(|(i, t)| transfer(t, &format!("output.transfer[{i}]"), report)).collect()
+            each.filter_map(|(i, t)| transfer(t, &format!("output.transfer[{i}]"), report)).collect()
         }
     };
     let probes = keys.probes.unwrap_or_default().into_iter().map(raw).collect();
@@ -52,7 +53,7 @@ fn repeated(keys: RepeatedKeys, report: &mut Report) -> Repeated {
     Repeated { frames, cycle, within, tolerance: keys.tolerance }
 }
 
-fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
+fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Option<Transfer> {
     let at = |name: &str| format!("{key}.{name}");
     let to = match keys.to {
         TargetKeys::Name(TargetName::ReferenceNodes) => Target::ReferenceNodes,
@@ -61,45 +62,15 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Transfer {
             Target::File(mesh_file(&f.file, f.unit.map_or(MILLIMETRE, |u| u.0), &at("to.file"), report))
         }
     };
-    let takes = |schemes: &[SchemeName]| schemes.contains(&keys.scheme);
-    let given = [
-        ("neighbours", keys.neighbours.is_some(), takes(&[SchemeName::InverseDistance])),
-        ("power", keys.power.is_some(), takes(&[SchemeName::InverseDistance])),
-        (
-            "dilatation",
-            keys.dilatation.is_some(),
-            takes(&[
-                SchemeName::Shepard,
-                SchemeName::MlsLinear,
-                SchemeName::MlsQuadratic,
-                SchemeName::MlsModified,
-                SchemeName::WendlandC2,
-            ]),
-        ),
-        ("shape", keys.shape.is_some(), takes(&[SchemeName::Multiquadric, SchemeName::Gaussian])),
-        ("polynomial", keys.polynomial.is_some(), takes(&[SchemeName::Gaussian, SchemeName::WendlandC2])),
-    ];
-    for (name, given, taken) in given {
-        let help = format!("{} takes no {name}: leave it out", keys.scheme.name());
-        report.require(!given || taken, &at(name), "does not belong to this scheme", &help);
-    }
-    if let Some(n) = keys.neighbours {
-        report.require(n > 0, &at("neighbours"), "is zero", "give 1 or more");
-    }
-    for (name, value) in [("power", keys.power), ("dilatation", keys.dilatation), ("shape", keys.shape)] {
-        if let Some(value) = value {
-            positive(value, &at(name), report);
+    let scheme = match keys.scheme {
+        SchemeKeys::Own(OwnWord::Own) => None,
+        SchemeKeys::Scheme(word) => {
+            let values = settings(&word, keys.settings, key, report)?;
+            let made = (word.0.build)(&values).map_err(|bad| report.add(&at("scheme"), bad)).ok()?;
+            Some((made, values))
         }
-    }
-    Transfer {
-        to,
-        scheme: keys.scheme,
-        neighbours: keys.neighbours.map(|n| n as usize),
-        power: keys.power,
-        dilatation: keys.dilatation,
-        shape: keys.shape,
-        polynomial: keys.polynomial,
-    }
+    };
+    Some(Transfer { to, scheme })
 }
 
 pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Reference> {
@@ -163,7 +134,7 @@ pub(crate) fn checks(keys: Vec<CheckKeys>, key: &str, report: &mut Report) -> Ve
 }
 
 fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
-    let metric = match Metric::find(&keys.metric) {
+    let metric = match metric::named(&keys.metric) {
         Ok(metric) => metric,
         Err(bad) => {
             report.add(&format!("{key}.metric"), bad);
@@ -218,7 +189,7 @@ fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
 
 fn limit(keys: NumberKeys, dimension: Dimension) -> Result<f64, Problem> {
     match (keys, dimension) {
-        (NumberKeys::Number(value), Dimension::None) => Ok(value),
+        (NumberKeys::Number(value), dimension) if dimension.is_plain() => Ok(value),
         (NumberKeys::Number(value), _) => {
             Err(Problem::new("has no unit").help(dimension.fix(&value.to_string())))
         }

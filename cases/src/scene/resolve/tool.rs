@@ -1,9 +1,9 @@
 //! Tools.
 
-use crate::scene::error::Problem;
 use crate::scene::keys::ToolKeys;
 use crate::scene::report::Report;
 use crate::scene::tool::{Drive, Friction, Tool, ToolShape, ToolShapeName};
+use catalogue::Problem;
 
 use super::{MILLIMETRE, mesh_file, positive, raw};
 

@@ -42,5 +42,5 @@ pub fn field(basis: Basis, p: &Point3) -> (f64, Vector3) {
 
 /// Every kernel with every basis.
 pub fn members() -> impl Iterator<Item = (Kernel, Basis)> {
-    Kernel::ALL.into_iter().flat_map(|kernel| Basis::ALL.map(|basis| (kernel, basis)))
+    Kernel::all().flat_map(|kernel| Basis::ALL.map(|basis| (kernel, basis)))
 }

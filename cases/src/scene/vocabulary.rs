@@ -1,0 +1,168 @@
+//! Entries of the catalogue as keys of a file: a name, and settings beside it.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+
+use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Value, Values, find};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, de::Error as _};
+use serde_json::{Map, json};
+
+use super::report::Report;
+
+/// A kind of entries that files name.
+pub(crate) trait Vocabulary: 'static {
+    /// Their constructor.
+    type Build: 'static;
+    /// What one of them is called.
+    const NOUN: &'static str;
+    /// All of them.
+    const ENTRIES: &'static [Entry<Self::Build>];
+}
+
+/// The name of an entry.
+pub(crate) struct Word<V: Vocabulary>(pub &'static Entry<V::Build>);
+
+impl<V: Vocabulary> Clone for Word<V> {
+    fn clone(&self) -> Word<V> {
+        Word(self.0)
+    }
+}
+
+impl<'de, V: Vocabulary> Deserialize<'de> for Word<V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word<V>, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        find(V::ENTRIES, &name).map(Word).map_err(D::Error::custom)
+    }
+}
+
+impl<V: Vocabulary> JsonSchema for Word<V> {
+    fn schema_name() -> Cow<'static, str> {
+        V::NOUN.into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let word = |entry: &Entry<V::Build>| json!({ "type": "string", "const": entry.name, "description": entry.meaning });
+        json_schema!({ "oneOf": V::ENTRIES.iter().map(word).collect::<Vec<_>>() })
+    }
+}
+
+/// What stands beside the name: parameters of any entry, which [`settings`] holds against the one that is named.
+pub(crate) struct Given<V>(BTreeMap<String, Setting>, PhantomData<V>);
+
+/// One value as a file has it.
+#[derive(Clone, Deserialize)]
+#[serde(untagged)]
+enum Setting {
+    Flag(bool),
+    Number(f64),
+    Quantity(String),
+    List(Vec<Setting>),
+}
+
+impl<'de, V> Deserialize<'de> for Given<V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given<V>, D::Error> {
+        Ok(Given(BTreeMap::deserialize(deserializer)?, PhantomData))
+    }
+}
+
+impl<V: Vocabulary> JsonSchema for Given<V> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("settings of a {}", V::NOUN).into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut properties = Map::new();
+        for parameter in V::ENTRIES.iter().flat_map(|entry| entry.parameters) {
+            properties.entry(parameter.name).or_insert_with(|| property(parameter));
+        }
+        json_schema!({ "type": "object", "properties": properties })
+    }
+}
+
+fn property(parameter: &Parameter) -> serde_json::Value {
+    let one = match (parameter.kind, parameter.dimension) {
+        (Kind::Flag, _) => json!({ "type": "boolean" }),
+        (Kind::Count, _) => json!({ "type": "integer", "format": "uint32", "minimum": 0 }),
+        (_, dimension) if dimension.is_plain() => json!({ "type": "number", "format": "double" }),
+        (_, dimension) => json!({
+            "type": "string",
+            "x-quantity": dimension.name(),
+            "examples": [format!("1 {}", dimension.offered().first().unwrap_or(&""))],
+        }),
+    };
+    let mut schema = match parameter.kind {
+        Kind::List => json!({ "type": "array", "items": one }),
+        Kind::Vector => json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 }),
+        Kind::Number | Kind::Count | Kind::Flag => one,
+    };
+    schema["description"] = parameter.meaning.into();
+    schema
+}
+
+/// The settings of an entry at `key`; notes those that it does not take, those out of their range, and those it lacks. What
+/// comes back is whole only where nothing was noted.
+pub(crate) fn settings<V: Vocabulary>(
+    word: &Word<V>,
+    given: Given<V>,
+    key: &str,
+    report: &mut Report,
+) -> Option<Values> {
+    let entry = word.0;
+    let mut values = Values::new(entry.parameters);
+    let mut sound = true;
+    for (name, setting) in given.0 {
+        let at = format!("{key}.{name}");
+        let read = match entry.parameter(&name) {
+            None => Err(Problem::new(format!("does not belong to this {}", V::NOUN))
+                .help(format!("{} takes no {name}: leave it out", entry.name))),
+            Some(parameter) => read(setting, parameter.dimension).and_then(|value| values.give(&name, value)),
+        };
+        if let Err(problem) = read {
+            sound = false;
+            report.add(&at, problem);
+        }
+    }
+    let lacking = entry.parameters.iter().filter(|p| p.required && !values.has(p.name));
+    for parameter in lacking {
+        let at = format!("{key}.{}", parameter.name);
+        sound = false;
+        if !report.has(&at) {
+            report.missing(&at, &format!("this {} needs it: {}", V::NOUN, parameter.meaning));
+        }
+    }
+    sound.then_some(values)
+}
+
+fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
+    let number = |setting| match setting {
+        Setting::Number(number) if dimension.is_plain() => Ok(number),
+        Setting::Number(number) => Err(Problem::new("has no unit").help(dimension.fix(&number.to_string()))),
+        Setting::Quantity(text) => dimension.read(&text),
+        Setting::Flag(_) | Setting::List(_) => Err(Problem::new("is not a number")),
+    };
+    match setting {
+        Setting::Flag(flag) => Ok(Value::Flag(flag)),
+        Setting::List(list) => list.into_iter().map(number).collect::<Result<_, _>>().map(Value::List),
+        one => number(one).map(Value::Number),
+    }
+}
+
+/// Kernels of clouds.
+pub(crate) enum Kernels {}
+
+impl Vocabulary for Kernels {
+    type Build = fn(&Values) -> Result<efg::Kernel, Problem>;
+    const NOUN: &'static str = "kernel";
+    const ENTRIES: &'static [Entry<Self::Build>] = efg::KERNELS;
+}
+
+/// Transfer schemes.
+pub(crate) enum Schemes {}
+
+impl Vocabulary for Schemes {
+    type Build = fn(&Values) -> Result<interp::Scheme, Problem>;
+    const NOUN: &'static str = "scheme";
+    const ENTRIES: &'static [Entry<Self::Build>] = interp::SCHEMES;
+}

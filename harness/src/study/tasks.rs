@@ -1,0 +1,157 @@
+//! The runs that a study's tables ask for, each of them once.
+
+use cases::scene::{self, Scene, Size};
+
+use crate::group::resize;
+
+/// One run of a study.
+pub(super) struct Task {
+    /// Indices of the study's run tables that ask for it, which may be several: it is run once.
+    pub(super) runs: Vec<usize>,
+    pub(super) scene: usize,
+    pub(super) method: scene::Method,
+    pub(super) level: u32,
+    pub(super) poisson: Option<f64>,
+    pub(super) picture: bool,
+    /// Rule of a second integration, where one of the tables asks for it.
+    pub(super) split: Option<scene::Integration>,
+}
+
+/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times support scales, times essential
+/// conditions, times seeds, times Poisson's ratios.
+pub(super) fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
+    let ratios: Vec<Option<f64>> =
+        if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
+    // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
+    let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
+    let plain = run.kernels.is_empty()
+        && run.support_scales.is_empty()
+        && run.nodes.is_empty()
+        && run.essentials.is_empty();
+    let picture = organ && plain && run.seeds == 0;
+    // The scene's own ratio, named or not, makes one run.
+    let own = scene.material.elastic().map(|e| e.poisson);
+    let own_ratio = |poisson: Option<f64>| poisson.or(own);
+    for &poisson in &ratios {
+        for method in &scene.methods {
+            if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
+                continue;
+            }
+            for (level, sized) in sizes(run, method) {
+                let shaped = kernels(run, sized).into_iter().flat_map(|method| support_scales(run, method));
+                let held = shaped.flat_map(|method| essentials(run, method));
+                for method in held.flat_map(|method| seeds(run, method)) {
+                    // One run may be in several tables: a level among levels and alone, a cloud among clouds.
+                    let same = |t: &&mut Task| {
+                        t.scene == at
+                            && own_ratio(t.poisson) == own_ratio(poisson)
+                            && t.method == method
+                            && (run.split.is_none() || t.split.is_none() || run.split == t.split)
+                    };
+                    match tasks.iter_mut().find(same) {
+                        Some(task) => {
+                            task.runs.push(index);
+                            task.split = task.split.or(run.split);
+                            task.picture |= picture;
+                        }
+                        None => tasks.push(Task {
+                            runs: vec![index],
+                            scene: at,
+                            method,
+                            level,
+                            poisson,
+                            picture,
+                            split: run.split,
+                        }),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The method at each level or node count that the run table names; as it is where it names none.
+fn sizes(run: &scene::Run, method: &scene::Method) -> Vec<(u32, scene::Method)> {
+    let sized = |size: Size| {
+        let mut method = method.clone();
+        resize(&mut method, &size);
+        method
+    };
+    if !run.levels.is_empty() {
+        return run.levels.iter().map(|&level| (level, sized(Size::Level(level)))).collect();
+    }
+    if let (scene::Family::Efg(_), false) = (&method.family, run.nodes.is_empty()) {
+        return run.nodes.iter().map(|&nodes| (0, sized(Size::Nodes(nodes)))).collect();
+    }
+    vec![(own_level(method), method.clone())]
+}
+
+fn own_level(method: &scene::Method) -> u32 {
+    let size = match &method.family {
+        scene::Family::Fem(fem) => &fem.size,
+        scene::Family::Efg(efg) => match &efg.cloud {
+            scene::Cloud::Mesh { size, .. } => size,
+            scene::Cloud::Uniform { .. }
+            | scene::Cloud::Graded { .. }
+            | scene::Cloud::Refined { .. }
+            | scene::Cloud::File { .. } => {
+                return 0;
+            }
+        },
+    };
+    if let Size::Level(level) = size { *level } else { 0 }
+}
+
+/// The method with each kernel that the run table names.
+fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    each(&run.kernels, method, |kernel, _, &name| {
+        *kernel = name;
+    })
+}
+
+/// The method with each support scale that the run table names.
+fn support_scales(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    each(&run.support_scales, method, |_, support, &factor| *support = scene::SupportRule::Scale(factor))
+}
+
+/// The method held in each of the ways that the run table names.
+fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    if run.essentials.is_empty() || !matches!(method.family, scene::Family::Efg(_)) {
+        return vec![method];
+    }
+    let held = |&essential: &scene::Essential| {
+        let mut method = method.clone();
+        if let scene::Family::Efg(efg) = &mut method.family {
+            efg.essential = essential;
+        }
+        method
+    };
+    run.essentials.iter().map(held).collect()
+}
+
+/// Moving least squares changed by each of `values`; the method as it is where there are none, or where it is of another kind.
+fn each<T>(
+    values: &[T],
+    method: scene::Method,
+    change: impl Fn(&mut efg::Kernel, &mut scene::SupportRule, &T),
+) -> Vec<scene::Method> {
+    let with = |value: &T| {
+        let mut method = method.clone();
+        let scene::Family::Efg(efg) = &mut method.family else { return None };
+        let scene::Functions::MovingLeastSquares { kernel, support, .. } = &mut efg.functions else {
+            return None;
+        };
+        change(kernel, support, value);
+        Some(method)
+    };
+    let changed: Vec<scene::Method> = values.iter().filter_map(with).collect();
+    if changed.is_empty() { vec![method] } else { changed }
+}
+
+/// The method on a cloud of each seed that the run table names.
+fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    match run.seeds {
+        0 => vec![method],
+        count => (1..=count).filter_map(|seed| method.seeded(seed)).collect(),
+    }
+}

@@ -1,0 +1,91 @@
+//! The documentation, held against the program: commands run, links lead somewhere, reference pages are fresh.
+//!
+//! Pages are README.md and the Markdown files below docs/src. In a fenced `sh` or `console` block every command is run in
+//! a folder of its own that has a copy of `cases/` and the scenes of the page: a `toml` block that opens with the comment
+//! `# NAME.toml` is the file of that name. Lines of a `console` block that follow a command are what it prints; numbers in
+//! them are not compared. A comment before a block changes what is asked of it:
+//!
+//! ```text
+//! <!-- not run: takes 4 minutes -->   the arguments are parsed, nothing is solved
+//! <!-- exits 2 -->                    the exit code of the block's last command
+//! ```
+
+mod command;
+mod markdown;
+mod reference;
+
+use std::path::{Path, PathBuf};
+
+use markdown::Page;
+
+/// The root of the workspace.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("harness lies in the workspace")
+}
+
+/// README.md and all pages of the book.
+fn pages() -> Vec<Page> {
+    let mut files = vec![root().join("README.md")];
+    let mut folders = vec![root().join("docs/src")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("docs/src is there") {
+            let path = entry.expect("readable").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    files.into_iter().map(Page::read).collect()
+}
+
+#[test]
+fn commands_do_what_the_pages_say() {
+    let mut wrong = Vec::new();
+    for page in pages().iter().filter(|page| page.has_commands()) {
+        wrong.extend(command::failures(page));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn scenes_in_the_pages_are_toml() {
+    for page in pages() {
+        for block in page.blocks.iter().filter(|block| block.language == "toml") {
+            if let Err(bad) = block.text.parse::<toml::Table>() {
+                panic!("{}:{}: {bad}", page.name(), block.line);
+            }
+        }
+    }
+}
+
+#[test]
+fn links_and_includes_lead_to_files() {
+    let missing: Vec<String> = pages()
+        .iter()
+        .flat_map(|page| {
+            let folder: PathBuf = page.path.parent().expect("a file").to_path_buf();
+            let lost = page.targets().into_iter().filter(move |target| !folder.join(target).exists());
+            lost.map(|target| format!("{}: {target}", page.name())).collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(missing.is_empty(), "no such files:\n{}", missing.join("\n"));
+}
+
+#[test]
+fn every_page_is_in_the_summary() {
+    let summary = Page::read(root().join("docs/src/SUMMARY.md"));
+    let listed = summary.targets();
+    for page in pages() {
+        let Ok(path) = page.path.strip_prefix(root().join("docs/src")) else { continue };
+        let path = path.to_str().expect("utf-8");
+        assert!(path == "SUMMARY.md" || listed.iter().any(|l| l == path), "{path} is not in SUMMARY.md");
+    }
+}
+
+#[test]
+fn reference_pages_are_what_the_program_says() {
+    reference::compare_or_write();
+}

@@ -1,0 +1,141 @@
+//! The baseline: every accuracy number of a study as it was when it was last accepted, to be compared with what is found now.
+//!
+//! Bounds in a scene say what must hold; a fault that changes a number by a thousandth holds them all. The baseline sees it.
+//!
+//! A baseline is a TOML file: the processor it was made on, and a table for each run with one line for each quantity. What is
+//! recorded step by step is one array. Times and memory are left out.
+
+mod compare;
+mod tolerance;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::ReportError;
+use crate::history::step;
+use crate::record::Record;
+
+pub use compare::{Change, Comparison};
+
+/// Numbers by quantity, with the unit behind it: `rms-x [m]`, `tool-force by step [N]`.
+pub type Numbers = BTreeMap<String, Vec<f64>>;
+
+/// Accepted numbers of a study, by run and quantity, SI.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    /// The kind of processor: numbers are the same bits on the same kind.
+    pub processor: String,
+    /// Numbers of each run; its name says case, method, settings and size.
+    pub runs: BTreeMap<String, Numbers>,
+}
+
+impl Baseline {
+    /// The numbers of `records` that do not depend on the moment, found on a `processor`.
+    pub fn of(records: &[Record], processor: &str) -> Baseline {
+        let mut by_step: BTreeMap<(String, String), BTreeMap<u64, f64>> = BTreeMap::new();
+        for record in records.iter().filter(|r| !r.is_measured()) {
+            let index = step(record).unwrap_or(0);
+            by_step.entry((run_name(record), quantity_name(record))).or_default().insert(index, record.value);
+        }
+        let mut runs: BTreeMap<String, Numbers> = BTreeMap::new();
+        for ((run, quantity), values) in by_step {
+            runs.entry(run).or_default().insert(quantity, values.into_values().collect());
+        }
+        Baseline { processor: processor.into(), runs }
+    }
+
+    /// Reads a baseline file.
+    pub fn load(path: &Path) -> Result<Baseline, ReportError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+        toml::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
+    }
+
+    /// Writes a baseline file: one line for each quantity, numbers with the fewest digits that give the same bits again.
+    pub fn save(&self, path: &Path) -> Result<(), ReportError> {
+        let mut text = format!("{HEADER}processor = {:?}\n", self.processor);
+        for (run, numbers) in &self.runs {
+            text += &format!("\n[runs.{run:?}]\n");
+            for (quantity, values) in numbers {
+                let values: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
+                text += &format!("{quantity:?} = [{}]\n", values.join(", "));
+            }
+        }
+        std::fs::write(path, text).map_err(|source| ReportError::Io { path: path.into(), source })
+    }
+
+    /// Number of numbers.
+    pub fn count(&self) -> usize {
+        self.runs.values().flatten().map(|(_, values)| values.len()).sum()
+    }
+}
+
+const HEADER: &str = "# Accepted numbers of the quick tier, SI. Made and compared by `cargo xtask baseline`; not to be edited by hand.\n";
+
+/// Case, method, settings and size of a record.
+fn run_name(r: &Record) -> String {
+    let mut name = format!("{} {} {}", r.case, r.method, r.variant);
+    let settings: Vec<String> = r.settings().iter().map(|(key, value)| format!("{key}={value}")).collect();
+    if !settings.is_empty() {
+        name += &format!(" {}", settings.join("; "));
+    }
+    name += &format!(" nu={} level={} nodes={}", r.poisson, r.level, r.nodes);
+    if r.seed != 0 {
+        name += &format!(" seed={}", r.seed);
+    }
+    name
+}
+
+/// Quantity, phase and statistic of a record, and its unit.
+fn quantity_name(r: &Record) -> String {
+    let phase = match (step(r), r.phase.as_str()) {
+        (Some(_), _) => " by step".into(),
+        (None, "") => String::new(),
+        (None, phase) => format!(" {phase}"),
+    };
+    let statistic = if r.statistic == "value" { String::new() } else { format!(" {}", r.statistic) };
+    format!("{}{phase}{statistic} [{}]", r.quantity, r.unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn records() -> Vec<Record> {
+        let record = |quantity: &str, step: Option<u64>, value| Record {
+            case: "plates".into(),
+            method: "tet4".into(),
+            quantity: quantity.into(),
+            step,
+            value,
+            ..Record::blank()
+        };
+        vec![
+            record("rms", None, 0.1 + 0.2),
+            record("tool-force", Some(10), 3.0),
+            record("tool-force", Some(2), 2.0),
+            record("time", None, 1.0),
+        ]
+    }
+
+    #[test]
+    fn a_baseline_is_read_as_it_was_written() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("baseline.toml");
+        let mut records = records();
+        records[1].value = f64::MIN_POSITIVE / 3.0;
+        let made = Baseline::of(&records, "a \"processor\"");
+        made.save(&path).unwrap();
+        assert_eq!(Baseline::load(&path).unwrap(), made);
+    }
+
+    #[test]
+    fn steps_are_in_order_and_times_left_out() {
+        let made = Baseline::of(&records(), "p");
+        let numbers = made.runs.values().next().unwrap();
+        assert_eq!(numbers["tool-force by step [m]"], [2.0, 3.0]);
+        assert_eq!((made.runs.len(), numbers.len(), made.count()), (1, 2, 3));
+    }
+}

@@ -1,0 +1,66 @@
+//! By what program, on what machine and from what files the numbers of a run came.
+
+use serde::{Deserialize, Serialize};
+
+/// A program, as it was built.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Program {
+    /// Version.
+    pub version: String,
+    /// Commit of the source, or `unknown`.
+    pub commit: String,
+    /// Whether the source was changed since that commit.
+    pub dirty: bool,
+    /// Compiler version.
+    pub rustc: String,
+    /// Machine that it is built for, such as `x86_64-unknown-linux-gnu`.
+    pub target: String,
+    /// Instruction sets that the compiler may use, such as `fxsr,sse,sse2`.
+    pub features: String,
+    /// Build profile: `release` or `dev`.
+    pub profile: String,
+}
+
+impl Program {
+    /// The commit, with `+` appended where the source was changed since.
+    pub fn revision(&self) -> String {
+        format!("{}{}", self.commit, if self.dirty { "+" } else { "" })
+    }
+}
+
+/// A machine, as it was when a run began.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Processor model.
+    pub cpu: String,
+    /// Instruction sets that the solvers choose between, such as `avx2,fma`.
+    pub instructions: String,
+    /// Threads that the solvers use.
+    pub threads: u32,
+    /// Load at the start: processes that ran or waited to run in the minute before, on average; `None` where it is not known.
+    pub load: Option<f64>,
+    /// Whether at most a fifth of the processors was busy then: times of a machine that was not quiet are too long.
+    pub quiet: Option<bool>,
+}
+
+/// By what, where and from what a run's numbers came. Carries no date.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the study's or scene's file that the numbers are of.
+    pub source: String,
+    /// The program.
+    pub program: Program,
+    /// The machine.
+    pub machine: Machine,
+    /// Content hash (BLAKE3, hexadecimal) of each scene file, by scene name, sorted.
+    pub scenes: Vec<SceneHash>,
+}
+
+/// The content hash of one scene file.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SceneHash {
+    /// Scene (case) name.
+    pub case: String,
+    /// BLAKE3 hash of the file, hexadecimal.
+    pub blake3: String,
+}

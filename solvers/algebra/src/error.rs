@@ -1,0 +1,47 @@
+//! What can go wrong between a matrix and its solution.
+
+/// Why a system has no (trustworthy) solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AlgebraError {
+    /// A pivot so small beside its diagonal entry that the solution would be noise.
+    #[error(
+        "the stiffness is singular to rounding: smallest pivot over diagonal {ratio:e} (limit {limit:e})"
+    )]
+    NearlySingular {
+        /// Smallest ratio of pivot to diagonal entry.
+        ratio: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// A zero pivot in the indefinite factorisation, even with its regularisation.
+    #[error("zero pivot in the factorisation of the system with constraint rows")]
+    ZeroPivot,
+    /// The solution does not satisfy its equations: dependent, contradictory or badly scaled constraints.
+    #[error("relative residual {residual:e} after the solve (limit {limit:e})")]
+    Residual {
+        /// Relative residual found.
+        residual: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// The decomposition of the frequencies did not end.
+    #[error("no frequencies: the eigenvalues of {dofs} degrees of freedom did not converge")]
+    NoEigenvalues {
+        /// Number of degrees of freedom.
+        dofs: usize,
+    },
+    /// The nested-dissection ordering failed.
+    #[error("METIS could not order the matrix (status {status})")]
+    Ordering {
+        /// METIS' own status.
+        status: i32,
+    },
+    /// Out of memory, or a factor too large to index.
+    #[error("the factor of a matrix of {dofs} degrees of freedom does not fit: {why}")]
+    TooLarge {
+        /// Number of degrees of freedom.
+        dofs: usize,
+        /// The library's reason.
+        why: String,
+    },
+}

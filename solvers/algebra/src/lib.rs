@@ -1,0 +1,38 @@
+//! Linear algebra of solid mechanics: symmetric matrices of 3x3 blocks, and what solves with them.
+//!
+//! A [`BlockPattern`] says which pairs of nodes share a row of a table, a [`Stiffness`] holds their blocks and is summed by rows, a
+//! [`Symmetric`] is its part over the unknowns. [`factor`] takes that to a [`Factorization`]: dense, or sparse in METIS'
+//! nested-dissection order by faer's kernels. [`Unsymmetric`] adds a few unsymmetric entries and borders (GMRES, else LU);
+//! [`eigen`] solves dense eigenproblems.
+//!
+//! ```
+//! use algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};
+//! // [4 1; 1 3] by its upper triangle.
+//! let matrix = Symmetric {
+//!     offsets: vec![0, 1, 3],
+//!     rows: vec![0, 0, 1],
+//!     values: vec![4.0, 1.0, 3.0],
+//!     multipliers: 2,
+//!     vertices: vec![0, 2],
+//! };
+//! let factored = factor(matrix, DENSE_LIMIT)?;
+//! let mut x = [6.0, 7.0];
+//! let residual = factored.solve(&mut x)?;
+//! assert!((x[0] - 1.0).abs() + (x[1] - 2.0).abs() < 1e-15 && residual < 1e-15);
+//! assert_eq!(factored.path().name(), "dense-llt");
+//! # Ok::<(), FactorError>(())
+//! ```
+
+mod error;
+mod linear_solver;
+mod pattern;
+mod stiffness;
+
+pub use error::AlgebraError;
+pub use linear_solver::eigen;
+pub use linear_solver::{
+    Border, DENSE_LIMIT, FactorError, Factorization, Kind, SolverPath, Symbolic, Symmetric, Unsymmetric,
+    analyse, factor, factor_as,
+};
+pub use pattern::{BlockPattern, Connectivity, Incidence};
+pub use stiffness::Stiffness;

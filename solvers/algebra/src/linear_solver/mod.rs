@@ -1,0 +1,353 @@
+//! Direct solution of symmetric systems: the only module that knows faer and METIS.
+//!
+//! The bits of a result do not depend on the number of threads, which only large factorisations take. Every solve
+//! ends with its residual.
+
+mod dense;
+pub mod eigen;
+mod ordering;
+mod sparse;
+mod unsymmetric;
+
+use std::mem::MaybeUninit;
+use std::sync::Arc;
+
+use faer::dyn_stack::MemBuffer;
+
+use crate::{AlgebraError, Stiffness};
+
+pub use sparse::Symbolic;
+pub use unsymmetric::{Border, Unsymmetric};
+
+/// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
+/// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless
+/// cloud's: 0.34 / 1.03 at 300, 1.46 / 1.98 at 540, 5.4 / 4.3 at 882. The crossovers lie near 430 and 750.
+pub const DENSE_LIMIT: usize = 480;
+
+/// Relative residual `|b - A x| / |b|` above which a solution is refused.
+const RESIDUAL_LIMIT: f64 = 1e-8;
+/// Refinement stops below this residual.
+const RESIDUAL_GOAL: f64 = 1e-14;
+/// Static regularisation of a saddle matrix relative to its largest entry: +- this on the diagonal.
+const REGULARISATION: f64 = 1e-9;
+/// Smallest pivot over diagonal entry of a definite matrix; rounding leaves about 1e-16 of a true zero.
+const PIVOT_LIMIT: f64 = 1e-14;
+
+/// Workspace of zeros. Registers reach beyond the ends of faer's matrices, into what other tables left in that memory: indices are
+/// denormal as numbers, and each costs an assist of the processor. A dense factor of 249 unknowns took 1.8 ms, not 0.6.
+fn zeroed(mut memory: MemBuffer) -> MemBuffer {
+    memory.fill(MaybeUninit::new(0));
+    memory
+}
+
+/// Which factorisation served.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolverPath {
+    /// Nothing was free: no system.
+    None,
+    /// Dense Cholesky `L L^T`.
+    DenseLlt,
+    /// Dense `L D L^T` with static regularisation and refinement.
+    DenseLdlt,
+    /// Supernodal Cholesky in METIS nested-dissection order.
+    SparseLlt,
+    /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
+    SparseLdlt,
+}
+
+impl SolverPath {
+    /// The name used in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            SolverPath::None => "none",
+            SolverPath::DenseLlt => "dense-llt",
+            SolverPath::DenseLdlt => "dense-ldlt",
+            SolverPath::SparseLlt => "sparse-llt",
+            SolverPath::SparseLdlt => "sparse-ldlt",
+        }
+    }
+}
+
+/// What is known of a matrix, and so which factorisation serves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Positive definite: `L L^T`.
+    Definite,
+    /// Unknowns beyond [`Symmetric::multipliers`] have a zero or negative block: `L D L^T`, statically regularised.
+    Saddle,
+    /// Symmetric without a promise (a tangent past a limit point): `L D L^T` as it is; the residual check decides.
+    Indefinite,
+}
+
+/// A symmetric matrix: its upper triangle by columns, rows ascending, the diagonal entry always present. Unknowns
+/// from `multipliers` on are Lagrange multipliers or pressures (zero or negative diagonal block).
+#[derive(Clone)]
+pub struct Symmetric {
+    /// Of each column among `rows` and `values`, columns + 1 entries.
+    pub offsets: Vec<usize>,
+    /// Row of each entry.
+    pub rows: Vec<usize>,
+    /// The entries.
+    pub values: Vec<f64>,
+    /// First unknown that is a multiplier or a pressure; their number in all where there is none.
+    pub multipliers: usize,
+    /// First unknown of each vertex of the graph (a node or a multiplier), and the number of unknowns at the end.
+    pub vertices: Vec<usize>,
+}
+
+impl Symmetric {
+    /// Number of unknowns.
+    #[inline]
+    pub fn dim(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Definite unless multipliers follow.
+    pub fn kind(&self) -> Kind {
+        if self.multipliers < self.dim() { Kind::Saddle } else { Kind::Definite }
+    }
+
+    /// The free part of a stiffness: `place` gives each degree of freedom its unknown (`usize::MAX` if held), `free`
+    /// their number.
+    pub fn displacements(stiffness: &Stiffness, place: &[usize], free: usize) -> Symmetric {
+        let capacity = 9 * stiffness.pattern().block_count();
+        let mut m = Symmetric {
+            offsets: vec![0],
+            rows: Vec::with_capacity(capacity),
+            values: Vec::with_capacity(capacity),
+            multipliers: free,
+            vertices: vec![0],
+        };
+        for i in 0..place.len() / 3 {
+            let (columns, blocks) = stiffness.row(i);
+            for a in (0..3).filter(|a| place[3 * i + a] != usize::MAX) {
+                for (&j, block) in columns.iter().zip(blocks) {
+                    let j = j as usize;
+                    for b in 0..3 {
+                        let at = place[3 * j + b];
+                        if at != usize::MAX && (j < i || b <= a) {
+                            m.rows.push(at);
+                            m.values.push(block[(a, b)]);
+                        }
+                    }
+                }
+                m.offsets.push(m.rows.len());
+            }
+            if *m.vertices.last().expect("starts with 0") < m.offsets.len() - 1 {
+                m.vertices.push(m.offsets.len() - 1);
+            }
+        }
+        m
+    }
+
+    /// Makes the diagonal of the unknowns before the multipliers what it was in `diagonal`, times `1 + shift`.
+    pub fn shift(&mut self, diagonal: &[f64], shift: f64) {
+        for (j, d) in diagonal.iter().enumerate().take(self.multipliers) {
+            self.values[self.offsets[j + 1] - 1] = d * (1.0 + shift);
+        }
+    }
+
+    /// `y -= A x`.
+    pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.dim() {
+            let mut sum = 0.0;
+            for k in self.offsets[j]..self.offsets[j + 1] {
+                let (i, a) = (self.rows[k], self.values[k]);
+                sum += a * x[i];
+                if i != j {
+                    y[i] -= a * x[j];
+                }
+            }
+            y[j] -= sum;
+        }
+    }
+
+    /// The diagonal entry of column `j`.
+    #[inline]
+    pub fn diagonal(&self, j: usize) -> f64 {
+        // Rows ascend and the triangle is the upper one: the diagonal entry is the last.
+        self.values[self.offsets[j + 1] - 1]
+    }
+
+    /// The values with the static regularisation added, which makes a saddle matrix quasi-definite (it then has an
+    /// `L D L^T` in any order; Vanderbei 1995).
+    fn regularised(&self) -> Vec<f64> {
+        let largest = self.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let mut values = self.values.clone();
+        for j in 0..self.dim() {
+            let shift = REGULARISATION * largest;
+            values[self.offsets[j + 1] - 1] += if j < self.multipliers { shift } else { -shift };
+        }
+        values
+    }
+}
+
+/// The numbers of a factor.
+pub struct Factor(Numbers);
+
+enum Numbers {
+    Empty,
+    Dense(dense::Dense),
+    Sparse(Box<sparse::Sparse>),
+}
+
+impl Factor {
+    /// Negative pivots: with a saddle matrix as many as multipliers if the rest is definite on their kernel
+    /// (Sylvester's law of inertia).
+    pub fn negative_pivots(&self) -> usize {
+        match &self.0 {
+            Numbers::Empty => 0,
+            Numbers::Dense(factor) => factor.negative_pivots(),
+            Numbers::Sparse(factor) => factor.negative_pivots(),
+        }
+    }
+}
+
+/// A factored matrix; serves any number of right-hand sides.
+pub struct Factorization {
+    /// The matrix, for residuals.
+    pub matrix: Symmetric,
+    /// Its factor, perhaps of a matrix near to it.
+    pub factor: Factor,
+    /// What was promised of the matrix.
+    pub kind: Kind,
+}
+
+/// What went wrong with a definite factorisation; the caller knows why it should have been definite.
+#[derive(Debug)]
+pub enum FactorError {
+    /// A pivot is zero or negative.
+    NotDefinite,
+    /// Anything else.
+    Other(AlgebraError),
+}
+
+impl From<AlgebraError> for FactorError {
+    fn from(error: AlgebraError) -> FactorError {
+        FactorError::Other(error)
+    }
+}
+
+/// Dense up to `dense_limit` unknowns, sparse above.
+pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
+    let kind = matrix.kind();
+    let symbolic = analyse(&matrix, dense_limit)?;
+    let factor = factor_as(symbolic.as_ref(), &matrix, kind)?;
+    Ok(Factorization { matrix, factor, kind })
+}
+
+/// The symbolic analysis that any number of matrices of one pattern share; `None` for a dense factorisation.
+pub fn analyse(matrix: &Symmetric, dense_limit: usize) -> Result<Option<Arc<Symbolic>>, AlgebraError> {
+    if matrix.dim() <= dense_limit { Ok(None) } else { Ok(Some(Arc::new(Symbolic::new(matrix)?))) }
+}
+
+/// Numbers of the factor of a matrix with the pattern that was analysed.
+pub fn factor_as(
+    symbolic: Option<&Arc<Symbolic>>,
+    matrix: &Symmetric,
+    kind: Kind,
+) -> Result<Factor, FactorError> {
+    Ok(Factor(match symbolic {
+        _ if matrix.dim() == 0 => Numbers::Empty,
+        None => Numbers::Dense(dense::Dense::new(matrix, kind)?),
+        Some(symbolic) => Numbers::Sparse(Box::new(sparse::Sparse::new(symbolic.clone(), matrix, kind)?)),
+    }))
+}
+
+/// Refuses a pivot that is mere rounding beside its diagonal entry.
+fn check_pivots(ratios: impl Iterator<Item = f64>) -> Result<(), FactorError> {
+    let ratio = ratios.fold(f64::INFINITY, f64::min);
+    if ratio.is_nan() || ratio < PIVOT_LIMIT {
+        return Err(AlgebraError::NearlySingular { ratio, limit: PIVOT_LIMIT }.into());
+    }
+    Ok(())
+}
+
+fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Solves in place by `once` and returns the relative residual. Refines until the residual is at rounding or no longer
+/// halves; with multipliers that takes about three steps, else none or one.
+fn refined(
+    b: &mut [f64],
+    once: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
+    subtract_product: impl Fn(&[f64], &mut [f64]),
+) -> Result<f64, AlgebraError> {
+    let size = norm(b);
+    if size == 0.0 {
+        return Ok(0.0);
+    }
+    let mut x = vec![0.0; b.len()];
+    let mut rest = b.to_vec();
+    let mut residual = f64::INFINITY;
+    for _ in 0..12 {
+        let mut step = rest.clone();
+        once(&mut step)?;
+        let trial: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
+        let mut left = b.to_vec();
+        subtract_product(&trial, &mut left);
+        let reached = norm(&left) / size;
+        // A NaN fails this comparison and keeps the last good solution, or none.
+        if !(reached < residual) {
+            break;
+        }
+        let stalled = reached > 0.5 * residual;
+        (x, rest, residual) = (trial, left, reached);
+        if residual < RESIDUAL_GOAL || stalled {
+            break;
+        }
+    }
+    if !(residual <= RESIDUAL_LIMIT) {
+        return Err(AlgebraError::Residual { residual, limit: RESIDUAL_LIMIT });
+    }
+    b.copy_from_slice(&x);
+    Ok(residual)
+}
+
+impl Factorization {
+    /// Solves in place and returns the relative residual.
+    pub fn solve(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
+        refined(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
+    }
+
+    fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+        match &self.factor.0 {
+            Numbers::Empty => Ok(()),
+            Numbers::Dense(factor) => {
+                factor.solve(b);
+                Ok(())
+            }
+            Numbers::Sparse(factor) => factor.solve(b),
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn dim(&self) -> usize {
+        self.matrix.dim()
+    }
+
+    /// Numbers stored in the factor.
+    pub fn nonzeros(&self) -> usize {
+        match &self.factor.0 {
+            Numbers::Empty => 0,
+            Numbers::Dense(_) => self.dim() * (self.dim() + 1) / 2,
+            Numbers::Sparse(factor) => factor.nonzeros(),
+        }
+    }
+
+    /// Which factorisation it is.
+    pub fn path(&self) -> SolverPath {
+        match (&self.factor.0, self.kind == Kind::Definite) {
+            (Numbers::Empty, _) => SolverPath::None,
+            (Numbers::Dense(_), true) => SolverPath::DenseLlt,
+            (Numbers::Dense(_), false) => SolverPath::DenseLdlt,
+            (Numbers::Sparse(_), true) => SolverPath::SparseLlt,
+            (Numbers::Sparse(_), false) => SolverPath::SparseLdlt,
+        }
+    }
+}

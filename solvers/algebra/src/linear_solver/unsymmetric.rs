@@ -1,0 +1,208 @@
+//! Unsymmetric systems: the tangent of a body on which friction slides, or which tools press by force.
+
+use faer::MatMut;
+use faer::prelude::Solve;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{SparseColMat, Triplet};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+use super::{Factorization, dot, norm, refined};
+use crate::AlgebraError;
+
+/// Krylov vectors kept; the skew part has the rank of the sliding points at most, and a coefficient of friction of
+/// 0.15 needs about 10.
+const KRYLOV: usize = 40;
+/// A row and a column beyond those of a matrix: a tool driven by force, whose closure is unknown.
+pub struct Border {
+    /// Column, without its last entry.
+    pub column: Vec<f64>,
+    /// Row, without its last entry.
+    pub row: Vec<f64>,
+    /// The entry that both end in.
+    pub corner: f64,
+}
+
+/// A factored symmetric matrix, a few unsymmetric entries `(row, column, value)` on top of it, and borders around it:
+/// `[S + U, C; R, D]`, D diagonal.
+///
+/// Solved by GMRES (Saad & Schultz 1986) with the factor of `[S, C; R, D]` as the preconditioner; by sparse LU with
+/// partial pivoting where that does not converge. On 1331 nodes one LU took as long as forty factorisations of the
+/// symmetric part.
+pub struct Unsymmetric {
+    symmetric: Factorization,
+    extra: Vec<(usize, usize, f64)>,
+    borders: Vec<Border>,
+    /// `S^-1 C`, and `D - R S^-1 C`.
+    solved: Vec<Vec<f64>>,
+    schur: LU<f64, Dyn, Dyn>,
+    /// Whether the symmetric part of that Schur complement is positive definite.
+    stable: bool,
+}
+
+impl Unsymmetric {
+    /// Entries of one place add up.
+    pub fn new(
+        symmetric: Factorization,
+        extra: Vec<(usize, usize, f64)>,
+        borders: Vec<Border>,
+    ) -> Result<Unsymmetric, AlgebraError> {
+        let mut solved: Vec<Vec<f64>> = borders.iter().map(|b| b.column.clone()).collect();
+        solved.iter_mut().try_for_each(|x| symmetric.solve_once(x))?;
+        let schur = DMatrix::from_fn(borders.len(), borders.len(), |i, j| {
+            let corner = if i == j { borders[i].corner } else { 0.0 };
+            corner - dot(&borders[i].row, &solved[j])
+        });
+        let stable = (&schur + schur.transpose()).cholesky().is_some();
+        Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu(), stable })
+    }
+
+    /// Whether the borders leave the matrix positive definite, if it is without them.
+    pub fn stable(&self) -> bool {
+        self.stable
+    }
+
+    fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+        let (x, moves) = x.split_at(self.symmetric.dim());
+        let (y, lacks) = y.split_at_mut(x.len());
+        self.symmetric.matrix.subtract_product(x, y);
+        for &(i, j, a) in &self.extra {
+            y[i] -= a * x[j];
+        }
+        for ((border, d), lack) in self.borders.iter().zip(moves).zip(lacks) {
+            y.iter_mut().zip(&border.column).for_each(|(y, c)| *y -= c * d);
+            *lack -= border.corner * d + dot(&border.row, x);
+        }
+    }
+
+    /// Without the unsymmetric entries: the borders by block elimination.
+    fn precondition(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+        let (x, moves) = b.split_at_mut(self.symmetric.dim());
+        self.symmetric.solve_once(x)?;
+        if moves.is_empty() {
+            return Ok(());
+        }
+        let lacks = moves.iter().zip(&self.borders).map(|(lack, border)| lack - dot(&border.row, x));
+        let mut found = DVector::from_iterator(moves.len(), lacks);
+        if !self.schur.solve_mut(&mut found) {
+            return Err(AlgebraError::ZeroPivot);
+        }
+        moves.copy_from_slice(found.as_slice());
+        for (column, d) in self.solved.iter().zip(found.iter()) {
+            x.iter_mut().zip(column).for_each(|(x, c)| *x -= c * d);
+        }
+        Ok(())
+    }
+
+    /// Solves in place to a relative residual of `goal`, or ten times that, and returns it; by LU where that fails.
+    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<f64, AlgebraError> {
+        let size = norm(b);
+        if size == 0.0 {
+            return Ok(0.0);
+        }
+        let mut x = vec![0.0; b.len()];
+        let mut residual = 1.0;
+        // Restarted twice: a round works on what rounding, or the number of vectors, left of the one before.
+        for _ in 0..3 {
+            let mut rest = b.to_vec();
+            self.subtract_product(&x, &mut rest);
+            residual = norm(&rest) / size;
+            if residual <= goal || !residual.is_finite() {
+                break;
+            }
+            let step = self.gmres(&rest, goal / residual)?;
+            x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+        }
+        if residual <= 10.0 * goal {
+            b.copy_from_slice(&x);
+            return Ok(residual);
+        }
+        self.direct(b)
+    }
+
+    /// One cycle, until the residual is `goal` times that of the start: the x in the Krylov space of `A M^-1` that makes `|rest - A x|` least.
+    fn gmres(&self, rest: &[f64], goal: f64) -> Result<Vec<f64>, AlgebraError> {
+        let size = norm(rest);
+        let mut basis: Vec<Vec<f64>> = vec![rest.iter().map(|r| r / size).collect()];
+        let mut preconditioned: Vec<Vec<f64>> = Vec::new();
+        // Columns of the Hessenberg matrix made upper triangular by rotations, and the rotated right-hand side.
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut rotations: Vec<(f64, f64)> = Vec::new();
+        let mut right = vec![size];
+        for k in 0..KRYLOV {
+            let mut z = basis[k].clone();
+            self.precondition(&mut z)?;
+            let mut w = vec![0.0; z.len()];
+            self.subtract_product(&z, &mut w);
+            w.iter_mut().for_each(|w| *w = -*w);
+            preconditioned.push(z);
+            let mut h = Vec::with_capacity(k + 2);
+            for v in &basis {
+                let along = dot(v, &w);
+                w.iter_mut().zip(v).for_each(|(w, v)| *w -= along * v);
+                h.push(along);
+            }
+            let next = norm(&w);
+            for (i, &(c, s)) in rotations.iter().enumerate() {
+                (h[i], h[i + 1]) = (c * h[i] + s * h[i + 1], c * h[i + 1] - s * h[i]);
+            }
+            let length = h[k].hypot(next);
+            let (c, s) = (h[k] / length, next / length);
+            h[k] = length;
+            rotations.push((c, s));
+            columns.push(h);
+            right.push(-s * right[k]);
+            right[k] *= c;
+            if right[k + 1].abs() <= 0.5 * goal * size || !(next > 0.0) {
+                break;
+            }
+            basis.push(w.iter().map(|w| w / next).collect());
+        }
+        let m = columns.len();
+        let mut y = vec![0.0; m];
+        for i in (0..m).rev() {
+            let sum: f64 = (i + 1..m).map(|j| columns[j][i] * y[j]).sum();
+            y[i] = (right[i] - sum) / columns[i][i];
+        }
+        let mut x = vec![0.0; rest.len()];
+        for (z, y) in preconditioned.iter().zip(&y) {
+            x.iter_mut().zip(z).for_each(|(x, z)| *x += y * z);
+        }
+        Ok(x)
+    }
+
+    fn direct(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
+        let matrix = &self.symmetric.matrix;
+        let n = b.len();
+        let mut triplets = Vec::with_capacity(2 * matrix.rows.len() + self.extra.len());
+        for j in 0..matrix.dim() {
+            for k in matrix.offsets[j]..matrix.offsets[j + 1] {
+                let (i, value) = (matrix.rows[k], matrix.values[k]);
+                triplets.push(Triplet::new(i, j, value));
+                if i != j {
+                    triplets.push(Triplet::new(j, i, value));
+                }
+            }
+        }
+        triplets.extend(self.extra.iter().map(|&(i, j, v)| Triplet::new(i, j, v)));
+        for (k, border) in (matrix.dim()..).zip(&self.borders) {
+            let entries = border
+                .row
+                .iter()
+                .zip(&border.column)
+                .enumerate()
+                .filter(|(_, (r, c))| **r != 0.0 || **c != 0.0);
+            triplets.extend(entries.flat_map(|(i, (&r, &c))| [Triplet::new(k, i, r), Triplet::new(i, k, c)]));
+            triplets.push(Triplet::new(k, k, border.corner));
+        }
+        let failed = |why: String| AlgebraError::TooLarge { dofs: n, why };
+        let full =
+            SparseColMat::try_new_from_triplets(n, n, &triplets).map_err(|e| failed(format!("{e:?}")))?;
+        let symbolic = SymbolicLu::try_new(full.symbolic()).map_err(|e| failed(format!("{e:?}")))?;
+        let lu = Lu::try_new_with_symbolic(symbolic, full.as_ref()).map_err(|_| AlgebraError::ZeroPivot)?;
+        let once = |x: &mut [f64]| {
+            lu.solve_in_place(MatMut::from_column_major_slice_mut(x, n, 1));
+            Ok(())
+        };
+        refined(b, once, |x, y| self.subtract_product(x, y))
+    }
+}

@@ -1,0 +1,158 @@
+#![allow(non_snake_case)] // G and K as in the formulas
+//! The stiffness matrix: assembly by owner-computes, one node row at a time, and the product with a vector.
+//!
+//! Each row gathers from the points that see its node, in one fixed order, whichever thread does it: the bits do not
+//! depend on the number of threads.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use shape::{Matrix3, Vector3};
+
+use crate::pattern::{BlockPattern, Incidence};
+
+/// Rows per task. Late rows of a lower triangle are the long ones: 83 nodes in tasks of 32 keep one of two threads waiting.
+const ROWS: usize = 8;
+/// One block row of the lower triangle.
+struct Row<'a> {
+    node: usize,
+    columns: &'a [u32],
+    blocks: &'a mut [Matrix3],
+}
+
+impl Row<'_> {
+    #[inline]
+    fn set_slots(&self, slot: &mut [u32]) {
+        for (at, &j) in self.columns.iter().enumerate() {
+            slot[j as usize] = at as u32;
+        }
+    }
+}
+
+/// Symmetric matrix of 3x3 blocks, the lower triangle stored; N/m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stiffness {
+    pattern: BlockPattern,
+    blocks: Vec<Matrix3>,
+}
+
+impl Stiffness {
+    /// Zeros at every place of a pattern.
+    pub fn zeros(pattern: BlockPattern) -> Stiffness {
+        let blocks = vec![Matrix3::zeros(); pattern.block_count()];
+        Stiffness { pattern, blocks }
+    }
+
+    /// The symbolic pattern.
+    #[inline]
+    pub fn pattern(&self) -> &BlockPattern {
+        &self.pattern
+    }
+
+    /// Columns (ascending, the diagonal last) and blocks of one row of the lower triangle.
+    #[inline]
+    pub fn row(&self, node: usize) -> (&[u32], &[Matrix3]) {
+        (self.pattern.row(node), &self.blocks[self.pattern.range(node)])
+    }
+
+    /// `K u`, N.
+    pub fn multiply(&self, u: &[Vector3]) -> Vec<Vector3> {
+        let mut out = vec![Vector3::zeros(); u.len()];
+        for i in 0..u.len() {
+            let (columns, blocks) = self.row(i);
+            let mut sum = Vector3::zeros();
+            for (&j, block) in columns.iter().zip(blocks) {
+                sum += block * u[j as usize];
+                if j as usize != i {
+                    out[j as usize] += block.tr_mul(&u[i]);
+                }
+            }
+            out[i] += sum;
+        }
+        out
+    }
+
+    /// The block rows in this order, by tasks of a few.
+    fn tasks(&mut self, order: impl Iterator<Item = usize>) -> Vec<Vec<Row<'_>>> {
+        let pattern = &self.pattern;
+        let mut rest = &mut self.blocks[..];
+        let mut rows: Vec<Option<Row>> = (0..pattern.node_count())
+            .map(|node| {
+                let (blocks, after) = std::mem::take(&mut rest).split_at_mut(pattern.range(node).len());
+                rest = after;
+                Some(Row { node, columns: pattern.row(node), blocks })
+            })
+            .collect();
+        let mut ordered = order.map(|node| rows[node].take().expect("an order names every row once"));
+        let mut tasks = Vec::new();
+        loop {
+            let task: Vec<Row> = ordered.by_ref().take(ROWS).collect();
+            if task.is_empty() {
+                return tasks;
+            }
+            tasks.push(task);
+        }
+    }
+
+    /// Runs `gather(i, slot, row)` for every block row: `slot[j]` is the place of column `j` in `row`.
+    pub fn for_each_row(&mut self, gather: impl Fn(usize, &[u32], &mut [Matrix3]) + Sync) {
+        let nodes = self.pattern.node_count();
+        self.tasks(0..nodes).into_par_iter().for_each_init(
+            || vec![0; nodes],
+            |slot, rows| {
+                for row in rows {
+                    row.set_slots(slot);
+                    gather(row.node, slot, row.blocks);
+                }
+            },
+        );
+    }
+
+    /// Sums of all block rows over the entries `incidence` of a table, whose rows are visited in tiles of `tile` by several
+    /// block rows together, so that they stay in the cache. `gather(seen, slot, sums)` adds to sums that start as
+    /// `zero`, `slot[j]` the place of column `j` among them; after each of the `parts` of the table
+    /// `finish(part, node, slot, sums, blocks)` takes them and leaves zeros.
+    pub fn by_tiles<S: Copy + Send + Sync>(
+        &mut self,
+        incidence: &Incidence,
+        parts: &[Range<usize>],
+        tile: usize,
+        zero: S,
+        gather: impl Fn(&[(u32, u32)], &[u32], &mut [S]) + Sync,
+        finish: impl Fn(usize, usize, &[u32], &mut [S], &mut [Matrix3]) + Sync,
+    ) {
+        let nodes = self.pattern.node_count();
+        let mut order: Vec<usize> = (0..nodes).collect();
+        order.sort_by_key(|&i| incidence.of(i).first());
+        self.tasks(order.into_iter()).into_par_iter().for_each_init(
+            || vec![(vec![0; nodes], Vec::new()); ROWS],
+            |scratch, mut rows| {
+                let mut seen: Vec<&[(u32, u32)]> = rows.iter().map(|row| incidence.of(row.node)).collect();
+                for (row, (slot, sums)) in rows.iter().zip(&mut *scratch) {
+                    row.set_slots(slot);
+                    // Those of rows before are zero again.
+                    sums.resize(row.columns.len(), zero);
+                }
+                for (part, range) in parts.iter().enumerate() {
+                    let next = |seen: &[&[(u32, u32)]]| {
+                        let first =
+                            seen.iter().filter_map(|seen| seen.first()).map(|of| of.0 as usize).min()?;
+                        (first < range.end).then_some(first)
+                    };
+                    while let Some(first) = next(&seen) {
+                        let end = (first + tile).min(range.end);
+                        for (seen, (slot, sums)) in seen.iter_mut().zip(&mut *scratch) {
+                            let (here, later) =
+                                seen.split_at(seen.partition_point(|&(row, _)| (row as usize) < end));
+                            gather(here, slot, sums);
+                            *seen = later;
+                        }
+                    }
+                    for (row, (slot, sums)) in rows.iter_mut().zip(&mut *scratch) {
+                        finish(part, row.node, slot, sums, row.blocks);
+                    }
+                }
+            },
+        );
+    }
+}

@@ -1,0 +1,232 @@
+//! Dimensions: which units a key takes, and what to write where they are missing or wrong.
+
+use crate::problem::Problem;
+use crate::quantity::{Exponents, Quantity};
+
+/// The dimensions that scene files name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Metres.
+    Length,
+    /// Pascals; moduli, tractions and stresses too.
+    Pressure,
+    /// Kilograms per cubic metre.
+    Density,
+    /// Newtons.
+    Force,
+    /// Newtons per metre.
+    LineForce,
+    /// Seconds.
+    Time,
+    /// Newtons per cubic metre.
+    BodyForce,
+    /// Pascals per metre: slopes of contact. The same units as a force per volume, another meaning.
+    ContactSlope,
+    /// One per metre.
+    Curvature,
+    /// One per second.
+    Rate,
+    /// Radians.
+    Angle,
+    /// Joules.
+    Energy,
+    /// Kilograms.
+    Mass,
+    /// Cubic metres.
+    Volume,
+    /// Radians per second.
+    AngularFrequency,
+    /// A bare number.
+    None,
+    /// Bytes, as a bare number.
+    Bytes,
+}
+
+impl Dimension {
+    /// Every dimension.
+    pub const ALL: &[Dimension] = &[
+        Dimension::Length,
+        Dimension::Pressure,
+        Dimension::Density,
+        Dimension::Force,
+        Dimension::LineForce,
+        Dimension::Time,
+        Dimension::BodyForce,
+        Dimension::ContactSlope,
+        Dimension::Curvature,
+        Dimension::Rate,
+        Dimension::Angle,
+        Dimension::Energy,
+        Dimension::Mass,
+        Dimension::Volume,
+        Dimension::AngularFrequency,
+        Dimension::None,
+        Dimension::Bytes,
+    ];
+
+    /// Exponents of metre, kilogram, second and radian.
+    pub fn exponents(self) -> Exponents {
+        match self {
+            Dimension::Length => [1, 0, 0, 0],
+            Dimension::Pressure => [-1, 1, -2, 0],
+            Dimension::Density => [-3, 1, 0, 0],
+            Dimension::Force => [1, 1, -2, 0],
+            Dimension::LineForce => [0, 1, -2, 0],
+            Dimension::Time => [0, 0, 1, 0],
+            Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0],
+            Dimension::Curvature => [-1, 0, 0, 0],
+            Dimension::Rate => [0, 0, -1, 0],
+            Dimension::Angle => [0, 0, 0, 1],
+            Dimension::Energy => [2, 1, -2, 0],
+            Dimension::Mass => [0, 1, 0, 0],
+            Dimension::Volume => [3, 0, 0, 0],
+            Dimension::AngularFrequency => [0, 0, -1, 1],
+            Dimension::None | Dimension::Bytes => [0, 0, 0, 0],
+        }
+    }
+
+    /// The name in messages and in the schema.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dimension::Length => "length",
+            Dimension::Pressure => "pressure",
+            Dimension::Density => "density",
+            Dimension::Force => "force",
+            Dimension::LineForce => "force per length",
+            Dimension::Time => "time",
+            Dimension::BodyForce => "force per volume",
+            Dimension::ContactSlope => "pressure per length",
+            Dimension::Curvature => "curvature",
+            Dimension::Rate => "rate",
+            Dimension::Angle => "angle",
+            Dimension::Energy => "energy",
+            Dimension::Mass => "mass",
+            Dimension::Volume => "volume",
+            Dimension::AngularFrequency => "angular frequency",
+            Dimension::None => "number",
+            Dimension::Bytes => "number of bytes",
+        }
+    }
+
+    /// Unit of the value inside the program, as tables print it.
+    pub const fn si_unit(self) -> &'static str {
+        match self {
+            Dimension::Length => "m",
+            Dimension::Pressure => "Pa",
+            Dimension::Density => "kg/m^3",
+            Dimension::Force => "N",
+            Dimension::LineForce => "N/m",
+            Dimension::Time => "s",
+            Dimension::BodyForce => "N/m^3",
+            Dimension::ContactSlope => "Pa/m",
+            Dimension::Curvature => "1/m",
+            Dimension::Rate => "1/s",
+            Dimension::Angle => "rad",
+            Dimension::Energy => "J",
+            Dimension::Mass => "kg",
+            Dimension::Volume => "m^3",
+            Dimension::AngularFrequency => "rad/s",
+            Dimension::None => "1",
+            Dimension::Bytes => "B",
+        }
+    }
+
+    /// Units to offer, the usual one first.
+    pub fn offered(self) -> &'static [&'static str] {
+        match self {
+            Dimension::Length => &["mm", "m", "cm", "um", "km"],
+            Dimension::Pressure => &["kPa", "Pa", "MPa", "GPa", "N/mm^2"],
+            Dimension::Density => &["kg/m^3", "g/cm^3", "t/mm^3"],
+            Dimension::Force => &["N", "mN", "kN"],
+            Dimension::LineForce => &["N/m", "mN/mm", "kN/m"],
+            Dimension::Time => &["s", "ms", "us", "min", "h"],
+            Dimension::BodyForce => &["N/m^3", "kN/m^3", "N/mm^3"],
+            Dimension::ContactSlope => &["MPa/mm", "kPa/mm", "Pa/m", "N/mm^3"],
+            Dimension::Curvature => &["/m", "1/m", "/mm", "/cm"],
+            Dimension::Rate => &["/s", "1/s", "/ms"],
+            Dimension::Angle => &["deg", "rad", "mrad"],
+            Dimension::Energy => &["J", "mJ", "N mm"],
+            Dimension::Mass => &["kg", "g", "t"],
+            Dimension::Volume => &["mm^3", "m^3", "cm^3"],
+            Dimension::AngularFrequency => &["rad/s", "rad/ms"],
+            Dimension::None | Dimension::Bytes => &[],
+        }
+    }
+
+    /// Whether values are bare numbers, without a unit.
+    pub fn is_plain(self) -> bool {
+        self.offered().is_empty()
+    }
+
+    /// The dimension of that name.
+    pub fn from_name(name: &str) -> Option<Dimension> {
+        Dimension::ALL.iter().copied().find(|d| d.name() == name)
+    }
+
+    fn of(exponents: Exponents) -> Option<Dimension> {
+        Dimension::ALL.iter().copied().find(|d| d.exponents() == exponents)
+    }
+
+    /// The dimension of a quantity, such as that of one in the SI unit `unit` ("" for a bare number).
+    pub fn of_unit(unit: &str) -> Option<Dimension> {
+        Quantity::read(&format!("1 {unit}")).ok().and_then(|q| Dimension::of(q.exponents))
+    }
+
+    /// The name with its article.
+    fn a_name(self) -> String {
+        let article = if matches!(self, Dimension::Angle | Dimension::AngularFrequency | Dimension::Energy) {
+            "an"
+        } else {
+            "a"
+        };
+        format!("{article} {}", self.name())
+    }
+
+    /// `a pressure needs a unit: kPa, Pa, ...`
+    fn need(self) -> String {
+        match self {
+            Dimension::None | Dimension::Bytes => "a number without a unit belongs here".into(),
+            _ => format!("{} needs a unit: {}", self.a_name(), self.offered().join(", ")),
+        }
+    }
+
+    /// What to write instead of the bare number `text`.
+    pub fn fix(self, text: &str) -> String {
+        let unit = self.offered().first().copied().unwrap_or_default();
+        format!("write \"{} {unit}\" ({})", text.trim(), self.need())
+    }
+
+    /// Reads a quantity of this dimension into SI.
+    pub fn read(self, text: &str) -> Result<f64, Problem> {
+        let quantity = match Quantity::read(text) {
+            Err(bad) if bad.help.is_none() => return Err(bad.help(self.need())),
+            other => other?,
+        };
+        self.take(quantity, text)
+    }
+
+    /// The value of a quantity that must have this dimension; `text` is how the file has it.
+    pub fn take(self, quantity: Quantity, text: &str) -> Result<f64, Problem> {
+        if quantity.exponents == self.exponents() {
+            return Ok(quantity.value);
+        }
+        if quantity.exponents == [0; 4] {
+            return Err(Problem::new("has no unit").found(text).help(self.fix(text)));
+        }
+        let is = match Dimension::of(quantity.exponents) {
+            Some(found) => format!("is {}, where {} belongs", found.a_name(), self.a_name()),
+            None => format!("has the wrong dimension for {}", self.a_name()),
+        };
+        Err(Problem::new(is).found(text).help(self.need()))
+    }
+
+    /// Factor to SI of a unit alone, such as the `Pa` of `{ unit = "Pa", of = "z^2" }`.
+    pub fn read_unit(self, text: &str) -> Result<f64, Problem> {
+        if text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+            && !text.trim_start().starts_with("1/")
+        {
+            return Err(Problem::new("is a quantity, not a unit").found(text).help(self.need()));
+        }
+        self.read(&format!("1 {text}")).map_err(|bad| bad.found(text))
+    }
+}

@@ -1,0 +1,302 @@
+//! The metrics, each one entry.
+
+use super::{Kind, Metric, Needs};
+use crate::Dimension;
+
+/// Declares each metric as a static of its own and lists them all.
+macro_rules! metrics {
+    ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident, $needs:ident, $meaning:literal;)*) => {
+        $(
+            #[doc = concat!("`", $name, "`: ", $meaning, ".")]
+            pub static $id: Metric = Metric {
+                name: $name,
+                label: $label,
+                dimension: Dimension::$dimension,
+                kind: Kind::$kind,
+                needs: Needs::$needs,
+                meaning: $meaning,
+            };
+        )*
+        /// Every metric, in the order lists show them.
+        pub static METRICS: &[&Metric] = &[$(&$id),*];
+    };
+}
+
+metrics! {
+    // Errors of displacement, stress and energy.
+    RMS_X: "rms-x", "RMS error along x", Length, Error, Reference,
+        "root mean square error of the displacement along x";
+    RMS_Y: "rms-y", "RMS error along y", Length, Error, Reference,
+        "root mean square error of the displacement along y";
+    RMS_Z: "rms-z", "RMS error along z", Length, Error, Reference,
+        "root mean square error of the displacement along z";
+    RMS: "rms", "RMS error", Length, Error, Reference,
+        "root mean square error of the displacement";
+    MAX_ERROR: "max-error", "largest error", Length, Error, Reference,
+        "largest error of the displacement";
+    RELATIVE_MAX: "relative-max", "relative largest error", None, Error, Reference,
+        "largest error over the largest exact displacement";
+    RELATIVE_RMS: "relative-rms", "relative RMS error", None, Error, Reference,
+        "root mean square error of the displacement over the root mean square of the reference's";
+    PEAK_ERROR: "peak-error", "relative error of the peak", None, Error, Reference,
+        "error of the largest displacement, wherever it is, over the reference's largest";
+    L2: "l2", "relative L2 error", None, Error, Reference,
+        "relative L2 error of the displacement";
+    ENERGY: "energy", "relative energy error", None, Error, Reference,
+        "relative error in the energy norm";
+    STRESS: "stress", "relative stress error", None, Error, Reference,
+        "relative L2 error of the stress";
+    PRESSURE: "pressure", "relative pressure error", None, Error, Reference,
+        "relative L2 error of the pressure";
+    PROBE_ERROR: "probe-error", "relative error at probes", None, Error, Probes,
+        "largest relative error at the probes";
+    HISTORY_ERROR: "history-error", "relative error over time", None, Error, Exact,
+        "largest error at the probes in all recorded states, over the largest exact displacement there";
+    TIP: "tip", "computed over exact", None, Value, Probes,
+        "computed over exact displacement at the first probe";
+    // Parts of an error, and distances from a secondary reference.
+    INTEGRATION_RMS_X: "integration-rms-x", "integration error along x", Length, Error, Reference,
+        "root mean square difference along x from the same method with the study's integration rule";
+    INTEGRATION_RMS_Y: "integration-rms-y", "integration error along y", Length, Error, Reference,
+        "root mean square difference along y from the same method with the study's integration rule";
+    INTEGRATION_RMS_Z: "integration-rms-z", "integration error along z", Length, Error, Reference,
+        "root mean square difference along z from the same method with the study's integration rule";
+    INTEGRATION_RMS: "integration-rms", "integration error", Length, Error, Reference,
+        "root mean square difference from the same method with the study's integration rule";
+    DISCRETISATION_RMS_X: "discretisation-rms-x", "discretisation error along x", Length, Error, Reference,
+        "root mean square error along x of the method with the study's integration rule";
+    DISCRETISATION_RMS_Y: "discretisation-rms-y", "discretisation error along y", Length, Error, Reference,
+        "root mean square error along y of the method with the study's integration rule";
+    DISCRETISATION_RMS_Z: "discretisation-rms-z", "discretisation error along z", Length, Error, Reference,
+        "root mean square error along z of the method with the study's integration rule";
+    DISCRETISATION_RMS: "discretisation-rms", "discretisation error", Length, Error, Reference,
+        "root mean square error of the method with the study's integration rule";
+    BESIDE_RMS_X: "beside-rms-x", "RMS difference from the secondary reference along x", Length, Value, Reference,
+        "root mean square difference along x from the secondary reference (output.beside)";
+    BESIDE_RMS_Y: "beside-rms-y", "RMS difference from the secondary reference along y", Length, Value, Reference,
+        "root mean square difference along y from the secondary reference (output.beside)";
+    BESIDE_RMS_Z: "beside-rms-z", "RMS difference from the secondary reference along z", Length, Value, Reference,
+        "root mean square difference along z from the secondary reference (output.beside)";
+    BESIDE_RMS: "beside-rms", "RMS difference from the secondary reference", Length, Value, Reference,
+        "root mean square difference from the secondary reference (output.beside)";
+    // Transfers to other points.
+    TRANSFER_RMS: "transfer-rms", "RMS change by transfer", Length, Error, Transfer,
+        "root mean square difference of the transferred displacement from that of the method's own shape functions; the worst of all schemes in a check";
+    LINEAR_RMS: "linear-rms", "RMS error of a linear field", Length, Error, Transfer,
+        "root mean square error of a transferred linear field of 10 % strain";
+    TRANSFER_ONLY_RMS_X: "transfer-only-rms-x", "RMS error of transfer alone along x", Length, Error, Transfer,
+        "root mean square error along x of the reference's own field, transferred from the cloud's nodes";
+    TRANSFER_ONLY_RMS_Y: "transfer-only-rms-y", "RMS error of transfer alone along y", Length, Error, Transfer,
+        "root mean square error along y of the reference's own field, transferred from the cloud's nodes";
+    TRANSFER_ONLY_RMS_Z: "transfer-only-rms-z", "RMS error of transfer alone along z", Length, Error, Transfer,
+        "root mean square error along z of the reference's own field, transferred from the cloud's nodes";
+    TRANSFER_ONLY_RMS: "transfer-only-rms", "RMS error of transfer alone", Length, Error, Transfer,
+        "root mean square error of the reference's own field, transferred from the cloud's nodes";
+    BESIDE_TRANSFER_RMS_X: "beside-transfer-rms-x", "RMS error of transfer alone along x, secondary reference", Length, Error, Transfer,
+        "root mean square error along x of the secondary reference's own field, transferred from the cloud's nodes";
+    BESIDE_TRANSFER_RMS_Y: "beside-transfer-rms-y", "RMS error of transfer alone along y, secondary reference", Length, Error, Transfer,
+        "root mean square error along y of the secondary reference's own field, transferred from the cloud's nodes";
+    BESIDE_TRANSFER_RMS_Z: "beside-transfer-rms-z", "RMS error of transfer alone along z, secondary reference", Length, Error, Transfer,
+        "root mean square error along z of the secondary reference's own field, transferred from the cloud's nodes";
+    BESIDE_TRANSFER_RMS: "beside-transfer-rms", "RMS error of transfer alone, secondary reference", Length, Error, Transfer,
+        "root mean square error of the secondary reference's own field, transferred from the cloud's nodes";
+    OUTSIDE: "outside", "targets outside the nodes' hull", None, Count, Transfer,
+        "targets of a transfer outside the convex hull of the nodes or outside the mesh";
+    // Orders of convergence.
+    ORDER_L2: "order-l2", "order of the L2 error", None, Order, Levels,
+        "observed order of the L2 error";
+    ORDER_ENERGY: "order-energy", "order of the energy error", None, Order, Levels,
+        "observed order of the energy error";
+    ORDER_PRESSURE: "order-pressure", "order of the pressure error", None, Order, Levels,
+        "observed order of the pressure error";
+    ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order, Levels,
+        "observed order of the frequency's error";
+    // Vibrations.
+    FREQUENCY_RATIO: "frequency-ratio", "computed over exact frequency", None, Value, ModesReference,
+        "computed over exact frequency, the worst of the modes nearest to the exact ones of that frequency";
+    FREQUENCY_ERROR: "frequency-error", "relative frequency error", None, Error, ModesReference,
+        "distance of frequency-ratio from 1";
+    MODE_OVERLAP: "mode-overlap", "mode overlap", None, Value, ModesReference,
+        "least share of their displacement that lies in the exact modes";
+    SPECTRUM_ERROR: "spectrum-error", "relative error of the spectrum", None, Error, ModesReference,
+        "largest relative error of the reported frequencies, compared one by one in ascending order";
+    SLOW_MODES: "slow-modes", "spurious slow modes", None, Count, ModesReference,
+        "modes slower than 0.9 of the slowest exact one";
+    RIGID_MODES: "rigid-modes", "rigid modes", None, Count, Modes,
+        "modes slower than a thousandth of a shear wave across the body";
+    MASSLESS: "massless", "massless motions", None, Count, Modes,
+        "motions that have stiffness but no mass";
+    MODE: "mode", "mode", None, Count, Modes,
+        "number of a mode, from 1, slowest first";
+    OMEGA: "omega", "angular frequency", AngularFrequency, Value, Modes,
+        "angular frequency of a mode";
+    OMEGA_RATIO: "omega-ratio", "computed over exact angular frequency", None, Value, ModesReference,
+        "angular frequency of a mode over the exact one of the same number";
+    // Tools and contact.
+    CLOSURE: "closure", "tool displacement", Length, Tool, Tool,
+        "displacement of the tool along its direction";
+    TOOL_FORCE: "tool-force", "tool force", Force, Tool, Tool,
+        "force of the tool along its direction";
+    CONTACT_POINTS: "contact-points", "points in contact", None, Tool, Tool,
+        "surface points in contact with the tool";
+    TOOL_FORCE_ERROR: "tool-force-error", "relative force error", None, Tool, ToolReference,
+        "relative error of the tool's force against the reference method, at the same part of the load";
+    PENETRATION: "penetration", "deepest penetration", Length, Value, Tool,
+        "deepest penetration of a tool";
+    LIMIT_CLOSURE: "limit-closure", "tool displacement at the limit", Length, Tool, Tool,
+        "displacement of the tool at the last stable step before the body first lost stability";
+    LIMIT_TOOL_FORCE: "limit-tool-force", "tool force at the limit", Force, Tool, Tool,
+        "force of the tool at the last stable step before the body first lost stability";
+    // Load steps, Newton's method, relaxation.
+    LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
+        "part of the loading that was reached, 0 to 1";
+    LIMIT_LOAD: "limit-load", "load fraction at the limit", None, Value, Steps,
+        "part of the loading at the last stable step before the body first lost stability";
+    LOAD_STEPS: "load-steps", "recorded states", None, Count, Steps,
+        "load steps or recorded states";
+    SMALLEST_J: "smallest-j", "smallest volume ratio", None, Value, Steps,
+        "smallest volume ratio J of all quadrature points";
+    STRAIN_ENERGY_ERROR: "strain-energy-error", "relative energy error", None, Error, StepsReference,
+        "relative error of the strain energy against the reference method, at the same part of the load";
+    PROBE_DIFFERENCE: "probe-difference", "largest difference at probes", Length, Error, ProbesReference,
+        "largest distance from the reference method's displacement at the probes, at the same part of the load";
+    PROBE_BAND: "probe-band", "uncertainty of the reference at probes", Length, Value, ProbesReference,
+        "largest distance between the solutions that a stored reference is made of, at the probes";
+    NEWTON_ITERATIONS: "newton-iterations", "Newton iterations", None, Count, Newton,
+        "linear systems that Newton's method solved, of all steps";
+    CUT_BACKS: "cut-backs", "cut-back steps", None, Count, Newton,
+        "steps that failed and were cut";
+    RELAXATION_STEPS: "relaxation-steps", "relaxation steps", None, Count, Steps,
+        "pseudo-time steps of dynamic relaxation";
+    RELAXATION_ERROR: "relaxation-error", "relaxation error", None, Error, Steps,
+        "estimated relative error of the displacement at which dynamic relaxation stopped";
+    RELAXATION_RESIDUAL: "relaxation-residual", "relaxation residual", None, Error, Steps,
+        "relative residual at which dynamic relaxation stopped";
+    REPEATED_ERROR: "repeated-error", "relative error of a repeated frame", None, Error, Run,
+        "largest difference at the probes between a frame of the repeated loading and the direct solution, over the largest displacement there";
+    // Dynamics.
+    TIME: "time", "time", Time, Cost, Run,
+        "seconds of a phase; of a recorded state in dynamics, the model's own time";
+    TIME_STEPS: "time-steps", "time steps", None, Count, Dynamics,
+        "time steps made";
+    TIME_REACHED: "time-reached", "time reached", Time, Value, Dynamics,
+        "time up to which the motion was followed";
+    CRITICAL_STEP: "critical-step", "critical time step", Time, Value, Explicit,
+        "smallest critical time step estimated; of vibrations 2 / omega of the fastest";
+    STEP_ERROR: "step-error", "error of a time step", Length, Error, Dynamics,
+        "largest estimated error of the displacement in one implicit time step";
+    ENERGY_DRIFT: "energy-drift", "relative energy drift", None, Error, Dynamics,
+        "largest error of the energy balance over its largest term; with implicit steps what the scheme dissipates";
+    PERIOD: "period", "period", Time, Value, Motion,
+        "mean period of the first probe: between its passages upwards through the middle of its recorded displacement";
+    MASS: "mass", "mass", Mass, Value, Dynamics,
+        "mass of the body";
+    TOOL_MASS: "tool-mass", "tool mass", Mass, Value, Explicit,
+        "mass given to tools that are driven by a force; 0 without one";
+    KINETIC_ENERGY: "kinetic-energy", "kinetic energy", Energy, Value, Dynamics,
+        "kinetic energy of the body and of tools that are driven by a force";
+    INTERNAL_WORK: "internal-work", "internal work", Energy, Value, Dynamics,
+        "work done on relaxing tissue by its stresses";
+    EXTERNAL_WORK: "external-work", "external work", Energy, Value, Explicit,
+        "work of loads, prescribed displacements and tools";
+    WORK_ON_BODY: "work-on-body", "work on the body", Energy, Value, Dynamics,
+        "work of loads, prescribed displacements and contact on the body";
+    CONTACT_ENERGY: "contact-energy", "contact energy", Energy, Value, Explicit,
+        "energy stored in the contact penalty";
+    FRICTION_DISSIPATION: "friction-dissipation", "friction dissipation", Energy, Value, Explicit,
+        "energy dissipated by friction";
+    DAMPING_DISSIPATION: "damping-dissipation", "damping dissipation", Energy, Value, Dynamics,
+        "energy dissipated by damping";
+    SCHEME_DISSIPATION: "scheme-dissipation", "numerical dissipation", Energy, Value, Dynamics,
+        "energy dissipated by the implicit time-stepping scheme";
+    // Any run.
+    MAX_X: "max-x", "largest displacement along x", Length, Value, Run,
+        "largest displacement along x, either way";
+    MAX_Y: "max-y", "largest displacement along y", Length, Value, Run,
+        "largest displacement along y, either way";
+    MAX_Z: "max-z", "largest displacement along z", Length, Value, Run,
+        "largest displacement along z, either way";
+    MAX: "max", "largest displacement", Length, Value, Run,
+        "largest displacement";
+    STRAIN_ENERGY: "strain-energy", "strain energy", Energy, Value, Run,
+        "strain energy";
+    LOAD_X: "load-x", "load along x", Force, Value, Run,
+        "sum of all nodal loads along x";
+    LOAD_Y: "load-y", "load along y", Force, Value, Run,
+        "sum of all nodal loads along y";
+    LOAD_Z: "load-z", "load along z", Force, Value, Run,
+        "sum of all nodal loads along z";
+    VOLUME: "volume", "volume", Volume, Value, Run,
+        "sum of the weights of all quadrature points";
+    VOLUME_ERROR: "volume-error", "relative volume error", None, Error, Run,
+        "relative difference between the integrated volume and the body's";
+    RESIDUAL: "residual", "relative residual", None, Error, Run,
+        "relative residual of the linear solve, of the last static step, or of the worst reported mode";
+    FACTOR_NONZEROS: "factor-nonzeros", "nonzeros of the factor", None, Count, Run,
+        "stored entries of the matrix factor";
+    TARGETS_OUTSIDE: "targets-outside", "targets outside the mesh", None, Count, Run,
+        "points of comparison outside the mesh, where the nearest element is continued";
+    CONSTRAINTS_ELIMINATED: "constraints-eliminated", "eliminated constraints", None, Count, Run,
+        "rows of essential conditions that were eliminated";
+    CONSTRAINTS_DROPPED: "constraints-dropped", "redundant constraints", None, Count, Run,
+        "rows of eliminated essential conditions that follow from the others";
+    FINITE_ELEMENT_NODES: "finite-element-nodes", "finite-element nodes", None, Count, Run,
+        "nodes of finite elements that a cloud is coupled to";
+    NEIGHBOURS_MIN: "neighbours-min", "fewest neighbours", None, Count, Run,
+        "fewest nodes that reach a quadrature point";
+    NEIGHBOURS_MEAN: "neighbours-mean", "mean neighbours", None, Value, Run,
+        "mean number of nodes that reach a quadrature point";
+    NEIGHBOURS_MAX: "neighbours-max", "most neighbours", None, Count, Run,
+        "most nodes that reach a quadrature point";
+    CONDITION: "condition", "largest condition", None, Value, Run,
+        "largest condition estimate of a moment matrix; in records condition-max";
+    CONDITION_MEDIAN: "condition-median", "median condition", None, Value, Run,
+        "median condition estimate of the moment matrices";
+    CONDITION_MAX: "condition-max", "largest condition", None, Value, Run,
+        "largest condition estimate of a moment matrix";
+    FALLBACKS: "fallbacks", "fallbacks", None, Count, Run,
+        "points at which the approximation had to fall back";
+    FALLBACKS_ENLARGED: "fallbacks-enlarged", "enlarged supports", None, Count, Run,
+        "points at which the support was enlarged";
+    FALLBACKS_REGULARISED: "fallbacks-regularised", "regularised moments", None, Count, Run,
+        "points at which the moment matrix was regularised";
+    FALLBACKS_REDUCED: "fallbacks-reduced", "reduced bases", None, Count, Run,
+        "points at which the basis was reduced";
+    // Costs.
+    MEMORY: "memory", "memory", Bytes, Cost, Run,
+        "most memory allocated at once in the run, beyond its input";
+    TIME_PREPARE: "time-prepare", "time to prepare", Time, Cost, Run,
+        "seconds for search and shape functions";
+    TIME_ASSEMBLE: "time-assemble", "time to assemble", Time, Cost, Run,
+        "seconds to assemble";
+    TIME_FACTOR: "time-factor", "time to factor", Time, Cost, Run,
+        "seconds to factor";
+    TIME_SOLVE: "time-solve", "time to solve", Time, Cost, Run,
+        "seconds to solve";
+    TIME_TRANSFER: "time-transfer", "time to transfer", Time, Cost, Transfer,
+        "seconds to apply the transfer";
+    TIME_TOTAL: "time-total", "total time", Time, Cost, Run,
+        "seconds for all phases but reading files";
+}
+
+/// [`RMS`] along x, y and z, and of the magnitude.
+pub static RMS_PARTS: [&Metric; 4] = [&RMS_X, &RMS_Y, &RMS_Z, &RMS];
+
+/// [`INTEGRATION_RMS`] along x, y and z, and of the magnitude.
+pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
+    [&INTEGRATION_RMS_X, &INTEGRATION_RMS_Y, &INTEGRATION_RMS_Z, &INTEGRATION_RMS];
+
+/// [`DISCRETISATION_RMS`] along x, y and z, and of the magnitude.
+pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
+    [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
+
+/// [`BESIDE_RMS`] along x, y and z, and of the magnitude.
+pub static BESIDE_RMS_PARTS: [&Metric; 4] = [&BESIDE_RMS_X, &BESIDE_RMS_Y, &BESIDE_RMS_Z, &BESIDE_RMS];
+
+/// [`TRANSFER_ONLY_RMS`] along x, y and z, and of the magnitude.
+pub static TRANSFER_ONLY_RMS_PARTS: [&Metric; 4] =
+    [&TRANSFER_ONLY_RMS_X, &TRANSFER_ONLY_RMS_Y, &TRANSFER_ONLY_RMS_Z, &TRANSFER_ONLY_RMS];
+
+/// [`BESIDE_TRANSFER_RMS`] along x, y and z, and of the magnitude.
+pub static BESIDE_TRANSFER_RMS_PARTS: [&Metric; 4] =
+    [&BESIDE_TRANSFER_RMS_X, &BESIDE_TRANSFER_RMS_Y, &BESIDE_TRANSFER_RMS_Z, &BESIDE_TRANSFER_RMS];

@@ -1,0 +1,141 @@
+//! Metrics: every number that is recorded, checked or drawn, explained.
+
+mod entries;
+
+pub use entries::*;
+
+use crate::Dimension;
+use crate::names::suggest;
+use crate::problem::Problem;
+
+/// A number computed from one run, or from a family of runs at several levels.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Metric {
+    /// Name in files, records and tables.
+    pub name: &'static str,
+    /// What a column or an axis says, without the unit.
+    pub label: &'static str,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// What sort of number it is.
+    pub kind: Kind,
+    /// What a scene must have for it to be computed.
+    pub needs: Needs,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// What sort of number a metric is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A distance from what is right: lower is better.
+    Error,
+    /// An observed order of convergence: higher is better.
+    Order,
+    /// Time or memory of the machine: lower is better, and no two runs share it to the bit.
+    Cost,
+    /// A result, neither good nor bad by itself.
+    Value,
+    /// How often something happened or is there.
+    Count,
+    /// One per tool: the first tool's has the bare name, others have `-2`, `-3` and so on appended.
+    Tool,
+}
+
+/// What a metric needs to be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// A run alone.
+    Run,
+    /// A `[reference]`.
+    Reference,
+    /// A `[reference]` and probes.
+    Probes,
+    /// A `[reference]` and a study with several levels.
+    Levels,
+    /// A transfer.
+    Transfer,
+    /// A static procedure or dynamics.
+    Steps,
+    /// A procedure by Newton's method.
+    Newton,
+    /// Vibrations.
+    Modes,
+    /// Vibrations, and an exact solution of them.
+    ModesReference,
+    /// Dynamics.
+    Dynamics,
+    /// Explicit dynamics.
+    Explicit,
+    /// A tool.
+    Tool,
+    /// A tool, and a method as `[reference]`.
+    ToolReference,
+    /// Probes, and a method as `[reference]`.
+    ProbesReference,
+    /// A static procedure or dynamics, and a method as `[reference]`.
+    StepsReference,
+    /// Dynamics with probes.
+    Motion,
+    /// Dynamics with probes, and an exact solution that moves.
+    Exact,
+}
+
+impl Metric {
+    /// SI unit of the recorded value; `1` for a bare number.
+    pub const fn unit(&self) -> &'static str {
+        self.dimension.si_unit()
+    }
+
+    /// Whether less of it is better; a result or a count is neither better nor worse.
+    pub const fn lower_is_better(&self) -> bool {
+        matches!(self.kind, Kind::Error | Kind::Cost)
+    }
+
+    /// The name of the metric of one tool, counted from 0.
+    pub fn of_tool(&self, index: usize) -> String {
+        if index == 0 { self.name.into() } else { format!("{}-{}", self.name, index + 1) }
+    }
+}
+
+/// The metric of that name; of `tool-force-2`, which is the second tool's, the metric `tool-force`.
+pub fn find(name: &str) -> Option<&'static Metric> {
+    let named = |name: &str| METRICS.iter().copied().find(|metric| metric.name == name);
+    named(name).or_else(|| {
+        let (bare, number) = name.rsplit_once('-')?;
+        let numbered = number.parse::<usize>().is_ok_and(|n| n >= 2) && !number.starts_with(['0', '+']);
+        named(bare).filter(|metric| numbered && metric.kind == Kind::Tool)
+    })
+}
+
+/// The metric of exactly that name, or the nearest name.
+pub fn named(name: &str) -> Result<&'static Metric, Problem> {
+    METRICS.iter().copied().find(|metric| metric.name == name).ok_or_else(|| {
+        let names: Vec<&str> = METRICS.iter().map(|metric| metric.name).collect();
+        Problem::new("is not a known metric").found(name).help(suggest(name, &names))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_metric_has_one_name_a_label_and_a_meaning() {
+        for (i, metric) in METRICS.iter().enumerate() {
+            assert!(!metric.label.is_empty() && !metric.meaning.is_empty(), "{}", metric.name);
+            assert!(METRICS[..i].iter().all(|other| other.name != metric.name), "{} twice", metric.name);
+            assert_eq!(find(metric.name), Some(*metric));
+        }
+    }
+
+    #[test]
+    fn tools_are_numbered_from_two() {
+        assert_eq!(TOOL_FORCE.of_tool(0), "tool-force");
+        assert_eq!(find(&TOOL_FORCE.of_tool(1)), Some(&TOOL_FORCE));
+        for none in ["tool-force-1", "tool-force-02", "rms-2", "force"] {
+            assert_eq!(find(none), None, "{none}");
+        }
+        assert_eq!(named("tool-farce").unwrap_err().help.unwrap().split(' ').nth(3), Some("'tool-force'?"));
+    }
+}

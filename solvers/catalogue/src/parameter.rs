@@ -1,0 +1,176 @@
+//! Parameters of entries: what they are, what they take, what they are unless given.
+
+use crate::dimension::Dimension;
+use crate::problem::Problem;
+use crate::values::Value;
+
+/// One parameter that an entry takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name in files.
+    pub name: &'static str,
+    /// Its dimension: values are in the SI unit of it.
+    pub dimension: Dimension,
+    /// What kind of value it has.
+    pub kind: Kind,
+    /// Value when not given, of a number; of a flag 1 for true.
+    pub default: Option<f64>,
+    /// Whether it must be given.
+    pub required: bool,
+    /// The values it takes; each of them of a list.
+    pub range: Range,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+}
+
+/// What kind of value a parameter has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Count,
+    /// Three numbers.
+    Vector,
+    /// Any number of numbers.
+    List,
+    /// True or false.
+    Flag,
+}
+
+/// The values that a parameter takes. All are finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Any number.
+    Any,
+    /// Above zero.
+    Positive,
+    /// Zero or more.
+    NotNegative,
+    /// This or more.
+    AtLeast(f64),
+    /// From the first to the second, ends included.
+    Within(f64, f64),
+    /// Above the first and below the second.
+    Between(f64, f64),
+}
+
+impl Parameter {
+    /// A number that must be given.
+    pub const fn required(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
+        let (kind, range) = (Kind::Number, Range::Any);
+        Parameter { name, dimension, kind, default: None, required: true, range, meaning }
+    }
+
+    /// A number that takes a value when it is not given.
+    pub const fn default(
+        name: &'static str,
+        dimension: Dimension,
+        default: f64,
+        meaning: &'static str,
+    ) -> Parameter {
+        let parameter = Parameter::required(name, dimension, meaning);
+        Parameter { default: Some(default), required: false, ..parameter }
+    }
+
+    /// A number that may be absent.
+    pub const fn optional(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
+        Parameter { required: false, ..Parameter::required(name, dimension, meaning) }
+    }
+
+    /// With another kind of value.
+    pub const fn of(self, kind: Kind) -> Parameter {
+        Parameter { kind, ..self }
+    }
+
+    /// With a range.
+    pub const fn within(self, range: Range) -> Parameter {
+        Parameter { range, ..self }
+    }
+
+    /// Refuses a value of another kind or outside of the range.
+    pub fn check(&self, value: &Value) -> Result<(), Problem> {
+        let numbers = match (self.kind, value) {
+            (Kind::Number | Kind::Count, Value::Number(number)) => std::slice::from_ref(number),
+            (Kind::List, Value::List(list)) => list,
+            (Kind::Vector, Value::List(list)) if list.len() == 3 => list,
+            (Kind::Flag, Value::Flag(_)) => &[],
+            _ => return Err(Problem::new(format!("is not {}", self.kind.text()))),
+        };
+        for &number in numbers {
+            if self.kind == Kind::Count && number.fract() != 0.0 {
+                return Err(Problem::new("is not a whole number").found(number));
+            }
+            self.range.check(number)?;
+        }
+        Ok(())
+    }
+}
+
+impl Kind {
+    fn text(self) -> &'static str {
+        match self {
+            Kind::Number => "a number",
+            Kind::Count => "a whole number",
+            Kind::Vector => "a list of 3",
+            Kind::List => "a list",
+            Kind::Flag => "true or false",
+        }
+    }
+}
+
+impl Range {
+    /// Refuses a number outside.
+    pub fn check(self, value: f64) -> Result<(), Problem> {
+        let (holds, problem) = match self {
+            Range::Any => (true, ""),
+            Range::Positive => (value > 0.0, "is not positive"),
+            Range::NotNegative => (value >= 0.0, "is negative"),
+            Range::AtLeast(low) if low == 1.0 && value == 0.0 => (false, "is zero"),
+            Range::AtLeast(low) => (value >= low, "is too small"),
+            Range::Within(low, high) => ((low..=high).contains(&value), "is out of range"),
+            Range::Between(low, high) => (value > low && value < high, "is out of range"),
+        };
+        match holds && value.is_finite() {
+            true => Ok(()),
+            false if value.is_finite() => Err(Problem::new(problem).help(format!("give {}", self.text()))),
+            false => Err(Problem::new("is not a finite number").found(value)),
+        }
+    }
+
+    /// The range in words.
+    pub fn text(self) -> String {
+        match self {
+            Range::Any => "any number".into(),
+            Range::Positive => "a value above zero".into(),
+            Range::NotNegative => "zero or more".into(),
+            Range::AtLeast(low) => format!("{low} or more"),
+            Range::Within(low, high) => format!("{low} to {high}"),
+            Range::Between(low, high) => format!("a value above {low} and below {high}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_another_kind_or_out_of_range_are_refused() {
+        let width = Parameter::required("alpha", Dimension::None, "").within(Range::Within(0.05, 10.0));
+        let power = Parameter::required("power", Dimension::None, "").of(Kind::Count);
+        let half =
+            Parameter::required("half", Dimension::Length, "").of(Kind::Vector).within(Range::Positive);
+        assert_eq!(width.check(&Value::Number(0.05)), Ok(()));
+        assert_eq!(
+            width.check(&Value::Number(0.01)).unwrap_err().to_string(),
+            "is out of range; give 0.05 to 10"
+        );
+        assert!(width.check(&Value::Number(f64::NAN)).is_err());
+        assert!(width.check(&Value::Flag(true)).is_err());
+        assert!(power.check(&Value::Number(1.5)).is_err());
+        assert_eq!(half.check(&Value::List(vec![1.0; 3])), Ok(()));
+        assert!(half.check(&Value::List(vec![1.0; 2])).is_err());
+        assert!(half.check(&Value::List(vec![1.0, 0.0, 1.0])).is_err());
+    }
+}

@@ -1,0 +1,38 @@
+//! Tools that are driven, and where they stand.
+
+use shape::Vector3;
+
+use crate::Tool;
+
+/// How a tool is driven: the value at the end of the loading, reached in proportion to time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// Closure, m.
+    Closure(f64),
+    /// Force that the tool exerts along its way, N; its closure is an unknown.
+    Force(f64),
+}
+
+/// A tool and its drive.
+#[derive(Clone, Copy, Debug)]
+pub struct DrivenTool<'a> {
+    /// The tool.
+    pub tool: &'a Tool,
+    /// Its drive.
+    pub drive: Drive,
+}
+
+/// A tool after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolState {
+    /// Closure, m.
+    pub closure: f64,
+    /// Force on the tool, N.
+    pub force: Vector3,
+    /// Moment on the tool about its own place, N m.
+    pub moment: Vector3,
+    /// Surface points in contact.
+    pub active: usize,
+    /// Deepest penetration, m.
+    pub penetration: f64,
+}

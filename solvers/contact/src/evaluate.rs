@@ -1,0 +1,240 @@
+//! Contact over all points of a surface: tractions, tangents and the resultant on the tool.
+
+use rayon::prelude::*;
+use shape::SurfaceRows;
+use shape::{Matrix3, Vector3};
+
+use super::law::Response;
+use super::{ContactError, ContactHistory, ContactSurface, Slip, Tool};
+
+/// Clusters per task, and the least number that is worth more than one: below, the hand-over to other threads costs
+/// more than the points.
+const CHUNK: usize = 16;
+
+/// The points in contact with one tool, in ascending order, and what they sum up to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contacts {
+    points: Vec<u32>,
+    tractions: Vec<Vector3>,
+    stiffness: Vec<Matrix3>,
+    slip: Vec<Slip>,
+    pressures: Vec<f64>,
+    force: Vector3,
+    moment: Vector3,
+    max_penetration: f64,
+    dissipated: f64,
+}
+
+/// What evaluations did and what they could leave; counts add up over calls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactCounts {
+    /// Evaluations asked for.
+    pub evaluations: u64,
+    /// Of these, skipped whole: no cluster of points near the tool.
+    pub skipped: u64,
+    /// Points whose distance was computed.
+    pub distances: u64,
+    /// Points found in contact.
+    pub active: u64,
+}
+
+impl ContactSurface<'_> {
+    /// Tractions and tangents at all points in contact in the state `u` (m, one vector per node), or `None` if no
+    /// point can be near the tool. The same bits at any number of threads.
+    pub fn evaluate(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+        history: &ContactHistory,
+        counts: &mut ContactCounts,
+    ) -> Result<Option<Contacts>, ContactError> {
+        let found = self.scan(tool, closure, u, history, counts, |response, p, normal| {
+            tool.stiffness(response, p, normal)
+        })?;
+        Ok(found.map(|found| {
+            let stiffness = found.iter().map(|f| f.tangent).collect();
+            Contacts::new(self, tool, closure, u, found, stiffness)
+        }))
+    }
+
+    /// As [`ContactSurface::evaluate`] without tangents: for explicit dynamics, line searches and reactions.
+    pub fn tractions(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+        history: &ContactHistory,
+        counts: &mut ContactCounts,
+    ) -> Result<Option<Contacts>, ContactError> {
+        let found = self.scan(tool, closure, u, history, counts, |_, _, _| ())?;
+        Ok(found.map(|found| Contacts::new(self, tool, closure, u, found, Vec::new())))
+    }
+
+    fn scan<T: Send>(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+        history: &ContactHistory,
+        counts: &mut ContactCounts,
+        tangent: impl Fn(&Response, &Vector3, &Vector3) -> T + Sync,
+    ) -> Result<Option<Vec<Found<T>>>, ContactError> {
+        let rows = self.rows();
+        check_len("displacements", u.len(), rows.rows().node_count())?;
+        check_len("points of the contact history", history.points(), rows.points().len())?;
+        if !closure.is_finite() {
+            return Err(ContactError::Place { what: "the closure" });
+        }
+        counts.evaluations += 1;
+        // A point with a multiplier may touch from outside: as far as l - k_n g > 0.
+        let reach = history.largest_multiplier() / tool.law().penalty();
+        let near = self.near(tool, closure, reach, u)?;
+        if near.is_empty() {
+            counts.skipped += 1;
+            return Ok(None);
+        }
+        counts.distances += near.iter().map(|points| points.len() as u64).sum::<u64>();
+        let touch = |clusters: &[&[u32]]| {
+            let mut found = Vec::new();
+            for &q in clusters.iter().copied().flatten() {
+                let point = q as usize;
+                let p = tool.local(closure, &self.position(point, u));
+                let (gap, normal) = tool.shape().foot(&p);
+                let (slip, multiplier) = (history.slip(point), history.multiplier(point));
+                if let Some(response) = tool.law().respond(gap, &normal, &p, &slip, multiplier) {
+                    let tangent = tangent(&response, &p, &normal);
+                    let traction = tool.to_world(&response.traction);
+                    found.push(Found {
+                        point: q,
+                        gap,
+                        traction,
+                        slip: response.slip,
+                        pressure: response.pressure,
+                        dissipated: response.dissipated,
+                        tangent,
+                    });
+                }
+            }
+            found
+        };
+        let mut found = if near.len() < 2 * CHUNK {
+            touch(&near)
+        } else {
+            near.par_chunks(CHUNK).map(touch).collect::<Vec<_>>().into_iter().flatten().collect()
+        };
+        found.sort_unstable_by_key(|f| f.point);
+        counts.active += found.len() as u64;
+        let limit = tool.deepest();
+        match found.iter().find(|f| -f.gap > limit) {
+            Some(f) => {
+                Err(ContactError::PassedThrough { point: f.point as usize, penetration: -f.gap, limit })
+            }
+            None => Ok(Some(found)),
+        }
+    }
+}
+
+struct Found<T> {
+    point: u32,
+    gap: f64,
+    traction: Vector3,
+    slip: Slip,
+    pressure: f64,
+    dissipated: f64,
+    tangent: T,
+}
+
+impl Contacts {
+    fn new<T>(
+        surface: &ContactSurface,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+        found: Vec<Found<T>>,
+        stiffness: Vec<Matrix3>,
+    ) -> Contacts {
+        let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+        let (mut max_penetration, mut dissipated) = (0.0f64, 0.0);
+        for f in &found {
+            let w = surface.rows().weights()[f.point as usize];
+            let arm = surface.position(f.point as usize, u) - tool.place(closure);
+            force -= f.traction * w;
+            moment -= arm.cross(&f.traction) * w;
+            max_penetration = max_penetration.max(-f.gap);
+            dissipated += f.dissipated * w;
+        }
+        Contacts {
+            points: found.iter().map(|f| f.point).collect(),
+            tractions: found.iter().map(|f| f.traction).collect(),
+            stiffness,
+            slip: found.iter().map(|f| f.slip).collect(),
+            pressures: found.iter().map(|f| f.pressure).collect(),
+            force,
+            moment,
+            max_penetration,
+            dissipated,
+        }
+    }
+
+    /// Points in contact, ascending. All arrays below go by this one.
+    pub fn points(&self) -> &[u32] {
+        &self.points
+    }
+
+    /// Tractions on the tissue, per undeformed area, Pa.
+    pub fn tractions(&self) -> &[Vector3] {
+        &self.tractions
+    }
+
+    /// `dt/dx` (3, 3), Pa/m, unsymmetric in slip; empty from [`ContactSurface::tractions`].
+    /// `dt/dclosure = -(dt/dx) along`.
+    pub fn stiffness(&self) -> &[Matrix3] {
+        &self.stiffness
+    }
+
+    /// History to commit, see [`ContactHistory::commit`].
+    pub fn slip(&self) -> &[Slip] {
+        &self.slip
+    }
+
+    /// Normal pressures, per undeformed area, Pa.
+    pub fn pressures(&self) -> &[f64] {
+        &self.pressures
+    }
+
+    /// Force on the tool, N: `-sum_q w t`.
+    pub fn force(&self) -> Vector3 {
+        self.force
+    }
+
+    /// Moment on the tool about its present [`Tool::place`], N m.
+    pub fn moment(&self) -> Vector3 {
+        self.moment
+    }
+
+    /// Deepest penetration, m; 0 if no point is inside.
+    pub fn max_penetration(&self) -> f64 {
+        self.max_penetration
+    }
+
+    /// Frictional work since the last commit, J.
+    pub fn dissipated(&self) -> f64 {
+        self.dissipated
+    }
+
+    /// Adds the nodal forces `f_I += w N_I t` (N) on the tissue.
+    pub fn add_force(&self, rows: &SurfaceRows, force: &mut [Vector3]) {
+        for (&q, t) in self.points.iter().zip(&self.tractions) {
+            let (nodes, values) = rows.rows().row(q as usize);
+            let load = t * rows.weights()[q as usize];
+            for (&node, value) in nodes.iter().zip(values) {
+                force[node as usize] += load * *value;
+            }
+        }
+    }
+}
+
+fn check_len(what: &'static str, found: usize, expected: usize) -> Result<(), ContactError> {
+    if found == expected { Ok(()) } else { Err(ContactError::Length { what, found, expected }) }
+}

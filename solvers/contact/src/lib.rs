@@ -1,0 +1,41 @@
+//! Contact of a deformable surface with rigid tools: signed distances, a pointwise law with friction, and its
+//! evaluation over the quadrature points of a surface.
+//!
+//! A [`Tool`] is a [`ToolShape`] put somewhere, with a [`ContactLaw`]; it moves by `closure` (m) along its direction.
+//! A [`ContactSurface`] is a surface quadrature with its boxes. Evaluating one against the other gives [`Contacts`]:
+//! tractions per undeformed area and their consistent tangents at the points that touch, and nothing at the others.
+//! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers.
+//!
+//! ```
+//! use contact::{ContactLaw, Slip, Tool, ToolShape};
+//! use shape::{Matrix3, Point3, Vector3};
+//! # fn main() -> Result<(), contact::ContactError> {
+//! // A ball of 5 mm that comes down along -z, without friction; penalty 5e8 Pa/m.
+//! let (ball, law) = (ToolShape::Sphere { radius: 5e-3 }, ContactLaw::frictionless(5e8)?);
+//! let tool = Tool::new(ball, Point3::new(0.0, 0.0, 5e-3), Matrix3::identity(), -Vector3::z(), law)?;
+//! let top = Point3::origin();
+//! let apart = tool.contact(-1e-3, &top, &Slip::NONE, 0.0);
+//! let pressed = tool.contact(1e-5, &top, &Slip::NONE, 0.0);
+//! assert_eq!(apart.traction, Vector3::zeros());
+//! assert!((pressed.traction - Vector3::new(0.0, 0.0, -5e3)).norm() < 1e-9 * 5e3);
+//! # Ok(())
+//! # }
+//! ```
+
+mod drive;
+mod error;
+mod evaluate;
+mod history;
+mod law;
+mod surface;
+mod tool;
+mod tool_shape;
+
+pub use drive::{Drive, DrivenTool, ToolState};
+pub use error::ContactError;
+pub use evaluate::{ContactCounts, Contacts};
+pub use history::ContactHistory;
+pub use law::{ContactLaw, Slip};
+pub use surface::ContactSurface;
+pub use tool::{PointContact, Tool};
+pub use tool_shape::{Distance, ToolShape};

@@ -1,0 +1,223 @@
+//! A surface quadrature in clusters of neighbouring points, each with a box: the broad phase of contact.
+
+use std::ops::Range;
+
+use shape::SurfaceRows;
+use shape::{Point3, Vector3};
+
+use super::{ContactError, Contacts, Tool};
+
+/// Points per cluster, at most.
+const CLUSTER: usize = 32;
+
+/// A surface made ready for contact. Made once per surface, for any number of tools and states.
+#[derive(Clone, Debug)]
+pub struct ContactSurface<'a> {
+    rows: &'a SurfaceRows,
+    /// Points, neighbours together.
+    order: Vec<u32>,
+    clusters: Vec<Cluster>,
+    /// Nodes that the clusters see, one cluster after another.
+    nodes: Vec<u32>,
+    /// For each point two others beside it, counter-clockwise seen from outside; the point itself where there are none.
+    beside: Vec<[u32; 2]>,
+}
+
+/// The current position of a point is `x = X + sum_I N_I u_I`. With `m` the middle and `h` the half range of `u` over
+/// the cluster's nodes, `|x - X - m| <= max(sum |N_I|) h + max|sum N_I - 1| |m|` per axis: a box for all its points
+/// from the nodes alone, for any basis.
+#[derive(Clone, Debug)]
+struct Cluster {
+    points: Range<usize>,
+    nodes: Range<usize>,
+    /// Middle and half extents of the box of reference positions, m.
+    middle: Point3,
+    half: Vector3,
+    /// Largest `sum |N_I|`.
+    lebesgue: f64,
+    /// Largest `|sum N_I - 1|`.
+    excess: f64,
+}
+
+impl<'a> ContactSurface<'a> {
+    /// Sorts the points into clusters.
+    pub fn new(rows: &'a SurfaceRows) -> ContactSurface<'a> {
+        let mut order: Vec<u32> = (0..rows.points().len() as u32).collect();
+        let mut ranges = Vec::new();
+        if !order.is_empty() {
+            split(&mut order, 0, rows.points(), &mut ranges);
+        }
+        let mut nodes = Vec::new();
+        let clusters: Vec<Cluster> =
+            ranges.into_iter().map(|points| Cluster::new(rows, &order, points, &mut nodes)).collect();
+        let mut beside = vec![[0; 2]; order.len()];
+        for cluster in &clusters {
+            let near = &order[cluster.points.clone()];
+            near.iter().for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
+        }
+        ContactSurface { rows, order, clusters, nodes, beside }
+    }
+
+    /// The surface quadrature.
+    pub fn rows(&self) -> &'a SurfaceRows {
+        self.rows
+    }
+
+    /// Number of clusters.
+    pub fn clusters(&self) -> usize {
+        self.clusters.len()
+    }
+
+    /// Smallest signed distance (m) of all points to the tool in the state `u`; infinite without points.
+    pub fn gap(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> f64 {
+        (0..self.rows.points().len())
+            .map(|q| tool.shape().foot(&tool.local(closure, &self.position(q, u))).0)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Points of each cluster that may come within `reach` (m) of the tool; all others cannot.
+    pub(super) fn near(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        reach: f64,
+        u: &[Vector3],
+    ) -> Result<Vec<&[u32]>, ContactError> {
+        let (low, high) = tool.bounds(closure);
+        let (low, high) = (low.map(|c| c - reach), high.map(|c| c + reach));
+        let mut near = Vec::new();
+        for cluster in &self.clusters {
+            let (middle, half) = cluster.current_box(&self.nodes, u)?;
+            let apart = (0..3).any(|a| middle[a] + half[a] < low[a] || middle[a] - half[a] > high[a]);
+            // The distance changes by no more than the way gone.
+            if apart || tool.shape().foot(&tool.local(closure, &middle)).0 > half.norm() + reach {
+                continue;
+            }
+            near.push(&self.order[cluster.points.clone()]);
+        }
+        Ok(near)
+    }
+
+    /// Fails where a tool pushes out of the body instead of into it, with more than a tenth of its force: it has slipped
+    /// through between points, and now lifts them from within. The deformed normal `(x_b - x_a) x (x_c - x_a)` comes from two
+    /// points beside, which leaves out what bends between them: a push that leaves the surface by less than 12 degrees is let
+    /// be, and so are a few points on a crease.
+    pub fn check_side(&self, contacts: &Contacts, u: &[Vector3]) -> Result<(), ContactError> {
+        let (mut all, mut outwards, mut first) = (0.0, 0.0, None);
+        for (&point, traction) in contacts.points().iter().zip(contacts.tractions()) {
+            let [b, c] = self.beside[point as usize].map(|q| self.position(q as usize, u));
+            let at = self.position(point as usize, u);
+            let normal = (b - at).cross(&(c - at));
+            let push = traction.norm() * self.rows.weights()[point as usize];
+            all += push;
+            if traction.dot(&normal) > 0.2 * traction.norm() * normal.norm() {
+                outwards += push;
+                first = first.or(Some((point as usize, at)));
+            }
+        }
+        match first {
+            Some((point, at)) if outwards > 0.1 * all => {
+                Err(ContactError::WithinBody { share: outwards / all, point, at })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Current position `X + sum_I N_I u_I` of a point, m.
+    #[inline]
+    pub fn position(&self, point: usize, u: &[Vector3]) -> Point3 {
+        let (nodes, values) = self.rows.rows().row(point);
+        let mut x = self.rows.points()[point];
+        for (&node, value) in nodes.iter().zip(values) {
+            x += u[node as usize] * *value;
+        }
+        x
+    }
+}
+
+impl Cluster {
+    fn new(rows: &SurfaceRows, order: &[u32], points: Range<usize>, nodes: &mut Vec<u32>) -> Cluster {
+        let first = nodes.len();
+        let (mut lebesgue, mut excess) = (0.0f64, 0.0f64);
+        for &q in &order[points.clone()] {
+            let (of_row, values) = rows.rows().row(q as usize);
+            nodes.extend_from_slice(of_row);
+            lebesgue = lebesgue.max(values.iter().map(|v| v.abs()).sum());
+            excess = excess.max((values.iter().sum::<f64>() - 1.0).abs());
+        }
+        nodes[first..].sort_unstable();
+        let mut kept = first;
+        for k in first..nodes.len() {
+            if kept == first || nodes[kept - 1] != nodes[k] {
+                nodes[kept] = nodes[k];
+                kept += 1;
+            }
+        }
+        nodes.truncate(kept);
+        let (low, high) = range(order[points.clone()].iter().map(|&q| rows.points()[q as usize].coords));
+        let (middle, half) = (Point3::from((low + high) * 0.5), (high - low) * 0.5);
+        Cluster { points, nodes: first..kept, middle, half, lebesgue, excess }
+    }
+
+    /// Middle and half extents of a box that holds the cluster's points in the state `u`.
+    fn current_box(&self, nodes: &[u32], u: &[Vector3]) -> Result<(Point3, Vector3), ContactError> {
+        let nodes = &nodes[self.nodes.clone()];
+        let mut finite = true;
+        let (low, high) = range(nodes.iter().map(|&node| {
+            let u = u[node as usize];
+            finite &= (u.x + u.y + u.z).is_finite();
+            u
+        }));
+        if !finite {
+            let bad = nodes.iter().find(|&&node| !u[node as usize].iter().all(|c| c.is_finite()));
+            return Err(ContactError::NotFinite { node: *bad.unwrap_or(&nodes[0]) as usize });
+        }
+        let middle = (low + high) * 0.5;
+        Ok((
+            self.middle + middle,
+            self.half + (high - low) * (0.5 * self.lebesgue) + middle.abs() * self.excess,
+        ))
+    }
+}
+
+/// The two points that span the surface around `q` best: near, and well apart as seen from it.
+fn two_beside(rows: &SurfaceRows, q: u32, near: &[u32]) -> [u32; 2] {
+    let normal = rows.normals()[q as usize];
+    let way = |other: u32| rows.points()[other as usize] - rows.points()[q as usize];
+    // Not around an edge, whose other side has another normal.
+    let mut flat: Vec<u32> =
+        near.iter().copied().filter(|&p| p != q && normal.dot(&rows.normals()[p as usize]) > 0.7).collect();
+    flat.sort_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()));
+    for (k, &b) in flat.iter().enumerate() {
+        for &a in &flat[..k] {
+            let turn = way(a).cross(&way(b)).dot(&normal) / (way(a).norm() * way(b).norm());
+            if turn.abs() > 0.5 {
+                return if turn > 0.0 { [a, b] } else { [b, a] };
+            }
+        }
+    }
+    [q; 2]
+}
+
+fn range(vectors: impl Iterator<Item = Vector3>) -> (Vector3, Vector3) {
+    vectors.fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), v| {
+        (low.inf(&v), high.sup(&v))
+    })
+}
+
+/// Halves the points at the median of their longest extent until at most [`CLUSTER`] are left; ties go by index.
+fn split(order: &mut [u32], start: usize, points: &[Point3], ranges: &mut Vec<Range<usize>>) {
+    if order.len() <= CLUSTER {
+        ranges.push(start..start + order.len());
+        return;
+    }
+    let (low, high) = range(order.iter().map(|&q| points[q as usize].coords));
+    let axis = (high - low).imax();
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&a, &b| {
+        points[a as usize][axis].total_cmp(&points[b as usize][axis]).then(a.cmp(&b))
+    });
+    let (lower, upper) = order.split_at_mut(half);
+    split(lower, start, points, ranges);
+    split(upper, start + half, points, ranges);
+}

@@ -1,0 +1,150 @@
+//! A tool in the world: a shape, where it stands, the way it closes and its contact law.
+
+use shape::{Matrix3, Point3, Vector3};
+
+use super::law::Response;
+use super::{ContactError, ContactLaw, Slip, ToolShape};
+
+/// A rigid tool that moves by `closure * along` (m) and does not turn while it moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tool {
+    shape: ToolShape,
+    at: Point3,
+    rotation: Matrix3,
+    along: Vector3,
+    law: ContactLaw,
+    deepest: f64,
+}
+
+/// Contact of one point with one tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointContact {
+    /// Traction on the tissue, per undeformed area, Pa.
+    pub traction: Vector3,
+    /// `dt/dx` (3, 3), Pa/m; unsymmetric in slip. `dt/dclosure = -(dt/dx) along`.
+    pub stiffness: Matrix3,
+    /// History to commit if the step converges here.
+    pub slip: Slip,
+    /// Signed distance, m; negative inside the tool.
+    pub gap: f64,
+    /// Normal pressure, Pa.
+    pub pressure: f64,
+    /// Frictional work since the last commit, J per undeformed m^2; never negative.
+    pub dissipated: f64,
+}
+
+impl Tool {
+    /// `at` is where the origin of the shape's frame stands at closure 0, `rotation` (3, 3) takes that frame's axes to
+    /// the world's, `along` is the unit direction in which the tool closes.
+    pub fn new(
+        shape: ToolShape,
+        at: Point3,
+        rotation: Matrix3,
+        along: Vector3,
+        law: ContactLaw,
+    ) -> Result<Tool, ContactError> {
+        shape.check()?;
+        if !at.coords.iter().all(|c| c.is_finite()) {
+            return Err(ContactError::Place { what: "the position" });
+        }
+        let (deviation, determinant) =
+            ((rotation.transpose() * rotation - Matrix3::identity()).amax(), rotation.determinant());
+        // Written so that a NaN fails.
+        if !(deviation <= 1e-9 && determinant > 0.0) {
+            return Err(ContactError::Rotation { deviation, determinant });
+        }
+        let length = along.norm();
+        if !((length - 1.0).abs() <= 1e-9) {
+            return Err(ContactError::Direction { length });
+        }
+        Ok(Tool { shape, at, rotation, along, law, deepest: 0.5 * shape.inradius() })
+    }
+
+    /// A rotation that takes the z axis to the unit vector `axis`: a plate's face, a cylinder's axis. The turn about
+    /// `axis` itself is free; the shortest rotation is taken, and half a turn about x for `-z`.
+    pub fn turned_to(axis: &Vector3) -> Matrix3 {
+        nalgebra::Rotation3::rotation_between(&Vector3::z(), axis)
+            .unwrap_or_else(|| nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+            .into_inner()
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> &ToolShape {
+        &self.shape
+    }
+
+    /// The contact law.
+    pub fn law(&self) -> &ContactLaw {
+        &self.law
+    }
+
+    /// Unit direction of closing.
+    pub fn along(&self) -> Vector3 {
+        self.along
+    }
+
+    /// Where the origin of the shape's frame stands.
+    pub fn place(&self, closure: f64) -> Point3 {
+        self.at + self.along * closure
+    }
+
+    /// A point deeper than this (m) is an error: half the inradius. At the inradius the nearest face changes and the
+    /// point would be pushed out on the far side.
+    pub fn deepest(&self) -> f64 {
+        self.deepest
+    }
+
+    /// Lowest and highest corner of a box along the world's axes that holds the tool; infinite for a plate.
+    pub fn bounds(&self, closure: f64) -> (Point3, Point3) {
+        let place = self.place(closure);
+        let (_, corner) = self.shape.bounds();
+        let half = if self.shape == ToolShape::Plate {
+            Vector3::repeat(f64::INFINITY)
+        } else {
+            self.rotation.abs() * corner.coords
+        };
+        (place - half, place + half)
+    }
+
+    /// Contact at the current position `x` (m), from the last committed history. `augmented` is the multiplier of the
+    /// augmented Lagrangian, Pa, 0 for a plain penalty.
+    pub fn contact(&self, closure: f64, x: &Point3, history: &Slip, augmented: f64) -> PointContact {
+        let p = self.local(closure, x);
+        let (gap, normal) = self.shape.foot(&p);
+        match self.law.respond(gap, &normal, &p, history, augmented) {
+            Some(response) => PointContact {
+                traction: self.rotation * response.traction,
+                stiffness: self.stiffness(&response, &p, &normal),
+                slip: response.slip,
+                gap,
+                pressure: response.pressure,
+                dissipated: response.dissipated,
+            },
+            None => PointContact {
+                traction: Vector3::zeros(),
+                stiffness: Matrix3::zeros(),
+                slip: Slip::NONE,
+                gap,
+                pressure: 0.0,
+                dissipated: 0.0,
+            },
+        }
+    }
+
+    /// Position in the tool's frame.
+    #[inline]
+    pub(super) fn local(&self, closure: f64, x: &Point3) -> Vector3 {
+        self.rotation.tr_mul(&(x - self.place(closure)))
+    }
+
+    #[inline]
+    pub(super) fn to_world(&self, v: &Vector3) -> Vector3 {
+        self.rotation * v
+    }
+
+    /// `dt/dx` in the world's axes.
+    #[inline]
+    pub(super) fn stiffness(&self, response: &Response, p: &Vector3, normal: &Vector3) -> Matrix3 {
+        self.rotation * self.law.tangent(response, normal, &self.shape.hessian(p)) * self.rotation.transpose()
+    }
+}

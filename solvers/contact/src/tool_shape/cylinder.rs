@@ -1,0 +1,61 @@
+//! The cylinder with flat ends: in the half plane of `rho = |(x, y)|` and `z` it is a rectangle, so with
+//! `q = (rho - r, |z| - l)`, `sd = |max(q, 0)| + min(max(q_r, q_z), 0)`.
+//!
+//! Inside, where side and end are equally near the side is taken; on the axis the side's normal is +x, halfway
+//! between the ends the upper end is the near one.
+
+use shape::{Matrix3, Vector3};
+
+use super::MEDIAL;
+
+/// `rho` and the unit vector away from the axis; +x on the axis.
+#[inline]
+fn radial(radius: f64, p: &Vector3) -> (f64, Vector3) {
+    let rho = p.x.hypot(p.y);
+    (rho, if rho > MEDIAL * radius { Vector3::new(p.x, p.y, 0.0) / rho } else { Vector3::x() })
+}
+
+fn end(p: &Vector3) -> Vector3 {
+    Vector3::new(0.0, 0.0, if p.z >= 0.0 { 1.0 } else { -1.0 })
+}
+
+#[inline]
+pub(super) fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
+    let (rho, outward) = radial(radius, p);
+    let (side, flat) = (rho - radius, p.z.abs() - half_length);
+    if side > 0.0 && flat > 0.0 {
+        let value = side.hypot(flat);
+        (value, (outward * side + end(p) * flat) / value)
+    } else if side >= flat {
+        (side, outward)
+    } else {
+        (flat, end(p))
+    }
+}
+
+/// `(I - z z^T - n n^T) / rho = s s^T / rho`, `s` along the circumference; zero on the axis.
+#[inline]
+pub(super) fn side_hessian(radius: f64, p: &Vector3) -> Matrix3 {
+    let (rho, n) = radial(radius, p);
+    if !(rho > MEDIAL * radius) {
+        return Matrix3::zeros();
+    }
+    let s = Vector3::new(-n.y, n.x, 0.0);
+    s * s.transpose() / rho
+}
+
+#[inline]
+pub(super) fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
+    let (rho, outward) = radial(radius, p);
+    let (side, flat) = (rho - radius, p.z.abs() - half_length);
+    if side > 0.0 && flat > 0.0 {
+        // Distance to the rim: a circle in the half plane, `1 / value` across, and `n_r / rho` along the rim.
+        let (value, normal) = foot(radius, half_length, p);
+        let across = (outward * flat - end(p) * side) / value;
+        across * across.transpose() / value + side_hessian(radius, p) * normal.dot(&outward)
+    } else if side >= flat {
+        side_hessian(radius, p)
+    } else {
+        Matrix3::zeros()
+    }
+}

@@ -1,0 +1,48 @@
+//! The exponential weight with a free power.
+
+use super::{Dimension, Entry, KernelEntry, Kind, Parameter, Problem, Range, Values, Weight, gaussian};
+
+/// `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, flat-topped for `k > 1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponential {
+    alpha: f64,
+    power: u32,
+}
+
+const POWER: Parameter = Parameter::default("power", Dimension::None, 2.0, "exponent k; flat-topped above 1")
+    .of(Kind::Count)
+    .within(Range::Within(1.0, 8.0));
+
+pub(super) const ENTRY: KernelEntry = Entry {
+    name: "exponential",
+    meaning: "(e^-(q/alpha)^2k - e^-(1/alpha)^2k) / (1 - e^-(1/alpha)^2k)",
+    source: "Belytschko, Lu and Gu (1994), at a free power k",
+    parameters: &[gaussian::width(0.5), POWER],
+    build: |values: &Values| -> Result<_, Problem> {
+        let (alpha, power) = (values.number("alpha")?, values.number("power")?);
+        Ok(Exponential { alpha, power: power as u32 }.into())
+    },
+};
+
+impl Weight for Exponential {
+    #[inline(always)]
+    fn weight(self) -> impl Fn(f64) -> (f64, f64) {
+        exponential(self.alpha, self.power)
+    }
+}
+
+/// The part that does not depend on `q` is computed once per list.
+#[inline(always)]
+pub(super) fn exponential(alpha: f64, power: u32) -> impl Fn(f64) -> (f64, f64) {
+    let k = power as i32;
+    let inverse = 1.0 / alpha;
+    let rim = (-inverse.powi(2 * k)).exp();
+    let height = 1.0 / (1.0 - rim);
+    let slope = -2.0 * k as f64 * inverse * height;
+    move |q| {
+        let t = q * inverse;
+        let odd = t.powi(2 * k - 1);
+        let e = (-(odd * t)).exp();
+        ((e - rim) * height, slope * odd * e)
+    }
+}

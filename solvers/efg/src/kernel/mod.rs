@@ -1,0 +1,99 @@
+//! Kernels (weight functions) of moving least squares: radial, of compact support, one at the centre.
+//!
+//! Each kernel is a file with its function and its [`KernelEntry`], and a line of the list below. Settings are checked when a
+//! kernel is made, so that every [`Kernel`] is sound.
+
+use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Values};
+
+/// A kernel that scene files can name.
+pub type KernelEntry = Entry<fn(&Values) -> Result<Kernel, Problem>>;
+
+/// What a kernel is: the function of `q < 1` that gives `(w, dw/dq)`. What does not depend on `q` is computed before it.
+trait Weight: Copy {
+    fn weight(self) -> impl Fn(f64) -> (f64, f64);
+}
+
+/// Declares the files of the kernels, the closed enum that tells them apart without a call through a pointer, and the slice of
+/// their entries.
+macro_rules! kernels {
+    ($($file:ident::$kernel:ident,)*) => {
+        $(
+            mod $file;
+            pub use $file::$kernel;
+            impl From<$kernel> for Kernel {
+                fn from(kernel: $kernel) -> Kernel {
+                    Kernel::$kernel(kernel)
+                }
+            }
+        )*
+
+        /// A weight function `w(q)` of the relative distance `q = d / R`, zero for `q >= 1`, one at `q = 0`.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs)] // each is its type
+        pub enum Kernel {
+            $($kernel($kernel),)*
+        }
+
+        /// Every kernel, in the order tables list them.
+        pub static KERNELS: &[KernelEntry] = &[$($file::ENTRY),*];
+
+        impl Kernel {
+            /// The name used in scene files and tables.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Kernel::$kernel(_) => $file::ENTRY.name,)*
+                }
+            }
+
+            /// Value and derivative `(w, dw/dq)` at the relative distance `q >= 0`.
+            #[inline]
+            pub fn eval(self, q: f64) -> (f64, f64) {
+                if q >= 1.0 {
+                    return (0.0, 0.0);
+                }
+                match self {
+                    $(Kernel::$kernel(kernel) => kernel.weight()(q),)*
+                }
+            }
+
+            /// [`Kernel::eval`] over a list, all `q < 1`: one branch on the kind for the list, not one per node.
+            #[inline(always)]
+            pub(crate) fn eval_all(self, q: &[f64], w: &mut [f64], dw: &mut [f64]) {
+                match self {
+                    $(Kernel::$kernel(kernel) => each(q, w, dw, kernel.weight()),)*
+                }
+            }
+        }
+    };
+}
+
+kernels! {
+    cubic_spline::CubicSpline,
+    quartic_spline::QuarticSpline,
+    gaussian::Gaussian,
+    exponential::Exponential,
+    wendland_c2::WendlandC2,
+    wendland_c4::WendlandC4,
+    wendland_c6::WendlandC6,
+    regularised_interpolating::RegularisedInterpolating,
+}
+
+impl Kernel {
+    /// Every kernel with its default parameters, in the order tables list them.
+    pub fn all() -> impl Iterator<Item = Kernel> {
+        // No parameter of a kernel is required.
+        KERNELS.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
+    }
+
+    /// The kernel of that name with its default parameters.
+    pub fn from_name(name: &str) -> Option<Kernel> {
+        Kernel::all().find(|kernel| kernel.name() == name)
+    }
+}
+
+#[inline(always)]
+fn each(q: &[f64], w: &mut [f64], dw: &mut [f64], kernel: impl Fn(f64) -> (f64, f64)) {
+    for ((&q, w), dw) in q.iter().zip(w).zip(dw) {
+        (*w, *dw) = kernel(q);
+    }
+}

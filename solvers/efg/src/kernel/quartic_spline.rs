@@ -1,0 +1,26 @@
+//! The quartic spline.
+
+use super::{Entry, KernelEntry, Problem, Values, Weight};
+
+/// `1 - 6q^2 + 8q^3 - 3q^4`. C2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuarticSpline;
+
+pub(super) const ENTRY: KernelEntry = Entry {
+    name: "quartic-spline",
+    meaning: "1 - 6q^2 + 8q^3 - 3q^4; C2",
+    source: "Belytschko et al. (1996)",
+    parameters: &[],
+    build: |_: &Values| -> Result<_, Problem> { Ok(QuarticSpline.into()) },
+};
+
+impl Weight for QuarticSpline {
+    #[inline(always)]
+    fn weight(self) -> impl Fn(f64) -> (f64, f64) {
+        |q| {
+            let s = 1.0 - q;
+            // 1 - 6q^2 + 8q^3 - 3q^4 factored, free of cancellation near the rim.
+            (s * s * s * (1.0 + 3.0 * q), -12.0 * q * s * s)
+        }
+    }
+}

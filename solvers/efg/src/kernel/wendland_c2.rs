@@ -1,0 +1,25 @@
+//! Wendland's function, C2.
+
+use super::{Entry, KernelEntry, Problem, Values, Weight};
+
+/// `(1 - q)^4 (4q + 1)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WendlandC2;
+
+pub(super) const ENTRY: KernelEntry = Entry {
+    name: "wendland-c2",
+    meaning: "(1 - q)^4 (4q + 1); C2",
+    source: "Wendland (1995)",
+    parameters: &[],
+    build: |_: &Values| -> Result<_, Problem> { Ok(WendlandC2.into()) },
+};
+
+impl Weight for WendlandC2 {
+    #[inline(always)]
+    fn weight(self) -> impl Fn(f64) -> (f64, f64) {
+        |q| {
+            let s = 1.0 - q;
+            (s * s * s * s * (4.0 * q + 1.0), -20.0 * q * s * s * s)
+        }
+    }
+}

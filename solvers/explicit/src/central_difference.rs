@@ -1,0 +1,388 @@
+//! Explicit time integration: central differences with velocities at half steps.
+
+use super::critical_step::{CriticalStep, LanczosParams, critical_step_touching};
+use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
+use shape::Vector3;
+
+/// What is asked of an integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DynamicsParams {
+    /// Time step, s.
+    pub dt: f64,
+    /// Mass-proportional damping `alpha` of `C = alpha M`, 1/s.
+    pub damping: f64,
+    /// How the critical step is found that `dt` must not exceed.
+    pub critical: LanczosParams,
+    /// Steps between two checks of the critical step as the body deforms; 0: before the first step only.
+    pub recheck: usize,
+}
+
+/// A degree of freedom led along a given displacement.
+pub struct Prescribed<'a> {
+    /// Node.
+    pub node: u32,
+    /// Axis, 0 to 2.
+    pub axis: u8,
+    /// Displacement (m) at a time (s).
+    pub motion: &'a (dyn Fn(f64) -> f64 + Sync),
+}
+
+/// External forces: `(t, u_n, v_(n-1/2), f)` adds nodal forces (N) to `f`, which starts from zero. Velocities lag half
+/// a step.
+pub type External<'a> = dyn FnMut(f64, &[Vector3], &[Vector3], &mut [Vector3]) + 'a;
+
+/// Energy balance at one step, J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// Step.
+    pub step: usize,
+    /// Time, s.
+    pub time: f64,
+    /// `v_(n-1/2) . M v_(n+1/2) / 2`: at a whole step, and with the strain energy constant to rounding in a linear
+    /// undamped motion.
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Work of the external forces since the start, without that of tools.
+    pub external: f64,
+    /// Work of the supports since the start.
+    pub support: f64,
+    /// Energy lost to damping since the start.
+    pub damping: f64,
+    /// Of the tools; zero without any.
+    pub tools: ToolEnergies,
+    /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping - external - support
+    /// - tools.work`, less the same at the start, over the largest of these terms so far.
+    pub drift: f64,
+}
+
+/// A motion under way. Same bits at any number of threads.
+pub struct Dynamics<'a, 'b> {
+    force: &'b mut InternalForce<'a>,
+    mass: &'b [f64],
+    prescribed: &'b [Prescribed<'b>],
+    params: DynamicsParams,
+    held: Vec<bool>,
+    tools: Option<Tools<'b>>,
+    step: usize,
+    /// Step and time of the last change of the time step.
+    since: (usize, f64),
+    /// Time step that led here, s: another one than the next right after a change.
+    before: f64,
+    u: Vec<Vector3>,
+    /// At `n - 1/2`.
+    v: Vec<Vector3>,
+    internal: Vec<Vector3>,
+    external: Vec<Vector3>,
+    previous_external: Vec<Vector3>,
+    reaction: Vec<f64>,
+    /// Of external forces, supports and damping, J.
+    work: [f64; 3],
+    /// The half of this step's damping work that belongs after it, J.
+    pending: f64,
+    start: Option<f64>,
+    scale: f64,
+}
+
+impl<'a, 'b> Dynamics<'a, 'b> {
+    /// From displacements `u` (m) and velocities `v` (m/s) at t = 0. Refuses a time step beyond the critical one.
+    pub fn new(
+        force: &'b mut InternalForce<'a>,
+        mass: &'b [f64],
+        prescribed: &'b [Prescribed<'b>],
+        params: DynamicsParams,
+        u: Vec<Vector3>,
+        v: Vec<Vector3>,
+    ) -> Result<Dynamics<'a, 'b>, ExplicitError> {
+        let n = force.node_count();
+        for (what, found) in [("masses", mass.len()), ("displacements", u.len()), ("velocities", v.len())] {
+            if found != n {
+                return Err(ExplicitError::Length { what, found, expected: n });
+            }
+        }
+        let bad = |what, value, allowed| Err(ExplicitError::BadParameter { what, value, allowed });
+        if !(params.dt > 0.0 && params.dt.is_finite()) {
+            return bad("time step", params.dt, "positive and finite");
+        }
+        if !(params.damping >= 0.0 && params.damping.is_finite()) {
+            return bad("mass-proportional damping", params.damping, "finite and not negative");
+        }
+        if let Some(node) = mass.iter().position(|&m| !(m > 0.0 && m.is_finite())) {
+            return Err(ExplicitError::NodalMass { node, mass: mass[node] });
+        }
+        let held = held(n, prescribed.iter().map(|p| (p.node, p.axis)))?;
+        let zeros = vec![Vector3::zeros(); n];
+        let mut dynamics = Dynamics {
+            force,
+            mass,
+            prescribed,
+            params,
+            held,
+            tools: None,
+            step: 0,
+            since: (0, 0.0),
+            before: params.dt,
+            u,
+            v,
+            internal: zeros.clone(),
+            external: zeros.clone(),
+            previous_external: zeros,
+            reaction: vec![0.0; prescribed.len()],
+            work: [0.0; 3],
+            pending: 0.0,
+            start: None,
+            scale: 0.0,
+        };
+        for p in prescribed {
+            dynamics.u[p.node as usize][p.axis as usize] = (p.motion)(0.0);
+        }
+        dynamics.check_step()?;
+        Ok(dynamics)
+    }
+
+    /// With tools that touch. Their penalties count in the critical step from here on.
+    pub fn with_tools(mut self, tools: Tools<'b>) -> Result<Dynamics<'a, 'b>, ExplicitError> {
+        self.tools = Some(tools);
+        self.check_step()?;
+        Ok(self)
+    }
+
+    /// The tools, as of the last step recorded or made.
+    pub fn tools(&self) -> Option<&Tools<'b>> {
+        self.tools.as_ref()
+    }
+
+    /// Goes on with another time step (s), if that is no larger than the critical one.
+    pub fn set_step(&mut self, dt: f64) -> Result<(), ExplicitError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(ExplicitError::BadParameter {
+                what: "time step",
+                value: dt,
+                allowed: "positive and finite",
+            });
+        }
+        self.since = (self.step, self.time());
+        if self.step == 0 {
+            self.before = dt;
+        }
+        self.params.dt = dt;
+        self.check_step()
+    }
+
+    /// Critical step at the present displacements.
+    pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
+        let held = &self.held;
+        let springs = self.tools.as_ref().and_then(Tools::springs);
+        let (step, time) = (self.step, self.time());
+        critical_step_touching(self.force, self.mass, &self.u, |k| !held[k], springs, self.params.critical)
+            .map_err(|error| match error {
+                ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
+                other => other,
+            })
+    }
+
+    /// Displacements, m.
+    pub fn displacements(&self) -> &[Vector3] {
+        &self.u
+    }
+
+    /// Velocities half a step back (at the start: those given), m/s.
+    pub fn velocities(&self) -> &[Vector3] {
+        &self.v
+    }
+
+    /// Steps made.
+    pub fn steps(&self) -> usize {
+        self.step
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.since.1 + (self.step - self.since.0) as f64 * self.params.dt
+    }
+
+    /// Reaction (N) at each prescribed degree of freedom at the last step made.
+    pub fn reactions(&self) -> &[f64] {
+        &self.reaction
+    }
+
+    /// Makes `steps` steps; `record` sees the balance at every step whose number is a multiple of `every` (0: none),
+    /// before the displacements move on from it.
+    pub fn run(
+        &mut self,
+        steps: usize,
+        every: usize,
+        external: &mut External,
+        record: &mut dyn FnMut(&Balance, &[Vector3]),
+    ) -> Result<(), ExplicitError> {
+        for _ in 0..steps {
+            let recheck = self.params.recheck;
+            if recheck > 0 && self.step > 0 && self.step.is_multiple_of(recheck) {
+                self.check_step()?;
+            }
+            let kinetic = self.accelerate(external)?;
+            if every > 0 && self.step.is_multiple_of(every) {
+                let balance = self.balance(kinetic)?;
+                record(&balance, &self.u);
+            }
+            self.advance();
+        }
+        Ok(())
+    }
+
+    /// Forces at `n`, then velocities at `n + 1/2`; returns the kinetic energy at `n`.
+    ///
+    /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`; `dt` is the mean of
+    /// the steps before and after.
+    fn accelerate(&mut self, external: &mut External) -> Result<f64, ExplicitError> {
+        let (step, time) = (self.step, self.time());
+        let (before_dt, after_dt) = (self.before, self.params.dt);
+        let dt = 0.5 * (before_dt + after_dt);
+        self.force.evaluate(&self.u, &mut self.internal).map_err(|at| ExplicitError::InvertedAt {
+            step,
+            time,
+            at,
+        })?;
+        std::mem::swap(&mut self.external, &mut self.previous_external);
+        self.external.fill(Vector3::zeros());
+        external(time, &self.u, &self.v, &mut self.external);
+        if let Some(tools) = &mut self.tools {
+            tools.step(step, time, [before_dt, after_dt], &self.u)?;
+        }
+        let touch = self.tools.as_ref().map_or(&[][..], Tools::forces);
+
+        let c = 0.5 * self.params.damping * dt;
+        let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
+        let first = step == 0;
+        let (mut kinetic, mut moved, mut work) = (0.0, 0.0, 0.0);
+        let (mut lost, mut next_lost) = (0.0, 0.0);
+        for i in 0..self.u.len() {
+            let m = self.mass[i];
+            let mut f = self.external[i] - self.internal[i];
+            if let Some(touch) = touch.get(i) {
+                f += touch;
+            }
+            if first {
+                // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
+                self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / m);
+            }
+            let mut before = self.v[i];
+            let mut after = before * keep + f * (push / m);
+            if !first {
+                work += 0.5 * before_dt * before.dot(&(self.external[i] + self.previous_external[i]));
+            }
+            for axis in 0..3 {
+                if self.held[3 * i + axis] {
+                    (before[axis], after[axis]) = (0.0, 0.0);
+                }
+            }
+            let mean = (before + after) * 0.5;
+            kinetic += 0.5 * m * before.dot(&after);
+            lost += m * before.dot(&mean);
+            next_lost += m * after.dot(&mean);
+            moved += after.norm_squared();
+            self.v[i] = after;
+        }
+        // Prescribed velocities, their share of the energies and the reactions behind them.
+        for (p, reaction) in self.prescribed.iter().zip(&mut self.reaction) {
+            let (i, axis) = (p.node as usize, p.axis as usize);
+            let m = self.mass[i];
+            let now = self.u[i][axis];
+            let after = ((p.motion)(time + after_dt) - now) / after_dt;
+            let before = if first { after } else { (now - (p.motion)(time - before_dt)) / before_dt };
+            let mean = 0.5 * (before + after);
+            let touch = touch.get(i).map_or(0.0, |f| f[axis]);
+            let next = self.internal[i][axis] - self.external[i][axis] - touch
+                + m * ((after - before) / dt + self.params.damping * mean);
+            if !first {
+                self.work[1] += 0.5 * before_dt * before * (*reaction + next);
+            }
+            *reaction = next;
+            lost += m * before * mean;
+            next_lost += m * after * mean;
+            kinetic += 0.5 * m * before * after;
+            moved += after * after;
+            self.v[i][axis] = after;
+        }
+        // One sum watches all velocities: it is finite only if each of them is (below 1e154 m/s).
+        if !moved.is_finite() {
+            return Err(self.not_finite(step, time));
+        }
+        self.work[0] += work;
+        // `alpha dt/2 v_(n+1/2) . M (v_n + v_(n+1))` per step, v_n the mean of its neighbours: what the kinetic energy
+        // loses, exactly. Half of it is known at n, half at n + 1.
+        let half = 0.5 * self.params.damping * dt;
+        if !first {
+            self.work[2] += half * lost + self.pending;
+        }
+        self.pending = half * next_lost;
+        Ok(kinetic)
+    }
+
+    fn not_finite(&self, step: usize, time: f64) -> ExplicitError {
+        let bad = |f: &[Vector3]| f.iter().position(|f| !f.iter().all(|c| c.is_finite()));
+        let (what, node) =
+            [("external force", &self.external), ("displacement", &self.u), ("velocity", &self.v)]
+                .into_iter()
+                .find_map(|(what, f)| bad(f).map(|node| (what, node)))
+                .unwrap_or_else(|| {
+                    // All are numbers, and the square of one overflows: that of the fastest.
+                    let speed = |i: &usize| self.v[*i].amax();
+                    let fastest = (0..self.v.len()).max_by(|i, j| speed(i).total_cmp(&speed(j)));
+                    ("kinetic energy", fastest.unwrap_or(0))
+                });
+        ExplicitError::NotFinite { step, time, what, node }
+    }
+
+    /// `u_(n+1) = u_n + dt v_(n+1/2)`.
+    fn advance(&mut self) {
+        let dt = self.params.dt;
+        self.u.iter_mut().zip(&self.v).for_each(|(u, v)| *u += v * dt);
+        self.before = dt;
+        self.step += 1;
+        let time = self.time();
+        for p in self.prescribed {
+            self.u[p.node as usize][p.axis as usize] = (p.motion)(time);
+        }
+    }
+
+    fn balance(&mut self, kinetic: f64) -> Result<Balance, ExplicitError> {
+        let (step, time) = (self.step, self.time());
+        let strain = self.force.energy(&self.u).map_err(|at| ExplicitError::InvertedAt { step, time, at })?;
+        let [external, support, damping] = self.work;
+        let tools = self.tools.as_ref().map(Tools::energies).unwrap_or_default();
+        let gained =
+            kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping;
+        let total = gained - external - support - tools.work;
+        let start = *self.start.get_or_insert(total);
+        let terms = [kinetic, strain, damping, external, support, tools.work, tools.stored, tools.friction];
+        self.scale = terms.iter().fold(self.scale, |a, b| a.max(b.abs()));
+        let drift = if self.scale > 0.0 { (total - start) / self.scale } else { 0.0 };
+        Ok(Balance { step, time, kinetic, strain, external, support, damping, tools, drift })
+    }
+
+    fn check_step(&mut self) -> Result<(), ExplicitError> {
+        let (step, time, dt) = (self.step, self.time(), self.params.dt);
+        let critical = self.critical_step()?.dt;
+        // `!(dt <= critical)`: a NaN must not pass.
+        if !(dt <= critical) {
+            return Err(ExplicitError::StepTooLarge { step, time, dt, critical });
+        }
+        Ok(())
+    }
+}
+
+/// Marks the (node, axis) of a list among all degrees of freedom; each may be named once.
+pub(super) fn held(nodes: usize, list: impl Iterator<Item = (u32, u8)>) -> Result<Vec<bool>, ExplicitError> {
+    let mut held = vec![false; 3 * nodes];
+    for (node, axis) in list {
+        let bad = |why| Err(ExplicitError::BadDof { node: node as usize, axis, why });
+        if node as usize >= nodes || axis > 2 {
+            return bad("there is no such node or axis");
+        }
+        if std::mem::replace(&mut held[3 * node as usize + axis as usize], true) {
+            return bad("it is prescribed twice");
+        }
+    }
+    Ok(held)
+}

@@ -1,0 +1,216 @@
+//! The critical time step, from the largest eigenvalue of `M^-1 K` by Lanczos.
+
+use shape::SurfaceRows;
+
+use super::{ExplicitError, InternalForce};
+use shape::Vector3;
+
+/// What to ask of the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LanczosParams {
+    /// Lanczos steps; 15 find the largest eigenvalue to a few per cent, from below.
+    pub steps: usize,
+    /// Factor on the step, for what the estimate lacks: 0.95.
+    pub safety: f64,
+}
+
+/// The estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalStep {
+    /// `safety * 2 / omega_max`, s.
+    pub dt: f64,
+    /// Largest angular frequency found, rad/s.
+    pub omega_max: f64,
+    /// Lanczos steps made: fewer than asked for when the space is exhausted.
+    pub steps: usize,
+}
+
+/// Springs to the ground all over a surface, the same in every direction: `sum_q w k N_I N_J 1`. Where tools may touch by
+/// penalty this is no less than their tangent, whichever points touch, so a step that is stable with it stays so in contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Springs<'a> {
+    /// Where.
+    pub surface: &'a SurfaceRows,
+    /// Stiffness per undeformed area, Pa/m.
+    pub modulus: f64,
+}
+
+impl Springs<'_> {
+    fn add(&self, v: &[f64], w: &mut [f64]) {
+        let rows = self.surface.rows();
+        for (q, weight) in self.surface.weights().iter().enumerate() {
+            let (nodes, values) = rows.row(q);
+            for axis in 0..3 {
+                let at: f64 = nodes.iter().zip(values).map(|(&i, n)| n * v[3 * i as usize + axis]).sum();
+                for (&i, n) in nodes.iter().zip(values) {
+                    w[3 * i as usize + axis] += weight * self.modulus * n * at;
+                }
+            }
+        }
+    }
+}
+
+/// Critical step of central differences at the displacements `u` (m) with lumped `mass` (kg). Where `free` is false a
+/// degree of freedom (3 node + axis) is held.
+///
+/// Lanczos on `A = M^-1/2 K M^-1/2`, `K v` by the central difference of internal forces at a displacement of 1e-6 of
+/// a length taken from the body's own size; full reorthogonalisation. The start vector is fixed pseudo-random noise,
+/// so the same body gives the same step.
+pub fn critical_step(
+    force: &mut InternalForce,
+    mass: &[f64],
+    u: &[Vector3],
+    free: impl Fn(usize) -> bool,
+    params: LanczosParams,
+) -> Result<CriticalStep, ExplicitError> {
+    critical_step_touching(force, mass, u, free, None, params)
+}
+
+/// As [`critical_step`], of the body with springs on its surface.
+pub fn critical_step_touching(
+    force: &mut InternalForce,
+    mass: &[f64],
+    u: &[Vector3],
+    free: impl Fn(usize) -> bool,
+    springs: Option<Springs>,
+    params: LanczosParams,
+) -> Result<CriticalStep, ExplicitError> {
+    let LanczosParams { steps, safety } = params;
+    if steps == 0 {
+        let what = "Lanczos steps";
+        return Err(ExplicitError::BadParameter { what, value: 0.0, allowed: "at least 1" });
+    }
+    if !(safety > 0.0 && safety <= 1.0) {
+        let what = "safety factor of the time step";
+        return Err(ExplicitError::BadParameter { what, value: safety, allowed: "in (0, 1]" });
+    }
+    let n = 3 * mass.len();
+    let root: Vec<f64> = (0..n).map(|k| mass[k / 3].sqrt()).collect();
+    let held: Vec<bool> = (0..n).map(|k| !free(k)).collect();
+    let reach = 1e-6 * spacing(force);
+    let mut product = Difference {
+        force,
+        u,
+        reach,
+        ends: [vec![Vector3::zeros(); u.len()], vec![Vector3::zeros(); u.len()]],
+    };
+    let mut basis: Vec<Vec<f64>> = vec![noise(n, &held)];
+    let (mut alpha, mut beta) = (Vec::new(), Vec::new());
+    for k in 0..steps {
+        let v = &basis[k];
+        let scaled: Vec<f64> = v.iter().zip(&root).map(|(v, m)| v / m).collect();
+        let mut w = product.stiffness(&scaled)?;
+        if let Some(springs) = &springs {
+            springs.add(&scaled, &mut w);
+        }
+        for i in 0..n {
+            w[i] = if held[i] { 0.0 } else { w[i] / root[i] };
+        }
+        alpha.push(dot(&w, v));
+        // Twice is enough (Parlett): the basis stays orthogonal to rounding.
+        for _ in 0..2 {
+            for q in &basis {
+                let c = dot(&w, q);
+                w.iter_mut().zip(q).for_each(|(w, q)| *w -= c * q);
+            }
+        }
+        let length = dot(&w, &w).sqrt();
+        let largest = alpha.iter().chain(&beta).fold(0.0f64, |a: f64, b: &f64| a.max(b.abs()));
+        if k + 1 == steps || !(length > 1e-9 * largest) {
+            break;
+        }
+        beta.push(length);
+        w.iter_mut().for_each(|w| *w /= length);
+        basis.push(w);
+    }
+    let omega_max = largest_eigenvalue(&alpha, &beta).max(0.0).sqrt();
+    Ok(CriticalStep { dt: safety * 2.0 / omega_max, omega_max, steps: alpha.len() })
+}
+
+/// `K v` by `(f(u + h v) - f(u - h v)) / 2 h`.
+struct Difference<'a, 'b> {
+    force: &'a mut InternalForce<'b>,
+    u: &'a [Vector3],
+    reach: f64,
+    ends: [Vec<Vector3>; 2],
+}
+
+impl Difference<'_, '_> {
+    fn stiffness(&mut self, v: &[f64]) -> Result<Vec<f64>, ExplicitError> {
+        let largest = v.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let h = self.reach / largest;
+        for (sign, f) in [1.0, -1.0].into_iter().zip(&mut self.ends) {
+            let moved: Vec<Vector3> = self
+                .u
+                .iter()
+                .enumerate()
+                .map(|(i, u)| u + Vector3::new(v[3 * i], v[3 * i + 1], v[3 * i + 2]) * (sign * h))
+                .collect();
+            self.force.evaluate(&moved, f)?;
+        }
+        let [plus, minus] = &self.ends;
+        Ok((0..v.len()).map(|k| (plus[k / 3][k % 3] - minus[k / 3][k % 3]) / (2.0 * h)).collect())
+    }
+}
+
+/// A length of the size of the smallest spacing: one over the largest shape gradient, m.
+fn spacing(force: &InternalForce) -> f64 {
+    1.0 / force.body().volume.grads().iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero where held.
+fn noise(n: usize, held: &[bool]) -> Vec<f64> {
+    let mut state = 1u64;
+    let mut v: Vec<f64> = (0..n)
+        .map(|k| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            if held[k] { 0.0 } else { (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0 }
+        })
+        .collect();
+    let length = dot(&v, &v).sqrt().max(f64::MIN_POSITIVE);
+    v.iter_mut().for_each(|v| *v /= length);
+    v
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Largest eigenvalue of the symmetric tridiagonal matrix by bisection on the number of negative pivots.
+fn largest_eigenvalue(alpha: &[f64], beta: &[f64]) -> f64 {
+    let radius = |i: usize| {
+        let left = if i > 0 { beta[i - 1].abs() } else { 0.0 };
+        left + beta.get(i).filter(|_| i + 1 < alpha.len()).map_or(0.0, |b| b.abs())
+    };
+    let bounds = |sign: f64| {
+        (0..alpha.len()).map(move |i| sign * alpha[i] + radius(i)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let (mut low, mut high) = (-bounds(-1.0), bounds(1.0));
+    for _ in 0..100 {
+        let x = 0.5 * (low + high);
+        // All pivots of T - x negative: every eigenvalue lies below x.
+        let mut pivot = alpha[0] - x;
+        let mut below = pivot < 0.0;
+        for i in 1..alpha.len() {
+            pivot = alpha[i] - x - beta[i - 1] * beta[i - 1] / pivot;
+            below &= pivot < 0.0;
+        }
+        if below { high = x } else { low = x }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bisection_finds_the_largest_of_a_known_spectrum() {
+        // Second differences: 2 - 2 cos(k pi / (n + 1)).
+        for n in [1, 2, 7, 20] {
+            let found = largest_eigenvalue(&vec![2.0; n], &vec![-1.0; n.saturating_sub(1)]);
+            let exact = 2.0 - 2.0 * (n as f64 * std::f64::consts::PI / (n as f64 + 1.0)).cos();
+            assert!((found - exact).abs() < 1e-13, "{n}: {found} {exact}");
+        }
+    }
+}

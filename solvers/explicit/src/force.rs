@@ -1,0 +1,153 @@
+//! Internal forces of a body by the fastest kernel that fits its table and laws.
+
+use shape::{DilationGroups, VolumeRows};
+
+use super::hex8::Hex8;
+use super::moduli::LaneLaw;
+use super::rows::Ragged;
+use super::tet4::Tet4;
+use super::{ExplicitError, InvertedPoint, Kernel, KernelInfo, plain};
+use lanes::LanePath;
+use material::{Law, Material};
+use shape::{Matrix3, Vector3};
+
+/// A body for explicit computation: a quadrature with its laws.
+#[derive(Clone, Copy)]
+pub struct ExplicitBody<'a> {
+    /// The volume quadrature.
+    pub volume: &'a VolumeRows,
+    /// Laws, by region index.
+    pub laws: &'a [Law],
+    /// Region index of every quadrature point; empty when all are of region 0.
+    pub region: &'a [u16],
+    /// Points that share one dilation (F-bar), or none.
+    pub groups: Option<&'a DilationGroups>,
+}
+
+impl ExplicitBody<'_> {
+    pub(super) fn region(&self, q: usize) -> u16 {
+        self.region.get(q).copied().unwrap_or(0)
+    }
+
+    pub(super) fn law(&self, q: usize) -> &Law {
+        &self.laws[self.region(q) as usize]
+    }
+
+    fn check(&self) -> Result<(), ExplicitError> {
+        let points = self.volume.weights().len();
+        let length = |what, found, expected| Err(ExplicitError::Length { what, found, expected });
+        if !self.region.is_empty() && self.region.len() != points {
+            return length("region indices", self.region.len(), points);
+        }
+        if let Some(groups) = self.groups
+            && groups.point_count() != points
+        {
+            return length("points of the dilation groups", groups.point_count(), points);
+        }
+        match (0..points).find(|&q| self.region(q) as usize >= self.laws.len()) {
+            Some(point) => {
+                let region = self.region(point) as usize;
+                Err(ExplicitError::NoLaw { point, region, laws: self.laws.len() })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// The internal force `f_I(u) = dE/du_I` of a body, ready to be evaluated many times.
+pub struct InternalForce<'a> {
+    body: ExplicitBody<'a>,
+    engine: Engine,
+    path: LanePath,
+}
+
+enum Engine {
+    Plain,
+    Tet4(Tet4),
+    Hex8(Hex8),
+    Ragged(Ragged),
+}
+
+impl<'a> InternalForce<'a> {
+    /// Chooses the kernel by the table and the laws; lanes run on `path`.
+    pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
+        body.check()?;
+        let laws = || LaneLaw::of_regions(&body);
+        let element = laws().and_then(|laws| match body.volume.rows().uniform_len() {
+            Some(4) => Tet4::new(&body, laws).map(Engine::Tet4),
+            Some(8) => Hex8::new(&body, laws).map(Engine::Hex8),
+            _ => None,
+        });
+        let engine = element.or_else(|| match body.groups {
+            None => Ragged::new(&body, laws()?).map(Engine::Ragged),
+            Some(_) => None,
+        });
+        Ok(InternalForce { body, engine: engine.unwrap_or(Engine::Plain), path })
+    }
+
+    /// The plain loop, whatever the table: the reference of the other kernels.
+    pub fn plain(body: ExplicitBody<'a>) -> Result<InternalForce<'a>, ExplicitError> {
+        body.check()?;
+        Ok(InternalForce { body, engine: Engine::Plain, path: LanePath::PORTABLE })
+    }
+
+    /// The body.
+    pub fn body(&self) -> ExplicitBody<'a> {
+        self.body
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.body.volume.rows().node_count()
+    }
+
+    /// The kernel chosen and its instructions.
+    pub fn info(&self) -> KernelInfo {
+        let kernel = match &self.engine {
+            Engine::Plain => Kernel::Plain,
+            Engine::Tet4(tet4) => tet4.kernel(),
+            Engine::Hex8(hex8) => hex8.kernel(),
+            Engine::Ragged(_) => Kernel::Rows,
+        };
+        KernelInfo { kernel, path: kernel.is_parallel().then_some(self.path) }
+    }
+
+    /// Instructions asked for; the plain loop uses none of its own.
+    pub fn path(&self) -> LanePath {
+        self.path
+    }
+
+    /// Internal forces (N) at nodal displacements `u` (m). On an error `f` holds no forces.
+    pub fn evaluate(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
+        assert_eq!((u.len(), f.len()), (self.node_count(), self.node_count()), "one vector per node");
+        let upright = match &mut self.engine {
+            Engine::Plain => return plain_forces(&self.body, u, f),
+            Engine::Tet4(tet4) => tet4.forces(self.path, u, f),
+            Engine::Hex8(hex8) => hex8.forces(self.path, u, f),
+            Engine::Ragged(ragged) => ragged.forces(self.path, u, f),
+        };
+        if !upright {
+            plain::check(self.body.volume, u)?;
+            // A kernel and the plain loop may round `J` on two sides of zero: the plain loop decides.
+            plain_forces(&self.body, u, f)?;
+        }
+        Ok(())
+    }
+
+    /// Strain energy (J) at nodal displacements `u` (m), by the plain loop.
+    pub fn energy(&self, u: &[Vector3]) -> Result<f64, InvertedPoint> {
+        let density = |q: usize, h: &Matrix3| self.body.law(q).energy(h);
+        match self.body.groups {
+            None => plain::energy(self.body.volume, density, u),
+            Some(groups) => plain::dilated_energy(self.body.volume, groups, density, u),
+        }
+    }
+}
+
+fn plain_forces(body: &ExplicitBody, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
+    let stress = |q: usize, h: &Matrix3| body.law(q).stress(h);
+    match body.groups {
+        None => plain::forces(body.volume, stress, u, f),
+        Some(groups) => plain::dilated_forces(body.volume, groups, stress, u, f),
+    }
+}

@@ -1,0 +1,72 @@
+//! What the kernels need of the law of a region.
+
+use super::force::ExplicitBody;
+use lanes::on_path;
+use material::lane::math::{inverse_cbrt_less_1, ln_1p, madd};
+use material::lane::{LaneStrain, Lanes};
+use material::{Law, Material, Volumetric};
+
+/// Lame moduli of a neo-Hookean law, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moduli {
+    pub mu: f64,
+    pub lambda: f64,
+}
+
+/// A law as the kernels run it: the neo-Hookean within their own loops, each other by its own lanes.
+pub(super) enum LaneLaw {
+    NeoHookean(Moduli),
+    /// With groups of points, the part of the law that does not change with `J`, and the other.
+    Other(Law, Volumetric),
+}
+
+impl LaneLaw {
+    /// Of every region of a body; none where points share a dilation and a law is no sum of a part in the change of shape and
+    /// one in that of volume.
+    pub fn of_regions(body: &ExplicitBody) -> Option<Vec<LaneLaw>> {
+        let law = |law: &Law| match (law, body.groups) {
+            (Law::NeoHookean(law), _) => {
+                Some(LaneLaw::NeoHookean(Moduli { mu: law.mu(), lambda: law.lambda() }))
+            }
+            (law, None) => Some(LaneLaw::Other(law.clone(), Volumetric { quadratic: 0.0, logarithmic: 0.0 })),
+            (law, Some(_)) => law.split().map(|(shape, volume)| LaneLaw::Other(shape, volume)),
+        };
+        body.laws.iter().map(law).collect()
+    }
+
+    /// What a group of points has of this law per volume, Pa: `mu` and `lambda` of the neo-Hookean form, and the factor of
+    /// `(J - 1)^2 / 2`.
+    pub fn of_group(&self) -> [f64; 3] {
+        match self {
+            LaneLaw::NeoHookean(moduli) => [moduli.mu, moduli.lambda, 0.0],
+            LaneLaw::Other(_, volume) => [0.0, volume.logarithmic, volume.quadratic],
+        }
+    }
+}
+
+on_path! {
+    /// Stress of eight points, Pa.
+    pub(super) fn stress(law: &Law, strain: &LaneStrain, p: &mut [Lanes; 9]) = stress_lanes
+}
+
+#[inline(always)]
+fn stress_lanes<const FMA: bool>(law: &Law, strain: &LaneStrain, p: &mut [Lanes; 9]) {
+    law.stress_lanes::<FMA>(strain, p);
+}
+
+/// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,
+/// `1 / V_a`, and `sum share w` times the moduli of [`LaneLaw::of_group`].
+#[inline(always)]
+pub(super) fn close_group<const FMA: bool>(
+    j: f64,
+    b: f64,
+    per_volume: f64,
+    [mu, lambda, quadratic]: [f64; 3],
+) -> [f64; 2] {
+    let d = inverse_cbrt_less_1::<FMA>(j);
+    // J^(2/3) - 1 = (1 + j) (1 + d) - 1.
+    let sigma = madd::<FMA>(j, d, j + d);
+    let (y, s) = (1.0 + d, 1.0 + sigma);
+    let p = madd::<FMA>(b, s, madd::<FMA>(sigma, mu, lambda * ln_1p::<FMA>(j)));
+    [s, madd::<FMA>(quadratic, j * per_volume, p * (y * y * y) * per_volume)]
+}

@@ -1,0 +1,224 @@
+//! Rows of any length, meshless ones above all: the three components (and a pad) of one node in one register, eight
+//! points together for the law.
+//!
+//! Lanes over points would have to gather and scatter every component on its own, as neighbours differ from point to
+//! point; along x, y, z both are one load or store of 32 bytes.
+
+use super::chunks::{Border, ChunkNodes, Slot, load, split};
+use super::force::ExplicitBody;
+use super::moduli::{LaneLaw, Moduli, stress};
+use super::quad::axpy;
+use lanes::{LanePath, on_path};
+use material::Law;
+use material::lane::invariants::{Invariants, piola};
+use material::lane::{LANES, LaneStrain, Lanes};
+use shape::Vector3;
+use shape::locality_order;
+
+/// Points per chunk: the displacements and forces of their nodes (64 bytes each) stay in the second-level cache, the
+/// copies of nodes are few beside the entries.
+const SIZE: usize = 1024;
+
+/// Batches that go through each step together: the law is a chain of some 150 cycles, and two of them overlap (0.92 of the
+/// time; four gain no more).
+const TOGETHER: usize = 2;
+
+/// Standard internal forces of any table.
+pub(super) struct Ragged {
+    border: Border,
+    chunks: Vec<Chunk>,
+    u: Vec<Slot>,
+    f: Vec<Slot>,
+    laws: Vec<LaneLaw>,
+}
+
+struct Chunk {
+    batches: Vec<Batch>,
+    /// Place among the chunk's nodes and gradient of every entry, points in the order of the batches.
+    nodes: Vec<u16>,
+    grads: Vec<[f64; 3]>,
+}
+
+/// Eight points of one law; a point left over has no entry and no weight.
+struct Batch {
+    ends: [u32; LANES],
+    weights: [f64; LANES],
+    region: u16,
+}
+
+impl Ragged {
+    /// None when a chunk touches more nodes than 16 bits can number.
+    pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Ragged> {
+        let rows = body.volume.rows();
+        let order = locality_order(body.volume.points());
+        let parts = split(rows.node_count(), &order, SIZE, |q| rows.row(q).0.to_vec());
+        if parts.iter().any(|p| p.nodes.len() > usize::from(u16::MAX)) {
+            return None;
+        }
+        let chunks = parts.iter().map(|part| Chunk::new(body, part)).collect();
+        let lists: Vec<Vec<u32>> = parts.into_iter().map(|p| p.nodes).collect();
+        let border = Border::new(rows.node_count(), &lists);
+        let slots = vec![Slot::ZERO; border.slot_count()];
+        Some(Ragged { border, chunks, u: slots.clone(), f: slots, laws })
+    }
+
+    /// Internal forces; false where some `J` is not positive.
+    pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
+        let Ragged { border, chunks, u: slots, f: sums, laws } = self;
+        let upright = border.for_each(slots, sums, |c, slots, sums| {
+            load(border.chunk(c), u, slots);
+            sums.fill(Slot::ZERO);
+            let mut upright = true;
+            internal(path, path, laws, &chunks[c], slots, sums, &mut upright);
+            upright
+        });
+        border.forces(sums, f);
+        upright
+    }
+}
+
+impl Chunk {
+    fn new(body: &ExplicitBody, part: &ChunkNodes) -> Chunk {
+        let region = |k: &usize| body.region(part.items[*k] as usize);
+        let mut order: Vec<usize> = (0..part.items.len()).collect();
+        order.sort_by_key(region);
+        let mut chunk = Chunk { batches: Vec::new(), nodes: Vec::new(), grads: Vec::new() };
+        for alike in order.chunk_by(|a, b| region(a) == region(b)) {
+            for group in alike.chunks(LANES) {
+                let mut batch = Batch { ends: [0; LANES], weights: [0.0; LANES], region: region(&group[0]) };
+                for l in 0..LANES {
+                    if let Some(&k) = group.get(l) {
+                        let q = part.items[k] as usize;
+                        batch.weights[l] = body.volume.weights()[q];
+                        chunk.nodes.extend(part.local[k].iter().map(|&node| node as u16));
+                        chunk.grads.extend(body.volume.row(q).1.iter().map(|g| [g.x, g.y, g.z]));
+                    }
+                    batch.ends[l] = chunk.nodes.len() as u32;
+                }
+                chunk.batches.push(batch);
+            }
+        }
+        chunk
+    }
+}
+
+on_path! {
+    /// Internal forces of one chunk, added to `f`; `upright` turns false where some `J` is not positive.
+    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) = internal_lanes
+}
+
+#[inline(always)]
+fn internal_lanes<const FMA: bool>(
+    path: LanePath,
+    laws: &[LaneLaw],
+    chunk: &Chunk,
+    u: &[Slot],
+    f: &mut [Slot],
+    upright: &mut bool,
+) {
+    // `H` of each batch, and in its place `w P`.
+    let (mut x, mut good) = ([[[0.0; LANES]; 9]; TOGETHER], [1.0; LANES]);
+    let mut first = 0;
+    for batches in chunk.batches.chunks(TOGETHER) {
+        let mut start = first;
+        for (batch, h) in batches.iter().zip(&mut x) {
+            for l in 0..LANES {
+                let end = batch.ends[l] as usize;
+                let columns = gradient::<FMA>(&chunk.nodes[start..end], &chunk.grads[start..end], u);
+                for j in 0..3 {
+                    for i in 0..3 {
+                        h[3 * i + j][l] = columns[j].0[i];
+                    }
+                }
+                start = end;
+            }
+        }
+        for (batch, x) in batches.iter().zip(&mut x) {
+            match &laws[batch.region as usize] {
+                LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(batch, *moduli, x, &mut good),
+                LaneLaw::Other(law, _) => other::<FMA>(path, batch, law, x, &mut good),
+            }
+        }
+        start = first;
+        for (batch, p) in batches.iter().zip(&x) {
+            for l in 0..LANES {
+                let end = batch.ends[l] as usize;
+                let columns: [Slot; 3] =
+                    std::array::from_fn(|j| Slot([p[j][l], p[3 + j][l], p[6 + j][l], 0.0]));
+                for (&node, g) in chunk.nodes[start..end].iter().zip(&chunk.grads[start..end]) {
+                    let at = &mut f[node as usize];
+                    for j in 0..3 {
+                        axpy::<FMA>(g[j], &columns[j], at);
+                    }
+                }
+                start = end;
+            }
+        }
+        first = start;
+    }
+    *upright = good == [1.0; LANES];
+}
+
+/// `w P` in place of `H`. `good` turns 0 where `J` is not positive.
+#[inline(always)]
+fn neo_hookean<const FMA: bool>(
+    batch: &Batch,
+    Moduli { mu, lambda }: Moduli,
+    x: &mut [Lanes; 9],
+    good: &mut Lanes,
+) {
+    // Written to `x` at the end: the loop would stay scalar.
+    for l in 0..LANES {
+        let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
+        let (at, minors) = Invariants::of::<FMA>(&h);
+        good[l] = if 1.0 + at.j > 0.0 { good[l] } else { 0.0 };
+        let stress = piola::<FMA>(&h, minors, at.stress::<FMA>(batch.weights[l], mu, lambda));
+        for k in 0..9 {
+            x[k][l] = stress[k];
+        }
+    }
+}
+
+/// As [`neo_hookean`], of any other law.
+#[inline(always)]
+fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lanes; 9], good: &mut Lanes) {
+    let mut strain = LaneStrain::ZERO;
+    strained::<FMA>(x, &mut strain, good);
+    stress(path, law, &strain, x);
+    for p in x {
+        for l in 0..LANES {
+            p[l] *= batch.weights[l];
+        }
+    }
+}
+
+#[inline(always)]
+fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain, good: &mut Lanes) {
+    for l in 0..LANES {
+        let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
+        out.set::<FMA>(l, &h);
+        let j = out.invariants[0][l] + out.invariants[1][l];
+        good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
+    }
+}
+
+/// Columns `H_.j = sum_I u_I g_Ij`. Two sums at once: one alone would wait four cycles for each of its terms.
+#[inline(always)]
+fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot]) -> [Slot; 3] {
+    let mut sums = [[Slot::ZERO; 3]; 2];
+    let pairs = (nodes.as_chunks::<2>(), grads.as_chunks::<2>());
+    let mut add = |side: usize, node: u16, g: &[f64; 3]| {
+        let v = &u[node as usize];
+        for j in 0..3 {
+            axpy::<FMA>(g[j], v, &mut sums[side][j]);
+        }
+    };
+    for (n, g) in pairs.0.0.iter().zip(pairs.1.0) {
+        add(0, n[0], &g[0]);
+        add(1, n[1], &g[1]);
+    }
+    if let ([n], [g]) = (pairs.0.1, pairs.1.1) {
+        add(0, *n, g);
+    }
+    std::array::from_fn(|j| Slot(std::array::from_fn(|i| sums[0][j].0[i] + sums[1][j].0[i])))
+}

@@ -1,0 +1,334 @@
+//! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
+
+use super::{ExplicitError, Springs};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
+use contact::{Drive, ToolState};
+use shape::{Point3, Vector3};
+
+/// A tool, its drive and its ramp.
+///
+/// Every tool stands where it first touches the body at t = 0, its gap closed: a ramp over seconds would otherwise spend
+/// part of itself on the way there. From there a closure grows in proportion to time from that of the touch to the one asked
+/// for, and a force from zero.
+///
+/// A force needs a mass to act on: `m d'' = F - F_contact - alpha m d'` along the way, by central differences with the
+/// body's time step. The mass is a free parameter where a case gives none. It adds its inertia `m d''` to the
+/// force on the tissue, and swings on the tissue at `sqrt(k / m)`: light against the body (a tenth), heavy against what a
+/// step can resolve (see [`ExplicitError::LightTool`]).
+#[derive(Clone, Copy, Debug)]
+pub struct MovingTool<'a> {
+    /// The tool.
+    pub tool: &'a Tool,
+    /// Closure or force at the end of the ramp.
+    pub drive: Drive,
+    /// Length of the ramp, s; held from then on.
+    pub over: f64,
+    /// Mass of a tool that is driven by force, kg.
+    pub mass: f64,
+    /// Mass-proportional damping of such a tool, 1/s.
+    pub damping: f64,
+}
+
+/// A tool at a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolMotion {
+    /// Place and forces.
+    pub state: ToolState,
+    /// Speed along its way over the step before, m/s.
+    pub speed: f64,
+}
+
+/// Energies of all tools since the start, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToolEnergies {
+    /// Work of the drives: of a force on its way, of a contact force against a tool led along.
+    pub work: f64,
+    /// Kinetic energy of tools with a mass.
+    pub kinetic: f64,
+    /// Stored in penalty and stick: `sum_q w (p^2 / (2 k_n) + k_t |e|^2 / 2)`.
+    pub stored: f64,
+    /// Lost to friction.
+    pub friction: f64,
+    /// Lost to the damping of tools with a mass.
+    pub damping: f64,
+}
+
+/// Tools in motion with their contact, as a part of [`super::Dynamics`].
+pub struct Tools<'a> {
+    surface: &'a ContactSurface<'a>,
+    each: Vec<Moving<'a>>,
+    forces: Vec<Vector3>,
+    /// Nodes that carry a contact force, to be cleared before the next step.
+    touched: bool,
+    counts: ContactCounts,
+}
+
+struct Moving<'a> {
+    of: MovingTool<'a>,
+    history: ContactHistory,
+    /// Closure at which it first touches, m.
+    touch: f64,
+    /// Closure at the step to come, m.
+    closure: f64,
+    /// At `n - 1/2`, m/s.
+    speed: f64,
+    motion: ToolMotion,
+    /// Drive force or contact force that worked at the step before, N.
+    worked: f64,
+    energies: ToolEnergies,
+    /// The half of this step's damping work that belongs after it, J.
+    pending: f64,
+}
+
+impl<'a> Tools<'a> {
+    /// Tools at their first touch of the body in the state `u` (m).
+    pub fn new(
+        surface: &'a ContactSurface<'a>,
+        tools: &[MovingTool<'a>],
+        u: &[Vector3],
+    ) -> Result<Tools<'a>, ExplicitError> {
+        let bad = |what, value, allowed| Err(ExplicitError::BadParameter { what, value, allowed });
+        for tool in tools {
+            if !(tool.over >= 0.0 && tool.over.is_finite()) {
+                return bad("ramp of a tool", tool.over, "finite and not negative");
+            }
+            if !(tool.damping >= 0.0 && tool.damping.is_finite()) {
+                return bad("damping of a tool", tool.damping, "finite and not negative");
+            }
+            if matches!(tool.drive, Drive::Force(_)) && !(tool.mass > 0.0 && tool.mass.is_finite()) {
+                return bad("mass of a tool driven by force", tool.mass, "positive and finite");
+            }
+        }
+        let found = surface.rows().rows().node_count();
+        if u.len() != found {
+            return Err(ExplicitError::Length { what: "displacements", found: u.len(), expected: found });
+        }
+        let each = tools.iter().map(|&of| Moving::new(of, surface, u)).collect();
+        let forces = vec![Vector3::zeros(); u.len()];
+        Ok(Tools { surface, each, forces, touched: false, counts: ContactCounts::default() })
+    }
+
+    /// Every tool at the last step.
+    pub fn motions(&self) -> impl Iterator<Item = ToolMotion> {
+        self.each.iter().map(|tool| tool.motion)
+    }
+
+    /// Energies at the last step.
+    pub fn energies(&self) -> ToolEnergies {
+        self.each.iter().fold(ToolEnergies::default(), |a, tool| {
+            let b = &tool.energies;
+            ToolEnergies {
+                work: a.work + b.work,
+                kinetic: a.kinetic + b.kinetic,
+                stored: a.stored + b.stored,
+                friction: a.friction + b.friction,
+                damping: a.damping + b.damping,
+            }
+        })
+    }
+
+    /// What the contact search did and skipped.
+    pub fn counts(&self) -> ContactCounts {
+        self.counts
+    }
+
+    /// The stiffest that contact can be: the largest penalty or stick slope on all of the surface. A point is taken to touch
+    /// one tool at a time.
+    pub(super) fn springs(&self) -> Option<Springs<'a>> {
+        let stiffest = |tool: &Moving| tool.of.tool.law().penalty().max(tool.of.tool.law().stick());
+        let modulus = self.each.iter().map(stiffest).reduce(f64::max)?;
+        Some(Springs { surface: self.surface.rows(), modulus })
+    }
+
+    /// Contact forces on the tissue at the last step, N.
+    pub(super) fn forces(&self) -> &[Vector3] {
+        &self.forces
+    }
+
+    /// Contact at step `n` in the state `u`, committed; then the tools' speeds at `n + 1/2` and their closures at `n + 1`.
+    pub(super) fn step(
+        &mut self,
+        step: usize,
+        time: f64,
+        dt: [f64; 2],
+        u: &[Vector3],
+    ) -> Result<(), ExplicitError> {
+        if self.touched {
+            self.forces.fill(Vector3::zeros());
+            self.touched = false;
+        }
+        for (index, tool) in self.each.iter_mut().enumerate() {
+            let contacts = self
+                .surface
+                .tractions(tool.of.tool, tool.closure, u, &tool.history, &mut self.counts)
+                .map_err(|cause: ContactError| ExplicitError::ContactAt { step, time, cause })?;
+            tool.history.commit(contacts.as_ref());
+            if let Some(contacts) = &contacts {
+                contacts.add_force(self.surface.rows(), &mut self.forces);
+                self.touched = true;
+            }
+            tool.settle(contacts.as_ref(), self.surface);
+            tool.check(index, step, time, dt, contacts.as_ref(), self.surface)?;
+            let within = contacts.iter().try_for_each(|c| self.surface.check_side(c, u));
+            within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+            tool.advance(step == 0, time, dt);
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Moving<'a> {
+    fn new(of: MovingTool<'a>, surface: &ContactSurface, u: &[Vector3]) -> Moving<'a> {
+        let touch = touch(of.tool, surface, u);
+        let mut moving = Moving {
+            of,
+            history: ContactHistory::new(of.tool, surface.rows().points().len()),
+            touch,
+            closure: 0.0,
+            speed: 0.0,
+            motion: ToolMotion {
+                state: ToolState {
+                    closure: 0.0,
+                    force: Vector3::zeros(),
+                    moment: Vector3::zeros(),
+                    active: 0,
+                    penetration: 0.0,
+                },
+                speed: 0.0,
+            },
+            worked: 0.0,
+            energies: ToolEnergies::default(),
+            pending: 0.0,
+        };
+        moving.closure = match of.drive {
+            Drive::Closure(_) => moving.led(0.0),
+            // A force on a tool that will never touch moves it from where it stands.
+            Drive::Force(_) => {
+                if touch.is_finite() {
+                    touch
+                } else {
+                    0.0
+                }
+            }
+        };
+        moving.motion.state.closure = moving.closure;
+        moving
+    }
+
+    fn ramp(&self, time: f64) -> f64 {
+        if self.of.over > 0.0 { (time / self.of.over).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
+    /// Closure of a tool that is led, m.
+    fn led(&self, time: f64) -> f64 {
+        let Drive::Closure(full) = self.of.drive else { return self.closure };
+        let start = if self.touch < full { self.touch } else { 0.0 };
+        start + (full - start) * self.ramp(time)
+    }
+
+    /// Force, penetration and stored energy of the contacts found.
+    fn settle(&mut self, contacts: Option<&Contacts>, surface: &ContactSurface) {
+        let zero = Vector3::zeros;
+        self.motion = ToolMotion {
+            state: ToolState {
+                closure: self.closure,
+                force: contacts.map_or_else(zero, Contacts::force),
+                moment: contacts.map_or_else(zero, Contacts::moment),
+                active: contacts.map_or(0, |c| c.points().len()),
+                penetration: contacts.map_or(0.0, Contacts::max_penetration),
+            },
+            speed: self.speed,
+        };
+        let law = self.of.tool.law();
+        self.energies.stored = contacts.map_or(0.0, |c| {
+            let each = c.points().iter().zip(c.pressures()).zip(c.slip());
+            each.map(|((&q, p), slip)| {
+                let stick = 0.5 * law.stick() * slip.stretch().norm_squared();
+                surface.rows().weights()[q as usize] * (0.5 * p * p / law.penalty() + stick)
+            })
+            .sum()
+        });
+        self.energies.friction += contacts.map_or(0.0, Contacts::dissipated);
+    }
+
+    /// A tool's own critical step on its contact must be twice the step or more.
+    fn check(
+        &self,
+        index: usize,
+        step: usize,
+        time: f64,
+        dt: [f64; 2],
+        contacts: Option<&Contacts>,
+        surface: &ContactSurface,
+    ) -> Result<(), ExplicitError> {
+        let (Drive::Force(_), Some(contacts)) = (self.of.drive, contacts) else { return Ok(()) };
+        let area: f64 = contacts.points().iter().map(|&q| surface.rows().weights()[q as usize]).sum();
+        let critical = 2.0 * (self.of.mass / (self.of.tool.law().penalty() * area)).sqrt();
+        if critical < 2.0 * dt[1] {
+            let mass = self.of.mass;
+            return Err(ExplicitError::LightTool { step, time, tool: index, mass, dt: dt[1], critical });
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, first: bool, time: f64, [before_dt, after_dt]: [f64; 2]) {
+        let pushed = -self.motion.state.force.dot(&self.of.tool.along());
+        match self.of.drive {
+            Drive::Closure(_) => {
+                if !first {
+                    self.energies.work += 0.5 * before_dt * self.speed * (self.worked + pushed);
+                }
+                let next = self.led(time + after_dt);
+                self.speed = (next - self.closure) / after_dt;
+                self.closure = next;
+                self.worked = pushed;
+            }
+            Drive::Force(full) => {
+                let (m, dt) = (self.of.mass, 0.5 * (before_dt + after_dt));
+                let c = 0.5 * self.of.damping * dt;
+                let drive = full * self.ramp(time);
+                if first {
+                    // As the body's: from rest at t = 0.
+                    self.speed = -(drive - pushed) * (0.5 * dt / m);
+                }
+                let before = self.speed;
+                let after = ((1.0 - c) * before + dt * (drive - pushed) / m) / (1.0 + c);
+                let mean = 0.5 * (before + after);
+                let half = 0.5 * self.of.damping * dt * m;
+                if !first {
+                    self.energies.work += 0.5 * before_dt * before * (self.worked + drive);
+                    self.energies.damping += half * before * mean + self.pending;
+                }
+                self.pending = half * after * mean;
+                self.energies.kinetic = 0.5 * m * before * after;
+                self.speed = after;
+                self.closure += after * after_dt;
+                self.worked = drive;
+            }
+        }
+    }
+}
+
+/// Closure (m) of the first touch, to 1e-9 m; infinite if the tool passes by. The distance to a point changes by no more than
+/// the way gone, so going on by the gap never goes too far.
+fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
+    let points = surface.rows().points();
+    if points.is_empty() {
+        return f64::INFINITY;
+    }
+    // Beyond the body's far side, where the tool's origin stands past every point, there is nothing left to touch.
+    let ahead = |x: &Point3| (x - tool.place(0.0)).dot(&tool.along());
+    let far = (0..points.len()).map(|q| ahead(&surface.position(q, u))).fold(0.0, f64::max);
+    let mut closure = 0.0;
+    for _ in 0..10_000 {
+        let gap = surface.gap(tool, closure, u);
+        if gap < 1e-9 {
+            return closure;
+        }
+        closure += gap;
+        if closure > 2.0 * far.abs() + 1.0 {
+            break;
+        }
+    }
+    f64::INFINITY
+}

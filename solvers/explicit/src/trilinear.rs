@@ -1,0 +1,131 @@
+//! The trilinear hexahedron with corners at `xi, eta, zeta = +-1` and 2 x 2 x 2 Gauss points, by its coefficients.
+//!
+//! Eight corner values become the coefficients of 1, xi, eta, xi eta, ..., xi eta zeta by sums and differences, 24
+//! operations. A derivative along one axis does not depend on that axis: it takes four values at the eight points, eight
+//! sums for the four. Straight-line code: with a loop inside, one over lanes around it stays scalar.
+
+use shape::{Matrix3, Vector3};
+
+/// Corner signs in the order of the nodes.
+pub(super) const CORNERS: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+
+/// 1 / sqrt 3.
+const GAUSS: f64 = 0.577_350_269_189_625_8;
+
+/// Node at the corner of the given index bits: bit 0 for xi, 1 for eta, 2 for zeta. Its own inverse.
+pub(super) const NODE: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// `dN_a/dxi` at the Gauss point of the given signs.
+pub(super) fn reference(signs: &[f64; 3]) -> [Vector3; 8] {
+    let xi = signs.map(|s| s * GAUSS);
+    CORNERS.map(|c| {
+        let n = [0, 1, 2].map(|k| 1.0 + c[k] * xi[k]);
+        Vector3::new(c[0] * n[1] * n[2], n[0] * c[1] * n[2], n[0] * n[1] * c[2]) * 0.125
+    })
+}
+
+/// The `A` of `grad N_a = A dN_a/dxi` by least squares, if it leaves nothing over.
+pub(super) fn fit(grads: &[Vector3], table: &[Vector3; 8]) -> Option<Matrix3> {
+    let (mut cross, mut square) = (Matrix3::zeros(), Matrix3::zeros());
+    for (g, t) in grads.iter().zip(table) {
+        cross += g * t.transpose();
+        square += t * t.transpose();
+    }
+    let map = cross * square.try_inverse()?;
+    let size = grads.iter().map(Vector3::norm).fold(0.0, f64::max);
+    let fits = grads.iter().zip(table).all(|(g, t)| (g - map * t).norm() <= 1e-13 * size);
+    fits.then_some(map)
+}
+
+/// Corner values, by index bits, to eight times the coefficients, those of products times their powers of 1 / sqrt 3.
+#[inline(always)]
+fn coefficients(v: [f64; 8]) -> [f64; 8] {
+    let pair = |a: f64, b: f64| (b + a, b - a);
+    let ((a0, a1), (a2, a3)) = (pair(v[0], v[1]), pair(v[2], v[3]));
+    let ((a4, a5), (a6, a7)) = (pair(v[4], v[5]), pair(v[6], v[7]));
+    let ((b0, b2), (b1, b3)) = (pair(a0, a2), pair(a1, a3));
+    let ((b4, b6), (b5, b7)) = (pair(a4, a6), pair(a5, a7));
+    let ((c0, c4), (c1, c5)) = (pair(b0, b4), pair(b1, b5));
+    let ((c2, c6), (c3, c7)) = (pair(b2, b6), pair(b3, b7));
+    [c0, c1, c2, GAUSS * c3, c4, GAUSS * c5, GAUSS * c6, GAUSS * GAUSS * c7]
+}
+
+/// Index 0 to 3 of the value of the derivative along `beta` at the point of index bits `q`: by the signs (low, high) of
+/// the two other axes.
+#[inline(always)]
+pub(super) fn value_at(beta: usize, q: usize) -> usize {
+    match beta {
+        0 => q >> 1,
+        1 => (q & 1) + (q >> 2) * 2,
+        _ => q & 3,
+    }
+}
+
+/// Eight times the derivatives at the Gauss points, [beta][value], from corner values by index bits.
+#[inline(always)]
+pub(super) fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
+    let c = coefficients(corners);
+    let values = |flat: f64, along_a: f64, along_b: f64, both: f64| {
+        let (low, high) = ((flat - along_a, along_b - both), (flat + along_a, along_b + both));
+        [low.0 - low.1, high.0 - high.1, low.0 + low.1, high.0 + high.1]
+    };
+    [values(c[1], c[3], c[5], c[7]), values(c[2], c[3], c[6], c[7]), values(c[4], c[5], c[6], c[7])]
+}
+
+/// The transpose of [`slopes`].
+#[inline(always)]
+pub(super) fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
+    let sums = |v: &[f64; 4]| {
+        let (up, down) = ((v[2] + v[0], v[3] + v[1]), (v[2] - v[0], v[3] - v[1]));
+        (up.1 + up.0, up.1 - up.0, down.1 + down.0, down.1 - down.0)
+    };
+    let (x, y, z) = (sums(&d[0]), sums(&d[1]), sums(&d[2]));
+    let (xy, xz, yz) = (GAUSS * (x.1 + y.1), GAUSS * (x.2 + z.1), GAUSS * (y.2 + z.2));
+    let xyz = GAUSS * GAUSS * (x.3 + y.3 + z.3);
+    let pair = |sum: f64, difference: f64| (sum - difference, sum + difference);
+    let ((b0, b4), (b1, b5)) = ((-z.0, z.0), pair(x.0, xz));
+    let ((b2, b6), (b3, b7)) = (pair(y.0, yz), pair(xy, xyz));
+    let ((a0, a2), (a1, a3)) = (pair(b0, b2), pair(b1, b3));
+    let ((a4, a6), (a5, a7)) = (pair(b4, b6), pair(b5, b7));
+    let ((v0, v1), (v2, v3)) = (pair(a0, a1), pair(a2, a3));
+    let ((v4, v5), (v6, v7)) = (pair(a4, a5), pair(a6, a7));
+    [v0, v1, v2, v3, v4, v5, v6, v7]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_are_those_of_the_shape_functions() {
+        let v: [f64; 8] = std::array::from_fn(|k| (1.3 * k as f64).sin());
+        let d = slopes(v);
+        for q in 0..8 {
+            let table = reference(&CORNERS[NODE[q]]);
+            let expected: Vector3 = (0..8).map(|k| table[NODE[k]] * v[k]).sum();
+            for beta in 0..3 {
+                // Values near 1, eight of them.
+                assert!((0.125 * d[beta][value_at(beta, q)] - expected[beta]).abs() < 1e-15, "{q} {beta}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_way_back_is_the_transpose() {
+        let v: [f64; 8] = std::array::from_fn(|k| (1.3 * k as f64).sin());
+        let w: [[f64; 4]; 3] =
+            std::array::from_fn(|b| std::array::from_fn(|k| (0.7 * (4 * b + k) as f64).cos()));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let forward = dot(slopes(v).as_flattened(), w.as_flattened());
+        assert!((forward - dot(&v, &slopes_back(&w))).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,133 @@
+//! Which instructions the lane kernels run on, chosen once at run time: the only place that asks the processor.
+//!
+//! A kernel is plain scalar code over arrays of [`LANES`] numbers. [`on_path!`] compiles it once for each instruction set, with the
+//! compiler's own vectorisation, and calls the copy that a [`LanePath`] names.
+//!
+//! ```
+//! use lanes::{LANES, LanePath, on_path};
+//!
+//! on_path! {
+//!     /// `y += a x`.
+//!     fn add(a: f64, x: &[f64; LANES], y: &mut [f64; LANES]) = add_lanes
+//! }
+//! #[inline(always)]
+//! fn add_lanes<const FMA: bool>(a: f64, x: &[f64; LANES], y: &mut [f64; LANES]) {
+//!     for l in 0..LANES {
+//!         y[l] = if FMA { a.mul_add(x[l], y[l]) } else { a * x[l] + y[l] };
+//!     }
+//! }
+//! let mut y = [1.0; LANES];
+//! add(LanePath::best(), 2.0, &[3.0; LANES], &mut y);
+//! assert_eq!(y, [7.0; LANES]);
+//! ```
+
+/// Lanes of one block: eight f64 fill one AVX-512 register or two of AVX2.
+pub const LANES: usize = 8;
+
+/// One number of each lane.
+pub type Lanes = [f64; LANES];
+
+/// Instruction set of the lane kernels. Results have the same bits at any number of threads on one path; another path
+/// changes the last bits (fused multiply-add, width of sums), so a record names its path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LanePath(Kind);
+
+/// What a path is made of; for [`on_path!`] alone.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl LanePath {
+    /// No instruction beyond the target's own: everywhere available.
+    pub const PORTABLE: LanePath = LanePath(Kind::Portable);
+
+    /// The widest path of this processor. Nothing is allocated.
+    pub fn best() -> LanePath {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if has_avx512() {
+                return LanePath(Kind::Avx512);
+            }
+            if has_avx2() {
+                return LanePath(Kind::Avx2);
+            }
+        }
+        LanePath::PORTABLE
+    }
+
+    /// All paths of this processor, the widest last.
+    pub fn available() -> Vec<LanePath> {
+        #[allow(unused_mut)]
+        let mut paths = vec![LanePath::PORTABLE];
+        #[cfg(target_arch = "x86_64")]
+        {
+            paths.extend(has_avx2().then_some(LanePath(Kind::Avx2)));
+            paths.extend(has_avx512().then_some(LanePath(Kind::Avx512)));
+        }
+        paths
+    }
+
+    /// Name for the record: `portable`, `avx2` or `avx512`.
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            Kind::Portable => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512 => "avx512",
+        }
+    }
+
+    /// For [`on_path!`] alone.
+    #[doc(hidden)]
+    #[inline]
+    pub fn kind(self) -> Kind {
+        self.0
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    has_avx2()
+        && is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+}
+
+/// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`.
+#[macro_export]
+macro_rules! on_path {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident) => {
+        $(#[$doc])*
+        $vis fn $name(path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
+            match path.kind() {
+                $crate::Kind::Portable => $kernel::<false>($($arg),*),
+                #[cfg(target_arch = "x86_64")]
+                $crate::Kind::Avx2 => {
+                    #[target_feature(enable = "avx2,fma")]
+                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
+                    // SAFETY: a path of this kind is made only where these features were detected.
+                    unsafe { run($($arg),*) }
+                }
+                #[cfg(target_arch = "x86_64")]
+                $crate::Kind::Avx512 => {
+                    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
+                    // SAFETY: as above.
+                    unsafe { run($($arg),*) }
+                }
+            }
+        }
+    };
+}

@@ -1,0 +1,69 @@
+//! Stress of eight points at once. A loop over lanes becomes vector instructions where its body is straight-line
+//! arithmetic, so every function here is: no branch on a lane, no call.
+
+pub mod invariants;
+pub mod math;
+pub(super) mod series;
+pub(super) mod stretch;
+
+use super::Material;
+use invariants::{Invariants, Minors};
+use shape::Matrix3;
+
+pub use lanes::LANES;
+
+/// One number of eight points.
+pub type Lanes = [f64; LANES];
+
+/// Displacement gradients of eight points and what every kernel forms of them.
+#[derive(Clone, Copy)]
+pub struct LaneStrain {
+    /// `H_ij`, [3 i + j].
+    pub h: [Lanes; 9],
+    /// `tr H` and `II(H) + det H`; their sum is `J - 1`.
+    pub invariants: [Lanes; 2],
+    /// First row of `cof H`, off the diagonal of `cof H - H^T`.
+    pub minors: [Lanes; 3],
+}
+
+impl LaneStrain {
+    /// No displacement.
+    pub const ZERO: LaneStrain =
+        LaneStrain { h: [[0.0; LANES]; 9], invariants: [[0.0; LANES]; 2], minors: [[0.0; LANES]; 3] };
+
+    /// Gradient of one lane, row by row.
+    #[inline(always)]
+    pub fn lane(&self, l: usize) -> [f64; 9] {
+        let h = &self.h;
+        [h[0][l], h[1][l], h[2][l], h[3][l], h[4][l], h[5][l], h[6][l], h[7][l], h[8][l]]
+    }
+
+    /// Invariants and minors of one lane.
+    #[inline(always)]
+    pub fn invariants(&self, l: usize) -> (Invariants, Minors) {
+        let minors = [self.minors[0][l], self.minors[1][l], self.minors[2][l]];
+        (Invariants::new(self.invariants[0][l], self.invariants[1][l]), minors)
+    }
+
+    /// Stores gradient, invariants and minors of one lane.
+    #[inline(always)]
+    pub fn set<const FMA: bool>(&mut self, l: usize, h: &[f64; 9]) {
+        let (x, minors) = Invariants::of::<FMA>(h);
+        for k in 0..9 {
+            self.h[k][l] = h[k];
+        }
+        (self.invariants[0][l], self.invariants[1][l]) = (x.trace, x.rest);
+        (self.minors[0][l], self.minors[1][l], self.minors[2][l]) = (minors[0], minors[1], minors[2]);
+    }
+}
+
+/// The scalar law lane by lane: for a law without lanes of its own, and beyond the range of its series.
+#[inline(always)]
+pub(super) fn one_by_one(law: &impl Material, x: &LaneStrain, p: &mut [Lanes; 9]) {
+    for l in 0..LANES {
+        let P = law.stress(&Matrix3::from_row_slice(&x.lane(l)));
+        for k in 0..9 {
+            p[k][l] = P[(k / 3, k % 3)];
+        }
+    }
+}

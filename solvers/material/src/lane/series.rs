@@ -1,0 +1,106 @@
+//! Power series of a traceless symmetric tensor `X` without its eigenvalues.
+//!
+//! By Cayley and Hamilton `X^3 = a X + b I`, `a = X : X / 2`, `b = det X`: a polynomial of any degree is
+//! `x0 I + x1 X + x2 X^2`, and one step of Horner's scheme on the three numbers takes two products. Equal eigenvalues are no
+//! special case, and near `X = 0` no digit is lost.
+
+use std::sync::LazyLock;
+
+use super::math::madd;
+use super::{LANES, Lanes};
+
+/// Bounds of the eigenvalues of `X` for which there is a series, each of another length.
+pub(crate) const BOUNDS: [f64; 4] = [0.05, 0.15, 0.35, 0.6];
+
+/// `g` of `ln(1 + x) = x g(x) + constant`, by [`BOUNDS`].
+static LOGARITHM: LazyLock<[Vec<f64>; 4]> = LazyLock::new(|| BOUNDS.map(logarithm));
+
+/// The place in [`BOUNDS`] that holds all lanes; none beyond the last. No eigenvalue is above `2 sqrt(a / 3)`.
+#[inline(always)]
+pub(crate) fn rung(a: &Lanes) -> Option<usize> {
+    BOUNDS.iter().position(|bound| {
+        let limit = 0.75 * bound * bound;
+        let mut within = true;
+        for l in 0..LANES {
+            within &= a[l] <= limit;
+        }
+        within
+    })
+}
+
+/// `g` of the logarithm on one rung.
+#[inline(always)]
+pub(crate) fn of_logarithm(rung: usize) -> &'static [f64] {
+    &LOGARITHM[rung]
+}
+
+/// `g_0, g_1, ...` by the Chebyshev series of the logarithm on `[-bound, bound]`,
+/// `ln(1 + x) = constant - 2 sum_k (-beta)^k / k T_k(x / bound)`, `beta = bound / (1 + sqrt(1 - bound^2))`, half as long as
+/// Taylor's. The coefficients of `T_k` grow as `(1 + sqrt 2)^k`, slower than `beta^k` falls.
+fn logarithm(bound: f64) -> Vec<f64> {
+    let beta = bound / (1.0 + (1.0 - bound * bound).sqrt());
+    let size = |k: i32| 2.0 * beta.powi(k) / f64::from(k);
+    let degree = (1..).find(|&k| size(k + 1) < 2f64.powi(-54) * bound).unwrap_or(1);
+    let length = degree as usize + 1;
+    let mut sum = vec![0.0; length];
+    let (mut before, mut now) = (vec![0.0; length], vec![0.0; length]);
+    (before[0], now[1]) = (1.0, 1.0);
+    for k in 1..=degree {
+        let sign = if k % 2 == 0 { -1.0 } else { 1.0 };
+        for (sum, t) in sum.iter_mut().zip(&now) {
+            *sum += sign * size(k) * t;
+        }
+        let shifted = std::iter::once(0.0).chain(now.iter().copied());
+        let next = shifted.zip(&before).map(|(shifted, before)| 2.0 * shifted - before).collect();
+        before = std::mem::replace(&mut now, next);
+    }
+    sum.iter().enumerate().skip(1).map(|(k, c)| c / bound.powi(k as i32)).collect()
+}
+
+/// `sum_k g_k X^k` as its three numbers, by the `a` and `b` of `X`.
+#[inline(always)]
+pub(crate) fn horner<const FMA: bool>(g: &[f64], a: &Lanes, b: &Lanes, out: &mut [Lanes; 3]) {
+    let [mut g0, mut g1, mut g2] = [[0.0; LANES]; 3];
+    for &c in g.iter().rev() {
+        for l in 0..LANES {
+            let top = g2[l];
+            g2[l] = g1[l];
+            g1[l] = madd::<FMA>(a[l], top, g0[l]);
+            g0[l] = madd::<FMA>(b[l], top, c);
+        }
+    }
+    *out = [g0, g1, g2];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_of_logarithms_agree_with_the_library() {
+        for (rung, bound) in BOUNDS.into_iter().enumerate() {
+            for i in -100..=100 {
+                let x = bound * f64::from(i) / 100.0;
+                let sum = of_logarithm(rung).iter().rev().fold(0.0, |sum, c| sum * x + c) * x;
+                // The constant is lost in the deviator; it is below the last digit all the same.
+                let error = (sum - x.ln_1p()).abs();
+                assert!(error < 1e-15 * x.abs().max(0.2 * bound), "{bound}: {x}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn horner_on_three_numbers_is_the_polynomial_of_the_eigenvalues() {
+        let (x, y) = (0.3, -0.1);
+        let z = -x - y;
+        let (a, b) = (0.5 * (x * x + y * y + z * z), x * y * z);
+        let g = [1.5, -0.4, 0.7, 2.0, -1.1, 0.3];
+        let mut out = [[0.0; LANES]; 3];
+        horner::<false>(&g, &[a; LANES], &[b; LANES], &mut out);
+        for t in [x, y, z] {
+            let expected = g.iter().rev().fold(0.0, |sum, c| sum * t + c);
+            let found = out[0][3] + t * (out[1][3] + t * out[2][3]);
+            assert!((found - expected).abs() < 1e-15, "{t}: {found} {expected}");
+        }
+    }
+}

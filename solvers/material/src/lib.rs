@@ -1,0 +1,118 @@
+//! Pointwise constitutive laws. A law sees a displacement gradient `H = grad u` and knows no mesh.
+//!
+//! Every law takes `H` and not `F = I + H`: with `F`, a strain of 1e-10 keeps 6 digits, with `H` it keeps all of them
+//! (here `E = (H + H^T + H^T H) / 2`, `J - 1 = tr H + II(H) + det H`, `ln J = log1p(J - 1)`).
+//!
+//! ```
+//! use material::{Law, LinearElastic, Material, NeoHookean};
+//! use shape::Matrix3;
+//! # fn main() -> Result<(), material::MaterialError> {
+//! // Young's modulus 20 kPa, Poisson's ratio 0.45.
+//! let soft = Law::NeoHookean(NeoHookean::new(20e3, 0.45)?);
+//! let linear = LinearElastic::new(20e3, 0.45)?;
+//! let shear = |gamma| Matrix3::new(0.0, gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+//! // Simple shear by a tenth: P_12 = mu gamma.
+//! let P = soft.stress(&shear(0.1));
+//! assert!((P[(0, 1)] - 0.1 * soft.mu()).abs() < 1e-9 * soft.mu());
+//! // At small strain all laws agree.
+//! assert!((soft.stress(&shear(1e-9)) - linear.stress(&shear(1e-9))).norm() < 1e-8 * 1e-9 * soft.mu());
+//! # Ok(())
+//! # }
+//! ```
+
+#![allow(non_snake_case)]
+
+mod error;
+mod hencky;
+mod kinematics;
+pub mod lane;
+mod law;
+mod linear;
+mod mooney_rivlin;
+mod neo_hookean;
+mod neo_hookean_isochoric;
+mod ogden;
+mod principal;
+mod prony;
+mod saint_venant_kirchhoff;
+mod spectral;
+#[cfg(test)]
+mod tests;
+mod viscoelastic;
+
+pub use error::MaterialError;
+pub use hencky::Hencky;
+pub use kinematics::{less_ln_1p, volume_change};
+pub use law::Law;
+pub use linear::LinearElastic;
+pub use mooney_rivlin::MooneyRivlin;
+pub use neo_hookean::NeoHookean;
+pub use neo_hookean_isochoric::NeoHookeanIsochoric;
+pub use ogden::Ogden;
+pub use prony::{Prony, PronyStep};
+pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use viscoelastic::{deviator, relaxed_stress_and_tangent};
+
+use lane::{LaneStrain, Lanes};
+use shape::Matrix3;
+
+/// `A = dP/dF`, (9, 9), Pa: entry `(i + 3 j, k + 3 l)` is `dP_ij / dF_kl`, the column-major index of a `Matrix3`.
+pub type Tangent = nalgebra::SMatrix<f64, 9, 9>;
+
+/// An isotropic elastic law, given by its energy per undeformed volume.
+///
+/// Where `det F <= 0` the laws with a logarithm or a power of `J` (all but the linear and the
+/// St. Venant-Kirchhoff one) return values that are not finite: callers look at `J` first.
+pub trait Material {
+    /// Energy per undeformed volume `W(H)`, J/m^3.
+    fn energy(&self, H: &Matrix3) -> f64;
+
+    /// First Piola-Kirchhoff stress `P = dW/dF`, (3, 3), Pa.
+    fn stress(&self, H: &Matrix3) -> Matrix3;
+
+    /// Tangent `dP/dF`, (9, 9), Pa; symmetric.
+    fn tangent(&self, H: &Matrix3) -> Tangent;
+
+    /// Both at once: what they share is computed once.
+    fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
+        (self.stress(H), self.tangent(H))
+    }
+
+    /// Shear modulus in the limit of small strain, Pa.
+    fn mu(&self) -> f64;
+
+    /// First Lame modulus in the limit of small strain, Pa.
+    fn lambda(&self) -> f64;
+
+    /// Bulk modulus in the limit of small strain, `lambda + 2 mu / 3`, Pa.
+    fn bulk(&self) -> f64 {
+        self.lambda() + 2.0 / 3.0 * self.mu()
+    }
+
+    /// [`Material::stress`] of eight points, `P_ij` at [3 i + j], Pa; straight-line arithmetic, fused where `FMA`. A law without
+    /// lanes of its own is evaluated point by point.
+    #[inline(always)]
+    fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9])
+    where
+        Self: Sized,
+    {
+        lane::one_by_one(self, strain, p);
+    }
+
+    /// The law without its volumetric part, and that part, where the energy is a sum of the two and the first does not
+    /// change with `J`; a shared dilation then acts on the second alone.
+    fn split(&self) -> Option<(Self, Volumetric)>
+    where
+        Self: Sized,
+    {
+        None
+    }
+}
+
+/// Volumetric energy `quadratic / 2 (J - 1)^2 + logarithmic / 2 (ln J)^2`; moduli in Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Volumetric {
+    pub quadratic: f64,
+    pub logarithmic: f64,
+}

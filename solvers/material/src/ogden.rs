@@ -1,0 +1,206 @@
+//! Ogden's law in isochoric principal stretches.
+
+use super::kinematics::exp_m1_less;
+use super::lane::series::{self, BOUNDS};
+use super::lane::stretch::{Stretch, add_quadratic};
+use super::lane::{LaneStrain, Lanes, one_by_one};
+use super::principal::{Principal, Slopes};
+use super::{Material, MaterialError, Tangent, Volumetric};
+use shape::Matrix3;
+
+/// `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1`, isochoric stretches
+/// `l_a = J^(-1/3) lambda_a`, `D1 = 2 / kappa`; moduli in Pa.
+///
+/// The initial shear modulus is `mu = sum_p mu_p alpha_p / 2`: Ogden's own convention. Abaqus writes
+/// `2 mu_p / alpha_p^2` for `mu_p / alpha_p` here: `mu_p(here) = 2 mu_p(Abaqus) / alpha_p`.
+/// One term of exponent 2 is the isochoric neo-Hookean law; exponents 2 and -2 with `mu_1 = 2 C10`, `mu_2 = -2 C01` are
+/// Mooney-Rivlin.
+/// Source: Ogden, Proc. R. Soc. A 326 (1972) 565-584.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ogden {
+    terms: Vec<(f64, f64)>,
+    bulk: f64,
+    series: Series,
+}
+
+/// `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` as a power series in `e = dev ln C`, for lanes.
+#[derive(Clone, Debug, PartialEq)]
+struct Series {
+    g: Vec<f64>,
+    /// Coefficients that are enough, by [`BOUNDS`]; none where the terms of the series would cancel.
+    lengths: [Option<usize>; BOUNDS.len()],
+}
+
+impl Series {
+    fn new(terms: &[(f64, f64)]) -> Series {
+        let steepest = terms.iter().map(|(_, alpha)| 0.5 * alpha.abs()).fold(0.0, f64::max);
+        let lengths = BOUNDS.map(|bound| {
+            // |e| is largest at the smallest eigenvalue of C.
+            let exponent = steepest * -(-bound).ln_1p();
+            // A term z^n / (n + 1)! against the first; terms as large as exp(4) cost no more than a digit.
+            let mut term = 1.0;
+            let enough = |n: &usize| {
+                term *= exponent / (*n as f64 + 1.0);
+                term < 2f64.powi(-55)
+            };
+            if exponent <= 4.0 { (1..64).find(enough) } else { None }
+        });
+        let length = lengths.iter().flatten().copied().max().unwrap_or(0);
+        let mut powers: Vec<f64> = terms.iter().map(|(mu, _)| *mu).collect();
+        let coefficient = |k: usize| {
+            for (power, (_, alpha)) in powers.iter_mut().zip(terms) {
+                *power *= 0.5 * alpha / (k as f64 + 1.0);
+            }
+            powers.iter().sum()
+        };
+        Series { g: (0..length).map(coefficient).collect(), lengths }
+    }
+}
+
+impl Ogden {
+    /// From the terms `(mu_p, alpha_p)` (Pa, no unit; `alpha_p` not 0, `sum mu_p alpha_p` positive) and the bulk
+    /// modulus (Pa, positive). Single terms with a negative `mu_p alpha_p` occur in fits and are taken.
+    pub fn new(terms: &[(f64, f64)], bulk: f64) -> Result<Ogden, MaterialError> {
+        for (term, &(mu, alpha)) in terms.iter().enumerate() {
+            if !(mu.is_finite() && alpha.is_finite() && alpha != 0.0) {
+                return Err(MaterialError::OgdenTerm { term, mu, alpha });
+            }
+        }
+        let shear = 0.5 * terms.iter().map(|(mu, alpha)| mu * alpha).sum::<f64>();
+        if !(shear > 0.0 && shear.is_finite()) {
+            return Err(MaterialError::Shear { mu: shear });
+        }
+        if !(bulk > 0.0 && bulk.is_finite()) {
+            return Err(MaterialError::Bulk { bulk });
+        }
+        Ok(Ogden { terms: terms.to_vec(), bulk, series: Series::new(terms) })
+    }
+
+    /// The terms `(mu_p, alpha_p)`.
+    pub fn terms(&self) -> &[(f64, f64)] {
+        &self.terms
+    }
+
+    /// `tau_a = sum_p mu_p (l_a^alpha_p - mean_b l_b^alpha_p) + kappa J (J - 1)`.
+    fn kirchhoff(&self, principal: &Principal) -> [f64; 3] {
+        let e = isochoric(&principal.log);
+        let mut tau = [self.bulk * principal.j * (1.0 + principal.j); 3];
+        for &(mu, alpha) in &self.terms {
+            let grown = e.map(|e| (alpha * e).exp_m1());
+            let mean = (grown[0] + grown[1] + grown[2]) / 3.0;
+            for a in 0..3 {
+                tau[a] += mu * (grown[a] - mean);
+            }
+        }
+        tau
+    }
+
+    fn slopes(&self, principal: &Principal) -> Slopes {
+        let e = isochoric(&principal.log);
+        let J = 1.0 + principal.j;
+        let mut slope = [[self.bulk * J * (J + principal.j); 3]; 3];
+        let mut quotient = [0.0; 3];
+        for &(mu, alpha) in &self.terms {
+            let power = e.map(|e| (alpha * e).exp());
+            let third = (power[0] + power[1] + power[2]) / 3.0;
+            let scale = mu * alpha;
+            for a in 0..3 {
+                slope[a][a] += scale * power[a];
+                for b in 0..3 {
+                    slope[a][b] += scale * (third - power[a] - power[b]) / 3.0;
+                }
+                // (exp(alpha e_b) - exp(alpha e_c)) / (e_b - e_c), by the mean and half the difference.
+                let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+                let mean = (0.5 * alpha * (e[b] + e[c])).exp();
+                quotient[a] += scale * mean * sinh_over(0.5 * alpha * (e[b] - e[c]));
+            }
+        }
+        Slopes { slope, quotient }
+    }
+}
+
+impl Material for Ogden {
+    fn energy(&self, H: &Matrix3) -> f64 {
+        let principal = Principal::new(H);
+        let e = isochoric(&principal.log);
+        let mut energy = 0.5 * self.bulk * principal.j * principal.j;
+        for &(mu, alpha) in &self.terms {
+            // The three e sum to 0: without them the first order is gone.
+            energy += mu / alpha * e.map(|e| exp_m1_less(alpha * e)).iter().sum::<f64>();
+        }
+        energy
+    }
+
+    fn stress(&self, H: &Matrix3) -> Matrix3 {
+        let principal = Principal::new(H);
+        principal.stress(H, &self.kirchhoff(&principal))
+    }
+
+    fn tangent(&self, H: &Matrix3) -> Tangent {
+        let principal = Principal::new(H);
+        principal.tangent(H, &self.kirchhoff(&principal), &self.slopes(&principal))
+    }
+
+    fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
+        let principal = Principal::new(H);
+        let tau = self.kirchhoff(&principal);
+        (principal.stress(H, &tau), principal.tangent(H, &tau, &self.slopes(&principal)))
+    }
+
+    /// `tau = dev f(dev ln C) + kappa J (J - 1) I`.
+    #[inline(always)]
+    fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
+        let stretch = Stretch::new::<FMA>(strain);
+        let rung = series::rung(&stretch.a);
+        let length = rung.and_then(|rung| self.series.lengths[rung]);
+        let (Some(rung), Some(length)) = (rung, length) else { return one_by_one(self, strain, p) };
+        let e = stretch.logarithm::<FMA>(rung);
+        let mut tau = stretch.series::<FMA>(&self.series.g[..length], &e);
+        add_quadratic::<FMA>(self.bulk, strain, &mut tau[0]);
+        stretch.stress::<FMA>(strain, &tau, p);
+    }
+
+    fn split(&self) -> Option<(Ogden, Volumetric)> {
+        let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
+        Some((Ogden { bulk: 0.0, ..self.clone() }, volume))
+    }
+
+    fn mu(&self) -> f64 {
+        0.5 * self.terms.iter().map(|(mu, alpha)| mu * alpha).sum::<f64>()
+    }
+
+    fn lambda(&self) -> f64 {
+        self.bulk - 2.0 / 3.0 * Material::mu(self)
+    }
+}
+
+/// Logarithms of the isochoric stretches.
+fn isochoric(log: &[f64; 3]) -> [f64; 3] {
+    let mean = (log[0] + log[1] + log[2]) / 3.0;
+    log.map(|e| e - mean)
+}
+
+/// `sinh(x) / x`, 1 at 0.
+fn sinh_over(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sinh() / x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_constants_are_refused() {
+        let refused = |terms: &[(f64, f64)], bulk| Ogden::new(terms, bulk).unwrap_err();
+        assert_eq!(
+            refused(&[(1.0, 2.0), (3.0, 0.0)], 1.0),
+            MaterialError::OgdenTerm { term: 1, mu: 3.0, alpha: 0.0 }
+        );
+        assert!(matches!(refused(&[(f64::NAN, 2.0)], 1.0), MaterialError::OgdenTerm { term: 0, .. }));
+        assert_eq!(refused(&[], 1.0), MaterialError::Shear { mu: 0.0 });
+        assert_eq!(refused(&[(1.0, 2.0), (1.0, -3.0)], 1.0), MaterialError::Shear { mu: -0.5 });
+        assert_eq!(refused(&[(1.0, 2.0)], -4.0), MaterialError::Bulk { bulk: -4.0 });
+        let text = refused(&[(5.0, 0.0)], 1.0).to_string();
+        assert!(text.contains("term 1") && text.contains("5 Pa"), "{text}");
+    }
+}

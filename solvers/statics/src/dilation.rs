@@ -1,0 +1,62 @@
+//! The projected dilation at quadrature points: `theta_q = sum_a share_aq b_a . u`.
+
+use shape::Vector3;
+
+use crate::Body;
+
+/// Rows of the projected dilation at those points that are asked for.
+pub(crate) struct Projected {
+    /// Per point of the body's quadrature: (node, 1/m), ascending; empty where not asked for.
+    rows: Vec<Vec<(u32, Vector3)>>,
+}
+
+impl Projected {
+    /// At the given points (in any order); `None` without a projection.
+    pub fn new(body: &Body, points: impl Iterator<Item = u32>) -> Option<Projected> {
+        let groups = body.dilation?;
+        let mut wanted = vec![false; groups.point_count()];
+        points.for_each(|p| wanted[p as usize] = true);
+        let mut lists: Vec<Vec<(u32, Vector3)>> = vec![Vec::new(); groups.point_count()];
+        let mut scratch = vec![Vector3::zeros(); body.nodes.len()];
+        for a in 0..groups.len() {
+            let (members, shares) = groups.group(a);
+            if !members.iter().any(|&p| wanted[p as usize]) {
+                continue;
+            }
+            let (_, row) = groups.averaged_gradient(a, body.volume, &mut scratch);
+            for (&p, &share) in members.iter().zip(shares).filter(|(p, _)| wanted[**p as usize]) {
+                lists[p as usize].extend(row.iter().map(|&(node, b)| (node, b * share)));
+            }
+        }
+        // Many groups name the same nodes: summed, a row is a tenth as long.
+        for list in &mut lists {
+            list.sort_by_key(|e| e.0);
+            list.dedup_by(|next, kept| {
+                let same = next.0 == kept.0;
+                if same {
+                    kept.1 += next.1;
+                }
+                same
+            });
+            list.shrink_to_fit();
+        }
+        Some(Projected { rows: lists })
+    }
+
+    /// Nodes and their gradient of the dilation at one point.
+    pub fn row(&self, point: usize) -> &[(u32, Vector3)] {
+        &self.rows[point]
+    }
+}
+
+/// Bulk modulus of one dilation group, Pa: the volume average over its points.
+pub(crate) fn group_bulk(body: &Body, group: usize) -> f64 {
+    let (points, shares) = body.dilation.expect("a body with groups").group(group);
+    let (mut volume, mut bulk) = (0.0, 0.0);
+    for (&q, share) in points.iter().zip(shares) {
+        let dv = share * body.volume.weights()[q as usize];
+        volume += dv;
+        bulk += dv * body.material(q as usize).bulk();
+    }
+    bulk / volume
+}

@@ -1,0 +1,156 @@
+//! What can go wrong between a problem and its solution.
+
+use algebra::AlgebraError;
+
+use crate::RigidMode;
+
+/// Why a problem has no (trustworthy) solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// Two arrays that should be of one length.
+    #[error("{what}: {found} given, {expected} needed")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it needs.
+        expected: usize,
+    },
+    /// A NaN or an infinity in the input.
+    #[error("{what} {index} is not finite")]
+    NotFinite {
+        /// What kind of number.
+        what: &'static str,
+        /// Its index.
+        index: usize,
+    },
+    /// A node index beyond the nodes.
+    #[error("{what} names node {node} of {nodes}")]
+    NodeOutOfRange {
+        /// Who names it.
+        what: &'static str,
+        /// The node.
+        node: usize,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// An axis other than 0, 1, 2.
+    #[error("{what} names axis {axis}; the axes are 0, 1 and 2")]
+    BadAxis {
+        /// Who names it.
+        what: &'static str,
+        /// The axis.
+        axis: u8,
+    },
+    /// A region index beyond the materials.
+    #[error("point {point} lies in region {region}, but there are {materials} materials")]
+    NoMaterial {
+        /// Quadrature point.
+        point: usize,
+        /// Its region.
+        region: usize,
+        /// Number of materials.
+        materials: usize,
+    },
+    /// One degree of freedom fixed at two values.
+    #[error("node {node} is fixed along axis {axis} at {first} m and at {second} m")]
+    Conflict {
+        /// The node.
+        node: usize,
+        /// The axis.
+        axis: u8,
+        /// First value, m.
+        first: f64,
+        /// Second value, m.
+        second: f64,
+    },
+    /// A constraint row that no free degree of freedom can satisfy.
+    #[error("constraint row {row} has no free term left, and its fixed terms miss its value by {gap:e}")]
+    Inconsistent {
+        /// Row index.
+        row: usize,
+        /// Value less the sum of fixed terms.
+        gap: f64,
+    },
+    /// A constraint row that follows from the others, which ask for another value.
+    #[error("constraint row {row} depends on the others, which miss its value by {gap:e}")]
+    Dependent {
+        /// Row index.
+        row: usize,
+        /// The row's combination with the others on the prescribed values.
+        gap: f64,
+    },
+    /// A parameter of a weak support that must be positive.
+    #[error("weak support {support}: {what} is {value}; it must be positive and finite")]
+    BadWeak {
+        /// Index of the support.
+        support: usize,
+        /// Which parameter.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A dilation group without positive volume.
+    #[error("dilation group {group} has volume {volume:e} m^3; it must be positive")]
+    GroupVolume {
+        /// Group index.
+        group: usize,
+        /// Its volume.
+        volume: f64,
+    },
+    /// A node that no integration point sees and that is not fixed along every axis.
+    #[error("node {node} has no stiffness: no integration point sees it")]
+    OrphanNode {
+        /// The node.
+        node: usize,
+    },
+    /// The supports leave the body (or a piece of it) free to move rigidly.
+    #[error("rigid motion is left free: {}{}", list(modes), piece(*node, *piece_nodes, *nodes))]
+    RigidMotion {
+        /// The free motions.
+        modes: Vec<RigidMode>,
+        /// Lowest node of the piece that can move.
+        node: usize,
+        /// Number of nodes that move.
+        piece_nodes: usize,
+        /// Number of nodes in all.
+        nodes: usize,
+    },
+    /// A zero or negative pivot although rigid motions are all held: the integration is too poor to hold the body
+    /// (zero-energy modes), or parts of it are joined by a hinge only.
+    #[error(
+        "the stiffness is not positive definite though no rigid motion is free: zero-energy modes of a reduced \
+         integration, or parts joined along an edge or at a point"
+    )]
+    NotPositiveDefinite,
+    /// As [`SolveError::NotPositiveDefinite`] with Nitsche supports: their stabilisation is too small.
+    #[error(
+        "the stiffness with Nitsche supports is not positive definite: gamma = {gamma} is too small (or the \
+             boundary quadrature too poor), raise it"
+    )]
+    NotCoercive {
+        /// The smallest stabilisation factor among the supports.
+        gamma: f64,
+    },
+    /// A motion whose frequency is any number.
+    #[error(
+        "some motion has neither stiffness nor mass: no frequency; integrate one of them with more points"
+    )]
+    NoFrequency,
+    /// The linear system could not be solved.
+    #[error(transparent)]
+    Algebra(#[from] AlgebraError),
+}
+
+fn list(modes: &[RigidMode]) -> String {
+    modes.iter().map(|m| m.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn piece(node: usize, piece_nodes: usize, nodes: usize) -> String {
+    if piece_nodes == nodes {
+        String::new()
+    } else {
+        format!(" (of the piece of {piece_nodes} nodes that holds node {node})")
+    }
+}

@@ -1,0 +1,446 @@
+#![allow(non_snake_case)] // G and H as in the formulas
+//! Gradient rows ready for assembly, those of two points together where they see nearly the same nodes.
+//!
+//! The sum `G_ij = sum_q w g_i g_j^T` reads and writes a block for every pair of nodes of every point: as many stores as there are
+//! products. Two points that share their nodes share these stores too.
+
+use std::ops::Range;
+
+use algebra::{Connectivity, Incidence};
+use lanes::LanePath;
+use lanes::on_path;
+use rayon::prelude::*;
+use shape::locality_order;
+use shape::{Matrix3, Vector3};
+
+use crate::body::region_of;
+use crate::dilation::group_bulk;
+use crate::{Body, SolveError};
+
+/// Bundles per task.
+const CHUNK: usize = 64;
+
+/// Gradients whose forces one task sums.
+const TASK: usize = 4096;
+
+/// Points of a bundle, at most.
+const POINTS: usize = 2;
+
+/// Neighbours from which on it pays to sort the points in space: with those of linear elements that takes as long as their sums.
+const LONG: usize = 16;
+
+/// A vector at each point of a bundle, padded to four numbers each: a register of AVX-512 or two of AVX2, a line of the cache.
+pub(crate) type Pair = [f64; 4 * POINTS];
+
+/// Gradients of one or two points that follow each other, by bundle; nodes ascending in each, so that the partners `j <= i` of an
+/// entry are the entries before it. Bundles are in the order of their laws, and the points of one have the same.
+pub(crate) struct GradTable {
+    offsets: Vec<usize>,
+    nodes: Vec<u32>,
+    /// Which points of its bundle see the node, a bit each.
+    seen_by: Vec<u8>,
+    /// 1/m; zero at points that do not see the node.
+    grads: Vec<Pair>,
+    /// Weight of each point, at every place of its gradients.
+    weights: Vec<Pair>,
+    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    laws: Vec<(Range<usize>, (f64, f64))>,
+}
+
+/// What a table is made of: points in their order, the row of gradients of each (a row may name a node twice; its gradients add up), its
+/// weight and its law.
+struct Rows<R, W, L> {
+    order: Vec<u32>,
+    row: R,
+    weight: W,
+    law: L,
+}
+
+impl GradTable {
+    /// The body's own quadrature; with a projection only its deviatoric part, `lambda' = -2 mu / 3`.
+    pub fn points(body: &Body) -> GradTable {
+        let moduli = body.materials.iter().map(|m| match body.dilation {
+            Some(_) => (-2.0 / 3.0 * m.mu(), m.mu()),
+            None => (m.lambda(), m.mu()),
+        });
+        let law = |q| region_of(body.region, q);
+        let mut order = in_space(body);
+        order.sort_by_key(|&q| law(q as usize));
+        let rows = Rows {
+            order,
+            row: |q| {
+                let (nodes, grads) = body.volume.row(q);
+                nodes.iter().copied().zip(grads.iter().copied())
+            },
+            weight: |q| body.volume.weights()[q],
+            law,
+        };
+        GradTable::new(body.nodes.len(), &rows, &moduli.collect::<Vec<_>>())
+    }
+
+    /// The dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1, 0) and weight `kappa V_a`.
+    pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
+        let Some(groups) = body.dilation else { return Ok(None) };
+        let scratch = || vec![Vector3::zeros(); body.nodes.len()];
+        let averaged: Vec<_> = (0..groups.len())
+            .into_par_iter()
+            .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
+            .collect();
+        // `!(V > 0)`: a NaN must not pass.
+        if let Some((group, &(volume, _))) = averaged.iter().enumerate().find(|(_, of)| !(of.0 > 0.0)) {
+            return Err(SolveError::GroupVolume { group, volume });
+        }
+        let rows = Rows {
+            order: (0..groups.len() as u32).collect(),
+            row: |a: usize| averaged[a].1.iter().copied(),
+            weight: |a| group_bulk(body, a) * averaged[a].0,
+            law: |_| 0,
+        };
+        Ok(Some(GradTable::new(body.nodes.len(), &rows, &[(1.0, 0.0)])))
+    }
+
+    fn new<I, R, W, L>(node_count: usize, rows: &Rows<R, W, L>, moduli: &[(f64, f64)]) -> GradTable
+    where
+        I: Iterator<Item = (u32, Vector3)>,
+        R: Fn(usize) -> I + Sync,
+        W: Fn(usize) -> f64 + Sync,
+        L: Fn(usize) -> usize + Sync,
+    {
+        let (mut offsets, mut nodes, mut firsts) = (vec![0], Vec::new(), vec![0]);
+        let (row, law) = (|p| (rows.row)(rows.order[p] as usize), |p| (rows.law)(rows.order[p] as usize));
+        // The first point of the bundle that met a node last.
+        let mut met = vec![usize::MAX; node_count];
+        let mut first = 0;
+        for p in 0..rows.order.len() {
+            let (mut all, mut new) = (0, 0);
+            for (node, _) in row(p) {
+                all += 1;
+                new += usize::from(met[node as usize] != first);
+            }
+            // All pairs of a bundle cost the same, whichever of its points see them.
+            let here: usize = nodes.len() - offsets[offsets.len() - 1];
+            let pays = (here + new).pow(2) <= here.pow(2) + all * all;
+            let joins = p < first + POINTS && law(p) == law(first) && pays;
+            if p > first && !joins {
+                offsets.push(nodes.len());
+                firsts.push(p);
+                first = p;
+            }
+            for (node, _) in row(p) {
+                if std::mem::replace(&mut met[node as usize], first) != first {
+                    nodes.push(node);
+                }
+            }
+        }
+        if !rows.order.is_empty() {
+            offsets.push(nodes.len());
+            firsts.push(rows.order.len());
+        }
+        let bundles = firsts.len() - 1;
+        let mut weights = vec![[0.0; 8]; bundles];
+        for (weights, range) in weights.iter_mut().zip(firsts.windows(2)) {
+            for (at, p) in (range[0]..range[1]).enumerate() {
+                weights[places(at)].fill((rows.weight)(rows.order[p] as usize));
+            }
+        }
+        let mut laws: Vec<(Range<usize>, (f64, f64))> = Vec::new();
+        for (l, &moduli) in moduli.iter().enumerate() {
+            let start = laws.last().map_or(0, |last| last.0.end);
+            let end = firsts[..bundles].partition_point(|&p| law(p) <= l);
+            if end > start {
+                laws.push((start..end, moduli));
+            }
+        }
+        let (seen_by, grads) = (vec![0; nodes.len()], vec![[0.0; 8]; nodes.len()]);
+        let mut table = GradTable { offsets, nodes, seen_by, grads, weights, laws };
+        table.fill(&firsts, &row, node_count);
+        table
+    }
+
+    /// Sorts the nodes of every bundle and adds its gradients up. `firsts` are the points that the bundles start with.
+    fn fill<I: Iterator<Item = (u32, Vector3)>>(
+        &mut self,
+        firsts: &[usize],
+        row: &(impl Fn(usize) -> I + Sync),
+        node_count: usize,
+    ) {
+        let GradTable { offsets, nodes, seen_by, grads, .. } = self;
+        let mut rest = (&mut nodes[..], &mut seen_by[..], &mut grads[..]);
+        let mut tasks = Vec::new();
+        for first in (0..firsts.len() - 1).step_by(CHUNK) {
+            let bundles = first..(first + CHUNK).min(firsts.len() - 1);
+            let entries = offsets[bundles.end] - offsets[bundles.start];
+            let (nodes, nodes_left) = rest.0.split_at_mut(entries);
+            let (seen_by, seen_by_left) = rest.1.split_at_mut(entries);
+            let (grads, grads_left) = rest.2.split_at_mut(entries);
+            rest = (nodes_left, seen_by_left, grads_left);
+            tasks.push((bundles, nodes, seen_by, grads));
+        }
+        let offsets = &offsets[..];
+        tasks.into_par_iter().for_each_init(
+            || vec![0; node_count],
+            |at, (bundles, nodes, seen_by, grads)| {
+                let base = offsets[bundles.start];
+                for bundle in bundles {
+                    let entries = offsets[bundle] - base..offsets[bundle + 1] - base;
+                    nodes[entries.clone()].sort_unstable();
+                    for k in entries {
+                        at[nodes[k] as usize] = k;
+                    }
+                    for (p, point) in (firsts[bundle]..firsts[bundle + 1]).enumerate() {
+                        for (node, g) in row(point) {
+                            let k = at[node as usize];
+                            seen_by[k] |= 1 << p;
+                            let grad = &mut grads[k][places(p)];
+                            (0..3).for_each(|axis| grad[axis] += g[axis]);
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    pub fn connectivity(&self) -> Connectivity<'_> {
+        Connectivity { offsets: &self.offsets, nodes: &self.nodes, seen_by: &self.seen_by }
+    }
+
+    /// The bundles that each node is in, ascending.
+    pub fn incidence(&self, node_count: usize) -> Incidence {
+        Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
+    }
+
+    /// Bundles that have about so many gradients together, one at least.
+    pub fn bundles_of(&self, gradients: usize) -> usize {
+        (gradients * self.weights.len() / self.nodes.len().max(1)).max(1)
+    }
+
+    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    pub fn laws(&self) -> &[(Range<usize>, (f64, f64))] {
+        &self.laws
+    }
+
+    /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
+    ///
+    /// Gradients come from the outermost cache, so they are read once: a bundle's forces are summed while its gradients are near.
+    /// Tasks are the same at any number of threads.
+    pub fn subtract_force(&self, u: &[Vector3], force: &mut [Vector3]) {
+        let path = LanePath::best();
+        let tasks: Vec<usize> = (0..self.weights.len()).step_by(self.bundles_of(TASK)).collect();
+        let of_task = |scratch: &mut Forces, &first: &usize| {
+            let end = (first + self.bundles_of(TASK)).min(self.weights.len());
+            scratch.start(&self.nodes[self.offsets[first]..self.offsets[end]]);
+            add_force(path, self, first..end, u, scratch);
+            scratch.finish()
+        };
+        let start = || Forces { slot: vec![u32::MAX; force.len()], nodes: Vec::new(), sums: Vec::new() };
+        let parts: Vec<Vec<(u32, Vector3)>> = tasks.par_iter().map_init(start, of_task).collect();
+        for (node, part) in parts.into_iter().flatten() {
+            force[node as usize] -= part;
+        }
+    }
+
+    /// `w sigma` at the points of a bundle from the displacement gradients there, both by rows.
+    fn stress(&self, bundle: usize, H: &[Pair; 3]) -> [Pair; 3] {
+        let law = self.laws.partition_point(|(bundles, _)| bundles.end <= bundle);
+        let (lambda, mu) = self.laws[law].1;
+        let mut stress = [[0.0; 8]; 3];
+        for p in 0..POINTS {
+            let at = places(p);
+            let H = Matrix3::from_fn(|a, b| H[a][at.start + b]);
+            let weight = self.weights[bundle][at.start];
+            let sigma = ((H + H.transpose()) * mu + Matrix3::identity() * (lambda * H.trace())) * weight;
+            for (a, row) in stress.iter_mut().enumerate() {
+                (0..3).for_each(|b| row[at.start + b] = sigma[(a, b)]);
+            }
+        }
+        stress
+    }
+}
+
+on_path! {
+    /// `G_ij += w g_i g_j^T` over the bundles `seen` by node i and their nodes j <= i, the inner loop of assembly; `G` is the sum
+    /// of two halves. Blocks of nodes that only other points of a bundle see have no `slot`, and get zeros wherever that leads.
+    ///
+    /// For two points three stores and three products and sums of eight lanes: 3 cycles per pair of nodes with AVX-512, what one
+    /// point takes alone. The same arithmetic in the same order on every path, so the same bits: multiply and add stay apart.
+    pub(crate) fn gather(
+        table: &GradTable,
+        seen: &[(u32, u32)],
+        slot: &[u32],
+        sums: &mut [[Pair; 3]],
+    ) = gather_in
+}
+
+#[inline(always)]
+fn gather_in<const FMA: bool>(table: &GradTable, seen: &[(u32, u32)], slot: &[u32], sums: &mut [[Pair; 3]]) {
+    let last = sums.len() - 1;
+    for &(b, k) in seen {
+        let (b, k) = (b as usize, k as usize);
+        let start = table.offsets[b];
+        let (own, weight) = (&table.grads[k], &table.weights[b]);
+        let mut x = [[0.0; 8]; 3];
+        for axis in 0..3 {
+            for l in 0..8 {
+                x[axis][l] = weight[l] * own[l / 4 * 4 + axis];
+            }
+        }
+        for (&j, gj) in table.nodes[start..=k].iter().zip(&table.grads[start..=k]) {
+            let G = &mut sums[(slot[j as usize] as usize).min(last)];
+            for axis in 0..3 {
+                for l in 0..8 {
+                    G[axis][l] += x[axis][l] * gj[l];
+                }
+            }
+        }
+    }
+}
+
+on_path! {
+    /// Adds the forces of some bundles; the same bits on every path.
+    fn add_force(table: &GradTable, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) = add_force_in
+}
+
+#[inline(always)]
+fn add_force_in<const FMA: bool>(
+    table: &GradTable,
+    bundles: Range<usize>,
+    u: &[Vector3],
+    forces: &mut Forces,
+) {
+    for bundle in bundles {
+        let range = table.offsets[bundle]..table.offsets[bundle + 1];
+        let (nodes, grads) = (&table.nodes[range.clone()], &table.grads[range]);
+        let Some(&first) = nodes.first() else { continue };
+        let base = u[first as usize];
+        let mut H = [[0.0; 8]; 3];
+        for (&node, g) in nodes.iter().zip(grads) {
+            // Gradients of a partition of unity sum to zero: only differences of displacements count.
+            let difference = u[node as usize] - base;
+            for (row, d) in H.iter_mut().zip(&difference) {
+                *row = add_product(*row, &[*d; 8], g);
+            }
+        }
+        // Row a of w sigma at the points of the bundle, zero beyond them.
+        let stress = table.stress(bundle, &H);
+        for (&node, g) in nodes.iter().zip(grads) {
+            let sum = &mut forces.sums[forces.slot[node as usize] as usize];
+            for (sum, row) in sum.iter_mut().zip(&stress) {
+                *sum = add_product(*sum, row, g);
+            }
+        }
+    }
+}
+
+/// By whole arrays: added in place lane by lane, the compiler takes these products one at a time.
+#[inline(always)]
+fn add_product(sum: Pair, a: &Pair, b: &Pair) -> Pair {
+    std::array::from_fn(|l| sum[l] + a[l] * b[l])
+}
+
+/// Forces of the nodes that some bundles see.
+struct Forces {
+    /// Where the sum of each node of the body is; `u32::MAX` of the nodes that are not seen.
+    slot: Vec<u32>,
+    nodes: Vec<u32>,
+    /// By axis, to be summed over the lanes.
+    sums: Vec<[Pair; 3]>,
+}
+
+impl Forces {
+    /// Makes room for nodes, any of them more than once.
+    fn start(&mut self, seen: &[u32]) {
+        for &node in seen {
+            let slot = &mut self.slot[node as usize];
+            if *slot == u32::MAX {
+                *slot = self.nodes.len() as u32;
+                self.nodes.push(node);
+            }
+        }
+        self.sums.resize(self.nodes.len(), [[0.0; 8]; 3]);
+    }
+
+    /// The forces, N, and an end with nothing seen.
+    fn finish(&mut self) -> Vec<(u32, Vector3)> {
+        let total = |sum: [Pair; 3]| Vector3::from_fn(|axis, _| sum[axis].iter().sum::<f64>());
+        self.nodes.iter().for_each(|&node| self.slot[node as usize] = u32::MAX);
+        self.nodes.drain(..).zip(self.sums.drain(..)).map(|(node, sum)| (node, total(sum))).collect()
+    }
+}
+
+/// The points of a body along a curve, so that those that follow each other see nearly the same nodes, whatever the order of the cells
+/// they are from. Points that have all their nodes in common stay together, as those of an element.
+fn in_space(body: &Body) -> Vec<u32> {
+    let rows = body.volume.rows();
+    let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+    if rows.nodes().len() < LONG * rows.len() {
+        return order;
+    }
+    let mut place = vec![0; rows.len()];
+    for (at, q) in locality_order(body.volume.points()).into_iter().enumerate() {
+        place[q as usize] = at;
+    }
+    for q in 1..rows.len() {
+        if rows.row(q).0 == rows.row(q - 1).0 {
+            place[q] = place[q - 1];
+        }
+    }
+    order.sort_by_key(|&q| place[q as usize]);
+    order
+}
+
+/// Where the vector at one of the points stands.
+fn places(point: usize) -> Range<usize> {
+    4 * point..4 * point + 4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of two laws in turn, one of which names a node twice and one of which shares no node with those beside it.
+    fn rows() -> Vec<Vec<(u32, Vector3)>> {
+        let g = |k: u32| Vector3::new(f64::from(k), 1.0 - 0.5 * f64::from(k), 0.25 * f64::from(k * k));
+        let of = |nodes: &[u32]| nodes.iter().map(|&n| (n, g(n))).collect();
+        vec![of(&[3, 0, 2]), of(&[0, 2, 3]), of(&[2, 4, 2, 0]), of(&[5, 1]), of(&[4, 3, 0]), of(&[0, 3, 4])]
+    }
+
+    #[test]
+    fn bundles_sum_what_their_points_do_by_law_on_every_path() {
+        let (rows, node_count) = (rows(), 6);
+        let (weight, law) = (|q: usize| 0.5 + q as f64, |q: usize| usize::from(q == 1 || q >= 4));
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        order.sort_by_key(|&q| law(q as usize));
+        let parts = Rows { order, row: |q: usize| rows[q].iter().copied(), weight, law };
+        let table = GradTable::new(node_count, &parts, &[(1.0, 2.0), (3.0, 4.0)]);
+        // Points 0 and 2, 3 alone, 1 and 4, 5.
+        assert_eq!(table.offsets, [0, 4, 6, 10, 13]);
+        assert_eq!(table.laws(), [(0..2, (1.0, 2.0)), (2..4, (3.0, 4.0))]);
+        let incidence = table.incidence(node_count);
+        let slot: Vec<u32> = (0..node_count as u32).collect();
+        for (l, (bundles, _)) in table.laws().iter().enumerate() {
+            for i in 0..node_count {
+                let seen: Vec<(u32, u32)> =
+                    incidence.of(i).iter().copied().filter(|of| bundles.contains(&(of.0 as usize))).collect();
+                let sums: Vec<Vec<[Pair; 3]>> = LanePath::available()
+                    .into_iter()
+                    .map(|path| {
+                        let mut sums = vec![[[0.0; 8]; 3]; node_count];
+                        gather(path, &table, &seen, &slot, &mut sums);
+                        sums
+                    })
+                    .collect();
+                assert!(sums.windows(2).all(|two| two[0] == two[1]), "row {i}");
+                for j in 0..=i {
+                    let at = |q: usize, n: usize| {
+                        let of = rows[q].iter().filter(|e| e.0 == n as u32);
+                        of.map(|e| e.1).sum::<Vector3>()
+                    };
+                    let points = (0..rows.len()).filter(|&q| law(q) == l);
+                    let exact: Matrix3 = points.map(|q| at(q, i) * at(q, j).transpose() * weight(q)).sum();
+                    let sum = Matrix3::from_fn(|a, b| sums[0][j][a][b] + sums[0][j][a][4 + b]);
+                    assert!((sum - exact).norm() <= 1e-14 * exact.norm(), "{i} {j}: {sum} {exact}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Stepping through time: steps with cut-back and regrowth, each solved by Newton's method.
+
+use contact::ContactCounts;
+use contact::Drive;
+use shape::Vector3;
+
+use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
+use super::scheme::{Scheme, Update};
+use super::{Energy, TimeError};
+use crate::nonlinear::{Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
+use crate::{StaticWork, Step};
+
+/// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
+/// An error here is one of the problem itself; a solution that ends early is a [`TimePath`] with its failure.
+pub fn solve_in_time(
+    problem: &TimeProblem,
+    params: &TimeParams,
+    mut observe: impl FnMut(&TimeStep, &Motion, &[f64]),
+) -> Result<TimePath, TimeError> {
+    problem.check(params)?;
+    let mass = problem.inertia.map(|i| i.mass.table());
+    let newton = Newton::with_mass(problem.body, &params.newton, mass)?;
+    let (mut march, first) = March::start(problem, params, newton)?;
+    let mut path = TimePath {
+        steps: Vec::new(),
+        motion: Motion { u: Vec::new(), v: Vec::new(), a: Vec::new(), reaction: Vec::new() },
+        pressure: Vec::new(),
+        cut_back: 0,
+        counts: ContactCounts::default(),
+        work: StaticWork::default(),
+        failure: None,
+    };
+    if let Some(done) = first {
+        observe(&done, &march.motion, &march.state.pressure);
+        path.steps.push(done);
+    }
+    let count = params.steps.max(1);
+    let longest = params.end / count as f64;
+    let (mut next, mut step) = (1, longest);
+    while next <= count {
+        let target = next as f64 * longest;
+        let left = target - march.state.time;
+        // A rest shorter than a tenth of the step would be one for its own sake.
+        let reaches = step > 0.9 * left;
+        let time = if reaches { target } else { march.state.time + step };
+        let length = time - march.state.time;
+        match march.step(time) {
+            Ok(mut done) => {
+                done.step.wanted = reaches;
+                let quick = done.step.iterations.len() <= 6;
+                let growth = params.accuracy.map_or(2.0, |allowed| following(allowed, done.error).min(2.0));
+                observe(&done, &march.motion, &march.state.pressure);
+                path.steps.push(done);
+                if reaches {
+                    next += 1;
+                }
+                step = if quick { (growth * step).min(longest) } else { step };
+            }
+            Err(cause) => {
+                path.cut_back += 1;
+                step = length
+                    * match cause {
+                        TimeError::Inaccurate { error, allowed } => following(allowed, error).clamp(0.2, 0.8),
+                        _ => 0.5,
+                    };
+                if step < params.smallest * longest {
+                    let (time, cause) = (march.state.time, Box::new(cause));
+                    path.failure = Some(TimeError::Stalled { time, step: length, cause });
+                    break;
+                }
+            }
+        }
+    }
+    path.counts = march.newton.counts();
+    path.work = march.newton.work();
+    path.motion = march.motion;
+    path.pressure = march.state.pressure;
+    Ok(path)
+}
+
+/// The step to take after one with this local error, relative to it: the error grows as its third power.
+fn following(allowed: f64, error: f64) -> f64 {
+    if error > 0.0 { 0.9 * (allowed / error).cbrt() } else { f64::INFINITY }
+}
+
+/// A motion under way.
+struct March<'a> {
+    problem: &'a TimeProblem<'a>,
+    params: &'a TimeParams,
+    scheme: Scheme,
+    newton: Newton<'a>,
+    memory: Option<Memory<'a>>,
+    state: State,
+    before: Option<State>,
+    motion: Motion,
+    /// Forces at the end of the last step.
+    forces: Ended,
+    energy: Energy,
+}
+
+impl<'a> March<'a> {
+    /// At time 0; a quasi-static body that is loaded at once comes with the step that took it there.
+    fn start(
+        problem: &'a TimeProblem<'a>,
+        params: &'a TimeParams,
+        newton: Newton<'a>,
+    ) -> Result<(March<'a>, Option<TimeStep>), TimeError> {
+        let zeros = vec![Vector3::zeros(); problem.body.nodes.len()];
+        let relaxes = problem.relaxation.iter().any(Option::is_some);
+        let forces = Ended { external: zeros.clone(), internal: zeros.clone(), deviator: Vec::new() };
+        let mut march = March {
+            problem,
+            params,
+            scheme: Scheme::new(params.rho_inf),
+            newton,
+            memory: relaxes.then(|| Memory::new(problem.body.solid, problem.relaxation)),
+            state: State::start(problem.body),
+            before: None,
+            motion: Motion { u: zeros.clone(), v: zeros.clone(), a: zeros.clone(), reaction: zeros },
+            forces,
+            energy: Energy::default(),
+        };
+        if problem.inertia.is_some() {
+            march.start_moving()?;
+            return Ok((march, None));
+        }
+        let Scales { loads, supports, tools } = march.scales(0.0);
+        let first = if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0)?) } else { None };
+        march.before = None;
+        Ok((march, first))
+    }
+
+    /// Forces and accelerations at time 0.
+    fn start_moving(&mut self) -> Result<(), TimeError> {
+        let inertia = self.problem.inertia.expect("asked for with inertia only");
+        if !inertia.displacement.is_empty() {
+            self.state.u.copy_from_slice(inertia.displacement);
+        }
+        if !inertia.velocity.is_empty() {
+            self.motion.v.copy_from_slice(inertia.velocity);
+        }
+        let ramp = self.problem.ramps.supports.derivatives(0.0);
+        for (dof, value) in self.newton.prescribed().iter().enumerate() {
+            if let Some(value) = value {
+                let (i, axis) = (dof / 3, dof % 3);
+                self.state.u[i][axis] = value * ramp[0];
+                self.motion.v[i][axis] = value * ramp[1];
+                self.motion.a[i][axis] = value * ramp[2];
+            }
+        }
+        let scales = self.scales(0.0);
+        for (closure, driven) in self.state.closures.iter_mut().zip(self.problem.body.tools) {
+            if let Drive::Closure(full) = driven.drive {
+                *closure = full * scales.tools;
+            }
+        }
+        let relaxing = self.memory.as_ref().map(|m| m.relaxing(0.0));
+        self.newton.set_terms(TimeTerms { scales, inertia: None, relaxing });
+        let (forces, strain) = self.newton.forces_at(&self.state)?;
+        let damping = inertia.mass.times(&self.motion.v);
+        let force: Vec<Vector3> = (0..self.state.u.len())
+            .map(|i| forces.external[i] - forces.internal[i] - damping[i] * inertia.damping)
+            .collect();
+        let prescribed = self.newton.prescribed();
+        let held = |i: usize, axis: usize| prescribed[3 * i + axis].is_some();
+        inertia.mass.accelerate(&force, held, &mut self.motion.a)?;
+        if let Some(memory) = &mut self.memory {
+            memory.advance(0.0, forces.deviator.clone());
+        }
+        self.motion.u.clone_from(&self.state.u);
+        self.motion.reaction = self.reaction(&forces, &self.motion);
+        self.forces = forces;
+        self.energy.kinetic = self.kinetic(&self.motion);
+        self.energy.internal = strain;
+        self.energy.start = self.energy.kinetic + strain;
+        Ok(())
+    }
+
+    fn scales(&self, time: f64) -> Scales {
+        let ramps = self.problem.ramps;
+        Scales {
+            loads: ramps.loads.value(time),
+            supports: ramps.supports.value(time),
+            tools: ramps.tools.value(time),
+        }
+    }
+
+    /// On to `time`; nothing has changed if that fails.
+    fn step(&mut self, time: f64) -> Result<TimeStep, TimeError> {
+        let dt = time - self.state.time;
+        let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
+        let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
+        self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
+        let (before, augmentations) = (self.before.as_ref(), self.params.augmentations);
+        let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
+        let (state, step) = to(Descent::Nearest)
+            .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
+            .or_else(|_| to(Descent::Down))?;
+        let mut motion = self.motion_at(time, dt, &state.u);
+        let mut error = 0.0f64;
+        if self.problem.inertia.is_some() {
+            let update = self.scheme.over(dt);
+            for (a, new) in self.motion.a.iter().zip(&motion.a) {
+                error = error.max(update.error(a, new));
+            }
+        }
+        if let Some(allowed) = self.params.accuracy.filter(|allowed| error > *allowed) {
+            return Err(TimeError::Inaccurate { error, allowed });
+        }
+        let forces = self.newton.ended();
+        motion.reaction = self.reaction(&forces, &motion);
+        self.balance_energy(&motion, &forces, &step);
+        if let Some(memory) = &mut self.memory {
+            memory.advance(dt, forces.deviator.clone());
+        }
+        self.before = Some(std::mem::replace(&mut self.state, state));
+        (self.motion, self.forces) = (motion, forces);
+        Ok(TimeStep { step, energy: self.energy, error })
+    }
+
+    /// Value, velocity or acceleration (`order` 0, 1, 2) of held degrees of freedom at `time`.
+    fn prescribe(&self, field: &mut [Vector3], time: f64, order: usize) {
+        let part = self.problem.ramps.supports.derivatives(time)[order];
+        for (dof, value) in self.newton.prescribed().iter().enumerate() {
+            if let Some(value) = value {
+                field[dof / 3][dof % 3] = value * part;
+            }
+        }
+    }
+
+    /// Velocities and accelerations with the displacement `u` at `time`; held degrees of freedom have those of the
+    /// ramp.
+    fn motion_at(&self, time: f64, dt: f64, u: &[Vector3]) -> Motion {
+        let Motion { u: from, v, a, .. } = &self.motion;
+        let zeros = || vec![Vector3::zeros(); u.len()];
+        if self.problem.inertia.is_none() {
+            return Motion { u: u.to_vec(), v: zeros(), a: zeros(), reaction: zeros() };
+        }
+        let update = self.scheme.over(dt);
+        let mut new_a: Vec<Vector3> =
+            (0..u.len()).map(|i| update.acceleration(&(u[i] - from[i]), &v[i], &a[i])).collect();
+        let mut new_v: Vec<Vector3> =
+            (0..u.len()).map(|i| update.velocity(&v[i], &a[i], &new_a[i])).collect();
+        self.prescribe(&mut new_v, time, 1);
+        self.prescribe(&mut new_a, time, 2);
+        Motion { u: u.to_vec(), v: new_v, a: new_a, reaction: zeros() }
+    }
+
+    /// Inertia in the balance of the step to `time`.
+    fn inertia(&self, time: f64, update: Update, damping: f64) -> InertiaTerms {
+        let Motion { u, v, a, .. } = &self.motion;
+        let dt = time - self.state.time;
+        let still = self.motion_at(time, dt, u);
+        let settled =
+            (0..u.len()).map(|i| update.rate(damping, [&a[i], &still.a[i]], [&v[i], &still.v[i]])).collect();
+        let weight = self.scheme.alpha_f / (1.0 - self.scheme.alpha_f);
+        let carried = (self.forces.external.iter().zip(&self.forces.internal))
+            .map(|(external, internal)| (external - internal) * weight)
+            .collect();
+        // With the acceleration of the last step's end: exact for a body that falls freely.
+        let guess = (0..u.len()).map(|i| u[i] + (v[i] + a[i] * (0.5 * dt)) * dt).collect();
+        InertiaTerms { factor: update.factor(damping), from: u.clone(), settled, carried, guess }
+    }
+
+    /// What balances held degrees of freedom; zero in free ones.
+    fn reaction(&self, forces: &Ended, motion: &Motion) -> Vec<Vector3> {
+        let mut inertia = vec![Vector3::zeros(); motion.u.len()];
+        if let Some(given) = self.problem.inertia {
+            let rate: Vec<Vector3> =
+                motion.a.iter().zip(&motion.v).map(|(a, v)| a + v * given.damping).collect();
+            inertia = given.mass.times(&rate);
+        }
+        let prescribed = self.newton.prescribed();
+        (0..motion.u.len())
+            .map(|i| {
+                let lacking = forces.internal[i] - forces.external[i] + inertia[i];
+                Vector3::from_fn(
+                    |axis, _| if prescribed[3 * i + axis].is_some() { lacking[axis] } else { 0.0 },
+                )
+            })
+            .collect()
+    }
+
+    fn kinetic(&self, motion: &Motion) -> f64 {
+        let Some(inertia) = self.problem.inertia else { return 0.0 };
+        let momentum = inertia.mass.times(&motion.v);
+        0.5 * momentum.iter().zip(&motion.v).map(|(p, v)| p.dot(v)).sum::<f64>()
+    }
+
+    fn balance_energy(&mut self, motion: &Motion, forces: &Ended, step: &Step) {
+        let gain: Vec<Vector3> = motion.u.iter().zip(&self.motion.u).map(|(new, old)| new - old).collect();
+        let work = |old: &[Vector3], new: &[Vector3]| -> f64 {
+            gain.iter().zip(old.iter().zip(new)).map(|(gain, (old, new))| 0.5 * gain.dot(&(old + new))).sum()
+        };
+        self.energy.external +=
+            work(&self.forces.external, &forces.external) + work(&self.motion.reaction, &motion.reaction);
+        if self.memory.is_some() {
+            self.energy.internal += work(&self.forces.internal, &forces.internal);
+        } else {
+            self.energy.internal = step.energy;
+        }
+        self.energy.kinetic = self.kinetic(motion);
+        if let Some(inertia) = self.problem.inertia.filter(|i| i.damping > 0.0) {
+            let momentum = inertia.mass.times(&motion.v);
+            let before = inertia.mass.times(&self.motion.v);
+            self.energy.damped += inertia.damping * work(&before, &momentum);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Dead loads: tractions, pressure and body force, integrated into nodal forces (N).
+
+use shape::Vector3;
+use shape::{Rows, SurfaceRows, VolumeRows};
+
+use crate::SolveError;
+use crate::body::check_len;
+
+/// A load with one value per quadrature point; a field is evaluated at the points by the caller.
+#[derive(Clone, Debug)]
+pub enum Load<'a> {
+    /// Force per reference area, Pa.
+    Traction {
+        /// Where it acts.
+        surface: &'a SurfaceRows,
+        /// One vector per surface point, Pa.
+        values: Vec<Vector3>,
+    },
+    /// Pressure, Pa, acting against the outward normal: `t = -p n`.
+    Pressure {
+        /// Where it acts.
+        surface: &'a SurfaceRows,
+        /// One value per surface point, Pa.
+        values: Vec<f64>,
+    },
+    /// Force per reference volume, N/m^3, at the points of the body's own quadrature.
+    Body {
+        /// One vector per volume point, N/m^3.
+        values: Vec<Vector3>,
+    },
+}
+
+/// Nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
+pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
+    let nodes = volume.rows().node_count();
+    let mut force = vec![Vector3::zeros(); nodes];
+    for load in loads {
+        match load {
+            Load::Traction { surface, values } => {
+                add(&mut force, surface.rows(), surface.weights(), values.len(), |q| values[q])?;
+            }
+            Load::Pressure { surface, values } => {
+                let normals = surface.normals();
+                add(&mut force, surface.rows(), surface.weights(), values.len(), |q| {
+                    normals[q] * -values[q]
+                })?;
+            }
+            Load::Body { values } => {
+                add(&mut force, volume.rows(), volume.weights(), values.len(), |q| values[q])?;
+            }
+        }
+    }
+    Ok(force)
+}
+
+fn add(
+    force: &mut [Vector3],
+    rows: &Rows,
+    weights: &[f64],
+    count: usize,
+    value: impl Fn(usize) -> Vector3,
+) -> Result<(), SolveError> {
+    check_len("load values", count, rows.len())?;
+    check_len("nodes of a loaded surface", rows.node_count(), force.len())?;
+    for q in 0..count {
+        let t = value(q);
+        if !t.iter().all(|c| c.is_finite()) {
+            return Err(SolveError::NotFinite { what: "load at point", index: q });
+        }
+        let (nodes, values) = rows.row(q);
+        for (&node, n) in nodes.iter().zip(values) {
+            force[node as usize] += t * (n * weights[q]);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! Small free vibrations: `K v = omega^2 M v`.
+//!
+//! ```text
+//! LinearProblem, Mass --modes--> Modes
+//! ```
+//!
+//! Loads and the values that supports prescribe have no part in them. Constraint rows are eliminated, weak supports act by
+//! their stiffness, and a body may be free: its rigid motions are modes of frequency zero.
+
+use std::f64::consts::PI;
+
+use algebra::{AlgebraError, FactorError, Symmetric, eigen};
+use shape::Vector3;
+
+use crate::body::check_len;
+use crate::problem::{Assembled, assemble_free};
+use crate::reduction::Reduction;
+use crate::{LinearProblem, Mass, SolveError};
+
+/// Relative residual of a mode above which it is refused: its frequency is then off by less than the square.
+const RESIDUAL_LIMIT: f64 = 1e-4;
+/// `1 / (omega^2 + shift)` over the largest one, below which only rounding is left of it: the motion has no mass.
+const MASSLESS: f64 = 1e-11;
+/// Negative `omega^2` over the shift that rounding does not explain: it left 1e-10 of rigid motions.
+const UNSTABLE: f64 = 1e-4;
+
+/// The modes of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    /// `omega^2` of every mode, ascending, (rad/s)^2; of rigid motions zero to rounding, of either sign.
+    pub squared: Vec<f64>,
+    /// Nodal parameters of each mode, with `v^T M v = 1`.
+    pub shapes: Vec<Vec<Vector3>>,
+    /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: a shear wave across the body.
+    pub scale: f64,
+    /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all.
+    pub residual: f64,
+    /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above.
+    pub massless: usize,
+}
+
+/// All modes of a body by a dense decomposition: none is missed, and time grows with the cube of the number of unknowns.
+///
+/// Written with `A = K + s M` as `M v = theta A v`, `omega^2 = 1 / theta - s`: nothing is asked of `M`, which may be
+/// singular, nor of `K`, and the lowest modes are the most exact (the spectral transformation of Ericsson & Ruhe, Math. Comp.
+/// 35 (1980) 1251-1268). `s` ([`Modes::scale`]) changes rounding, no result.
+///
+/// Errors: those of assembly, a stiffness with a negative `omega^2`, a motion with neither stiffness nor mass.
+pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> {
+    check_len("nodes of the mass", mass.node_count(), problem.body.nodes.len())?;
+    let assembled = assemble_free(problem)?;
+    let held: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
+    let reduction = Reduction::new(&held, &assembled.rows)?;
+    let (k, m) = (reduction.matrix(&assembled.stiffness), reduction.matrix(&mass.matrix()));
+    let shift = shift(problem, mass);
+    let eigen = eigen::shifted(&k, &m, shift).map_err(|error| match error {
+        FactorError::NotDefinite | FactorError::Other(AlgebraError::NearlySingular { .. }) => {
+            indefinite(&assembled, SolveError::NoFrequency)
+        }
+        FactorError::Other(error) => error.into(),
+    })?;
+    let least = MASSLESS * eigen.values.first().copied().unwrap_or(0.0);
+    let seen = eigen.values.iter().take_while(|&&theta| theta > least);
+    let squared: Vec<f64> = seen.map(|theta| 1.0 / theta - shift).collect();
+    if squared.first().is_some_and(|&lowest| lowest < -UNSTABLE * shift) {
+        return Err(indefinite(&assembled, SolveError::NotPositiveDefinite));
+    }
+    let mut residual = 0.0f64;
+    let mut shapes = Vec::with_capacity(squared.len());
+    for (x, &lambda) in eigen.vectors.iter().zip(&squared) {
+        let left = left_over(&k, &m, x, lambda, shift);
+        // `!(r <= limit)`: a NaN must not pass.
+        if !(left <= RESIDUAL_LIMIT) {
+            return Err(AlgebraError::Residual { residual: left, limit: RESIDUAL_LIMIT }.into());
+        }
+        residual = residual.max(left);
+        // x^T (K + s M) x = 1 makes x^T M x = theta.
+        let scale = (lambda + shift).sqrt();
+        let mut shape = vec![Vector3::zeros(); mass.node_count()];
+        reduction.expand(&x.iter().map(|x| x * scale).collect::<Vec<_>>(), &mut shape);
+        shapes.push(shape);
+    }
+    let massless = eigen.values.len() - squared.len();
+    Ok(Modes { squared, shapes, scale: shift, residual, massless })
+}
+
+/// Nitsche's stabilisation is the first to blame.
+fn indefinite(assembled: &Assembled, otherwise: SolveError) -> SolveError {
+    assembled.gamma.map_or(otherwise, |gamma| SolveError::NotCoercive { gamma })
+}
+
+/// `mu / rho (pi / L)^2`, 1/s^2.
+fn shift(problem: &LinearProblem, mass: &Mass) -> f64 {
+    let body = &problem.body;
+    let axes = [0, 1, 2].map(|a| body.nodes.iter().map(move |x| x[a]));
+    let extent = axes.map(|x| x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min));
+    let square: f64 = extent.iter().map(|e| e * e).sum();
+    let volume: f64 = body.volume.weights().iter().sum();
+    let total: f64 = mass.times(&vec![Vector3::x(); body.nodes.len()]).iter().map(|p| p.x).sum();
+    let mu = body.materials.iter().map(|law| law.mu()).fold(0.0, f64::max);
+    mu * volume / total * PI * PI / square
+}
+
+fn left_over(k: &Symmetric, m: &Symmetric, x: &[f64], lambda: f64, shift: f64) -> f64 {
+    let product = |matrix: &Symmetric| {
+        let mut y = vec![0.0; x.len()];
+        matrix.subtract_product(x, &mut y);
+        y
+    };
+    let (force, inertia) = (product(k), product(m));
+    let rest: f64 = force.iter().zip(&inertia).map(|(f, i)| (f - lambda * i).powi(2)).sum();
+    let size: f64 = inertia.iter().map(|i| i * i).sum();
+    (rest / size).sqrt() / (lambda + shift)
+}

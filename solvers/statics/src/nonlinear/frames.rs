@@ -1,0 +1,72 @@
+//! A static problem solved again and again at other parts of its load, as a simulator does, prepared once.
+
+use shape::Vector3;
+
+use super::error::StaticError;
+use super::newton::{Descent, Newton, State, near};
+use super::statics::{StaticParams, StaticProblem, Step};
+
+/// Equilibria in frames: each starts from the last, forwards or backwards along the loading. Residuals are relative to the
+/// largest forces so far: where tools lift off, the digits of a force near zero are no use to a simulator.
+pub struct Frames<'a> {
+    newton: Newton<'a>,
+    state: State,
+    before: Option<State>,
+    augmentations: usize,
+    /// Part of the load below which cutting a frame is given up.
+    smallest: f64,
+}
+
+impl<'a> Frames<'a> {
+    /// Starts undeformed.
+    pub fn new(problem: &'a StaticProblem<'a>, params: &'a StaticParams) -> Result<Frames<'a>, StaticError> {
+        Ok(Frames {
+            newton: Newton::new(problem, &params.newton)?.repeat(),
+            state: State::start(problem),
+            before: None,
+            augmentations: params.augmentations,
+            smallest: params.smallest / params.steps.max(1) as f64,
+        })
+    }
+
+    /// Equilibrium at `time` (part of the load, above 0): in one step, or in halves of it where that fails.
+    pub fn to(&mut self, time: f64) -> Result<Step, StaticError> {
+        // On a thread of the pool: from outside each of an iteration's twenty loops would have to wake one.
+        rayon::scope(|_| self.go(time))
+    }
+
+    fn go(&mut self, time: f64) -> Result<Step, StaticError> {
+        let mut target = time;
+        loop {
+            let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
+            let mut way = |descent| newton.find(state, before, target, self.augmentations, descent);
+            match near(!state.pressure.is_empty(), &mut way).or_else(|_| way(Descent::Down)) {
+                Ok((reached, step)) => {
+                    self.newton.keep_scale();
+                    let last = std::mem::replace(&mut self.state, reached);
+                    // A frame without motion tells nothing of the way.
+                    if last.time != self.state.time {
+                        self.before = Some(last);
+                    }
+                    if target == time {
+                        return Ok(step);
+                    }
+                    target = time;
+                }
+                Err(cause) => {
+                    let failed = target - self.state.time;
+                    target = self.state.time + 0.5 * failed;
+                    if 0.5 * failed.abs() < self.smallest {
+                        let time = self.state.time;
+                        return Err(StaticError::Stalled { time, step: failed, cause: Box::new(cause) });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Nodal parameters of the last frame, m.
+    pub fn u(&self) -> &[Vector3] {
+        &self.state.u
+    }
+}

@@ -1,0 +1,111 @@
+//! What a step in real time adds to the balance of forces: scales of its own for loads, supports and tools, inertia,
+//! relaxation.
+
+use shape::{Matrix3, Vector3};
+
+use super::relaxing::Relaxing;
+use super::system::SurfaceTable;
+
+/// Parts of the full values that act at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scales {
+    pub loads: f64,
+    pub supports: f64,
+    pub tools: f64,
+}
+
+impl Scales {
+    /// One for all.
+    pub fn all(scale: f64) -> Scales {
+        Scales { loads: scale, supports: scale, tools: scale }
+    }
+}
+
+/// What one step adds.
+#[derive(Clone, Debug)]
+pub(crate) struct TimeTerms {
+    pub scales: Scales,
+    pub inertia: Option<InertiaTerms>,
+    pub relaxing: Option<Relaxing>,
+}
+
+/// Inertia and damping of one step of an implicit scheme, the force `carried - M r`, with
+/// `r = factor (u - from) + settled` in free degrees of freedom and `r = settled` in held ones, m/s^2.
+#[derive(Clone, Debug)]
+pub(crate) struct InertiaTerms {
+    /// 1/s^2.
+    pub factor: f64,
+    /// Displacement at the start of the step, m.
+    pub from: Vec<Vector3>,
+    /// `r` at the start's displacement, m/s^2.
+    pub settled: Vec<Vector3>,
+    /// The part that the forces at the start of the step have in the balance, N.
+    pub carried: Vec<Vector3>,
+    /// First guess of the displacement at the end, m.
+    pub guess: Vec<Vector3>,
+}
+
+/// Nodal forces at the end of a step, N, and what relaxes.
+#[derive(Clone, Debug)]
+pub(crate) struct Ended {
+    /// Loads, surfaces held by penalty and contact.
+    pub external: Vec<Vector3>,
+    pub internal: Vec<Vector3>,
+    /// Deviators that a Prony series relaxes, per point, Pa; empty in an elastic body.
+    pub deviator: Vec<Matrix3>,
+}
+
+impl Ended {
+    /// Larger of external and internal forces, N.
+    pub fn size(&self) -> f64 {
+        let norm = |f: &[Vector3]| f.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+        norm(&self.external).max(norm(&self.internal))
+    }
+}
+
+impl InertiaTerms {
+    /// Adds the force to `out`; the size of `M settled`, N, which is what a residual here is small against: the two
+    /// parts of `r` cancel in free flight.
+    pub fn add_force(
+        &self,
+        mass: &SurfaceTable,
+        prescribed: &[Option<f64>],
+        u: &[Vector3],
+        out: &mut [Vector3],
+    ) -> f64 {
+        let rate: Vec<Vector3> = (0..u.len())
+            .map(|i| {
+                Vector3::from_fn(|a, _| match prescribed[3 * i + a] {
+                    Some(_) => self.settled[i][a],
+                    None => self.factor * (u[i][a] - self.from[i][a]) + self.settled[i][a],
+                })
+            })
+            .collect();
+        let forces = mass.product(&rate);
+        for ((out, force), carried) in out.iter_mut().zip(forces).zip(&self.carried) {
+            *out += carried - force;
+        }
+        mass.product(&self.settled).iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
+    }
+
+    /// `factor w I` of every point of the mass table.
+    pub fn blocks(&self, mass: &SurfaceTable) -> Vec<Matrix3> {
+        mass.weights.iter().map(|w| Matrix3::identity() * (self.factor * w)).collect()
+    }
+
+    /// Adds `factor M moves`.
+    pub fn give_back(&self, mass: &SurfaceTable, moves: &[Vector3], right: &mut [Vector3]) {
+        for (right, product) in right.iter_mut().zip(mass.product(moves)) {
+            *right += product * self.factor;
+        }
+    }
+}
+
+impl SurfaceTable {
+    /// `M v`, `M_IJ = sum_q w N_I N_J`.
+    pub fn product(&self, v: &[Vector3]) -> Vec<Vector3> {
+        let mut out = vec![Vector3::zeros(); v.len()];
+        self.add_force(&self.displacement(v), &mut out);
+        out
+    }
+}

@@ -1,0 +1,29 @@
+//! Bodies under large displacements: internal energy with projected volume change, and statics by Newton's method.
+
+mod error;
+mod frames;
+mod groups;
+mod in_time;
+mod lanes;
+mod newton;
+mod relaxing;
+mod separated;
+mod shared;
+mod solid;
+mod sorted;
+mod split;
+mod statics;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use in_time::{Ended, InertiaTerms, Scales, TimeTerms};
+pub(crate) use newton::{Descent, Newton, State};
+pub(crate) use relaxing::Memory;
+pub(crate) use system::SurfaceTable;
+
+pub use error::{Inverted, StaticError, Worst};
+pub use frames::Frames;
+pub use newton::{Iteration, NewtonParams};
+pub use solid::{Dilation, Solid};
+pub use statics::{HeldSurface, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static};

@@ -1,0 +1,110 @@
+//! Forces in a state, and how far they are from balance.
+
+use contact::Contacts;
+use shape::Vector3;
+
+use super::{Newton, State};
+use crate::nonlinear::error::{StaticError, Worst};
+use crate::nonlinear::in_time::{Ended, Scales};
+use crate::nonlinear::solid::Internal;
+
+/// Forces in a trial state.
+pub(super) struct Balance {
+    pub(super) internal: Internal,
+    /// External less internal nodal forces, N; supports not yet taken out.
+    pub(super) out: Vec<Vector3>,
+    /// Negative derivative of the energy by the pressures, m^3.
+    pub(super) pressure: Vec<f64>,
+    pub(super) contacts: Vec<Option<Contacts>>,
+    /// The forces and deviators by themselves, in real time.
+    pub(super) ended: Option<Ended>,
+    /// Larger of internal and external forces, N.
+    pub(super) scale: f64,
+}
+
+impl Newton<'_> {
+    /// Relative residual: forces on free degrees of freedom, volumes of the pressures, forces of driven tools.
+    pub(super) fn residual(&self, balance: &Balance, time: f64) -> f64 {
+        let unknowns = self.system.gather(&balance.out, &balance.pressure);
+        let (forces, volumes) = unknowns.split_at(self.system.free);
+        let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let scale = if balance.scale > 0.0 { balance.scale } else { 1.0 };
+        let mut residual = norm(forces) / scale;
+        residual = residual.max(norm(volumes) / self.volume);
+        for (k, lacking) in self.lacking(balance, time).into_iter().enumerate() {
+            if let Some(force) = self.force(k, time) {
+                residual = residual.max(lacking.abs() / force.abs());
+            }
+        }
+        residual
+    }
+
+    pub(super) fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
+        let force = |i: usize| {
+            (0..3)
+                .filter(|a| self.prescribed[3 * i + a].is_none())
+                .map(|a| balance.out[i][a].powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        let node = (0..balance.out.len()).max_by(|&i, &j| force(i).total_cmp(&force(j))).unwrap_or(0);
+        let (smallest_at, smallest) = balance.internal.smallest;
+        let worst = Worst { node, at: self.problem.nodes[node], force: force(node) };
+        let tolerance = self.params.tolerance;
+        StaticError::NotConverged { iterations, residual, tolerance, worst, smallest, smallest_at }
+    }
+
+    /// Forces in a state.
+    pub(super) fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
+        self.work.forces += 1;
+        let Scales { loads, supports, .. } = self.scales(time);
+        let pairs = self.system.pairs.as_ref();
+        let mut internal = self.problem.solid.internal(pairs, &state.u, &state.pressure)?;
+        let mut deviator = Vec::new();
+        if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
+            let solid = &self.problem.solid;
+            deviator = relaxing.relax(solid, pairs, &state.u, &state.pressure, &mut internal)?;
+        }
+        let inner = self.system.internal_force(&internal);
+        let mut out: Vec<Vector3> = self.load.iter().map(|f| f * loads).collect();
+        for (held, table) in self.problem.held.iter().zip(&self.system.surfaces) {
+            let at = table.displacement(&state.u);
+            let traction: Vec<Vector3> = (at.iter().zip(&held.values))
+                .map(|(u, g)| {
+                    Vector3::from_fn(
+                        |a, _| if held.axes[a] { held.beta * (g[a] * supports - u[a]) } else { 0.0 },
+                    )
+                })
+                .collect();
+            table.add_force(&traction, &mut out);
+        }
+        let mut contacts = Vec::new();
+        for ((driven, &closure), history) in
+            self.problem.tools.iter().zip(&state.closures).zip(&state.history)
+        {
+            let found = match self.problem.contact {
+                Some(surface) => {
+                    surface.evaluate(driven.tool, closure, &state.u, history, &mut self.counts)?
+                }
+                None => None,
+            };
+            if let (Some(found), Some(surface)) = (&found, self.problem.contact) {
+                found.add_force(surface.rows(), &mut out);
+            }
+            contacts.push(found);
+        }
+        let norm = |f: &[Vector3]| f.iter().map(|v| v.norm_squared()).sum::<f64>().sqrt();
+        let mut scale = norm(&inner).max(norm(&out)).max(self.peak);
+        let ended =
+            self.terms.as_ref().map(|_| Ended { external: out.clone(), internal: inner.clone(), deviator });
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            let mass = self.system.surfaces.last().expect("inertia has a mass table");
+            scale = scale.max(inertia.add_force(mass, &self.prescribed, &state.u, &mut out));
+        }
+        for (out, inner) in out.iter_mut().zip(&inner) {
+            *out -= inner;
+        }
+        let pressure = self.system.pressure_gradient(&internal).iter().map(|g| -g).collect();
+        Ok(Balance { internal, out, pressure, contacts, ended, scale })
+    }
+}

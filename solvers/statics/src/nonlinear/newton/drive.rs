@@ -1,0 +1,170 @@
+//! Tools driven by force: their closures are unknowns.
+
+use algebra::Border;
+use contact::Drive;
+use shape::Vector3;
+
+use super::{Balance, Descent, Newton, State};
+use crate::nonlinear::Step;
+
+/// Strides of a start led by closure before it is given up: a tool that slips off never carries its force. Starts of the
+/// kidney between jaws take 10 to 13.
+const STRIDES: usize = 50;
+/// Part of the first stride below which a start is given up.
+const SHORTEST: f64 = 0.1;
+/// Iterations of a stride after which the next is twice as long.
+const QUICK: usize = 6;
+
+impl Newton<'_> {
+    /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
+    /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
+    pub(super) fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
+        (self.problem.tools.iter().zip(&balance.contacts).enumerate())
+            .map(|(k, (driven, contacts))| {
+                self.force(k, time).map_or(0.0, |force| {
+                    force + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
+                })
+            })
+            .collect()
+    }
+
+    /// The force that drives a tool at `time`, N; `None` for one driven or led by closure.
+    pub(super) fn force(&self, tool: usize, time: f64) -> Option<f64> {
+        match self.problem.tools[tool].drive {
+            Drive::Force(full) if !self.led[tool] => Some(full * self.scales(time).tools),
+            Drive::Force(_) | Drive::Closure(_) => None,
+        }
+    }
+
+    /// The tools driven by force that touch, each with its row and column of the tangent: with `a = sum w N S along`
+    /// (S = -dt/dx) and `a'` the same of S transposed, a closure `dd` gives `K du - a dd = r`, and
+    /// `D dd - a' . du = F - Q` balances the tool, `D = sum w along . S along`.
+    pub(super) fn borders(&self, balance: &Balance) -> Vec<(usize, Border)> {
+        let Some(surface) = self.problem.contact else { return Vec::new() };
+        let rows = surface.rows();
+        let none = vec![0.0; balance.pressure.len()];
+        let mut borders = Vec::new();
+        for (k, (driven, contacts)) in self.problem.tools.iter().zip(&balance.contacts).enumerate() {
+            let (Some(_), Some(contacts)) = (self.force(k, 1.0), contacts) else { continue };
+            let along = driven.tool.along();
+            let mut sides = [
+                vec![Vector3::zeros(); self.problem.nodes.len()],
+                vec![Vector3::zeros(); self.problem.nodes.len()],
+            ];
+            let mut corner = 0.0;
+            for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
+                let w = rows.weights()[q as usize];
+                let (right, left) = (dt * along * w, dt.tr_mul(&along) * w);
+                corner -= right.dot(&along);
+                let (at, values) = rows.rows().row(q as usize);
+                for (&node, value) in at.iter().zip(values) {
+                    sides[0][node as usize] += right * *value;
+                    sides[1][node as usize] += left * *value;
+                }
+            }
+            if corner > 0.0 {
+                let [column, row] = sides.map(|side| self.system.gather(&side, &none));
+                borders.push((k, Border { column, row, corner }));
+            }
+        }
+        borders
+    }
+
+    /// Closure that brings a tool which does not touch into contact, with the penetration that a hundredth of the
+    /// surface would need for `force`.
+    pub(super) fn approach(&self, tool: usize, state: &State, force: f64) -> f64 {
+        let Some(surface) = self.problem.contact else { return 0.0 };
+        let driven = self.problem.tools[tool].tool;
+        let gap = surface.gap(driven, state.closures[tool], &state.u);
+        let area: f64 = surface.rows().weights().iter().sum();
+        gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area)
+    }
+
+    /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are led by closure until
+    /// each carries its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
+    /// whose tangent says nothing of those to come: Newton's method goes from no contact to deep contact and back,
+    /// where a closure that is given is taken up by the body. `None` where all touch, or that leads to no equilibrium either.
+    pub(super) fn lead(
+        &mut self,
+        start: &State,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Option<(State, Step)> {
+        let forced = |k: usize| matches!(self.problem.tools[k].drive, Drive::Force(_));
+        let tools = 0..self.problem.tools.len();
+        if !tools.clone().any(|k| forced(k) && self.approach(k, start, 0.0) > 0.0) {
+            return None;
+        }
+        self.led = tools.map(forced).collect();
+        let reached = self.follow(start, time, augmentations, descent);
+        self.led.fill(false);
+        reached
+    }
+
+    fn follow(
+        &mut self,
+        start: &State,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Option<(State, Step)> {
+        let tools = self.problem.tools;
+        let forces: Vec<f64> = (tools.iter())
+            .map(|t| match t.drive {
+                Drive::Force(full) => full * self.scales(time).tools,
+                Drive::Closure(_) => 0.0,
+            })
+            .collect();
+        let gaps: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, 0.0)).collect();
+        let unit: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, forces[k]) - gaps[k]).collect();
+        let mut state = start.clone();
+        // Motion of the nodes for a stride of one, once the tools touch: the guess of the next.
+        let mut way: Option<Vec<Vector3>> = None;
+        let mut carried = vec![0.0; tools.len()];
+        let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
+        for _ in 0..STRIDES {
+            let forced = !self.led.contains(&true);
+            let mut guess = state.clone();
+            for (k, closure) in guess.closures.iter_mut().enumerate().filter(|(k, _)| self.led[*k]) {
+                *closure += stride * unit[k] + if touches { 0.0 } else { gaps[k] };
+            }
+            if let (Some(way), false) = (&way, forced) {
+                guess.u.iter_mut().zip(way).for_each(|(u, way)| *u += stride * way);
+            }
+            let kind = if forced { descent } else { Descent::Nearest };
+            match self.step(&guess, None, time, augmentations, kind) {
+                Ok((reached, step)) if forced => {
+                    iterations.extend(step.iterations);
+                    return Some((reached, Step { iterations, ..step }));
+                }
+                Ok((reached, step)) => {
+                    iterations.extend_from_slice(&step.iterations);
+                    let carries: Vec<f64> = tools
+                        .iter()
+                        .zip(&step.tools)
+                        .map(|(t, now)| -now.force.dot(&t.tool.along()))
+                        .collect();
+                    // Beyond its force a tool would go back, and friction turn round: less of the stride then.
+                    let part = (0..tools.len())
+                        .filter(|&k| self.led[k] && carries[k] > 1.1 * forces[k])
+                        .map(|k| (forces[k] - carried[k]) / (carries[k] - carried[k]))
+                        .fold(1.0, f64::min);
+                    if touches && part < 1.0 && stride > SHORTEST {
+                        stride *= part.max(0.1);
+                        continue;
+                    }
+                    way = touches.then(|| {
+                        reached.u.iter().zip(&state.u).map(|(now, then)| (now - then) / stride).collect()
+                    });
+                    (0..tools.len()).for_each(|k| self.led[k] &= carries[k] < 0.95 * forces[k]);
+                    stride *= if step.iterations.len() <= QUICK { 2.0 } else { 1.0 };
+                    (state, carried, touches) = (reached, carries, true);
+                }
+                Err(_) if forced || stride < SHORTEST => return None,
+                Err(_) => stride *= 0.25,
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,477 @@
+//! One load step: Newton's method with line search on the balance of internal, external and contact forces.
+
+mod balance;
+mod drive;
+mod search;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use algebra::Symbolic;
+use contact::{ContactCounts, ContactHistory as History, Drive, ToolState};
+use shape::Vector3;
+
+use self::balance::Balance;
+use self::tangent::Direction;
+use crate::body::check_len;
+use crate::load::nodal_forces;
+use crate::nonlinear::error::StaticError;
+use crate::nonlinear::in_time::{Ended, Scales, TimeTerms};
+use crate::nonlinear::statics::{StaticProblem, StaticWork, Step};
+use crate::nonlinear::system::{SurfaceTable, System};
+use crate::support::prescribed;
+
+/// How Newton's method runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonParams {
+    /// Residual of the free degrees of freedom relative to the larger of internal and external forces.
+    pub tolerance: f64,
+    /// Iterations per step.
+    pub iterations: usize,
+    /// Whether the last ones may take the tangent of the one before where that is expected to do: no longer quadratic, and a
+    /// quarter faster (the published kidney, tet4).
+    pub chords: bool,
+}
+
+/// One iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Relative residual before it.
+    pub residual: f64,
+    /// `|du . r|` of the step it took, relative to that of the first iteration.
+    pub energy: f64,
+    /// Length of the step over that of the Newton step: what the line search left, or how often it went on.
+    pub length: f64,
+    /// Whether the tangent was positive definite (on the kernel of the pressures), tools driven by force included.
+    pub definite: bool,
+    /// Whether that was the tangent of the iteration before: a chord.
+    pub chord: bool,
+}
+
+/// What a load step starts from and ends with.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub time: f64,
+    pub u: Vec<Vector3>,
+    pub pressure: Vec<f64>,
+    pub closures: Vec<f64>,
+    pub history: Vec<History>,
+}
+
+impl State {
+    pub fn start(problem: &StaticProblem) -> State {
+        let points = problem.contact.map_or(0, |c| c.rows().weights().len());
+        State {
+            time: 0.0,
+            u: vec![Vector3::zeros(); problem.nodes.len()],
+            pressure: vec![0.0; problem.solid.pressure_count()],
+            closures: vec![0.0; problem.tools.len()],
+            history: (problem.tools.iter())
+                .map(|t| {
+                    let mut history = History::new(t.tool, points);
+                    if let Some(surface) = problem.contact {
+                        let still = vec![Vector3::zeros(); problem.nodes.len()];
+                        history.commit_all(None, surface, t.tool, 0.0, &still);
+                    }
+                    history
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The system of a problem with what is kept from one iteration to the next.
+pub(crate) struct Newton<'a> {
+    problem: &'a StaticProblem<'a>,
+    params: &'a NewtonParams,
+    system: System<'a>,
+    load: Vec<Vector3>,
+    prescribed: Vec<Option<f64>>,
+    symbolic: Option<Option<Arc<Symbolic>>>,
+    counts: ContactCounts,
+    work: StaticWork,
+    volume: f64,
+    terms: Option<TimeTerms>,
+    ended: Option<Ended>,
+    /// Largest forces so far in real time and in loops, N: what swings passes through states without any.
+    peak: f64,
+    /// Forces at the end of the last step, N.
+    reached: f64,
+    /// Where a tangent that is not definite leads.
+    descent: Descent,
+    /// Whether the last tangent was not definite.
+    indefinite: bool,
+    /// Relative residual to which unsymmetric systems are solved.
+    forcing: f64,
+    /// Tools driven by force that are led by closure for the time being.
+    led: Vec<bool>,
+    /// Whether steps are the frames of a simulator's loop: each starts with the tangent of the last where that is expected to do,
+    /// and a step that is cut goes on to where something touches.
+    repeats: bool,
+    /// The last tangent.
+    kept: Option<Direction>,
+}
+
+/// What Newton's method looks for where the tangent is not definite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Descent {
+    /// The nearest equilibrium by tangents that are all definite: on a branch that stays stable.
+    Smooth,
+    /// The nearest equilibrium: a symmetric one stays symmetric. With a pressure field every step is a full one.
+    Nearest,
+    /// The nearest equilibrium, with a pressure field by steps that are cut: where full ones cycle between sticking
+    /// and sliding points. Not the first choice, as on other ways it takes about 1.6 times the iterations.
+    Guarded,
+    /// A stable one, down the energy.
+    Down,
+}
+
+/// The nearest equilibrium, with a pressure field by steps that are cut where full ones come to none.
+pub(crate) fn near<T>(
+    saddle: bool,
+    to: &mut impl FnMut(Descent) -> Result<T, StaticError>,
+) -> Result<T, StaticError> {
+    to(Descent::Nearest).or_else(|error| if saddle { to(Descent::Guarded) } else { Err(error) })
+}
+
+/// Iterations without a residual smaller by a tenth after which the nearest equilibrium is given up. Steps of the kidney
+/// between jaws that came through went up to 7 without; to go on to 40 took twice the time of the whole path.
+const PATIENCE: usize = 10;
+
+/// Residual over the tolerance up to which a frame starts with the tangent of the last one. That leaves a tenth of the residual and
+/// less while no point starts or ends to touch or to slide; where one does, a second such step rarely helps.
+const NEAR: f64 = 10.0;
+
+/// Whether steps with the tangent of the iteration before are expected to end the iterations at `residual`: no more than
+/// three, each of which costs a sixth of one with its own tangent (tet4, 3855 unknowns). Where residuals fall as `C r^2`, the
+/// first leaves `2 r / r_before` of the residual, and so do the next.
+fn chord_suffices(log: &[Iteration], residual: f64, tolerance: f64) -> bool {
+    if log.iter().all(|i| i.chord) {
+        return log.is_empty() && residual <= NEAR * tolerance;
+    }
+    let chords = log.iter().rev().take_while(|i| i.chord).count();
+    let Some(before) = log.last().filter(|i| i.length == 1.0 && i.definite) else { return false };
+    let rate = residual / before.residual;
+    match chords {
+        0 => {
+            let left = 2.0 * rate;
+            left < 0.1 && residual * left.powi(3) <= tolerance
+        }
+        _ => chords < 4 && rate < 0.3,
+    }
+}
+
+/// `x . r`.
+fn work(x: &[f64], r: &[f64]) -> f64 {
+    x.iter().zip(r).map(|(x, r)| x * r).sum()
+}
+
+impl<'a> Newton<'a> {
+    pub fn new(problem: &'a StaticProblem<'a>, params: &'a NewtonParams) -> Result<Newton<'a>, StaticError> {
+        Newton::with_mass(problem, params, None)
+    }
+
+    /// With a mass table, for steps in real time that have inertia.
+    pub fn with_mass(
+        problem: &'a StaticProblem<'a>,
+        params: &'a NewtonParams,
+        mass: Option<&SurfaceTable>,
+    ) -> Result<Newton<'a>, StaticError> {
+        for (what, value) in [("tolerance", params.tolerance), ("iterations", params.iterations as f64)] {
+            if !(value > 0.0) {
+                return Err(StaticError::Parameter { what, value, need: "it must be positive" });
+            }
+        }
+        let nodes = problem.nodes.len();
+        let prescribed = prescribed(nodes, problem.fixed)?;
+        let load = nodal_forces(problem.solid.volume, problem.loads)?;
+        check_len("nodes of the volume rows", problem.solid.node_count(), nodes)?;
+        let mut surfaces: Vec<SurfaceTable> =
+            problem.held.iter().map(|h| SurfaceTable::new(h.surface)).collect();
+        if let (Some(contact), false) = (problem.contact, problem.tools.is_empty()) {
+            surfaces.push(SurfaceTable::new(contact.rows()));
+        }
+        surfaces.extend(mass.cloned());
+        let held: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
+        let system = System::new(problem.solid, &held, surfaces);
+        let volume = problem.solid.volume.weights().iter().sum();
+        Ok(Newton {
+            problem,
+            params,
+            system,
+            load,
+            prescribed,
+            symbolic: None,
+            counts: ContactCounts::default(),
+            work: StaticWork::default(),
+            volume,
+            terms: None,
+            ended: None,
+            peak: 0.0,
+            reached: 0.0,
+            descent: Descent::Nearest,
+            indefinite: false,
+            forcing: 1e-7,
+            led: vec![false; problem.tools.len()],
+            repeats: false,
+            kept: None,
+        })
+    }
+
+    /// Steps are the frames of a simulator's loop from now on.
+    pub fn repeat(mut self) -> Newton<'a> {
+        self.repeats = true;
+        self
+    }
+
+    pub fn counts(&self) -> ContactCounts {
+        self.counts
+    }
+
+    /// What has been done so far, failed steps and trials included.
+    pub fn work(&self) -> StaticWork {
+        self.work
+    }
+
+    /// What the next step has besides the forces of statics.
+    pub fn set_terms(&mut self, terms: TimeTerms) {
+        self.terms = Some(terms);
+    }
+
+    /// Forces at the end of the last step in real time, which is with that accepted.
+    pub fn ended(&mut self) -> Ended {
+        let ended = self.ended.take().expect("a step in real time has ended");
+        self.peak = self.peak.max(ended.size());
+        ended
+    }
+
+    /// Residuals are relative to no less than the forces at the end of the last step from now on.
+    pub fn keep_scale(&mut self) {
+        self.peak = self.peak.max(self.reached);
+    }
+
+    /// Prescribed value at the end of the ramp by degree of freedom.
+    pub fn prescribed(&self) -> &[Option<f64>] {
+        &self.prescribed
+    }
+
+    /// Forces in a state, without inertia, and the strain energy, J.
+    pub fn forces_at(&mut self, state: &State) -> Result<(Ended, f64), StaticError> {
+        let balance = self.balance(state, state.time)?;
+        Ok((balance.ended.expect("terms of real time are set"), balance.internal.energy))
+    }
+
+    /// The parts of loads, supports and drives at `time`.
+    fn scales(&self, time: f64) -> Scales {
+        self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
+    }
+
+    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, led by closure.
+    pub fn find(
+        &mut self,
+        start: &State,
+        before: Option<&State>,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Result<(State, Step), StaticError> {
+        let step = self.step(start, before, time, augmentations, descent);
+        step.or_else(|error| match descent {
+            Descent::Smooth | Descent::Nearest => self.lead(start, time, augmentations, descent).ok_or(error),
+            Descent::Guarded | Descent::Down => Err(error),
+        })
+    }
+
+    /// From `start` to equilibrium at `time`; `before` is the state before `start`, for extrapolation.
+    pub fn step(
+        &mut self,
+        start: &State,
+        before: Option<&State>,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Result<(State, Step), StaticError> {
+        self.descent = descent;
+        let mut state = State { time, ..start.clone() };
+        let mut moved = false;
+        if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
+            state.u.clone_from(&inertia.guess);
+            self.prescribe(&mut state.u, time);
+            moved = true;
+        } else if let Some(before) = before {
+            moved = self.extrapolate(&mut state, start, before, time);
+        }
+        for (closure, driven) in state.closures.iter_mut().zip(self.problem.tools) {
+            if let Drive::Closure(full) = driven.drive {
+                *closure = full * self.scales(time).tools;
+            }
+        }
+        let mut iterations = Vec::new();
+        let mut balance = match self.balance(&state, time) {
+            Ok(balance) => balance,
+            // The guess is no use; the last converged state is always valid.
+            Err(_) if moved => {
+                state.u.clone_from(&start.u);
+                state.pressure.clone_from(&start.pressure);
+                self.balance(&state, time)?
+            }
+            Err(error) => return Err(error),
+        };
+        for round in 0..=augmentations {
+            balance = self.equilibrate(&mut state, balance, time, &mut iterations)?;
+            if round < augmentations {
+                for (history, contacts) in state.history.iter_mut().zip(&balance.contacts) {
+                    history.augment(contacts.as_ref());
+                }
+                balance = self.balance(&state, time)?;
+            }
+        }
+        if let Some(surface) = self.problem.contact {
+            for (k, (history, contacts)) in state.history.iter_mut().zip(&balance.contacts).enumerate() {
+                let (tool, closure) = (self.problem.tools[k].tool, state.closures[k]);
+                contacts.iter().try_for_each(|c| surface.check_side(c, &state.u))?;
+                history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
+            }
+        }
+        self.reached = balance.scale;
+        self.ended = balance.ended;
+        let tools = (balance.contacts.iter().zip(&state.closures))
+            .map(|(contacts, &closure)| match contacts {
+                Some(c) => ToolState {
+                    closure,
+                    force: c.force(),
+                    moment: c.moment(),
+                    active: c.points().len(),
+                    penetration: c.max_penetration(),
+                },
+                None => ToolState {
+                    closure,
+                    force: Vector3::zeros(),
+                    moment: Vector3::zeros(),
+                    active: 0,
+                    penetration: 0.0,
+                },
+            })
+            .collect();
+        let step = Step {
+            time,
+            wanted: false,
+            gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite && i.length > 1.0),
+            // The tangent of the last iteration is one Newton step short of the end.
+            stable: iterations.iter().rev().find(|i| i.length > 0.0).is_none_or(|i| i.definite),
+            iterations,
+            tools,
+            energy: balance.internal.energy,
+            smallest: balance.internal.smallest.1,
+        };
+        Ok((state, step))
+    }
+
+    /// Carries the motion of the last step on, or takes it back where the load turns; prescribed values come out right by
+    /// themselves, as they are linear in time.
+    fn extrapolate(&self, state: &mut State, start: &State, before: &State, time: f64) -> bool {
+        let ratio = (time - start.time) / (start.time - before.time);
+        if !ratio.is_finite() || before.time == 0.0 && !self.problem.tools.is_empty() {
+            return false;
+        }
+        for ((u, a), b) in state.u.iter_mut().zip(&start.u).zip(&before.u) {
+            *u += (a - b) * ratio;
+        }
+        self.prescribe(&mut state.u, time);
+        for ((p, a), b) in state.pressure.iter_mut().zip(&start.pressure).zip(&before.pressure) {
+            *p += (a - b) * ratio;
+        }
+        for ((c, a), b) in state.closures.iter_mut().zip(&start.closures).zip(&before.closures) {
+            *c += (a - b) * ratio;
+        }
+        true
+    }
+
+    /// Newton's iterations at fixed multipliers.
+    fn equilibrate(
+        &mut self,
+        state: &mut State,
+        mut balance: Balance,
+        time: f64,
+        log: &mut Vec<Iteration>,
+    ) -> Result<Balance, StaticError> {
+        let first = log.len();
+        let mut first_energy = 0.0f64;
+        let mut best = (0, f64::INFINITY);
+        let mut last = self.kept.take().filter(|_| self.descent == Descent::Nearest);
+        loop {
+            let held_move = self.held_move(state, time);
+            let residual = self.residual(&balance, time);
+            let settled = held_move.is_none() && residual <= self.params.tolerance;
+            if settled {
+                log.push(Iteration { residual, energy: 0.0, length: 0.0, definite: true, chord: false });
+                self.kept = last.filter(|last: &Direction| self.repeats && last.definite);
+                return Ok(balance);
+            }
+            let done = log.len() - first;
+            // Forces before held degrees of freedom have moved are those of the last state, and small.
+            if held_move.is_some() || residual < 0.9 * best.1 {
+                best = (done, if held_move.is_some() { f64::INFINITY } else { residual });
+            }
+            // On the way down the energy forces first grow.
+            let stuck = self.descent != Descent::Down && done >= best.0 + PATIENCE;
+            if done >= self.params.iterations || stuck || !residual.is_finite() {
+                return Err(self.not_converged(&balance, residual, done));
+            }
+            self.indefinite = false;
+            // Inexact steps with sliding friction: a tenth of the residual keeps the order of convergence (Dembo,
+            // Eisenstat & Steihaug 1982), and far from equilibrium more digits are thrown away.
+            self.forcing = (0.1 * residual).clamp(1e-7, 1e-2);
+            let chord = self.params.chords
+                && last.is_some()
+                && held_move.is_none()
+                && chord_suffices(&log[first..], residual, self.params.tolerance);
+            let direction = match last.take().filter(|_| chord) {
+                Some(last) => self.again(last, state, &balance, time)?,
+                None => self.direction(state, &balance, time, held_move.as_deref())?,
+            };
+            let unknowns = self.system.gather(&balance.out, &balance.pressure);
+            let lacking = self.lacking(&balance, time);
+            let slope = work(&direction.step, &unknowns) + work(&direction.closures, &lacking);
+            if first_energy == 0.0 {
+                first_energy = slope.abs();
+            }
+            let (next, length) =
+                self.search(state, &direction, held_move.as_deref(), slope, &balance, time)?;
+            let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
+            log.push(Iteration { residual, energy, length, definite: direction.definite, chord });
+
+            (balance, last) = (next, Some(direction));
+        }
+    }
+
+    /// What held degrees of freedom still lack of their values at `time`.
+    fn held_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
+        let scale = self.scales(time).supports;
+        let mut lacking = false;
+        let moves: Vec<Vector3> = (state.u.iter().enumerate())
+            .map(|(i, u)| {
+                Vector3::from_fn(|a, _| match self.prescribed[3 * i + a] {
+                    Some(value) if u[a] != value * scale => {
+                        lacking = true;
+                        value * scale - u[a]
+                    }
+                    _ => 0.0,
+                })
+            })
+            .collect();
+        lacking.then_some(moves)
+    }
+
+    /// Sets held degrees of freedom to their values at `time`.
+    fn prescribe(&self, u: &mut [Vector3], time: f64) {
+        let scale = self.scales(time).supports;
+        for (dof, value) in self.prescribed.iter().enumerate() {
+            if let Some(value) = value {
+                u[dof / 3][dof % 3] = value * scale;
+            }
+        }
+    }
+}

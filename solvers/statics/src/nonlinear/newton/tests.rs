@@ -1,0 +1,65 @@
+//! Where the steps past a limit point lead.
+
+use fem::VolumeRule;
+use geometry::CellKind;
+use geometry::generate::box_mesh;
+use material::Law;
+use material::SaintVenantKirchhoff;
+use shape::{FixedDof, Point3, Vector3};
+
+use super::{Descent, Newton, NewtonParams, State};
+use crate::nonlinear::solid::{Dilation, Solid};
+use crate::nonlinear::statics::StaticProblem;
+
+/// A column of 20 x 1 x 1, its ends held but for a guided one that sways, pressed by 1 %: five times the strain at which
+/// it buckles, `pi^2 / 12 (1 / 20)^2`. Straight it is in equilibrium, but not in a stable one.
+#[test]
+fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
+    const PRESSED: f64 = -0.01;
+    let top = Point3::new(20.0, 1.0, 1.0);
+    let mesh = box_mesh(CellKind::Hex20, Point3::origin(), top, [10, 1, 1], [1.0; 3], None).unwrap();
+    let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+    let mut fixed = Vec::new();
+    for (node, p) in (0..).zip(mesh.points()) {
+        let mut hold = |axis, value| fixed.push(FixedDof { node, axis, value });
+        hold(2, 0.0);
+        if p.x == 0.0 || p.x == top.x {
+            hold(0, PRESSED * p.x);
+        }
+        if p.x == 0.0 {
+            hold(1, 0.0);
+        }
+    }
+    let laws = [Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(20e3, 0.0).unwrap())];
+    let problem = StaticProblem {
+        nodes: mesh.points(),
+        solid: Solid { volume: &volume, laws: &laws, region: &[], dilation: Dilation::Standard },
+        loads: &[],
+        fixed: &fixed,
+        held: &[],
+        contact: None,
+        tools: &[],
+    };
+    let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true };
+    let mut newton = Newton::new(&problem, &params).unwrap();
+    // Pressed straight, with a sway of a millionth of the length.
+    let mut start = State::start(&problem);
+    start.time = 1.0;
+    for (u, p) in start.u.iter_mut().zip(mesh.points()) {
+        *u = Vector3::new(PRESSED * p.x, 1e-5 * (1.0 - (std::f64::consts::PI * p.x / top.x).cos()), 0.0);
+    }
+    let mut sway = |descent| {
+        let (state, step) = newton.step(&start, None, 1.0, 0, descent).unwrap();
+        let end = mesh.points().iter().position(|p| *p == top).unwrap();
+        let longest = step.iterations.iter().map(|i| i.length).fold(0.0, f64::max);
+        (state.u[end].y, step.energy, step.stable, longest)
+    };
+    let (straight, above, stable, longest) = sway(Descent::Nearest);
+    assert!(straight.abs() < 1e-6 && !stable && longest == 1.0, "sway {straight}, length {longest}");
+    // An inextensible guided column shortens by (pi s)^2 / (16 L) at a sway s in the shape of a cosine: 1 % less the
+    // fifth that stays in its strain gives a sway of 2.3.
+    let (buckled, below, stable, longest) = sway(Descent::Down);
+    assert!((buckled - 2.3).abs() < 0.1 && stable, "sway {buckled}");
+    assert!(longest > 1.0 && longest <= 64.0, "length {longest}");
+    assert!(below < 0.5 * above, "{below} J under {above} J");
+}

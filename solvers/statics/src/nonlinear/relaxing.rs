@@ -1,0 +1,218 @@
+#![allow(non_snake_case)] // F, H, J, S as in the formulas
+//! Prony relaxation of a body: the deviatoric part of its stress fades, the volumetric one stays elastic.
+//!
+//! With `psi(F, theta)` of [`Split`] every projection of the volume change has the deviatoric stress `d psi / dF`,
+//! which is `F S_dev`; the sum over the dilation groups of a point is linear in it, so that one history per point does.
+//! Source: Simo and Hughes, Computational Inelasticity, section 10.3.
+
+use material::{Law, Prony, PronyStep, Tangent};
+use rayon::prelude::*;
+use shape::{Matrix3, Vector3};
+
+use super::groups::Pairs;
+use super::solid::{Hessian, Internal};
+use super::split::{Split, cofactor, flat};
+use super::{Dilation, Solid, StaticError};
+
+/// What the points of a body remember.
+#[derive(Clone, Debug)]
+pub(crate) struct Memory<'a> {
+    solid: Solid<'a>,
+    series: &'a [Option<Prony>],
+    /// Start of each point's `h_i`.
+    offsets: Vec<usize>,
+    /// `h_i` of all points, Pa.
+    history: Vec<Matrix3>,
+    /// Instantaneous deviators `S0` at the end of the last step, Pa.
+    deviator: Vec<Matrix3>,
+}
+
+/// Relaxation in one step: `S_dev = modulus S0 + carried`.
+#[derive(Clone, Debug)]
+pub(crate) struct Relaxing {
+    /// By point.
+    modulus: Vec<f64>,
+    /// By point, Pa.
+    carried: Vec<Matrix3>,
+}
+
+impl<'a> Memory<'a> {
+    /// A body at rest, without any stress so far; one series per law.
+    pub fn new(solid: Solid<'a>, series: &'a [Option<Prony>]) -> Memory<'a> {
+        let points = solid.volume.weights().len();
+        let mut memory = Memory {
+            solid,
+            series,
+            offsets: vec![0],
+            history: Vec::new(),
+            deviator: vec![Matrix3::zeros(); points],
+        };
+        let mut terms = 0;
+        for q in 0..points {
+            terms += memory.series(q).map_or(0, |s| s.terms().len());
+            memory.offsets.push(terms);
+        }
+        memory.history = vec![Matrix3::zeros(); terms];
+        memory
+    }
+
+    fn series(&self, q: usize) -> Option<&'a Prony> {
+        self.series[self.solid.region.get(q).copied().unwrap_or(0) as usize].as_ref()
+    }
+
+    fn history(&self, q: usize) -> &[Matrix3] {
+        &self.history[self.offsets[q]..self.offsets[q + 1]]
+    }
+
+    /// Steps of `dt` seconds by law.
+    fn steps(&self, dt: f64) -> Vec<Option<PronyStep>> {
+        let step = |s: &Option<Prony>| s.as_ref().map(|s| s.step(dt).expect("a step is not negative"));
+        self.series.iter().map(step).collect()
+    }
+
+    fn region(&self, q: usize) -> usize {
+        self.solid.region.get(q).copied().unwrap_or(0) as usize
+    }
+
+    /// For a step of `dt` seconds.
+    pub fn relaxing(&self, dt: f64) -> Relaxing {
+        let steps = self.steps(dt);
+        let (modulus, carried) = (0..self.deviator.len())
+            .map(|q| match &steps[self.region(q)] {
+                Some(step) => (step.modulus(), step.carried(&self.deviator[q], self.history(q))),
+                None => (1.0, Matrix3::zeros()),
+            })
+            .unzip();
+        Relaxing { modulus, carried }
+    }
+
+    /// After a step of `dt` seconds that ended at the deviators `new`.
+    pub fn advance(&mut self, dt: f64, new: Vec<Matrix3>) {
+        let steps = self.steps(dt);
+        for (q, new) in new.iter().enumerate() {
+            if let Some(step) = &steps[self.region(q)] {
+                let range = self.offsets[q]..self.offsets[q + 1];
+                step.advance(&self.deviator[q], new, &mut self.history[range]);
+            }
+        }
+        self.deviator = new;
+    }
+}
+
+/// A point as the projection of the volume change sees it: `H`, `J - 1` and (share, `theta - 1`) of each dilation.
+struct Point<'a> {
+    law: &'a Law,
+    H: Matrix3,
+    splits: Vec<(f64, Split)>,
+}
+
+impl Relaxing {
+    /// Turns the elastic stresses of `internal` into relaxed ones; the instantaneous deviators, Pa.
+    pub fn relax(
+        &self,
+        solid: &Solid,
+        pairs: Option<&Pairs>,
+        u: &[Vector3],
+        p: &[f64],
+        internal: &mut Internal,
+    ) -> Result<Vec<Matrix3>, StaticError> {
+        let change = points(solid, pairs, u, p, |q, point| {
+            let small = point.law.is_small_strain();
+            let elastic: Matrix3 =
+                point.splits.iter().map(|(share, split)| split.first(point.law).by_F * *share).sum();
+            let (S, carried) = if small {
+                (elastic, self.carried[q])
+            } else {
+                let F = Matrix3::identity() + point.H;
+                // F^-1 = cof^T / J; J > 0 has been looked at.
+                let inverse = cofactor(false, &point.H).transpose() / F.determinant();
+                (inverse * elastic, F * self.carried[q])
+            };
+            (elastic * (self.modulus[q] - 1.0) + carried, S)
+        })?;
+        let (change, deviator): (Vec<Matrix3>, Vec<Matrix3>) = change.into_iter().unzip();
+        for ((stress, change), w) in internal.stress.iter_mut().zip(change).zip(solid.volume.weights()) {
+            *stress += change * *w;
+        }
+        Ok(deviator)
+    }
+
+    /// The same for the tangent. Where the deviatoric stress of a law follows the volume too (neo-Hookean with
+    /// `ln J`, St. Venant-Kirchhoff), the exact one is not symmetric: with one dilation per point its symmetric part
+    /// is taken, with shared ones and a pressure field the small coupling of the two stays elastic.
+    pub fn relax_tangent(
+        &self,
+        solid: &Solid,
+        pairs: Option<&Pairs>,
+        u: &[Vector3],
+        p: &[f64],
+        hessian: &mut Hessian,
+    ) -> Result<(), StaticError> {
+        let change = points(solid, pairs, u, p, |q, point| {
+            let less = self.modulus[q] - 1.0;
+            let small = point.law.is_small_strain();
+            let mut D = Tangent::zeros();
+            for (share, split) in &point.splits {
+                let (_, second) = split.second(point.law);
+                D += second.by_FF * (share * less);
+                if matches!(solid.dilation, Dilation::Standard) {
+                    let (mixed, cof) = (flat(&second.by_F_theta), flat(&cofactor(small, &point.H)));
+                    D += (mixed * cof.transpose() + cof * mixed.transpose()) * (0.5 * less);
+                }
+            }
+            if !small {
+                // d(F S)_ij / dF_kl = I_ik S_lj.
+                for i in 0..3 {
+                    for j in 0..3 {
+                        for l in 0..3 {
+                            D[(i + 3 * j, i + 3 * l)] += self.carried[q][(l, j)];
+                        }
+                    }
+                }
+            }
+            D
+        })?;
+        for ((point, change), w) in hessian.point.iter_mut().zip(change).zip(solid.volume.weights()) {
+            *point += change * *w;
+        }
+        Ok(())
+    }
+}
+
+/// `value` at every point.
+fn points<T: Send>(
+    solid: &Solid,
+    pairs: Option<&Pairs>,
+    u: &[Vector3],
+    p: &[f64],
+    value: impl Fn(usize, &Point) -> T + Sync,
+) -> Result<Vec<T>, StaticError> {
+    let kinematics = solid.kinematics(u)?;
+    let (H, J1) = (&kinematics.H, &kinematics.J1);
+    let of_groups = match solid.dilation {
+        Dilation::Groups(groups) => solid.group_dilations(groups, J1)?,
+        _ => Vec::new(),
+    };
+    let pressures = match solid.dilation {
+        Dilation::Mixed(rows) => solid.pressures(rows, p),
+        _ => Vec::new(),
+    };
+    (0..H.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|q| {
+            let law = solid.law(q);
+            let split = |theta1: f64| Split::new(law, &H[q], J1[q], theta1);
+            let splits = match solid.dilation {
+                Dilation::Standard => vec![(1.0, split(J1[q]))],
+                Dilation::Groups(_) => (pairs.expect("groups have pairs").of(q).iter())
+                    .map(|&(a, share)| (share, split(of_groups[a as usize])))
+                    .collect(),
+                Dilation::Mixed(_) => {
+                    vec![(1.0, split(solid.mixed_dilation(q, &H[q], J1[q], pressures[q])?))]
+                }
+            };
+            Ok(value(q, &Point { law, H: H[q], splits }))
+        })
+        .collect()
+}

@@ -1,0 +1,297 @@
+#![allow(non_snake_case)] // F, H, J, P as in the formulas
+//! Stresses and tangents of points that share their volume change: the energy `sum over (a, q) of share w psi(F_q, J_a)`.
+//!
+//! By point where the law parts into shape and volume ([`Volumetric`]), else by every pair of group and point.
+
+use lanes::LanePath;
+use material::Tangent;
+use rayon::prelude::*;
+use shape::DilationGroups;
+use shape::{Matrix3, Vector3};
+
+use super::Inverted;
+use super::groups::Pairs;
+use super::lanes::{GroupRow, Lanes, add_row};
+use super::separated::Volumetric;
+use super::solid::{Kinematics, Solid};
+use super::split::{Split, add_dilation_hessian, cofactor};
+
+/// Groups per task.
+const GROUPS: usize = 8;
+/// Points that the groups of a task go through together: of a cloud with 35 neighbours each 140 KB of rows.
+const POINTS: usize = 64;
+
+/// The share of one dilation group in the second derivatives: `k b b^T + b m^T + m b^T`, of rank two, is `b n^T + n b^T`
+/// with `n = m + k b / 2`. Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` carried to the nodes (N) and `k` is
+/// `d2 psi / d theta2` over the group (J).
+pub(crate) struct GroupHessian {
+    /// By the nodes of the group, ascending.
+    pub rows: Vec<GroupRow>,
+}
+
+/// A solid at a displacement, with the dilations its points share.
+pub(super) struct Shared<'a> {
+    solid: &'a Solid<'a>,
+    groups: &'a DilationGroups,
+    pairs: &'a Pairs,
+    kinematics: &'a Kinematics,
+    /// `J_a - 1` of each group.
+    theta: Vec<f64>,
+    /// Of each group, where the one law of the body parts.
+    parts: Option<Vec<Volumetric>>,
+}
+
+/// What the tangent of one point leaves for its groups.
+struct PairSecond {
+    by_theta: f64,
+    by_theta_theta: f64,
+    by_F_theta: Matrix3,
+}
+
+impl<'a> Shared<'a> {
+    pub fn new(
+        solid: &'a Solid<'a>,
+        groups: &'a DilationGroups,
+        pairs: &'a Pairs,
+        kinematics: &'a Kinematics,
+    ) -> Result<Shared<'a>, Inverted> {
+        let theta = solid.group_dilations(groups, &kinematics.J1)?;
+        let parts = match solid.laws {
+            [law] => theta.iter().map(|&theta| Volumetric::new(law, theta)).collect(),
+            _ => None,
+        };
+        Ok(Shared { solid, groups, pairs, kinematics, theta, parts })
+    }
+
+    /// The plain loop, which the one by point is held against.
+    #[cfg(test)]
+    pub fn plain(mut self) -> Shared<'a> {
+        self.parts = None;
+        self
+    }
+
+    /// `w P` and the energy of every point, J.
+    pub fn stress(&self) -> (Vec<Matrix3>, Vec<f64>) {
+        match &self.parts {
+            Some(parts) => self.stress_by_point(parts),
+            None => self.stress_by_pair(),
+        }
+    }
+
+    /// `w d2/dF2` of every point, J, and what every group adds.
+    pub fn hessian(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        match &self.parts {
+            Some(parts) => self.hessian_by_point(parts),
+            None => self.hessian_by_pair(),
+        }
+    }
+
+    /// `F_q` through the dilation `theta`.
+    fn split(&self, q: usize, theta1: f64) -> Split {
+        Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.J1[q], theta1)
+    }
+
+    fn cofactor(&self, q: usize) -> Matrix3 {
+        cofactor(self.solid.law(q).is_small_strain(), &self.kinematics.H[q])
+    }
+
+    /// `sum_a share value_a` of a point.
+    fn at_point(&self, q: usize, of_group: impl Fn(usize) -> f64) -> f64 {
+        self.pairs.of(q).iter().map(|&(a, share)| share * of_group(a as usize)).sum()
+    }
+
+    /// `value` of every point.
+    fn points<T: Send>(&self, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        (0..self.kinematics.H.len()).into_par_iter().with_min_len(64).map(value).collect()
+    }
+
+    fn stress_by_point(&self, parts: &[Volumetric]) -> (Vec<Matrix3>, Vec<f64>) {
+        let weights = self.solid.volume.weights();
+        let shape: Vec<(Matrix3, f64)> = self.points(|q| {
+            let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+            (split.first(law).by_F, split.energy(law))
+        });
+        let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].1);
+        let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
+        self.points(|q| {
+            let (P, energy) = &shape[q];
+            let scale = self.at_point(q, |a| parts[a].A[0]);
+            let stress = P * scale + self.cofactor(q) * self.at_point(q, |a| pressure[a]);
+            (stress * weights[q], (energy * scale + self.at_point(q, |a| parts[a].U[0])) * weights[q])
+        })
+        .into_iter()
+        .unzip()
+    }
+
+    fn stress_by_pair(&self) -> (Vec<Matrix3>, Vec<f64>) {
+        let weights = self.solid.volume.weights();
+        let each: Vec<(Matrix3, f64, Vec<f64>)> = self.points(|q| {
+            let law = self.solid.law(q);
+            let (mut P, mut energy) = (Matrix3::zeros(), 0.0);
+            let mut mean_stress = Vec::with_capacity(self.pairs.of(q).len());
+            for &(a, share) in self.pairs.of(q) {
+                let split = self.split(q, self.theta[a as usize]);
+                let first = split.first(law);
+                P += first.by_F * share;
+                energy += split.energy(law) * share;
+                mean_stress.push(first.by_theta);
+            }
+            (P, energy, mean_stress)
+        });
+        let by_pair: Vec<f64> = each.iter().flat_map(|e| e.2.iter().copied()).collect();
+        let pressure = self.solid.group_mean(self.groups, self.pairs, |_, at| by_pair[at]);
+        self.points(|q| {
+            let (P, energy, _) = &each[q];
+            let stress = P + self.cofactor(q) * self.at_point(q, |a| pressure[a]);
+            (stress * weights[q], energy * weights[q])
+        })
+        .into_iter()
+        .unzip()
+    }
+
+    fn hessian_by_point(&self, parts: &[Volumetric]) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        let (shape, point): (Vec<(f64, Matrix3)>, Vec<Tangent>) = (0..self.kinematics.H.len())
+            .into_par_iter()
+            .with_min_len(64)
+            .map(|q| {
+                let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+                let (first, second) = split.second(law);
+                let scale = self.at_point(q, |a| parts[a].A[0]);
+                ((split.energy(law), first.by_F), second.by_FF * scale)
+            })
+            .unzip();
+        let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
+        let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
+        let point = self.point_tangents(&pressure, point);
+        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        let rows = self.solid.volume.rows();
+        let mixed: Vec<Vec<Lanes>> = (0..shape.len().div_ceil(POINTS))
+            .into_par_iter()
+            .map(|tile| {
+                let points = tile * POINTS..((tile + 1) * POINTS).min(shape.len());
+                points.flat_map(|q| self.mixed_rows(q, shape[q].1)).collect()
+            })
+            .collect();
+        let of_point = |q: usize| {
+            let (tile, range) = (q / POINTS, rows.range(q));
+            let first = rows.offsets()[tile * POINTS];
+            &mixed[tile][range.start - first..range.end - first]
+        };
+        let path = LanePath::best();
+        let groups = self.group_hessians(
+            |a| {
+                let volume = self.solid.group_volume(self.groups, a);
+                (volume * (parts[a].A[2] * energy[a] + parts[a].U[2]), parts[a].A[1])
+            },
+            |q, _, share, slot, sums| add_row(path, rows.row(q).0, of_point(q), share, slot, sums),
+        );
+        (point, groups)
+    }
+
+    fn hessian_by_pair(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+        let weights = self.solid.volume.weights();
+        let (point, each): (Vec<Tangent>, Vec<Vec<PairSecond>>) = self
+            .points(|q| {
+                let law = self.solid.law(q);
+                let mut D = Tangent::zeros();
+                let mut of_pair = Vec::with_capacity(self.pairs.of(q).len());
+                for &(a, share) in self.pairs.of(q) {
+                    let (first, second) = self.split(q, self.theta[a as usize]).second(law);
+                    D += second.by_FF * share;
+                    let by_theta = first.by_theta;
+                    let (by_theta_theta, by_F_theta) = (second.by_theta_theta, second.by_F_theta);
+                    of_pair.push(PairSecond { by_theta, by_theta_theta, by_F_theta });
+                }
+                (D, of_pair)
+            })
+            .into_iter()
+            .unzip();
+        let of_pair: Vec<&PairSecond> = each.iter().flatten().collect();
+        let pressure = self.solid.group_mean(self.groups, self.pairs, |_, at| of_pair[at].by_theta);
+        let point = self.point_tangents(&pressure, point);
+        let stiffness = |a: usize| {
+            let (points, shares) = self.groups.group(a);
+            let k = (points.iter().zip(shares).zip(self.pairs.places(a)))
+                .map(|((&q, s), &at)| s * weights[q as usize] * of_pair[at].by_theta_theta)
+                .sum();
+            (k, 1.0)
+        };
+        let (rows, path) = (self.solid.volume.rows(), LanePath::best());
+        let groups = self.group_hessians(stiffness, |q, at, share, slot, sums| {
+            let mixed: Vec<Lanes> = self.mixed_rows(q, of_pair[at].by_F_theta).collect();
+            add_row(path, rows.row(q).0, &mixed, share, slot, sums);
+        });
+        (point, groups)
+    }
+
+    /// `w D` with what the change of J itself adds.
+    fn point_tangents(&self, pressure: &[f64], mut point: Vec<Tangent>) -> Vec<Tangent> {
+        point.par_iter_mut().with_min_len(64).enumerate().for_each(|(q, D)| {
+            let p = self.at_point(q, |a| pressure[a]);
+            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, D);
+            *D *= self.solid.volume.weights()[q];
+        });
+        point
+    }
+
+    /// What the neighbours of a point have of `b` and, with `by_F_theta`, of `m`.
+    fn mixed_rows(&self, q: usize, by_F_theta: Matrix3) -> impl Iterator<Item = Lanes> + '_ {
+        let (cofactor, weight) = (self.cofactor(q), self.solid.volume.weights()[q]);
+        let of_node = move |g: &Vector3| Lanes::pair(&(cofactor * g * weight), &(by_F_theta * g * weight));
+        self.solid.volume.row(q).1.iter().map(of_node)
+    }
+
+    /// `stiffness` tells k of a group and a factor of its m; `add` adds what a point has of b and m to the sums of the group,
+    /// at the slot of each node: by point, place in the pair list and share.
+    fn group_hessians(
+        &self,
+        stiffness: impl Fn(usize) -> (f64, f64) + Sync + Send,
+        add: impl Fn(usize, usize, f64, &[u32], &mut [Lanes]) + Sync + Send,
+    ) -> Vec<GroupHessian> {
+        let scratch = || vec![(vec![0; self.solid.node_count()], Vec::new()); GROUPS];
+        let count = self.groups.len();
+        let tasks: Vec<Vec<GroupHessian>> = (0..count.div_ceil(GROUPS))
+            .into_par_iter()
+            .map_init(scratch, |scratch, task| {
+                let groups = task * GROUPS..((task + 1) * GROUPS).min(count);
+                for (a, (slot, sums)) in groups.clone().zip(&mut *scratch) {
+                    let nodes = self.pairs.nodes(a);
+                    nodes.iter().enumerate().for_each(|(at, &node)| slot[node as usize] = at as u32);
+                    sums.clear();
+                    sums.resize(nodes.len(), Lanes::ZERO);
+                }
+                // All groups go through a tile of points before the next one, so that its rows stay in the cache.
+                let mut done = [0; GROUPS];
+                let next = |done: &[usize]| {
+                    groups
+                        .clone()
+                        .zip(done)
+                        .filter_map(|(a, &k)| self.groups.group(a).0.get(k))
+                        .min()
+                        .copied()
+                };
+                while let Some(first) = next(&done) {
+                    let end = first + POINTS as u32;
+                    for ((a, k), (slot, sums)) in groups.clone().zip(&mut done).zip(&mut *scratch) {
+                        let ((points, shares), places) = (self.groups.group(a), self.pairs.places(a));
+                        while *k < points.len() && points[*k] < end {
+                            add(points[*k] as usize, places[*k], shares[*k], slot, sums);
+                            *k += 1;
+                        }
+                    }
+                }
+                let row = |a: usize, sums: &[Lanes]| {
+                    let (volume, (k, factor)) = (self.solid.group_volume(self.groups, a), stiffness(a));
+                    let of_node = |sum: &Lanes| {
+                        let (b, m) = sum.of_pair();
+                        let b = b / volume;
+                        GroupRow::new(&b, &(m * factor + b * (0.5 * k)))
+                    };
+                    GroupHessian { rows: sums.iter().map(of_node).collect() }
+                };
+                groups.zip(&*scratch).map(|(a, (_, sums))| row(a, sums)).collect()
+            })
+            .collect();
+        tasks.into_iter().flatten().collect()
+    }
+}

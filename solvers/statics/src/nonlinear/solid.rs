@@ -1,0 +1,237 @@
+#![allow(non_snake_case)] // F, H, J, P as in the formulas
+//! Internal energy, stresses and their derivatives of a body at finite (or small) strain, for any law and any
+//! projection of the volume change.
+
+use material::{Law, Material, Tangent};
+use rayon::prelude::*;
+use shape::{DilationGroups, Rows, VolumeRows};
+use shape::{Matrix3, Vector3};
+
+use super::groups::Pairs;
+use super::shared::{GroupHessian, Shared};
+use super::split::{Split, add_dilation_hessian, cofactor, dilation, dilation_at_pressure};
+use super::{Inverted, StaticError};
+
+/// How a body carries its volume change.
+#[derive(Clone, Copy, Debug)]
+pub enum Dilation<'a> {
+    /// As the displacement gives it, point by point.
+    Standard,
+    /// One dilation per group: `J_a = sum_q share w J_q / V_a`, energy `sum over (a, q) of share w W(F_bar)`. Element
+    /// mean and nodal mean alike.
+    Groups(&'a DilationGroups),
+    /// A pressure field of its own, its shape values at the volume points (mixed u-p). The energy is
+    /// `sum_q w (psi(F, theta) + p (J - theta))`, with theta eliminated at each point.
+    Mixed(&'a Rows),
+}
+
+/// A quadrature with laws: what has internal forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Solid<'a> {
+    /// Values and gradients at the points, with weights.
+    pub volume: &'a VolumeRows,
+    /// Laws by region.
+    pub laws: &'a [Law],
+    /// Region of each point; empty when all are of region 0.
+    pub region: &'a [u16],
+    /// Projection of the volume change.
+    pub dilation: Dilation<'a>,
+}
+
+/// First derivatives of the energy.
+pub(crate) struct Internal {
+    /// `w P` per point (3, 3), J: nodal forces are `sum_q (w P) grad N`.
+    pub stress: Vec<Matrix3>,
+    /// `w (J - theta)` per point, m^3, where a pressure field is there; the pressure's residual is `sum_q M (...)`.
+    pub misfit: Vec<f64>,
+    /// Strain energy, J (with a pressure field: of the saddle functional).
+    pub energy: f64,
+    /// The point with the smallest J, and J.
+    pub smallest: (usize, f64),
+}
+
+/// Second derivatives of the energy.
+pub(crate) struct Hessian {
+    /// Per point (9, 9), J: `w d2/dF2` with everything local to the point.
+    pub point: Vec<Tangent>,
+    /// Per group: the rows of `b n^T + n b^T`.
+    pub groups: Vec<GroupHessian>,
+    /// Per point with a pressure field: `w d2/(dF dp)` (3, 3), m^3, and `-w d2/dp2`, m^3/Pa.
+    pub pressure: Vec<(Matrix3, f64)>,
+}
+
+/// Displacement gradient and `J - 1` of each point.
+pub(super) struct Kinematics {
+    pub H: Vec<Matrix3>,
+    pub J1: Vec<f64>,
+    smallest: (usize, f64),
+}
+
+impl Solid<'_> {
+    /// The law at a point.
+    pub(crate) fn law(&self, q: usize) -> &Law {
+        &self.laws[self.region.get(q).copied().unwrap_or(0) as usize]
+    }
+
+    /// Number of nodes.
+    pub(crate) fn node_count(&self) -> usize {
+        self.volume.rows().node_count()
+    }
+
+    /// Number of pressure parameters.
+    pub(crate) fn pressure_count(&self) -> usize {
+        match self.dilation {
+            Dilation::Mixed(rows) => rows.node_count(),
+            _ => 0,
+        }
+    }
+
+    pub(crate) fn pairs(&self) -> Option<Pairs> {
+        match self.dilation {
+            Dilation::Groups(groups) => Some(Pairs::new(groups, self.volume.rows())),
+            _ => None,
+        }
+    }
+
+    pub(super) fn kinematics(&self, u: &[Vector3]) -> Result<Kinematics, Inverted> {
+        let (H, J1): (Vec<Matrix3>, Vec<f64>) = (0..self.volume.weights().len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|q| {
+                let (nodes, grads) = self.volume.row(q);
+                let mut H = Matrix3::zeros();
+                for (&node, g) in nodes.iter().zip(grads) {
+                    H += u[node as usize] * g.transpose();
+                }
+                let J1 = dilation(self.law(q).is_small_strain(), &H);
+                (H, J1)
+            })
+            .unzip();
+        let mut smallest = (0, f64::INFINITY);
+        for (q, &J1) in J1.iter().enumerate() {
+            let J = 1.0 + J1;
+            // A small-strain law knows no inversion; a NaN must not pass either way.
+            if !(J > 0.0) && !self.law(q).is_small_strain() || J.is_nan() {
+                return Err(Inverted { point: q, det: J });
+            }
+            if J < smallest.1 {
+                smallest = (q, J);
+            }
+        }
+        Ok(Kinematics { H, J1, smallest })
+    }
+
+    /// `theta - 1` at a point of the mixed method.
+    pub(super) fn mixed_dilation(&self, q: usize, H: &Matrix3, J1: f64, p: f64) -> Result<f64, StaticError> {
+        let law = self.law(q);
+        dilation_at_pressure(law, H, J1, p, J1)
+            // Far from J the guess p = kappa (theta - 1) may be the better one.
+            .or_else(|| {
+                let guess = (p / (law.lambda() + 2.0 / 3.0 * law.mu())).max(-0.9);
+                dilation_at_pressure(law, H, J1, p, guess)
+            })
+            .ok_or(StaticError::NoDilation { point: q, pressure: p })
+    }
+
+    /// Pressure of the mixed method at each point, Pa.
+    pub(super) fn pressures(&self, rows: &Rows, p: &[f64]) -> Vec<f64> {
+        (0..rows.len())
+            .map(|q| {
+                let (nodes, values) = rows.row(q);
+                nodes.iter().zip(values).map(|(&m, v)| v * p[m as usize]).sum()
+            })
+            .collect()
+    }
+
+    /// Energy and stresses at nodal parameters `u` (and pressures `p`).
+    pub(crate) fn internal(
+        &self,
+        pairs: Option<&Pairs>,
+        u: &[Vector3],
+        p: &[f64],
+    ) -> Result<Internal, StaticError> {
+        let kinematics = self.kinematics(u)?;
+        let Kinematics { H, J1, smallest } = &kinematics;
+        let weights = self.volume.weights();
+        let points = 0..weights.len();
+        let mut misfit = Vec::new();
+        let (stress, energy): (Vec<Matrix3>, Vec<f64>) = match self.dilation {
+            Dilation::Standard => points
+                .into_par_iter()
+                .with_min_len(128)
+                .map(|q| {
+                    let law = self.law(q);
+                    (law.stress(&H[q]) * weights[q], law.energy(&H[q]) * weights[q])
+                })
+                .unzip(),
+            Dilation::Groups(groups) => {
+                Shared::new(self, groups, pairs.expect("groups have pairs"), &kinematics)?.stress()
+            }
+            Dilation::Mixed(rows) => {
+                let p = self.pressures(rows, p);
+                let each: Vec<(Matrix3, f64, f64)> = points
+                    .into_par_iter()
+                    .with_min_len(64)
+                    .map(|q| {
+                        let law = self.law(q);
+                        let theta = self.mixed_dilation(q, &H[q], J1[q], p[q])?;
+                        let split = Split::new(law, &H[q], J1[q], theta);
+                        let cof = cofactor(law.is_small_strain(), &H[q]);
+                        let P = split.first(law).by_F + cof * p[q];
+                        let gap = J1[q] - theta;
+                        Ok((P * weights[q], (split.energy(law) + p[q] * gap) * weights[q], gap * weights[q]))
+                    })
+                    .collect::<Result<_, StaticError>>()?;
+                misfit = each.iter().map(|e| e.2).collect();
+                each.into_iter().map(|e| (e.0, e.1)).unzip()
+            }
+        };
+        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: *smallest })
+    }
+
+    /// Second derivatives at nodal parameters `u` (and pressures `p`).
+    pub(crate) fn hessian(
+        &self,
+        pairs: Option<&Pairs>,
+        u: &[Vector3],
+        p: &[f64],
+    ) -> Result<Hessian, StaticError> {
+        let kinematics = self.kinematics(u)?;
+        let Kinematics { H, J1, .. } = &kinematics;
+        let weights = self.volume.weights();
+        let points = (0..weights.len()).into_par_iter().with_min_len(64);
+        let none = (Vec::new(), Vec::new());
+        let (point, groups, pressure) = match self.dilation {
+            Dilation::Standard => {
+                let point = points.map(|q| self.law(q).tangent(&H[q]) * weights[q]).collect();
+                (point, none.0, none.1)
+            }
+            Dilation::Groups(groups) => {
+                let pairs = pairs.expect("groups have pairs");
+                let (point, groups) = Shared::new(self, groups, pairs, &kinematics)?.hessian();
+                (point, groups, none.1)
+            }
+            Dilation::Mixed(rows) => {
+                let p = self.pressures(rows, p);
+                let each: Vec<(Tangent, (Matrix3, f64))> = points
+                    .map(|q| {
+                        let law = self.law(q);
+                        let theta = self.mixed_dilation(q, &H[q], J1[q], p[q])?;
+                        let (_, second) = Split::new(law, &H[q], J1[q], theta).second(law);
+                        let by_p = second.by_F_theta / second.by_theta_theta;
+                        // theta follows F at constant p: the Schur complement of the local elimination.
+                        let v = super::split::flat(&second.by_F_theta);
+                        let mut D = second.by_FF - v * v.transpose() / second.by_theta_theta;
+                        let small = law.is_small_strain();
+                        add_dilation_hessian(small, &H[q], p[q], &mut D);
+                        let cof = cofactor(small, &H[q]);
+                        Ok((D * weights[q], ((by_p + cof) * weights[q], weights[q] / second.by_theta_theta)))
+                    })
+                    .collect::<Result<_, StaticError>>()?;
+                let (point, pressure) = each.into_iter().unzip();
+                (point, none.0, pressure)
+            }
+        };
+        Ok(Hessian { point, groups, pressure })
+    }
+}

@@ -1,0 +1,177 @@
+#![allow(non_snake_case)] // F, H, J, P, T as in the formulas
+//! A law seen through a dilation of its own: `psi(F, theta) = W(F_bar)`, `F_bar = (theta / J)^(1/3) F`, `J = det F`.
+//!
+//! This is what every projection of the volume change needs. With `theta = J` it is the law itself; with the average
+//! over an element or a nodal patch it is the mean-dilation method (Simo, Taylor & Pister 1985) in a form that
+//! derives from an energy for any law, so that its tangent is symmetric; with `theta` free and a pressure it is the
+//! mixed method. The small-strain law takes `J = 1 + tr H` and `H_bar = H + (theta - J) I / 3` instead.
+//!
+//! Dilations are handed over less one (`theta - 1`), exact where the strain is small.
+
+use material::{Law, Material, Tangent, volume_change};
+use shape::{Matrix3, Vector3};
+
+/// `J - 1`: `tr H + second invariant + det H` of `H = grad u`, exact for small H; `tr H` at small strain.
+pub(crate) fn dilation(small_strain: bool, H: &Matrix3) -> f64 {
+    if small_strain {
+        return H.trace();
+    }
+    volume_change(H)
+}
+
+/// `dJ/dF = J F^-T`, the cofactor matrix; the identity at small strain.
+pub(crate) fn cofactor(small_strain: bool, H: &Matrix3) -> Matrix3 {
+    if small_strain {
+        return Matrix3::identity();
+    }
+    let F = Matrix3::identity() + H;
+    let [a, b, c]: [Vector3; 3] = std::array::from_fn(|k| F.column(k).into());
+    Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
+}
+
+/// Second derivative of J with respect to F (9, 9): entry (ij, kl) is `e_ikm e_jln F_mn`; zero at small strain.
+pub(crate) fn add_dilation_hessian(small_strain: bool, H: &Matrix3, factor: f64, D: &mut Tangent) {
+    if small_strain || factor == 0.0 {
+        return;
+    }
+    let F = Matrix3::identity() + H;
+    for (i, k, m, sign) in PERMUTATIONS {
+        for (j, l, n, other) in PERMUTATIONS {
+            D[(i + 3 * j, k + 3 * l)] += factor * sign * other * F[(m, n)];
+        }
+    }
+}
+
+/// Permutations of (0, 1, 2) with their signs.
+const PERMUTATIONS: [(usize, usize, usize, f64); 6] =
+    [(0, 1, 2, 1.0), (1, 2, 0, 1.0), (2, 0, 1, 1.0), (0, 2, 1, -1.0), (2, 1, 0, -1.0), (1, 0, 2, -1.0)];
+
+/// Energy and first derivatives of `psi(F, theta)`.
+pub(crate) struct First {
+    /// `d psi / dF` (3, 3), Pa: free of pressure.
+    pub by_F: Matrix3,
+    /// `d psi / d theta`, Pa: the mean stress.
+    pub by_theta: f64,
+}
+
+/// Second derivatives of `psi(F, theta)`.
+pub(crate) struct Second {
+    /// `d2 psi / dF2` (9, 9), Pa.
+    pub by_FF: Tangent,
+    /// `d2 psi / dF d theta` (3, 3), Pa.
+    pub by_F_theta: Matrix3,
+    /// `d2 psi / d theta2`, Pa: the bulk modulus where the strain is small.
+    pub by_theta_theta: f64,
+}
+
+/// The pair (F, theta) with what all derivatives share.
+pub(crate) struct Split {
+    /// Displacement gradient of `F_bar`.
+    H_bar: Matrix3,
+    /// `F_bar`; the identity at small strain, whose derivatives then have the same form.
+    F_bar: Matrix3,
+    /// `F^-T`; the identity at small strain.
+    T: Matrix3,
+    /// `(theta / J)^(1/3)`.
+    scale: f64,
+    theta: f64,
+    small_strain: bool,
+}
+
+impl Split {
+    /// At `H` (with `J - 1` already known) and `theta - 1`; both dilations must be positive.
+    pub fn new(law: &Law, H: &Matrix3, J1: f64, theta1: f64) -> Split {
+        if law.is_small_strain() {
+            let I = Matrix3::identity();
+            let H_bar = H + I * ((theta1 - J1) / 3.0);
+            return Split { H_bar, F_bar: I, T: I, scale: 1.0, theta: 1.0, small_strain: true };
+        }
+        // ln(theta / J) / 3 by log1p: the difference of two nearly equal dilations keeps its digits.
+        let log = (theta1.ln_1p() - J1.ln_1p()) / 3.0;
+        let (scale, grown) = (log.exp(), log.exp_m1());
+        let F = Matrix3::identity() + H;
+        let H_bar = H + F * grown;
+        Split {
+            H_bar,
+            F_bar: Matrix3::identity() + H_bar,
+            T: cofactor(false, H) / (1.0 + J1),
+            scale,
+            theta: 1.0 + theta1,
+            small_strain: false,
+        }
+    }
+
+    /// `psi`, J/m^3.
+    pub fn energy(&self, law: &Law) -> f64 {
+        law.energy(&self.H_bar)
+    }
+
+    /// First derivatives.
+    pub fn first(&self, law: &Law) -> First {
+        self.first_of(&law.stress(&self.H_bar))
+    }
+
+    fn first_of(&self, P: &Matrix3) -> First {
+        let s = P.dot(&self.F_bar);
+        First { by_F: P * self.scale - self.T * (s / 3.0), by_theta: s / (3.0 * self.theta) }
+    }
+
+    /// First and second derivatives.
+    pub fn second(&self, law: &Law) -> (First, Second) {
+        let (P, A) = law.stress_and_tangent(&self.H_bar);
+        let Y = unflat(&(A * flat(&self.F_bar)));
+        let s = P.dot(&self.F_bar);
+        let FAF = Y.dot(&self.F_bar);
+        // At small strain F_bar is constant: the terms by which its own change acts drop out.
+        let (P_term, s_term) = if self.small_strain { (Matrix3::zeros(), 0.0) } else { (P, s) };
+        let (c, T, theta) = (self.scale, &self.T, self.theta);
+        let Z = (Y + P_term) * (c / 3.0);
+        let (t, z) = (flat(T), flat(&Z));
+        let mut by_FF =
+            A * (c * c) - z * t.transpose() - t * z.transpose() + t * t.transpose() * ((FAF + s_term) / 9.0);
+        if s_term != 0.0 {
+            // (s / 3) F^-T dF^T F^-T
+            for i in 0..3 {
+                for j in 0..3 {
+                    for k in 0..3 {
+                        for l in 0..3 {
+                            by_FF[(i + 3 * j, k + 3 * l)] += s_term / 3.0 * T[(i, l)] * T[(k, j)];
+                        }
+                    }
+                }
+            }
+        }
+        let by_F_theta = (Z * 3.0 - T * ((FAF + s_term) / 3.0)) / (3.0 * theta);
+        let by_theta_theta = (FAF - 2.0 * s_term) / (9.0 * theta * theta);
+        (self.first_of(&P), Second { by_FF, by_F_theta, by_theta_theta })
+    }
+}
+
+/// A matrix as the vector of its columns.
+pub(crate) fn flat(m: &Matrix3) -> nalgebra::SVector<f64, 9> {
+    nalgebra::SVector::from_column_slice(m.as_slice())
+}
+
+/// The matrix whose columns a vector lists.
+pub(crate) fn unflat(v: &nalgebra::SVector<f64, 9>) -> Matrix3 {
+    Matrix3::from_column_slice(v.as_slice())
+}
+
+/// `theta - 1` at which `d psi / d theta = p`, by Newton's method from a guess; `None` where it leaves the positive
+/// dilations or does not settle.
+pub(crate) fn dilation_at_pressure(law: &Law, H: &Matrix3, J1: f64, p: f64, guess: f64) -> Option<f64> {
+    let mut theta1 = guess;
+    for _ in 0..40 {
+        let (first, second) = Split::new(law, H, J1, theta1).second(law);
+        let step = (p - first.by_theta) / second.by_theta_theta;
+        if !step.is_finite() {
+            return None;
+        }
+        // No step may take away more than half of the volume; at small strain any dilation has a pressure.
+        theta1 += if law.is_small_strain() { step } else { step.max(-0.5 * (1.0 + theta1)) };
+        if step.abs() <= 1e-14 * (1.0 + theta1.abs()) {
+            return Some(theta1);
+        }
+    }
+    None
+}

@@ -1,0 +1,339 @@
+#![allow(non_snake_case)] // K, D, M as in the formulas
+//! The linear system of one Newton iteration: symbolic structure once, numbers at every iteration.
+
+use algebra::Stiffness;
+use algebra::Symmetric;
+use algebra::{BlockPattern, Incidence};
+use lanes::LanePath;
+use rayon::prelude::*;
+use shape::{Matrix3, Vector3};
+
+use super::groups::Pairs;
+use super::lanes::{BlockSum, PointTangent, Vector4, group_products, point_products};
+use super::solid::{Hessian, Internal};
+use super::sorted::Sorted;
+use super::{Dilation, Solid};
+
+/// Place of a held degree of freedom among the unknowns.
+pub(crate) const HELD: usize = usize::MAX;
+
+/// Gradients of points that the rows of a task go through together: with the tangents of their points 500 KB at most, which
+/// stay in the second-level cache.
+const TILE: usize = 4096;
+
+/// Values on a surface (or of any quadrature whose values alone count) with its weights, ready for assembly.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceTable {
+    pub rows: Sorted<f64>,
+    pub weights: Vec<f64>,
+    of_node: Incidence,
+}
+
+impl SurfaceTable {
+    pub fn new(surface: &shape::SurfaceRows) -> SurfaceTable {
+        SurfaceTable::weighted(surface.rows(), surface.weights().to_vec())
+    }
+
+    /// Any values with weights of their own.
+    pub fn weighted(rows: &shape::Rows, weights: Vec<f64>) -> SurfaceTable {
+        let sorted = Sorted::new((0..rows.len()).map(|q| {
+            let (nodes, values) = rows.row(q);
+            nodes.iter().copied().zip(values.iter().copied())
+        }));
+        let of_node = sorted.incidence(rows.node_count());
+        SurfaceTable { rows: sorted, weights, of_node }
+    }
+
+    /// One point in each node.
+    pub fn nodal(weights: Vec<f64>) -> SurfaceTable {
+        let rows = Sorted::new((0..weights.len() as u32).map(|i| std::iter::once((i, 1.0))));
+        let of_node = rows.incidence(weights.len());
+        SurfaceTable { rows, weights, of_node }
+    }
+
+    /// `sum_q w N_I^2` of every node.
+    pub fn diagonal(&self, nodes: usize) -> Vec<f64> {
+        let entry = |&(q, k): &(u32, u32)| self.weights[q as usize] * self.rows.data[k as usize].powi(2);
+        (0..nodes).map(|i| self.of_node.of(i).iter().map(entry).sum()).collect()
+    }
+
+    /// Displacement at the surface points, m.
+    pub fn displacement(&self, u: &[Vector3]) -> Vec<Vector3> {
+        (0..self.rows.len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|q| {
+                let (nodes, values) = self.rows.row(q);
+                nodes.iter().zip(values).map(|(&n, v)| u[n as usize] * *v).sum()
+            })
+            .collect()
+    }
+
+    /// Adds `sum_q w N t` to nodal forces.
+    pub fn add_force(&self, traction: &[Vector3], force: &mut [Vector3]) {
+        force.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, force)| {
+            for &(q, k) in self.of_node.of(i) {
+                let q = q as usize;
+                *force += traction[q] * (self.weights[q] * self.rows.data[k as usize]);
+            }
+        });
+    }
+}
+
+/// Structure of the system of a solid with surfaces on which something acts.
+pub(crate) struct System<'a> {
+    solid: Solid<'a>,
+    pub pairs: Option<Pairs>,
+    /// Gradients, 1/m, and a zero each.
+    points: Sorted<Vector4>,
+    points_of: Incidence,
+    groups_of: Option<Incidence>,
+    /// Pressure nodes: the (point, value) pairs that each sees.
+    pressure_of: Vec<Vec<(u32, f64)>>,
+    pub surfaces: Vec<SurfaceTable>,
+    stiffness: Stiffness,
+    /// Place of each degree of freedom among the unknowns, [`HELD`] if prescribed; pressures follow.
+    pub place: Vec<usize>,
+    /// Number of free displacement degrees of freedom.
+    pub free: usize,
+    /// The matrix is that of pressures over this scale (Pa per unknown): a pressure's own entries are 1e-15 of a
+    /// stiffness, and the static regularisation would drown them.
+    pub pressure_scale: f64,
+}
+
+impl<'a> System<'a> {
+    pub fn new(solid: Solid<'a>, held: &[bool], surfaces: Vec<SurfaceTable>) -> System<'a> {
+        let nodes = solid.node_count();
+        let rows = solid.volume.rows();
+        let points = Sorted::new((0..rows.len()).map(|q| {
+            let (nodes, grads) = solid.volume.row(q);
+            nodes.iter().copied().zip(grads.iter().map(|g| g.push(0.0)))
+        }));
+        let points_of = points.incidence(nodes);
+        let pairs = solid.pairs();
+        let groups = pairs.as_ref().map(Pairs::connectivity);
+        let groups_of = groups.map(|groups| Incidence::new(nodes, groups, 0..groups.offsets.len() - 1));
+        let mut pressure_of = vec![Vec::new(); solid.pressure_count()];
+        if let Dilation::Mixed(pressure) = solid.dilation {
+            for q in 0..pressure.len() {
+                let (nodes, values) = pressure.row(q);
+                nodes
+                    .iter()
+                    .zip(values)
+                    .filter(|(_, v)| **v != 0.0)
+                    .for_each(|(&m, &v)| pressure_of[m as usize].push((q as u32, v)));
+            }
+        }
+        let mut tables = vec![(points.connectivity(), &points_of)];
+        tables.extend(groups.zip(groups_of.as_ref()));
+        tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
+        let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
+        let mut free = 0;
+        let place = held
+            .iter()
+            .map(|&held| {
+                if held {
+                    return HELD;
+                }
+                free += 1;
+                free - 1
+            })
+            .collect();
+        System {
+            solid,
+            pairs,
+            points,
+            points_of,
+            groups_of,
+            pressure_of,
+            surfaces,
+            stiffness,
+            place,
+            free,
+            pressure_scale: 1.0,
+        }
+    }
+
+    /// Number of unknowns: free displacements and pressures.
+    pub fn dim(&self) -> usize {
+        self.free + self.pressure_of.len()
+    }
+
+    /// Internal nodal forces `sum_q (w P) grad N`, N.
+    pub fn internal_force(&self, internal: &Internal) -> Vec<Vector3> {
+        (0..self.solid.node_count())
+            .into_par_iter()
+            .with_min_len(8)
+            .map(|i| {
+                (self.points_of.of(i).iter())
+                    .map(|&(q, k)| internal.stress[q as usize] * self.points.data[k as usize].xyz())
+                    .sum()
+            })
+            .collect()
+    }
+
+    /// Derivative of the energy with respect to each pressure parameter, m^3.
+    pub fn pressure_gradient(&self, internal: &Internal) -> Vec<f64> {
+        (self.pressure_of.iter())
+            .map(|seen| seen.iter().map(|&(q, v)| v * internal.misfit[q as usize]).sum())
+            .collect()
+    }
+
+    /// The matrix at `hessian` with `surface[s][q] = -w dt/dx` (symmetric part taken) on each surface.
+    pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) -> Symmetric {
+        let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
+        let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
+        let path = LanePath::best();
+        let tangents: Vec<PointTangent> =
+            hessian.point.par_iter().with_min_len(64).map(PointTangent::new).collect();
+        let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
+            point_products(path, points, &tangents, seen, slot, sums);
+        };
+        let (all, per_tile) = (0..points.len(), TILE * points.len() / points.nodes.len().max(1) + 1);
+        stiffness.by_tiles(points_of, &[all], per_tile, BlockSum::ZERO, gather, |_, i, slot, sums, row| {
+            if let Some((nodes, of)) = groups {
+                group_products(path, nodes, &hessian.groups, of.of(i), slot, sums);
+            }
+            for (block, sum) in row.iter_mut().zip(sums) {
+                *block = std::mem::replace(sum, BlockSum::ZERO).block();
+            }
+            for (table, blocks) in surfaces.iter().zip(surface) {
+                for &(q, k) in table.of_node.of(i) {
+                    let (q, k) = (q as usize, k as usize);
+                    let D = (blocks[q] + blocks[q].transpose()) * (0.5 * table.rows.data[k]);
+                    if D == Matrix3::zeros() {
+                        continue;
+                    }
+                    for j in table.rows.offsets[q]..=k {
+                        row[slot[table.rows.nodes[j] as usize] as usize] += D * table.rows.data[j];
+                    }
+                }
+            }
+        });
+        self.reduced(hessian)
+    }
+
+    /// Upper triangle over the free degrees of freedom, then the pressures.
+    fn reduced(&mut self, hessian: &Hessian) -> Symmetric {
+        let mut matrix = Symmetric::displacements(&self.stiffness, &self.place, self.free);
+        let nodes = self.solid.node_count();
+        let mut sum = vec![Vector3::zeros(); nodes];
+        let mut pressure_sum = vec![0.0; self.pressure_of.len()];
+        let Dilation::Mixed(pressure) = self.solid.dilation else { return matrix };
+        for (m, seen) in self.pressure_of.iter().enumerate() {
+            let (mut touched, mut partners) = (Vec::new(), Vec::new());
+            for &(q, v) in seen {
+                let q = q as usize;
+                let (B, c) = &hessian.pressure[q];
+                let (row, grads) = self.points.row(q);
+                for (&node, g) in row.iter().zip(grads) {
+                    touched.push(node);
+                    sum[node as usize] += B * g.xyz() * v;
+                }
+                let (row, values) = pressure.row(q);
+                for (&other, w) in row.iter().zip(values).filter(|(o, w)| **o as usize <= m && **w != 0.0) {
+                    partners.push(other);
+                    pressure_sum[other as usize] -= c * v * w;
+                }
+            }
+            touched.sort_unstable();
+            touched.dedup();
+            for node in touched {
+                let value = std::mem::replace(&mut sum[node as usize], Vector3::zeros());
+                for a in 0..3 {
+                    let at = self.place[3 * node as usize + a];
+                    if at != HELD {
+                        matrix.rows.push(at);
+                        matrix.values.push(value[a]);
+                    }
+                }
+            }
+            partners.sort_unstable();
+            partners.dedup();
+            for other in partners {
+                matrix.rows.push(self.free + other as usize);
+                matrix.values.push(std::mem::take(&mut pressure_sum[other as usize]));
+            }
+            matrix.offsets.push(matrix.rows.len());
+            matrix.vertices.push(matrix.offsets.len() - 1);
+        }
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |l, v| l.max(v.abs()));
+        let (stiffness, coupling) = matrix.values.split_at(matrix.offsets[self.free]);
+        let scale = largest(stiffness) / largest(coupling);
+        self.pressure_scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        for j in self.free..matrix.dim() {
+            for k in matrix.offsets[j]..matrix.offsets[j + 1] {
+                let both = matrix.rows[k] >= self.free;
+                matrix.values[k] *= if both { self.pressure_scale.powi(2) } else { self.pressure_scale };
+            }
+        }
+        matrix
+    }
+
+    /// The entries `(row, column, value)` that the skew parts of `surface` add to the symmetric matrix.
+    pub fn skew(&self, surface: &[Vec<Matrix3>]) -> Vec<(usize, usize, f64)> {
+        let mut entries = Vec::new();
+        for (table, blocks) in self.surfaces.iter().zip(surface) {
+            for (q, block) in blocks.iter().enumerate() {
+                let skew = (block - block.transpose()) * 0.5;
+                if skew == Matrix3::zeros() {
+                    continue;
+                }
+                let (nodes, values) = table.rows.row(q);
+                for (&i, vi) in nodes.iter().zip(values) {
+                    for (&j, vj) in nodes.iter().zip(values) {
+                        for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)] {
+                            let (row, column) =
+                                (self.place[3 * i as usize + a], self.place[3 * j as usize + b]);
+                            if row != HELD && column != HELD {
+                                entries.push((row, column, skew[(a, b)] * vi * vj));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        entries
+    }
+
+    /// Unknowns gathered from nodal vectors and pressures.
+    pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.dim()];
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+            out[at] = nodal[dof / 3][dof % 3];
+        }
+        out[self.free..].copy_from_slice(pressure);
+        out
+    }
+
+    /// Adds `factor` times the unknowns to nodal vectors and pressures.
+    pub fn scatter_add(&self, step: &[f64], factor: f64, nodal: &mut [Vector3], pressure: &mut [f64]) {
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+            nodal[dof / 3][dof % 3] += factor * step[at];
+        }
+        for (p, s) in pressure.iter_mut().zip(&step[self.free..]) {
+            *p += factor * s;
+        }
+    }
+
+    /// `K du` of held degrees of freedom that move: what they take from the right-hand side of the free ones.
+    pub fn held_part(&self, step: &[Vector3]) -> Vec<Vector3> {
+        self.stiffness.multiply(step)
+    }
+
+    /// Takes from the pressures' right-hand side what held degrees of freedom that move by `step` do to it.
+    pub fn subtract_held_pressure(&self, hessian: &Hessian, step: &[Vector3], right: &mut [f64]) {
+        if right.is_empty() {
+            return;
+        }
+        let of_point: Vec<f64> = (hessian.pressure.iter().enumerate())
+            .map(|(q, (B, _))| {
+                let (nodes, grads) = self.points.row(q);
+                nodes.iter().zip(grads).map(|(&n, g)| (B * g.xyz()).dot(&step[n as usize])).sum()
+            })
+            .collect();
+        for (right, seen) in right.iter_mut().zip(&self.pressure_of) {
+            *right -= seen.iter().map(|&(q, v)| v * of_point[q as usize]).sum::<f64>();
+        }
+    }
+}

@@ -1,0 +1,276 @@
+#![allow(non_snake_case)]
+//! Derivatives of the internal energy against differences, for every law and projection.
+
+use fem::VolumeRule;
+use geometry::CellKind;
+use geometry::generate::{Jitter, box_mesh};
+use material::{Hencky, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden};
+use material::{Law, Material};
+use material::{LinearElastic, SaintVenantKirchhoff};
+use shape::{DilationGroups, Rows, VolumeRows};
+use shape::{Matrix3, Point3, Vector3};
+
+use super::lanes::GroupRow;
+use super::separated::Volumetric;
+use super::shared::Shared;
+use super::solid::{Dilation, Solid};
+use super::split::{Split, dilation, flat};
+use super::system::System;
+
+const YOUNG: f64 = 20e3;
+const POISSON: f64 = 0.45;
+
+fn laws() -> Vec<Law> {
+    vec![
+        Law::Linear(LinearElastic::new(YOUNG, POISSON).unwrap()),
+        Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(YOUNG, POISSON).unwrap()),
+        Law::NeoHookean(NeoHookean::new(YOUNG, POISSON).unwrap()),
+        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(YOUNG, POISSON).unwrap()),
+    ]
+}
+
+/// A displacement gradient of about 0.3 without any symmetry.
+fn gradient() -> Matrix3 {
+    Matrix3::new(0.21, -0.13, 0.08, 0.17, -0.19, 0.11, -0.05, 0.23, 0.14)
+}
+
+#[test]
+fn split_derivatives_are_those_of_its_energy() {
+    let h = 1e-6;
+    for law in laws() {
+        let small = law.is_small_strain();
+        let at = |H: &Matrix3, theta1: f64| Split::new(&law, H, dilation(small, H), theta1);
+        let (H, theta1) = (gradient(), 0.27);
+        let (first, second) = at(&H, theta1).second(&law);
+        let scale = YOUNG;
+        let by_theta = (at(&H, theta1 + h).energy(&law) - at(&H, theta1 - h).energy(&law)) / (2.0 * h);
+        assert!((by_theta - first.by_theta).abs() < 1e-7 * scale, "{}", law.name());
+        let (up, down) = (at(&H, theta1 + h).first(&law), at(&H, theta1 - h).first(&law));
+        let slope = (up.by_theta - down.by_theta) / (2.0 * h);
+        assert!((slope - second.by_theta_theta).abs() < 1e-6 * scale, "{}", law.name());
+        let slope = (up.by_F - down.by_F) / (2.0 * h);
+        assert!((slope - second.by_F_theta).norm() < 1e-6 * scale, "{}", law.name());
+        for k in 0..9 {
+            let mut d = Matrix3::zeros();
+            d[k] = h;
+            let (up, down) = (at(&(H + d), theta1), at(&(H - d), theta1));
+            let slope = (up.energy(&law) - down.energy(&law)) / (2.0 * h);
+            assert!((slope - first.by_F[k]).abs() < 1e-7 * scale, "{} {k}", law.name());
+            let slope = flat(&((up.first(&law).by_F - down.first(&law).by_F) / (2.0 * h)));
+            let found = second.by_FF.column(k);
+            assert!(
+                (slope - found).norm() < 1e-6 * scale,
+                "{} {k}: {:e}",
+                law.name(),
+                (slope - found).norm()
+            );
+        }
+    }
+}
+
+#[test]
+fn split_at_its_own_dilation_is_the_law() {
+    for law in laws() {
+        let H = gradient();
+        let J1 = dilation(law.is_small_strain(), &H);
+        let split = Split::new(&law, &H, J1, J1);
+        assert!((split.energy(&law) - law.energy(&H)).abs() < 1e-14 * YOUNG);
+        let first = split.first(&law);
+        let whole = first.by_F + super::split::cofactor(law.is_small_strain(), &H) * first.by_theta;
+        assert!((whole - law.stress(&H)).norm() < 1e-13 * YOUNG, "{}", law.name());
+    }
+}
+
+/// Central differences of `A`, `U` and their slopes, and the energy of the parts against that of the law.
+#[test]
+fn laws_part_into_shape_and_volume() {
+    let h = 1e-6;
+    let mut parting = laws();
+    parting.extend([
+        Law::Hencky(Hencky::new(YOUNG, POISSON).unwrap()),
+        Law::MooneyRivlin(MooneyRivlin::from_young(YOUNG, POISSON, 0.3).unwrap()),
+        Law::Ogden(Ogden::new(&[(1.3e4, 1.5), (-2e3, -2.5)], 7e4).unwrap()),
+    ]);
+    let H = gradient();
+    for law in parting {
+        let J1 = dilation(law.is_small_strain(), &H);
+        let shape = Split::new(&law, &H, J1, 0.0);
+        for theta1 in [-0.4, 1e-9, 0.27] {
+            let at = |theta1: f64| Volumetric::new(&law, theta1);
+            let Some(parts) = at(theta1) else {
+                assert_eq!(law.name(), "saint-venant-kirchhoff");
+                continue;
+            };
+            let whole = Split::new(&law, &H, J1, theta1);
+            let sum = parts.A[0] * shape.energy(&law) + parts.U[0];
+            assert!((sum - whole.energy(&law)).abs() < 1e-13 * YOUNG, "{} {theta1}", law.name());
+            let stress = shape.first(&law).by_F * parts.A[0];
+            assert!((stress - whole.first(&law).by_F).norm() < 1e-13 * YOUNG, "{} {theta1}", law.name());
+            let (up, down) = (at(theta1 + h).unwrap(), at(theta1 - h).unwrap());
+            for d in 0..2 {
+                let slope = (up.A[d] - down.A[d]) / (2.0 * h);
+                assert!((slope - parts.A[d + 1]).abs() < 1e-8, "{} A {d} {theta1}", law.name());
+                let slope = (up.U[d] - down.U[d]) / (2.0 * h);
+                assert!((slope - parts.U[d + 1]).abs() < 1e-7 * YOUNG, "{} U {d} {theta1}", law.name());
+            }
+        }
+    }
+}
+
+struct Case {
+    volume: VolumeRows,
+    element: DilationGroups,
+    nodal: DilationGroups,
+    pressure: Rows,
+}
+
+fn case() -> Case {
+    let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
+    let kind = CellKind::Tet10;
+    let max = Point3::new(2.0, 1.0, 1.0);
+    let mesh = box_mesh(kind, Point3::origin(), max, [2, 1, 1], [1.0; 3], jitter).unwrap();
+    let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+    let element = fem::element_dilation(&mesh, &VolumeRule::STANDARD).unwrap();
+    let pressure = fem::pressure_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+    // Positive shares that overlap: the corner values of the pressure.
+    let mut lists = vec![Vec::new(); pressure.node_count()];
+    for q in 0..pressure.len() {
+        let (nodes, values) = pressure.row(q);
+        nodes.iter().zip(values).for_each(|(&m, &v)| lists[m as usize].push((q as u32, v)));
+    }
+    let mut offsets = vec![0];
+    lists.iter().for_each(|l: &Vec<(u32, f64)>| offsets.push(offsets.last().unwrap() + l.len()));
+    let (points, shares) = lists.into_iter().flatten().unzip();
+    let nodal = DilationGroups::new(pressure.len(), offsets, points, shares).unwrap();
+    Case { volume, element, nodal, pressure }
+}
+
+/// A smooth field of size 0.1 with a wiggle, in place of random numbers.
+fn field(count: usize, size: f64) -> Vec<Vector3> {
+    (0..count).map(|i| Vector3::from_fn(|a, _| size * (1.7 * (3 * i + a) as f64).sin())).collect()
+}
+
+#[test]
+fn forces_and_tangent_are_derivatives_of_the_energy() {
+    let case = case();
+    let projections = [
+        ("standard", Dilation::Standard),
+        ("element", Dilation::Groups(&case.element)),
+        ("nodal", Dilation::Groups(&case.nodal)),
+        ("mixed", Dilation::Mixed(&case.pressure)),
+    ];
+    for law in laws() {
+        for (name, dilation) in projections {
+            let name = format!("{} {name}", law.name());
+            let laws = [law.clone()];
+            let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation };
+            let nodes = solid.node_count();
+            let u = field(nodes, 0.03);
+            let p: Vec<f64> = field(solid.pressure_count(), 2e3).iter().map(|v| v.x).collect();
+            let mut system = System::new(solid, &vec![false; 3 * nodes], Vec::new());
+            let pairs = solid.pairs();
+            let gradient = |u: &[Vector3], p: &[f64]| {
+                let internal = solid.internal(pairs.as_ref(), u, p).unwrap();
+                (internal.energy, internal)
+            };
+            let (_, internal) = gradient(&u, &p);
+            let force = system.internal_force(&internal);
+            let volume = system.pressure_gradient(&internal);
+            let total = system.gather(&force, &volume);
+            let hessian = solid.hessian(pairs.as_ref(), &u, &p).unwrap();
+            let matrix = system.assemble(&hessian, &[]);
+            let n = total.len();
+            // Displacements of size 1e-2 and pressures of size 1e3 in one direction of differentiation.
+            let direction: Vec<f64> =
+                (0..n).map(|k| (0.9 * k as f64).cos() * if k < 3 * nodes { 1e-2 } else { 1e3 }).collect();
+            let h = 1e-5;
+            let shifted = |s: f64| {
+                let (mut u, mut p) = (u.clone(), p.clone());
+                system.scatter_add(&direction, s, &mut u, &mut p);
+                let (energy, internal) = gradient(&u, &p);
+                let force =
+                    system.gather(&system.internal_force(&internal), &system.pressure_gradient(&internal));
+                (energy, force)
+            };
+            let (up, down) = (shifted(h), shifted(-h));
+            let slope = (up.0 - down.0) / (2.0 * h);
+            let work: f64 = total.iter().zip(&direction).map(|(f, d)| f * d).sum();
+            let size: f64 = total.iter().zip(&direction).map(|(f, d)| (f * d).abs()).sum();
+            assert!((slope - work).abs() < 1e-7 * size, "{name}: {slope} {work}");
+            let mut product = vec![0.0; n];
+            // The matrix is that of scaled pressures.
+            let unscaled =
+                |x: &mut [f64]| x[3 * nodes..].iter_mut().for_each(|p| *p /= system.pressure_scale);
+            let mut scaled = direction.clone();
+            unscaled(&mut scaled);
+            matrix.subtract_product(&scaled, &mut product);
+            unscaled(&mut product);
+            for part in [0..3 * nodes, 3 * nodes..n] {
+                let norm = |x: &dyn Fn(usize) -> f64| part.clone().map(|k| x(k).powi(2)).sum::<f64>().sqrt();
+                let error = norm(&|k| (up.1[k] - down.1[k]) / (2.0 * h) + product[k]);
+                let size = norm(&|k| product[k]);
+                assert!(error <= 1e-7 * size, "{name}: {error:e} of {size:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tangent_is_the_weak_form() {
+    let case = case();
+    for law in laws() {
+        let laws = [law];
+        let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation: Dilation::Standard };
+        let nodes = solid.node_count();
+        let u = field(nodes, 0.03);
+        let mut system = System::new(solid, &vec![false; 3 * nodes], Vec::new());
+        let matrix = system.assemble(&solid.hessian(None, &u, &[]).unwrap(), &[]);
+        let plain = crate::plain::tangent(&solid, &u);
+        // The upper triangle is what the matrix has.
+        let mut difference = plain.upper_triangle();
+        for j in 0..matrix.dim() {
+            for k in matrix.offsets[j]..matrix.offsets[j + 1] {
+                difference[(matrix.rows[k], j)] -= matrix.values[k];
+            }
+        }
+        let error = difference.amax() / plain.amax();
+        assert!(error < 1e-13, "{}: {error:e}", laws[0].name());
+    }
+}
+
+/// Where a law parts, points are summed before groups: the same but for rounding, as sums go in another order.
+#[test]
+fn laws_that_part_give_what_pairs_give() {
+    let case = case();
+    let u = field(case.volume.rows().node_count(), 0.1);
+    for law in laws() {
+        let laws = [law];
+        for groups in [&case.element, &case.nodal] {
+            let dilation = Dilation::Groups(groups);
+            let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation };
+            let (pairs, kinematics) = (solid.pairs().unwrap(), solid.kinematics(&u).unwrap());
+            let shared = || Shared::new(&solid, groups, &pairs, &kinematics).unwrap();
+            let close = |a: f64, b: f64, what: &str| {
+                assert!((a - b).abs() < 1e-12 * YOUNG, "{} {what}: {a} {b}", laws[0].name());
+            };
+            let ((P, energy), (P_plain, energy_plain)) = (shared().stress(), shared().plain().stress());
+            for q in 0..P.len() {
+                close(energy[q], energy_plain[q], "energy");
+                close((P[q] - P_plain[q]).norm(), 0.0, "stress");
+            }
+            let ((D, by_group), (D_plain, plain_by_group)) = (shared().hessian(), shared().plain().hessian());
+            for q in 0..D.len() {
+                close((D[q] - D_plain[q]).norm(), 0.0, "tangent");
+            }
+            for (a, b) in by_group.iter().zip(&plain_by_group) {
+                assert_eq!(a.rows.len(), b.rows.len());
+                for ((b, n), (b_plain, n_plain)) in
+                    (a.rows.iter().map(GroupRow::both)).zip(b.rows.iter().map(GroupRow::both))
+                {
+                    close((b - b_plain).norm() * YOUNG, 0.0, "b");
+                    close((n - n_plain).norm(), 0.0, "n");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What follows from nodal parameters: stress, mean pressure and strain energy.
+
+use material::LinearElastic;
+use shape::GradRows;
+use shape::{Matrix3, Vector3};
+
+use crate::body::{check_len, check_regions, region_of};
+use crate::dilation::group_bulk;
+use crate::{Body, SolveError};
+
+/// Stress (3, 3), Pa, at any points by the plain law, `sigma = lambda tr(eps) I + 2 mu eps`, from nodal parameters
+/// `u` (m). `region` has one entry per point, or none when all are of region 0.
+pub fn stress(
+    at: &GradRows,
+    u: &[Vector3],
+    materials: &[LinearElastic],
+    region: &[u16],
+) -> Result<Vec<Matrix3>, SolveError> {
+    check_len("nodal parameters", u.len(), at.rows().node_count())?;
+    check_regions(region, at.points().len(), materials)?;
+    let gradients = at.displacement_gradients(u);
+    Ok(gradients.iter().enumerate().map(|(q, h)| materials[region_of(region, q)].stress(h)).collect())
+}
+
+/// Stress (3, 3), Pa, at the body's own quadrature points. With a volumetric projection the mean stress is that of
+/// the projected dilation, `sigma = 2 mu dev(eps) + kappa theta_q I`, `theta_q = sum_a share_aq theta_a`.
+pub fn body_stress(body: &Body, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveError> {
+    body.check()?;
+    let plain = stress(body.volume.at(), u, body.materials, body.region)?;
+    let Some(theta) = projected_dilation(body, u) else { return Ok(plain) };
+    let mean = |q: usize| body.material(q).bulk() * theta[q];
+    Ok(plain.iter().enumerate().map(|(q, s)| s + Matrix3::identity() * (mean(q) - s.trace() / 3.0)).collect())
+}
+
+/// Mean pressure `p = -tr(sigma) / 3`, Pa, at the body's quadrature points, of [`body_stress`].
+pub fn mean_pressure(body: &Body, u: &[Vector3]) -> Result<Vec<f64>, SolveError> {
+    Ok(body_stress(body, u)?.iter().map(|s| -s.trace() / 3.0).collect())
+}
+
+/// Strain energy, J: `sum_q w psi(H_q)`, with a projection `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`;
+/// equal to `u . K u / 2` without weak supports.
+pub fn strain_energy(body: &Body, u: &[Vector3]) -> Result<f64, SolveError> {
+    body.check()?;
+    check_len("nodal parameters", u.len(), body.nodes.len())?;
+    let gradients = body.volume.at().displacement_gradients(u);
+    let weights = body.volume.weights();
+    let mut energy = 0.0;
+    for (q, (h, w)) in gradients.iter().zip(weights).enumerate() {
+        let law = body.material(q);
+        let volumetric = if body.dilation.is_some() { 0.5 * law.bulk() * h.trace().powi(2) } else { 0.0 };
+        energy += w * (law.energy_density(h) - volumetric);
+    }
+    for (a, (volume, theta)) in group_dilations(body, &gradients).into_iter().enumerate() {
+        energy += 0.5 * volume * group_bulk(body, a) * theta * theta;
+    }
+    Ok(energy)
+}
+
+/// Volume (m^3) and mean dilation of each group; nothing without groups.
+fn group_dilations(body: &Body, gradients: &[Matrix3]) -> Vec<(f64, f64)> {
+    let Some(groups) = body.dilation else { return Vec::new() };
+    let mean = |a| {
+        let (points, shares) = groups.group(a);
+        let (mut volume, mut sum) = (0.0, 0.0);
+        for (&q, share) in points.iter().zip(shares) {
+            let dv = share * body.volume.weights()[q as usize];
+            volume += dv;
+            sum += dv * gradients[q as usize].trace();
+        }
+        (volume, sum / volume)
+    };
+    (0..groups.len()).map(mean).collect()
+}
+
+fn projected_dilation(body: &Body, u: &[Vector3]) -> Option<Vec<f64>> {
+    let groups = body.dilation?;
+    let gradients = body.volume.at().displacement_gradients(u);
+    let mut theta = vec![0.0; gradients.len()];
+    for (a, (_, mean)) in group_dilations(body, &gradients).into_iter().enumerate() {
+        let (points, shares) = groups.group(a);
+        for (&q, share) in points.iter().zip(shares) {
+            theta[q as usize] += share * mean;
+        }
+    }
+    Some(theta)
+}

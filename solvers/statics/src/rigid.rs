@@ -1,0 +1,279 @@
+//! Rigid motions left free, found from the supports themselves and before factoring: a pivot tells neither the
+//! motion nor the node.
+//!
+//! The node graph falls into connected pieces; constraint rows join pieces into clusters. A cluster of m pieces has
+//! 6 m rigid modes, each support gives a row over them, and the null space of those rows moves freely.
+
+use algebra::Connectivity;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use shape::{Point3, Vector3};
+
+use crate::constraint::Row;
+use crate::{Body, SolveError, WeakSupport};
+
+/// A rigid motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RigidMode {
+    /// Along this unit vector.
+    Translation(Vector3),
+    /// About an axis along this unit vector (through some point).
+    Rotation(Vector3),
+}
+
+impl std::fmt::Display for RigidMode {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let (word, v) = match self {
+            RigidMode::Translation(v) => ("translation along", v),
+            RigidMode::Rotation(v) => ("rotation about", v),
+        };
+        match v.iter().position(|c| c.abs() > 1.0 - 1e-6) {
+            Some(axis) => write!(f, "{word} {}", ["x", "y", "z"][axis]),
+            None => {
+                // No "-0.000".
+                let v = v.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
+                write!(f, "{word} ({:.3}, {:.3}, {:.3})", v.x, v.y, v.z)
+            }
+        }
+    }
+}
+
+/// Squared relative size below which a support row counts as not felt: motions are felt at 1e-6 of their size.
+const FREE: f64 = 1e-12;
+
+/// Values of the six modes at a node: three translations, then rotations about x, y, z through `centre`, divided
+/// by the size of the piece so that all are dimensionless alike.
+fn modes_at(x: &Point3, centre: &Point3, size: f64, axis: usize) -> [f64; 6] {
+    let r = (x - centre) / size;
+    let mut m = [0.0; 6];
+    m[axis] = 1.0;
+    for k in 0..3 {
+        m[3 + k] = Vector3::ith(k, 1.0).cross(&r)[axis];
+    }
+    m
+}
+
+/// Union-find with the lowest index as representative.
+struct Pieces(Vec<usize>);
+
+impl Pieces {
+    fn find(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    /// Whether they were apart.
+    fn join(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b)] = a.min(b);
+        a != b
+    }
+}
+
+/// One piece: its nodes' number, lowest node, centre and size (m), and its place in its cluster.
+struct Piece {
+    first: usize,
+    count: usize,
+    centre: Point3,
+    size: f64,
+    cluster: usize,
+    place: usize,
+}
+
+/// Fails with the free motions of the first cluster that has any.
+pub(crate) fn check(
+    body: &Body,
+    points: Connectivity,
+    prescribed: &[Option<f64>],
+    rows: &[Row],
+    weak: &[WeakSupport],
+) -> Result<(), SolveError> {
+    let (pieces, piece_of, clusters) = pieces(body.nodes, points, rows);
+    // Gram matrix of the support rows over each cluster's modes.
+    let mut gram: Vec<DMatrix<f64>> =
+        clusters.iter().map(|c| DMatrix::zeros(6 * c.len(), 6 * c.len())).collect();
+    let mut row: Vec<(usize, [f64; 6])> = Vec::new();
+    let mut add = |terms: &mut dyn Iterator<Item = (usize, usize, f64)>| {
+        row.clear();
+        let mut scale = 0.0;
+        for (node, axis, c) in terms {
+            let id = piece_of[node];
+            if id == NOWHERE {
+                continue;
+            }
+            let piece = &pieces[id];
+            let m = modes_at(&body.nodes[node], &piece.centre, piece.size, axis).map(|m| c * m);
+            scale += c.abs();
+            match row.iter_mut().find(|r| r.0 == id) {
+                Some((_, sum)) => (0..6).for_each(|k| sum[k] += m[k]),
+                None => row.push((id, m)),
+            }
+        }
+        if !(scale > 0.0) {
+            return;
+        }
+        for (a, ma) in &row {
+            let gram = &mut gram[pieces[*a].cluster];
+            for (b, mb) in &row {
+                for k in 0..6 {
+                    for l in 0..6 {
+                        gram[(6 * pieces[*a].place + k, 6 * pieces[*b].place + l)] +=
+                            ma[k] * mb[l] / (scale * scale);
+                    }
+                }
+            }
+        }
+    };
+    for dof in (0..prescribed.len()).filter(|&dof| prescribed[dof].is_some()) {
+        add(&mut std::iter::once((dof / 3, dof % 3, 1.0)));
+    }
+    for r in rows {
+        add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
+    }
+    for support in weak {
+        let table = support.flux.at().rows();
+        for q in 0..table.len() {
+            let (nodes, values) = table.row(q);
+            for axis in (0..3).filter(|&a| support.axes[a]) {
+                add(&mut nodes.iter().zip(values).map(|(&n, &v)| (n as usize, axis, v)));
+            }
+        }
+    }
+    for (members, gram) in clusters.iter().zip(gram) {
+        let eigen = SymmetricEigen::new(gram);
+        let limit = FREE * eigen.eigenvalues.max();
+        // `!(e > limit)`: no support at all gives 0 > 0.
+        let free: Vec<DVector<f64>> = (0..eigen.eigenvalues.len())
+            .filter(|&k| !(eigen.eigenvalues[k] > limit))
+            .map(|k| eigen.eigenvectors.column(k).into_owned())
+            .collect();
+        // The piece that moves most is the one to name.
+        let motion = |place: usize| free.iter().map(|v| v.rows(6 * place, 6).norm_squared()).sum::<f64>();
+        if let Some(place) = (0..members.len()).rev().max_by(|&a, &b| motion(a).total_cmp(&motion(b))) {
+            if free.is_empty() {
+                continue;
+            }
+            let piece = &pieces[members[place]];
+            let null = DMatrix::from_fn(6, free.len(), |i, j| free[j][6 * place + i]);
+            let modes = name(&null);
+            let nodes = body.nodes.len();
+            return Err(SolveError::RigidMotion {
+                modes,
+                node: piece.first,
+                piece_nodes: piece.count,
+                nodes,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Belongs to no piece: a node that no point sees. It is held along all axes (or was refused as an orphan).
+const NOWHERE: usize = usize::MAX;
+
+/// Connected pieces of the quadrature's node graph, the piece of each node, and clusters as lists of pieces.
+fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, Vec<usize>, Vec<Vec<usize>>) {
+    let mut find = Pieces((0..nodes.len()).collect());
+    let mut seen = vec![false; nodes.len()];
+    let mut joints = 0;
+    for range in points.offsets.windows(2) {
+        let row = &points.nodes[range[0]..range[1]];
+        for &node in row {
+            seen[node as usize] = true;
+            joints += usize::from(find.join(row[0] as usize, node as usize));
+        }
+        // All in one piece: what other points join is joined. A cloud is there after a tenth of its points.
+        if joints + 1 == nodes.len() {
+            break;
+        }
+    }
+    let mut piece_of = vec![NOWHERE; nodes.len()];
+    let mut pieces: Vec<Piece> = Vec::new();
+    for i in (0..nodes.len()).filter(|&i| seen[i]) {
+        let root = find.find(i);
+        if root == i {
+            piece_of[i] = pieces.len();
+            let centre = Point3::origin();
+            pieces.push(Piece { first: i, count: 0, centre, size: 0.0, cluster: 0, place: 0 });
+        }
+        piece_of[i] = piece_of[root];
+        let piece = &mut pieces[piece_of[i]];
+        piece.count += 1;
+        piece.centre += nodes[i].coords;
+    }
+    for piece in &mut pieces {
+        piece.centre /= piece.count as f64;
+    }
+    for (x, &p) in nodes.iter().zip(&piece_of).filter(|(_, p)| **p != NOWHERE) {
+        pieces[p].size = pieces[p].size.max((x - pieces[p].centre).norm());
+    }
+    for piece in &mut pieces {
+        // All nodes at one place: no size to divide by. Its rotations are then felt nowhere, and refused as free.
+        piece.size = if piece.size > 0.0 { piece.size } else { 1.0 };
+    }
+    let mut find = Pieces((0..pieces.len()).collect());
+    for row in rows {
+        let mut ids = row.terms.iter().map(|t| piece_of[t.0 / 3]).filter(|&p| p != NOWHERE);
+        if let Some(first) = ids.next() {
+            ids.for_each(|p| {
+                find.join(first, p);
+            });
+        }
+    }
+    let mut clusters: Vec<Vec<usize>> = Vec::new();
+    for p in 0..pieces.len() {
+        let root = find.find(p);
+        if root == p {
+            pieces[p].cluster = clusters.len();
+            clusters.push(Vec::new());
+        }
+        pieces[p].cluster = pieces[root].cluster;
+        let cluster = &mut clusters[pieces[root].cluster];
+        pieces[p].place = cluster.len();
+        cluster.push(p);
+    }
+    (pieces, piece_of, clusters)
+}
+
+/// Names a null space (6, k): pure translations first, then the rotations, along coordinate axes where possible.
+fn name(null: &DMatrix<f64>) -> Vec<RigidMode> {
+    let rotation = null.rows(3, 3).into_owned();
+    // Eigenvectors of R^T R with zero eigenvalue combine the null vectors into pure translations.
+    let eigen = SymmetricEigen::new(rotation.transpose() * &rotation);
+    let (mut moves, mut turns) = (Vec::new(), Vec::new());
+    for k in 0..null.ncols() {
+        let v = null * eigen.eigenvectors.column(k);
+        if eigen.eigenvalues[k] < 1e-9 {
+            moves.push(Vector3::new(v[0], v[1], v[2]));
+        } else {
+            turns.push(Vector3::new(v[3], v[4], v[5]));
+        }
+    }
+    let translations = along_axes(&moves).into_iter().map(RigidMode::Translation);
+    translations.chain(along_axes(&turns).into_iter().map(RigidMode::Rotation)).collect()
+}
+
+/// The same span by orthonormal vectors: coordinate axes that lie in it first, then the rest.
+fn along_axes(span: &[Vector3]) -> Vec<Vector3> {
+    let mut basis: Vec<Vector3> = Vec::new();
+    let reduce = |basis: &[Vector3], v: &Vector3| basis.iter().fold(*v, |v, b| v - b * b.dot(&v));
+    for v in span {
+        let v = reduce(&basis, v);
+        if v.norm() > 1e-6 {
+            basis.push(v.normalize());
+        }
+    }
+    let axes = (0..3).map(|k| Vector3::ith(k, 1.0)).filter(|e| reduce(&basis, e).norm() < 1e-5);
+    let mut named: Vec<Vector3> = axes.collect();
+    for b in &basis {
+        let rest = reduce(&named, b);
+        if named.len() < basis.len() && rest.norm() > 1e-3 {
+            // One sign for one direction.
+            let unit = rest.normalize();
+            named.push(if unit[unit.iamax()] < 0.0 { -unit } else { unit });
+        }
+    }
+    named
+}

@@ -1,0 +1,260 @@
+//! Factorisation and solution of an assembled problem.
+
+use algebra::Stiffness;
+use algebra::{DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
+use shape::Vector3;
+
+use crate::SolveError;
+use crate::body::check_len;
+use crate::load::Load;
+use crate::problem::Assembled;
+use crate::reduction::Reduction;
+
+/// What a solve did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveInfo {
+    /// Unknowns of the system: free degrees of freedom and multipliers.
+    pub dofs: usize,
+    /// Lagrange multipliers among them.
+    pub multipliers: usize,
+    /// Constraint rows that were eliminated.
+    pub eliminated: usize,
+    /// Constraint rows that were to be eliminated and follow from the others.
+    pub dropped: usize,
+    /// Numbers stored in the factor.
+    pub factor_nonzeros: usize,
+    /// Relative residual `|b - A x| / |b|` of the reduced system.
+    pub residual: f64,
+    /// The factorisation that served.
+    pub path: SolverPath,
+}
+
+/// Nodal parameters and what the solve did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Nodal parameters, m; displacements only where the basis is Kronecker.
+    pub u: Vec<Vector3>,
+    /// One multiplier per constraint row: the force (N per unit of coefficient) with which the row acts against the
+    /// body, `K u + sum_k lambda_k c_k = f`. Zero for rows without a free term and for dropped ones.
+    pub multipliers: Vec<f64>,
+    /// What the solve did.
+    pub info: SolveInfo,
+}
+
+/// A factored problem: solves for any load level or set of loads without factoring again.
+pub struct Factored<'a> {
+    problem: Assembled<'a>,
+    factorization: Factorization,
+    reduction: Reduction,
+    /// Constraint rows that keep a free term: index, and the scale by which they were multiplied.
+    active: Vec<(usize, f64)>,
+}
+
+impl<'a> Assembled<'a> {
+    /// Eliminates the prescribed degrees of freedom, appends the constraint rows and factors: Cholesky without
+    /// constraint rows, `L D L^T` with them; dense if small.
+    pub fn factor(self) -> Result<Factored<'a>, SolveError> {
+        self.factor_with(DENSE_LIMIT)
+    }
+
+    /// As [`Assembled::factor`] with the size (unknowns) up to which the dense factorisation serves: for comparing
+    /// the two.
+    pub fn factor_with(self, dense_limit: usize) -> Result<Factored<'a>, SolveError> {
+        let reduction = Reduction::new(&self.prescribed, &[])?;
+        let mut matrix = reduction.matrix(&self.stiffness);
+        let active = self.append_rows(&mut matrix, &reduction.place)?;
+        self.factored(reduction, matrix, active, dense_limit)
+    }
+
+    /// Eliminates the constraint rows too, so that the matrix stays positive definite: each independent row gives one of
+    /// its parameters away to the others, what depends on other rows is dropped and counted. Parameters in rows that
+    /// hang together are all coupled: the factor grows with the square of their number.
+    pub fn factor_eliminated(self) -> Result<Factored<'a>, SolveError> {
+        let reduction = Reduction::new(&self.prescribed, &self.rows)?;
+        let matrix = reduction.matrix(&self.stiffness);
+        self.factored(reduction, matrix, Vec::new(), DENSE_LIMIT)
+    }
+
+    fn factored(
+        self,
+        reduction: Reduction,
+        matrix: Symmetric,
+        active: Vec<(usize, f64)>,
+        dense_limit: usize,
+    ) -> Result<Factored<'a>, SolveError> {
+        let factorization = algebra::factor(matrix, dense_limit).map_err(|error| match error {
+            FactorError::Other(error) => error.into(),
+            FactorError::NotDefinite => match self.gamma {
+                Some(gamma) => SolveError::NotCoercive { gamma },
+                None => SolveError::NotPositiveDefinite,
+            },
+        })?;
+        Ok(Factored { problem: self, factorization, reduction, active })
+    }
+
+    /// Appends the constraint rows with a free term to the matrix over the unknowns, and tells which with what scale.
+    fn append_rows(&self, m: &mut Symmetric, place: &[usize]) -> Result<Vec<(usize, f64)>, SolveError> {
+        const HELD: usize = usize::MAX;
+        let largest = (0..m.dim()).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
+        let mut active = Vec::new();
+        for (index, row) in self.rows.iter().enumerate() {
+            let terms = || row.terms.iter().filter(|t| place[t.0] != HELD);
+            let size = terms().fold(0.0f64, |s, t| s.max(t.1.abs()));
+            if size == 0.0 {
+                let gap = row.value - row.held_part(&self.prescribed);
+                let scale = row.terms.iter().fold(row.value.abs(), |s, t| s.max(t.1.abs()));
+                if gap.abs() > 1e-12 * scale {
+                    return Err(SolveError::Inconsistent { row: index, gap });
+                }
+                continue;
+            }
+            // Scaled to the size of the stiffness, so that one regularisation fits both.
+            let scale = if largest > 0.0 { largest / size } else { 1.0 / size };
+            for t in terms() {
+                m.rows.push(place[t.0]);
+                m.values.push(scale * t.1);
+            }
+            m.rows.push(m.offsets.len() - 1);
+            m.values.push(0.0);
+            m.offsets.push(m.rows.len());
+            m.vertices.push(m.offsets.len() - 1);
+            active.push((index, scale));
+        }
+        Ok(active)
+    }
+}
+
+impl Factored<'_> {
+    /// The solution at `factor` times all given data: loads and prescribed displacements alike.
+    pub fn solve(&self, factor: f64) -> Result<Solution, SolveError> {
+        self.solve_for(&self.problem.load, factor, factor)
+    }
+
+    /// The solution under other loads with the same supports.
+    pub fn solve_loads(&self, loads: &[Load]) -> Result<Solution, SolveError> {
+        let force = self.problem.other_load(loads)?;
+        self.solve_for(&force, 1.0, 1.0)
+    }
+
+    /// The solution under nodal forces (N) with supports at `factor` times what they prescribe.
+    pub fn solve_forces(&self, forces: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
+        check_len("nodal forces", forces.len(), self.node_count())?;
+        self.solve_for(forces, 1.0, factor)
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.problem.load.len()
+    }
+
+    /// At `part` times the load and `factor` times what supports prescribe.
+    fn solve_for(&self, load: &[Vector3], part: f64, factor: f64) -> Result<Solution, SolveError> {
+        if !(part.is_finite() && factor.is_finite()) {
+            return Err(SolveError::NotFinite { what: "load factor", index: 0 });
+        }
+        let p = &self.problem;
+        let mut u = self.reduction.held(factor);
+        let held = p.stiffness.multiply(&u);
+        let forces: Vec<Vector3> =
+            (0..load.len()).map(|i| load[i] * part + p.weak_load[i] * factor - held[i]).collect();
+        let mut b = vec![0.0; self.factorization.dim()];
+        self.reduction.fold(&forces, &mut b);
+        let free = self.reduction.free;
+        for (k, &(index, scale)) in self.active.iter().enumerate() {
+            let row = &p.rows[index];
+            b[free + k] = factor * scale * (row.value - row.held_part(&p.prescribed));
+        }
+        let residual = self.factorization.solve(&mut b)?;
+        self.reduction.expand(&b, &mut u);
+        if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
+            self.refine(forms, load, (part, factor), &mut u)?;
+        }
+        let mut multipliers = vec![0.0; p.rows.len()];
+        for (k, &(index, scale)) in self.active.iter().enumerate() {
+            multipliers[index] = scale * b[free + k];
+        }
+        self.add_forces_of_eliminated(&u, load, (part, factor), &mut multipliers);
+        let info = SolveInfo {
+            dofs: b.len(),
+            multipliers: self.active.len(),
+            eliminated: self.reduction.eliminated(),
+            dropped: self.reduction.dropped,
+            factor_nonzeros: self.factorization.nonzeros(),
+            residual,
+            path: self.factorization.path(),
+        };
+        Ok(Solution { u, multipliers, info })
+    }
+
+    /// At most two steps of refinement with the residual of the forms themselves, at parts of the load and of what supports
+    /// prescribe. A step shrinks the error by about what the factorisation is wrong by, which the first step tells
+    /// (Higham 2002, section 12.1): one of less than 1e-9 leaves nothing to the second.
+    fn refine(
+        &self,
+        forms: &crate::problem::Pointwise,
+        load: &[Vector3],
+        (part, factor): (f64, f64),
+        u: &mut [Vector3],
+    ) -> Result<(), SolveError> {
+        for _ in 0..2 {
+            let mut residual: Vec<Vector3> = load.iter().map(|f| f * part).collect();
+            forms.subtract(u, factor, &mut residual);
+            let mut b = vec![0.0; self.factorization.dim()];
+            self.reduction.fold(&residual, &mut b);
+            self.factorization.solve(&mut b)?;
+            self.reduction.expand(&b, u);
+            let largest = u.iter().fold(0.0f64, |l, u| l.max(u.amax()));
+            if b.iter().all(|step| step.abs() <= 1e-9 * largest) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Multipliers of eliminated rows: `E^T (f - K u)` at the parameters they gave away.
+    fn add_forces_of_eliminated(
+        &self,
+        u: &[Vector3],
+        load: &[Vector3],
+        (part, factor): (f64, f64),
+        multipliers: &mut [f64],
+    ) {
+        if self.reduction.blocks.is_empty() {
+            return;
+        }
+        let p = &self.problem;
+        let inner = p.stiffness.multiply(u);
+        for block in &self.reduction.blocks {
+            for (&dof, inverse) in block.pivots.iter().zip(block.inverse.chunks_exact(block.rows.len())) {
+                let (i, a) = (dof / 3, dof % 3);
+                let force = part * load[i][a] + factor * p.weak_load[i][a] - inner[i][a];
+                block.rows.iter().zip(inverse).for_each(|(&row, e)| multipliers[row] += e * force);
+            }
+        }
+    }
+
+    /// Forces (N) that the eliminated supports exert on the nodes at nodal parameters `u` under `factor` times the
+    /// problem's own loads: `K u - f` at prescribed degrees of freedom, less what constraint rows take there; zero
+    /// elsewhere.
+    pub fn reactions(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
+        let p = &self.problem;
+        let mut out = p.stiffness.multiply(&solution.u);
+        for i in 0..out.len() {
+            out[i] -= (p.load[i] + p.weak_load[i]) * factor;
+        }
+        for (row, lambda) in p.rows.iter().zip(&solution.multipliers) {
+            for &(dof, c) in &row.terms {
+                out[dof / 3][dof % 3] += lambda * c;
+            }
+        }
+        for (dof, _) in p.prescribed.iter().enumerate().filter(|(_, held)| held.is_none()) {
+            out[dof / 3][dof % 3] = 0.0;
+        }
+        out
+    }
+
+    /// The stiffness, before elimination.
+    pub fn stiffness(&self) -> &Stiffness {
+        &self.problem.stiffness
+    }
+}

@@ -1,0 +1,297 @@
+//! The pointwise law: a friction block of one point, consistent tangents, rigid motions, refusals.
+
+use contact::{ContactError, ContactLaw, Slip, Tool, ToolShape};
+use integration::tools::{SHAPES, differences, kink, rotation, vector};
+use proptest::prelude::*;
+use shape::{Matrix3, Point3, Vector3};
+
+const PENALTY: f64 = 5e8;
+const FRICTION: f64 = 0.15;
+const STICK: f64 = 1e8;
+
+fn coulomb() -> ContactLaw {
+    ContactLaw::coulomb(PENALTY, FRICTION, STICK).unwrap()
+}
+
+fn tool(shape: ToolShape, law: ContactLaw) -> Tool {
+    Tool::new(shape, Point3::origin(), Matrix3::identity(), Vector3::x(), law).unwrap()
+}
+
+/// A point 0.1 mm deep in a plate, dragged along x and back: stick slope, slip at mu p, dissipation.
+#[test]
+fn friction_block_of_one_point() {
+    let plate = tool(ToolShape::Plate, coulomb());
+    let depth = 1e-4;
+    let p = PENALTY * depth;
+    let limit = FRICTION * p;
+    let give = limit / STICK; // elastic slip at the limit, 75 um
+    let at = |x: f64| Point3::new(x, 0.0, -depth);
+    let mut history = plate.contact(0.0, &at(0.0), &Slip::NONE, 0.0).slip;
+    let mut dissipated = 0.0;
+    // Out to 4 gives in 40 steps, back to -4 in 80, and to 0 again in 40.
+    let path: Vec<f64> = (1..=160)
+        .map(|k| {
+            f64::from(if k <= 40 {
+                k
+            } else if k <= 120 {
+                80 - k
+            } else {
+                k - 160
+            }) * 0.1
+                * give
+        })
+        .collect();
+    for (k, &x) in path.iter().enumerate() {
+        let c = plate.contact(0.0, &at(x), &history, 0.0);
+        let elastic = match k {
+            0..40 => (x / give).min(1.0),
+            40..120 => (1.0 - (4.0 * give - x) / give).max(-1.0),
+            _ => (-1.0 + (x + 4.0 * give) / give).min(1.0),
+        };
+        assert!((c.traction.x + limit * elastic).abs() < 1e-9 * limit, "step {k}: {}", c.traction.x);
+        assert!(c.traction.y == 0.0 && (c.traction.z - p).abs() < 1e-12 * p);
+        assert!(c.traction.x.abs() <= limit * (1.0 + 1e-14));
+        assert!(c.dissipated >= 0.0);
+        assert!((c.slip.stretch() * STICK + c.traction - Vector3::z() * p).norm() < 1e-12 * p);
+        dissipated += c.dissipated;
+        history = c.slip;
+    }
+    // Slip: 3 gives out, 6 back, 2 on the last leg.
+    let exact = limit * give * (3.0 + 6.0 + 2.0);
+    assert!((dissipated - exact).abs() < 1e-9 * exact, "{dissipated} {exact}");
+}
+
+/// The reference of stick moves with the tool.
+#[test]
+fn a_moving_tool_drags() {
+    let plate = tool(ToolShape::Plate, coulomb());
+    let x = Point3::new(1e-3, 2e-3, -1e-4);
+    let history = plate.contact(0.0, &x, &Slip::NONE, 0.0).slip;
+    let c = plate.contact(1e-5, &x, &history, 0.0);
+    assert!((c.traction.x - STICK * 1e-5).abs() < 1e-9 * STICK * 1e-5, "{}", c.traction);
+    // Tool and point together: nothing slips.
+    let c = plate.contact(1e-5, &(x + Vector3::x() * 1e-5), &history, 0.0);
+    assert!(c.traction.x.abs() < 1e-9 * STICK * 1e-5, "{}", c.traction);
+}
+
+#[test]
+fn a_point_that_leaves_forgets() {
+    let plate = tool(ToolShape::Plate, coulomb());
+    let touch = |x: f64, z: f64, history: &Slip| plate.contact(0.0, &Point3::new(x, 0.0, z), history, 0.0);
+    let stuck = touch(1e-5, -1e-4, &touch(0.0, -1e-4, &Slip::NONE).slip);
+    assert!(stuck.slip.stretch().x > 0.9e-5);
+    let left = touch(2e-5, 1e-6, &stuck.slip);
+    assert_eq!((left.traction, left.stiffness, left.slip), (Vector3::zeros(), Matrix3::zeros(), Slip::NONE));
+    assert_eq!((left.gap, left.pressure), (1e-6, 0.0));
+    let back = touch(3e-5, -1e-4, &left.slip);
+    assert_eq!(back.traction.x, 0.0);
+    assert!(touch(4e-5, -1e-4, &back.slip).traction.x < -0.9e-5 * STICK);
+}
+
+#[test]
+fn without_friction_nothing_is_remembered() {
+    let sphere = tool(SHAPES[3], ContactLaw::frictionless(PENALTY).unwrap());
+    let c = sphere.contact(0.0, &Point3::new(2e-3, 1e-3, 4.4e-3), &Slip::NONE, 0.0);
+    assert!(c.pressure > 0.0);
+    assert_eq!((c.slip, c.dissipated), (Slip::NONE, 0.0));
+    assert!((c.stiffness - c.stiffness.transpose()).norm() < 1e-15 * c.stiffness.norm());
+    assert!(c.traction.cross(&Vector3::new(2.0, 1.0, 4.4)).norm() < 1e-12 * c.traction.norm());
+}
+
+/// A multiplier shifts the pressure; the point holds on until it is used up.
+#[test]
+fn multipliers_add_to_the_pressure() {
+    let plate = tool(ToolShape::Plate, ContactLaw::frictionless(PENALTY).unwrap());
+    let pressure = |z| plate.contact(0.0, &Point3::new(0.0, 0.0, z), &Slip::NONE, 1e4).pressure;
+    assert!((pressure(-1e-5) - 1.5e4).abs() < 1e-8);
+    assert!((pressure(1e-5) - 5e3).abs() < 1e-8);
+    assert_eq!(pressure(2.1e-5), 0.0);
+}
+
+/// Two committed contacts near the surface of a tool, then a move by `along` times the slip limit.
+struct Dragged {
+    tool: Tool,
+    history: Slip,
+    x: Point3,
+}
+
+impl Dragged {
+    /// `None` near a kink of the distance.
+    fn new(shape: ToolShape, turn: Matrix3, start: Vector3, depth: f64, drag: Vector3) -> Option<Dragged> {
+        let at = Point3::new(1e-3, -2e-3, 3e-3);
+        let along = turn * Vector3::new(2.0, -1.0, 2.0) / 3.0;
+        let tool = Tool::new(shape, at, turn, along, coulomb()).unwrap();
+        let foot = shape.distance(&start);
+        let p = start - foot.gradient * (foot.value + depth);
+        let give = FRICTION * PENALTY * depth / STICK;
+        // Tangential, so that the depth stays about the same, and a little deeper.
+        let n = shape.distance(&p).gradient;
+        let tangent = |v: Vector3| v - n * n.dot(&v);
+        let end = p + tangent(drag) * give - n * (0.05 * depth);
+        if [p, end].iter().any(|p| kink(&shape, p) < 5e-4) {
+            return None;
+        }
+        let world = |p: Vector3| at + turn * p;
+        let first = tool.contact(0.0, &world(p), &Slip::NONE, 0.0).slip;
+        let pull = tangent(Vector3::new(drag.y, drag.z, drag.x)) * (0.3 * give);
+        let history = tool.contact(0.0, &world(p + pull), &first, 0.0).slip;
+        Some(Dragged { tool, history, x: world(end) })
+    }
+
+    /// Relative size of the tangential traction: 1 in slip.
+    fn reach(&self) -> f64 {
+        let c = self.tool.contact(0.0, &self.x, &self.history, 0.0);
+        c.slip.stretch().norm() * STICK / (FRICTION * c.pressure)
+    }
+
+    fn check(&self, multiplier: f64) -> Result<(), TestCaseError> {
+        let contact = |closure: f64, x: &Point3| self.tool.contact(closure, x, &self.history, multiplier);
+        let c = contact(0.0, &self.x);
+        // Steps of 1e-8 m beside curvature radii of 5e-4 m and elastic slips of 1e-5 m: truncation 1e-6 relative.
+        let h = 1e-8;
+        // Between stick and slip there is no derivative: differences that straddle the limit say nothing.
+        let slips = |closure: f64, x: &Point3| {
+            let c = contact(closure, x);
+            c.slip.stretch().norm() * STICK > (1.0 - 1e-9) * FRICTION * c.pressure
+        };
+        let here = slips(0.0, &self.x);
+        let around = |a: usize, sign: f64| slips(0.0, &(self.x + Vector3::ith(a, sign * h)));
+        if (0..3).any(|a| around(a, 1.0) != here || around(a, -1.0) != here)
+            || [h, -h].iter().any(|&closure| slips(closure, &self.x) != here)
+        {
+            return Ok(());
+        }
+        let slopes = differences(h, |step| contact(0.0, &(self.x + step)).traction);
+        let miss = (slopes - c.stiffness).norm() / slopes.norm();
+        prop_assert!(miss < 1e-5, "{:?} {miss:e} {slopes} {}", self.tool.shape(), c.stiffness);
+        let driven = (contact(h, &self.x).traction - contact(-h, &self.x).traction) / (2.0 * h);
+        let miss = (driven + c.stiffness * self.tool.along()).norm() / slopes.norm();
+        prop_assert!(miss < 1e-5, "closure: {miss:e}");
+        Ok(())
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+    #[test]
+    fn tangents_are_consistent(
+        turn in rotation(), start in vector(12e-3), drag in vector(1.0), multiplier in 0.0..2e4f64
+    ) {
+        prop_assume!(drag.norm() > 0.2);
+        for shape in SHAPES {
+            // 0.1 mm deep; the limit of elastic slip is 75 um.
+            for far in [0.3, 4.0] {
+                let Some(dragged) = Dragged::new(shape, turn, start, 1e-4, drag.normalize() * far) else { continue };
+                let reach = dragged.reach();
+                // A drag along the normal does not pull; one at the limit has no derivative.
+                if (0.02..0.99).contains(&reach) || (far > 1.0 && reach > 1.0 - 1e-12) {
+                    dragged.check(0.0)?;
+                }
+                // Away from the limit with a multiplier too (it raises mu p by up to 40 %).
+                if (0.02..0.6).contains(&reach) {
+                    dragged.check(multiplier)?;
+                }
+            }
+        }
+    }
+
+    /// Tool, point and history turned and moved together: traction and tangent turn with them.
+    #[test]
+    fn rigid_motions_change_nothing(turn in rotation(), q in rotation(), start in vector(12e-3), drag in vector(3.0)) {
+        for shape in SHAPES {
+            let Some(a) = Dragged::new(shape, turn, start, 1e-4, drag) else { continue };
+            let b = Dragged::new(shape, q * turn, start, 1e-4, drag).unwrap();
+            let (ca, cb) = (a.tool.contact(0.0, &a.x, &a.history, 0.0), b.tool.contact(0.0, &b.x, &b.history, 0.0));
+            // Positions of 1e-2 m carry 1e-18 m of rounding, times the penalty: 1e-9 Pa of 5e4.
+            prop_assert!((q * ca.traction - cb.traction).norm() < 1e-11 * ca.traction.norm());
+            let turned = q * ca.stiffness * q.transpose();
+            prop_assert!((turned - cb.stiffness).norm() < 1e-9 * turned.norm());
+            prop_assert!((ca.gap - cb.gap).abs() < 1e-16);
+        }
+    }
+
+    /// Slip against the motion never gives work back, on any shape.
+    #[test]
+    fn friction_dissipates(turn in rotation(), start in vector(12e-3), drag in vector(3.0)) {
+        for shape in SHAPES {
+            if let Some(d) = Dragged::new(shape, turn, start, 1e-4, drag) {
+                let c = d.tool.contact(0.0, &d.x, &d.history, 0.0);
+                prop_assert!(c.dissipated >= 0.0);
+                prop_assert!(c.slip.stretch().norm() * STICK <= FRICTION * c.pressure * (1.0 + 1e-14));
+            }
+        }
+    }
+}
+
+/// Both branches of friction are met by the sampling above, on every shape.
+#[test]
+fn the_tangent_test_meets_stick_and_slip() {
+    for shape in SHAPES {
+        let start = Vector3::new(1e-3, 0.5e-3, 1.2e-2);
+        let drag = Vector3::new(1.0, 0.5, 0.0);
+        let reach =
+            |far| Dragged::new(shape, Matrix3::identity(), start, 1e-4, drag * far).map(|d| d.reach());
+        assert!(matches!(reach(0.3), Some(0.05..0.95)), "{shape:?} {:?}", reach(0.3));
+        assert!((reach(4.0).unwrap() - 1.0).abs() < 1e-12, "{shape:?}");
+    }
+}
+
+#[test]
+fn bad_tools_are_refused_with_their_numbers() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            ContactLaw::frictionless(bad),
+            Err(ContactError::Modulus { what: "penalty", value }) if value.to_bits() == bad.to_bits()
+        ));
+        assert!(matches!(
+            ContactLaw::coulomb(1.0, 0.1, bad),
+            Err(ContactError::Modulus { what: "stick slope", .. })
+        ));
+        assert!(matches!(ContactLaw::coulomb(1.0, bad, 1.0), Err(ContactError::Friction { .. })));
+    }
+    let law = ContactLaw::frictionless(1.0).unwrap();
+    let make = |shape, at: f64, turn, along| Tool::new(shape, Point3::new(at, 0.0, 0.0), turn, along, law);
+    let id = Matrix3::identity();
+    let shape = |shape| make(shape, 0.0, id, Vector3::x()).unwrap_err();
+    for bad in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            shape(ToolShape::Sphere { radius: bad }),
+            ContactError::Size { what: "the radius", .. }
+        ));
+        for end in [
+            ToolShape::Cylinder { radius: 1.0, half_length: bad },
+            ToolShape::Capsule { radius: 1.0, half_length: bad },
+        ] {
+            assert!(matches!(shape(end), ContactError::Size { what: "the half length", .. }));
+        }
+        assert!(matches!(
+            shape(ToolShape::RoundedBox { half: [1.0, bad, 1.0], radius: 0.0 }),
+            ContactError::Size { what: "a half extent", .. }
+        ));
+    }
+    let rounded = shape(ToolShape::RoundedBox { half: [3e-3, 2e-3, 1e-3], radius: 1.5e-3 });
+    assert_eq!(rounded, ContactError::Rounding { radius: 1.5e-3, half: 1e-3 });
+    assert_eq!(
+        rounded.to_string(),
+        "the box's edges are rounded by 0.0015 m; it must be between 0 and the least half extent, 0.001 m"
+    );
+    assert!(matches!(
+        shape(ToolShape::RoundedBox { half: [1.0; 3], radius: f64::NAN }),
+        ContactError::Rounding { .. }
+    ));
+    let ball = ToolShape::Sphere { radius: 1.0 };
+    assert!(matches!(make(ball, f64::NAN, id, Vector3::x()), Err(ContactError::Place { .. })));
+    assert!(matches!(make(ball, 0.0, id * 2.0, Vector3::x()), Err(ContactError::Rotation { .. })));
+    assert!(matches!(make(ball, 0.0, -id, Vector3::x()), Err(ContactError::Rotation { .. })), "a mirror");
+    assert!(matches!(make(ball, 0.0, id, Vector3::x() * 2.0), Err(ContactError::Direction { length: 2.0 })));
+    assert!(matches!(make(ball, 0.0, id, Vector3::zeros()), Err(ContactError::Direction { .. })));
+}
+
+#[test]
+fn a_tool_can_be_turned_to_any_axis() {
+    for axis in [Vector3::z(), -Vector3::z(), Vector3::x(), Vector3::new(2.0, -1.0, -2.0) / 3.0] {
+        let turn = Tool::turned_to(&axis);
+        assert!((turn * Vector3::z() - axis).norm() < 1e-15);
+        assert!((turn.determinant() - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,272 @@
+//! Internal forces: every lane path against the plain loop, the plain loop against its energy, bits against threads.
+
+use explicit::{ExplicitBody, InternalForce};
+use geometry::CellKind;
+use integration::block::{Block, gradient};
+use lanes::LanePath;
+use material::{
+    Hencky, Law, LinearElastic, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, SaintVenantKirchhoff,
+};
+use shape::DilationGroups;
+use shape::Vector3;
+
+/// Two regions of different stiffness, mixed point by point.
+fn laws() -> [Law; 2] {
+    [(20e3, 0.495), (35e3, 0.3)]
+        .map(|(young, poisson)| Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()))
+}
+
+/// Every other law, twice each, as [`laws`].
+fn other_laws() -> Vec<[Law; 2]> {
+    let two = |law: fn(f64, f64) -> Law| [law(20e3, 0.495), law(35e3, 0.3)];
+    vec![
+        two(|young, poisson| Law::Linear(LinearElastic::new(young, poisson).unwrap())),
+        two(|young, poisson| Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(young, poisson).unwrap())),
+        two(|young, poisson| Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(young, poisson).unwrap())),
+        two(|young, poisson| Law::Hencky(Hencky::new(young, poisson).unwrap())),
+        two(|young, poisson| Law::MooneyRivlin(MooneyRivlin::from_young(young, poisson, 0.3).unwrap())),
+        two(|young, poisson| {
+            let hooke = LinearElastic::new(young, poisson).unwrap();
+            let mu = hooke.mu();
+            let terms = [(0.9 * mu, 1.3), (0.06 * mu, 5.0), (-0.265 * mu, -2.0)];
+            Law::Ogden(Ogden::new(&terms, hooke.bulk()).unwrap())
+        }),
+    ]
+}
+
+fn regions(block: &Block) -> Vec<u16> {
+    (0..block.volume.weights().len()).map(|q| u16::from(q % 5 > 2)).collect()
+}
+
+/// A bent, twisted and stretched state with strains around 0.2, times `amount`.
+fn deformed(block: &Block, amount: f64) -> Vec<Vector3> {
+    let field = |x: &shape::Point3| {
+        let wave = Vector3::new((150.0 * x.y).sin(), (120.0 * x.z).cos(), (180.0 * x.x).sin()) * 1e-3;
+        (gradient() * 5.0 * x.coords + wave) * amount
+    };
+    block.mesh.points().iter().map(field).collect()
+}
+
+fn largest(f: &[Vector3]) -> f64 {
+    f.iter().map(|f| f.amax()).fold(0.0, f64::max)
+}
+
+fn difference(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max) / largest(b)
+}
+
+fn forces(force: &mut InternalForce, u: &[Vector3]) -> Vec<Vector3> {
+    let mut f = vec![Vector3::repeat(f64::NAN); u.len()];
+    force.evaluate(u, &mut f).unwrap();
+    f
+}
+
+fn paths_agree(block: &Block, groups: Option<&DilationGroups>, kernel: &str) {
+    paths_agree_by(block, groups, kernel, &|q| u16::from(q % 5 > 2));
+}
+
+fn paths_agree_by(
+    block: &Block,
+    groups: Option<&DilationGroups>,
+    kernel: &str,
+    region: &dyn Fn(usize) -> u16,
+) {
+    paths_agree_of(&laws(), block, groups, kernel, region);
+    for laws in other_laws() {
+        let whole = matches!(laws[0], Law::Linear(_) | Law::SaintVenantKirchhoff(_));
+        let kernel = if groups.is_some() && whole { "plain" } else { kernel };
+        paths_agree_of(&laws, block, groups, kernel, region);
+        if kernel != "plain" {
+            // Beside a neo-Hookean region, at whose border groups have parts of both.
+            let [first, _] = laws;
+            let [_, second] = self::laws();
+            paths_agree_of(&[first, second], block, groups, kernel, region);
+        }
+    }
+}
+
+/// All paths on one table against the plain loop, at large strain and at 1e-6 of it.
+fn paths_agree_of(
+    laws: &[Law],
+    block: &Block,
+    groups: Option<&DilationGroups>,
+    kernel: &str,
+    region: &dyn Fn(usize) -> u16,
+) {
+    let region: Vec<u16> = (0..block.volume.weights().len()).map(region).collect();
+    let body = ExplicitBody { volume: &block.volume, laws, region: &region, groups };
+    for amount in [1.0, 0.3, 1e-6] {
+        let u = deformed(block, amount);
+        let expected = forces(&mut InternalForce::plain(body).unwrap(), &u);
+        assert!(largest(&expected) > 1e-9);
+        for path in LanePath::available() {
+            let mut force = InternalForce::new(body, path).unwrap();
+            assert_eq!(force.info().kernel.name(), kernel);
+            // Sums of some 20 terms of mixed sign; the volumetric part is 50 times the rest at nu = 0.495.
+            let tolerance = 1e-13;
+            let error = difference(&forces(&mut force, &u), &expected);
+            let law = laws[0].name();
+            assert!(error < tolerance, "{law}, {kernel}, {}, {amount}: {error:e}", path.name());
+        }
+    }
+}
+
+#[test]
+fn tet4_lanes_agree_with_the_plain_loop() {
+    paths_agree(&Block::new(CellKind::Tet4, [5, 4, 3]), None, "tet4");
+}
+
+#[test]
+fn hexahedra_agree_with_the_plain_loop() {
+    let block = Block::new(CellKind::Hex8, [5, 4, 3]);
+    // One law per element.
+    let element = |q: usize| q / 8;
+    paths_agree_by(&block, None, "hex8", &|q| u16::from(element(q) % 5 > 2));
+    let groups = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
+    paths_agree_by(&block, Some(&groups), "hex8 mean dilation", &|q| u16::from(element(q) % 5 > 2));
+    // Laws that change within an element: point by point.
+    paths_agree(&block, None, "rows");
+}
+
+#[test]
+fn rows_of_other_lengths_agree_with_the_plain_loop() {
+    for kind in [CellKind::Tet10, CellKind::Hex20] {
+        paths_agree(&Block::new(kind, [3, 3, 2]), None, "rows");
+    }
+    paths_agree(&ragged(), None, "rows");
+}
+
+/// Rows of many lengths, as a meshless cloud has them: the points of a tet4 mesh see the nodes of two elements more,
+/// averaged so that linear fields stay exact.
+fn ragged() -> Block {
+    let mut block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    let (volume, n) = (&block.volume, block.volume.weights().len());
+    let (mut offsets, mut nodes, mut values, mut grads) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+    for q in 0..n {
+        let seen = 1 + q % 7;
+        for k in 0..seen {
+            let other = (q + k) % n;
+            nodes.extend(volume.row(other).0);
+            values.extend(volume.rows().row(other).1.iter().map(|v| v / seen as f64));
+            grads.extend(volume.row(other).1.iter().map(|g| g / seen as f64));
+        }
+        // Every other row of an odd length: its last node comes twice.
+        if q % 2 == 0 {
+            let (value, grad) = (values.pop().unwrap(), grads.pop().unwrap());
+            nodes.push(*nodes.last().unwrap());
+            values.extend([0.3 * value, 0.7 * value]);
+            grads.extend([grad * 0.3, grad * 0.7]);
+        }
+        offsets.push(nodes.len());
+    }
+    let count = block.mesh.points().len();
+    let rows = shape::Rows::new(count, offsets, nodes, values, shape::Unity::Within(1e-12)).unwrap();
+    assert_eq!(rows.uniform_len(), None);
+    let at = shape::GradRows::new(volume.points().to_vec(), rows, grads).unwrap();
+    block.volume = shape::VolumeRows::new(at, volume.weights().to_vec()).unwrap();
+    block
+}
+
+#[test]
+fn nodal_dilation_lanes_agree_with_the_plain_loop() {
+    let block = Block::new(CellKind::Tet4, [5, 4, 3]);
+    let groups = DilationGroups::nodal(&block.volume).unwrap();
+    paths_agree(&block, Some(&groups), "tet4 nodal dilation");
+}
+
+#[test]
+fn plain_forces_are_the_gradient_of_the_energy() {
+    let block = Block::new(CellKind::Tet4, [2, 2, 1]);
+    let (laws, region) = (laws(), regions(&block));
+    let nodal = DilationGroups::nodal(&block.volume).unwrap();
+    for groups in [None, Some(&nodal)] {
+        let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &region, groups };
+        let mut force = InternalForce::plain(body).unwrap();
+        let u = deformed(&block, 1.0);
+        let f = forces(&mut force, &u);
+        let step = 1e-7;
+        for node in 0..u.len() {
+            for axis in 0..3 {
+                let at = |sign: f64| {
+                    let mut moved = u.clone();
+                    moved[node][axis] += sign * step;
+                    force.energy(&moved).unwrap()
+                };
+                let slope = (at(1.0) - at(-1.0)) / (2.0 * step);
+                // Central difference: step^2 of curvature and 1e-16 E / step of rounding, both near 1e-8 of f.
+                assert!((slope - f[node][axis]).abs() < 1e-6 * largest(&f), "{node} {axis}");
+            }
+        }
+    }
+}
+
+/// Tables of several chunks, whose border nodes are summed from copies.
+#[test]
+fn bits_do_not_depend_on_threads() {
+    let block = |kind, cells| Block::new(kind, cells);
+    let tet4 = block(CellKind::Tet4, [12, 9, 9]);
+    let hex8 = block(CellKind::Hex8, [12, 11, 9]);
+    let tet10 = block(CellKind::Tet10, [5, 5, 4]);
+    let nodal = DilationGroups::nodal(&tet4.volume).unwrap();
+    let mean = fem::element_dilation(&hex8.mesh, &fem::VolumeRule::STANDARD).unwrap();
+    let mut all = vec![laws()];
+    all.extend(other_laws());
+    let tables = [
+        (&tet4, None, "tet4"),
+        (&tet4, Some(&nodal), "tet4 nodal dilation"),
+        (&hex8, None, "hex8"),
+        (&hex8, Some(&mean), "hex8 mean dilation"),
+        (&tet10, None, "rows"),
+    ];
+    for ((block, groups, kernel), laws) in tables.into_iter().flat_map(|t| all.iter().map(move |l| (t, l))) {
+        let law = laws[0].name();
+        if groups.is_some() && ["linear", "saint-venant-kirchhoff"].contains(&law) {
+            continue;
+        }
+        let body = ExplicitBody { volume: &block.volume, laws, region: &[], groups };
+        let u = deformed(block, 0.5);
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut force = InternalForce::new(body, LanePath::best()).unwrap();
+                assert_eq!(force.info().kernel.name(), kernel);
+                forces(&mut force, &u)
+            })
+        };
+        let one = run(1);
+        for threads in [2, 3] {
+            assert_eq!(run(threads), one, "{law}, {kernel}, {threads} threads");
+        }
+        let error = difference(&one, &forces(&mut InternalForce::plain(body).unwrap(), &u));
+        assert!(error < 1e-13, "{law}, {kernel}: {error:e}");
+    }
+}
+
+#[test]
+fn a_point_inside_out_is_named() {
+    for kind in [CellKind::Tet4, CellKind::Hex8] {
+        let block = Block::new(kind, [5, 4, 3]);
+        let mean = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
+        for groups in [None, Some(&mean)] {
+            inside_out(&block, groups);
+        }
+    }
+}
+
+fn inside_out(block: &Block, groups: Option<&DilationGroups>) {
+    let laws = laws();
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups };
+    let mut u = deformed(block, 0.1);
+    let node = block.volume.row(57).0[2] as usize;
+    u[node] += Vector3::new(0.05, 0.02, 0.01);
+    let mut f = vec![Vector3::zeros(); u.len()];
+    let expected = InternalForce::plain(body).unwrap().evaluate(&u, &mut f).unwrap_err();
+    assert!(expected.det_f <= 0.0 && block.volume.row(expected.point).0.contains(&(node as u32)));
+    for path in LanePath::available() {
+        let mut force = InternalForce::new(body, path).unwrap();
+        assert_eq!(force.evaluate(&u, &mut f), Err(expected), "{}", path.name());
+    }
+    u[node].x = f64::NAN;
+    let error = InternalForce::new(body, LanePath::best()).unwrap().evaluate(&u, &mut f).unwrap_err();
+    assert!(error.det_f.is_nan());
+}

@@ -1,0 +1,98 @@
+//! Dynamic relaxation against closed forms and zero residual.
+
+use explicit::{
+    ExplicitBody, ExplicitError, InternalForce, LanczosParams, Lumping, RelaxationParams, lumped_mass, relax,
+};
+use geometry::CellKind;
+use integration::block::Block;
+use lanes::LanePath;
+use material::{Law, Material as _, NeoHookean};
+use shape::{FixedDof, Matrix3, Point3, Vector3};
+
+fn params(tolerance: f64) -> RelaxationParams {
+    RelaxationParams {
+        tolerance,
+        steps: 20_000,
+        critical: LanczosParams { steps: 15, safety: 0.95 },
+        recheck: 50,
+    }
+}
+
+/// Rollers on three sides and a dead load on x-max: the stretches solve `P_11 = t`, `P_22 = P_33 = 0`.
+#[test]
+fn uniaxial_tension_ends_at_its_closed_form() {
+    let block = Block::new(CellKind::Hex8, [3, 2, 2]);
+    let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap())];
+    let mass = lumped_mass(&block.volume, &[1060.0], &[], Lumping::RowSum).unwrap();
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let traction = 6e3;
+    let surface = block.surface(&["x-max"]);
+    let mut load = |_: &[Vector3], f: &mut [Vector3]| {
+        for (q, w) in surface.weights().iter().enumerate() {
+            let (nodes, values) = surface.rows().row(q);
+            nodes.iter().zip(values).for_each(|(&node, n)| f[node as usize].x += traction * w * n);
+        }
+    };
+    let fixed: Vec<FixedDof> = [("x-min", 0), ("y-min", 1), ("z-min", 2)]
+        .into_iter()
+        .flat_map(|(side, axis)| {
+            block.nodes_of(&[side]).into_iter().map(move |node| FixedDof { node, axis, value: 0.0 })
+        })
+        .collect();
+    // Bisection along, with bisection across inside it; P_11 grows with one, P_22 with the other.
+    let stress = |a: f64, b: f64| laws[0].stress(&Matrix3::from_diagonal(&Vector3::new(a, b, b)));
+    let root = |low: f64, high: f64, below: &dyn Fn(f64) -> bool| {
+        (0..60).fold((low, high), |(a, b), _| {
+            let m = 0.5 * (a + b);
+            if below(m) { (m, b) } else { (a, m) }
+        })
+    };
+    let across = |a: f64| root(-0.5, 0.5, &|b| stress(a, b)[(1, 1)] < 0.0).0;
+    let along = root(0.0, 1.0, &|a| stress(a, across(a))[(0, 0)] < traction).0;
+    assert!(along > 0.2, "{along}");
+
+    let zero = vec![Vector3::zeros(); mass.len()];
+    for (tolerance, within) in [(1e-4, 1e-3), (1e-8, 1e-7)] {
+        let mut force = InternalForce::new(body, LanePath::best()).unwrap();
+        let (u, info) = relax(&mut force, &mass, &fixed, &mut load, zero.clone(), params(tolerance)).unwrap();
+        let exact = |x: &Point3| Vector3::new(along * x.x, across(along) * x.y, across(along) * x.z);
+        let error = block.error(&u, exact);
+        // The stopping rule estimates the error; ten times its estimate is allowed.
+        assert!(error < within, "{error:e} {info:?}");
+        assert!(info.residual < 20.0 * tolerance && info.error < tolerance, "{info:?}");
+        assert!(info.slow_mode > 0.1 && info.slow_mode < 10.0, "{info:?}");
+    }
+}
+
+#[test]
+fn a_bent_box_comes_to_rest_and_too_few_steps_are_an_error() {
+    let block = Block::new(CellKind::Tet4, [5, 3, 3]);
+    let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap())];
+    let mass = lumped_mass(&block.volume, &[1060.0], &[], Lumping::RowSum).unwrap();
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let mut fixed = block.fix(&["x-min"], |_| Vector3::zeros());
+    // One side led down by 6 mm.
+    fixed.extend(block.nodes_of(&["x-max"]).into_iter().map(|node| FixedDof { node, axis: 2, value: -6e-3 }));
+    let ramp: Vec<Vector3> =
+        block.mesh.points().iter().map(|x| Vector3::new(0.0, 0.0, -6e-3 * x.x / 0.04)).collect();
+    let mut none = |_: &[Vector3], _: &mut [Vector3]| ();
+    let mut force = InternalForce::new(body, LanePath::best()).unwrap();
+    let (u, info) = relax(&mut force, &mass, &fixed, &mut none, ramp.clone(), params(1e-9)).unwrap();
+    let mut f = u.clone();
+    force.evaluate(&u, &mut f).unwrap();
+    let held: Vec<_> = fixed.iter().map(|d| (d.node as usize, d.axis as usize)).collect();
+    let largest = f.iter().map(|f| f.amax()).fold(0.0, f64::max);
+    for (i, f) in f.iter().enumerate() {
+        for axis in 0..3 {
+            if !held.contains(&(i, axis)) {
+                assert!(f[axis].abs() < 1e-7 * largest, "{i} {axis}: {} of {largest} {info:?}", f[axis]);
+            }
+        }
+    }
+    for d in &fixed {
+        assert_eq!(u[d.node as usize][d.axis as usize], d.value);
+    }
+    let few = RelaxationParams { steps: 20, ..params(1e-9) };
+    let error = relax(&mut force, &mass, &fixed, &mut none, ramp, few).unwrap_err();
+    assert!(matches!(error, ExplicitError::NotRelaxed { steps: 20, error, .. } if error > 1e-9), "{error}");
+}

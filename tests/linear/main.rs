@@ -1,0 +1,6 @@
+//! Linear statics: patch tests, stiffness, solutions, and problems that are refused.
+
+mod patch;
+mod refusals;
+mod solve;
+mod stiffness;

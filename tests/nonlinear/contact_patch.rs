@@ -1,0 +1,139 @@
+//! Contact patch test: a block pressed flat by plates.
+//!
+//! ```text
+//! Source      Taylor & Papadopoulos (1991); Crisfield, Int. J. Numer. Meth. Engng 48 (2000).
+//! Body        jittered box of 3 x 2 x 2 cells, every method; neo-Hookean.
+//! Conditions  two plates close on it along z (not alike: their closures are 1 and 3 mm); x = 0 and y = 0 slip.
+//! Must hold   without friction (nu = 0.45) the pressure is uniform over both faces, 1e-9: penetration is p / k_n at every
+//!             point whatever the penalty, so the plates' two penetrations are equal too. With friction the same at nu = 0,
+//!             where nothing slides; at nu = 0.45 the sides bulge, friction turns inward and no pressure is uniform, but
+//!             always action = reaction: forces and moments of both plates and the walls' symmetry balance, and no
+//!             traction leaves Coulomb's cone.
+//! ```
+
+use contact::{
+    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape,
+};
+use fem::SurfaceRule;
+use geometry::CellKind;
+use geometry::generate::box_mesh;
+use integration::model::*;
+use material::{Law, NeoHookean};
+use shape::{Point3, Vector3};
+use statics::{StaticPath, StaticProblem};
+
+const PENALTY: f64 = 1e8;
+
+/// Two plates on z = 0 and z = h that close by 1 and 3 mm; gives the path and the contacts of its end.
+fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath, Vec<Tool>) {
+    let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
+    let contact = ContactSurface::new(&surface);
+    let plates: Vec<Tool> = [(0.0, 1.0), (SIZE.z, -1.0)]
+        .map(|(z, sign)| {
+            let along = Vector3::z() * sign;
+            let at = Point3::new(0.5 * SIZE.x, 0.5 * SIZE.y, z);
+            Tool::new(ToolShape::Plate, at, Tool::turned_to(&along), along, touch).unwrap()
+        })
+        .into();
+    let tools: Vec<DrivenTool> = (plates.iter().zip([1e-3, 3e-3]))
+        .map(|(tool, closure)| DrivenTool { tool, drive: Drive::Closure(closure) })
+        .collect();
+    let mut fixed = model.hold(&["x-min"], &[0], |_| Vector3::zeros());
+    fixed.extend(model.hold(&["y-min"], &[1], |_| Vector3::zeros()));
+    let problem =
+        StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(law) };
+    (solve(name, &problem, &steps(4)), plates)
+}
+
+/// Normal pressures of both plates at the end, point by point.
+fn pressures(model: &Model, path: &StaticPath, plates: &[Tool]) -> Vec<f64> {
+    let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
+    let contact = ContactSurface::new(&surface);
+    (plates.iter().zip(&path.steps.last().unwrap().tools))
+        .flat_map(|(plate, state)| {
+            let history = ContactHistory::new(plate, surface.weights().len());
+            let mut counts = ContactCounts::default();
+            let found = contact.evaluate(plate, state.closure, &path.u, &history, &mut counts);
+            found.unwrap().unwrap().pressures().to_vec()
+        })
+        .collect()
+}
+
+/// Relative range of the pressures.
+fn spread(pressures: &[f64]) -> f64 {
+    let (low, high) = pressures.iter().fold((f64::INFINITY, 0.0f64), |(l, h), p| (l.min(*p), h.max(*p)));
+    (high - low) / high
+}
+
+#[test]
+fn pressure_between_flat_plates_is_uniform() {
+    let rough = ContactLaw::coulomb(PENALTY, 0.3, PENALTY).unwrap();
+    for method in METHODS {
+        let model = Model::block(method, [3, 2, 2]);
+        for (poisson, touch) in [(0.45, ContactLaw::frictionless(PENALTY).unwrap()), (0.0, rough)] {
+            let name = format!("{method:?}, nu {poisson}");
+            let law = Law::NeoHookean(NeoHookean::new(YOUNG, poisson).unwrap());
+            let (path, plates) = press(&model, &law, touch, &name);
+            let pressures = pressures(&model, &path, &plates);
+            assert!(spread(&pressures) < 1e-9, "{name}: pressures differ by {:e}", spread(&pressures));
+            let [below, above] = path.steps.last().unwrap().tools[..] else { panic!("{name}") };
+            let force = pressures[0] * SIZE.x * SIZE.y;
+            for (state, sign) in [(below, -1.0), (above, 1.0)] {
+                let gap = (state.force - Vector3::z() * (sign * force)).norm() / force;
+                assert!(gap < 1e-9, "{name}: force {} for {force}", state.force);
+                assert!((state.penetration * PENALTY / pressures[0] - 1.0).abs() < 1e-9, "{name}");
+            }
+        }
+    }
+}
+
+/// Full steps alone cycle between sticking and sliding points here and never leave the start.
+#[test]
+fn the_mixed_method_starts_under_stiff_friction() {
+    let model = Model::new(
+        box_mesh(CellKind::Tet10, Point3::origin(), SIZE, [2, 2, 1], [1.0; 3], None).unwrap(),
+        Projection::Mixed,
+    );
+    let rough = ContactLaw::coulomb(5e9, 0.3, 1e9).unwrap();
+    for poisson in [0.45, 0.495] {
+        let law = Law::NeoHookean(NeoHookean::new(YOUNG, poisson).unwrap());
+        let path = press(&model, &law, rough, &format!("nu {poisson}")).0;
+        let [below, above] = path.steps.last().unwrap().tools[..] else { panic!("nu {poisson}") };
+        let gap = (below.force.z + above.force.z).abs() / above.force.z;
+        assert!(gap < 1e-9, "nu {poisson}: {} {}", below.force, above.force);
+        // A solve for every assembly and for every trial that was judged by it, an evaluation for every state.
+        let moved = path.steps.iter().flat_map(|s| &s.iterations).filter(|i| i.length > 0.0).count() as u64;
+        let cut = path.steps.iter().flat_map(|s| &s.iterations).any(|i| i.length > 0.0 && i.length < 1.0);
+        let work = path.work;
+        assert!(cut && work.factorisations >= work.assemblies, "{work:?}");
+        assert!(work.solves > work.assemblies && work.forces > work.assemblies, "{work:?}");
+        // Full steps were tried first and failed: that is work too.
+        assert!(work.assemblies > moved, "{work:?} for {moved}");
+    }
+}
+
+#[test]
+fn friction_holds_the_sides_and_forces_balance() {
+    for method in METHODS {
+        let model = Model::block(method, [3, 2, 2]);
+        let name = format!("{method:?}");
+        let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.45).unwrap());
+        let free = press(&model, &law, ContactLaw::frictionless(PENALTY).unwrap(), &name).0;
+        let rough = press(&model, &law, ContactLaw::coulomb(PENALTY, 0.3, 0.1 * PENALTY).unwrap(), &name).0;
+        let force = |path: &StaticPath, k: usize| path.steps.last().unwrap().tools[k].force;
+        let (below, above) = (force(&rough, 0), force(&rough, 1));
+        // The walls take x and y, nothing else takes z.
+        assert!((below.z + above.z).abs() < 1e-9 * above.z, "{name}: {below} {above}");
+        // The tissue moves out along +x and +y and drags the plates with it, inside the cone.
+        for force in [below, above] {
+            let sideways = force.x.hypot(force.y);
+            assert!(force.x > 0.0 && force.y > 0.0, "{name}: {force}");
+            assert!(sideways > 0.05 * above.z && sideways <= 0.3 * above.z, "{name}: {force}");
+        }
+        // Held sides make the block stiffer, by less than sides that never slip.
+        let bonded =
+            press(&model, &law, ContactLaw::coulomb(PENALTY, 100.0, 0.1 * PENALTY).unwrap(), &name).0;
+        let [free, rough, bonded] = [&free, &rough, &bonded].map(|p| force(p, 1).z);
+        assert!(1.01 * free < rough && 1.01 * rough < bonded, "{name}: {free} {rough} {bonded}");
+    }
+}

@@ -1,0 +1,78 @@
+//! Hertz contact of a sphere with a half space.
+//!
+//! ```text
+//! Source      cases::exact::Hertz (Johnson, Contact Mechanics, 1985, ch. 4).
+//! Body        a quarter of the half space: a cube of side L = 10 a on the planes x = 0, y = 0 (slipping), graded towards
+//!             the contact; linear law, nu = 0.3.
+//! Conditions  sphere without friction, R = 10 mm, depth R / 1000 (slope a / R = 0.03); the point force's field on the
+//!             three far faces, which makes the cube a half space up to (a / L)^2 = 1 %. Dead until the end: the
+//!             far field goes with t, the force with t^1.5, and only the end counts (no friction, no memory).
+//! Must hold   the force converges to 4/3 E* sqrt(R) d^1.5 to 0.5 % (hex20) and 2.2 % (hex8), and at half the depth
+//!             falls by 2^1.5.
+//! ```
+
+use cases::exact::{Elastic, Hertz};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use fem::SurfaceRule;
+use geometry::CellKind;
+use geometry::generate::box_mesh;
+use integration::model::*;
+use material::{Law, LinearElastic};
+use shape::{Matrix3, Point3, Vector3};
+use statics::StaticProblem;
+
+const RADIUS: f64 = 0.01;
+const POISSON: f64 = 0.3;
+
+/// Force on the sphere over that of Hertz.
+fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
+    let hertz = Hertz::new(Elastic::new(YOUNG, POISSON).unwrap(), RADIUS, depth).unwrap();
+    let side = 10.0 * hertz.contact_radius();
+    // Spacing grows by 40 from the contact to the far faces.
+    let (low, high) = (Point3::new(0.0, 0.0, -side), Point3::new(side, side, 0.0));
+    let mesh = box_mesh(kind, low, high, [cells; 3], [40.0, 40.0, 1.0 / 40.0], None).unwrap();
+    let model = Model::new(mesh, Projection::Standard);
+    let mut fixed = model.hold(&["x-max", "y-max", "z-min"], &[0, 1, 2], |x| hertz.far_displacement(x));
+    for (side, axis) in [("x-min", 0), ("y-min", 1)] {
+        let far: Vec<u32> = fixed.iter().filter(|f| f.axis == axis).map(|f| f.node).collect();
+        let wall = model.hold(&[side], &[axis], |_| Vector3::zeros());
+        fixed.extend(wall.into_iter().filter(|f| !far.contains(&f.node)));
+    }
+    let top = model.mesh.group("z-max").unwrap();
+    let surface = fem::surface_rows(&model.mesh, top, &SurfaceRule::FINE).unwrap();
+    let contact = ContactSurface::new(&surface);
+    // A hundredth of the depth under the peak pressure.
+    let touch = ContactLaw::frictionless(300.0 * hertz.peak_pressure() / depth).unwrap();
+    let at = Point3::new(0.0, 0.0, RADIUS);
+    let shape = ToolShape::Sphere { radius: RADIUS };
+    let sphere = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
+    let tools = [DrivenTool { tool: &sphere, drive: Drive::Closure(depth) }];
+    let law = Law::Linear(LinearElastic::new(YOUNG, POISSON).unwrap());
+    let problem =
+        StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };
+    let path = solve("hertz", &problem, &steps(1));
+    4.0 * path.steps.last().unwrap().tools[0].force.z / hertz.force()
+}
+
+#[test]
+fn force_converges_to_that_of_hertz() {
+    // (kind, cells along each side, largest error at each level)
+    let levels: [(CellKind, [(usize, f64); 3]); 2] = [
+        (CellKind::Hex8, [(6, 0.18), (10, 0.035), (16, 0.022)]),
+        (CellKind::Hex20, [(3, 0.28), (5, 0.05), (8, 0.005)]),
+    ];
+    for (kind, levels) in levels {
+        for (cells, allowed) in levels {
+            let error = ratio(kind, cells, 1e-3 * RADIUS) - 1.0;
+            assert!(error.abs() < allowed, "{kind:?} of {cells}: force off by {error}");
+        }
+    }
+}
+
+#[test]
+fn force_goes_with_the_three_halves_power_of_the_depth() {
+    // Ratios to Hertz's force at a depth and at half of it: the same mesh scaled by the contact radius.
+    let (deep, shallow) =
+        (ratio(CellKind::Hex20, 5, 1e-3 * RADIUS), ratio(CellKind::Hex20, 5, 5e-4 * RADIUS));
+    assert!((deep / shallow - 1.0).abs() < 5e-3, "{deep} {shallow}");
+}

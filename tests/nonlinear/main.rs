@@ -1,0 +1,13 @@
+//! Statics at large displacements and with contact, against exact solutions.
+
+mod bending;
+mod contact_patch;
+mod driven;
+mod finite_patch;
+mod friction;
+mod hertz;
+mod homogeneous;
+mod locking;
+mod manufactured;
+mod quadratic;
+mod snap;

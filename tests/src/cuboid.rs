@@ -1,0 +1,105 @@
+//! Boxes that move, with their tables.
+
+use fem::VolumeRule;
+use geometry::generate::box_mesh;
+use geometry::{CellKind, Mesh};
+use material::Law;
+use shape::VolumeRows;
+use shape::{FixedDof, Point3, Vector3};
+use statics::{
+    Dilation, Inertia, Mass, NewtonParams, Ramp, Ramps, Solid, StaticProblem, TimeParams, TimeProblem,
+};
+
+/// A box with its tables.
+pub struct Cuboid {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Its standard quadrature.
+    pub volume: VolumeRows,
+}
+
+impl Cuboid {
+    /// From the origin to `max`, in metres.
+    pub fn new(kind: CellKind, max: [f64; 3], cells: [usize; 3]) -> Cuboid {
+        let mesh = box_mesh(kind, Point3::origin(), Point3::from(max), cells, [1.0; 3], None).unwrap();
+        let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+        Cuboid { mesh, volume }
+    }
+
+    /// Reference positions, m.
+    pub fn nodes(&self) -> &[Point3] {
+        self.mesh.points()
+    }
+
+    /// Exactly integrated.
+    pub fn consistent(&self, density: f64) -> Mass {
+        let fine = fem::volume_rows(&self.mesh, &VolumeRule::FINE).unwrap();
+        Mass::consistent(&fine, &[density], &[]).unwrap()
+    }
+
+    /// Row sums.
+    pub fn lumped(&self, density: f64) -> Mass {
+        let mut nodal = vec![0.0; self.nodes().len()];
+        for (q, w) in self.volume.weights().iter().enumerate() {
+            let (nodes, values) = self.volume.rows().row(q);
+            nodes.iter().zip(values).for_each(|(&i, n)| nodal[i as usize] += w * density * n);
+        }
+        Mass::lumped(&nodal).unwrap()
+    }
+
+    /// Degrees of freedom held at the values that `value` names.
+    pub fn held(&self, value: impl Fn(&Point3, usize) -> Option<f64>) -> Vec<FixedDof> {
+        (0..self.nodes().len())
+            .flat_map(|i| (0..3).map(move |axis| (i, axis)))
+            .filter_map(|(i, axis)| {
+                let value = value(&self.nodes()[i], axis)?;
+                Some(FixedDof { node: i as u32, axis: axis as u8, value })
+            })
+            .collect()
+    }
+
+    /// A field at the nodes.
+    pub fn field(&self, value: impl Fn(&Point3) -> Vector3) -> Vec<Vector3> {
+        self.nodes().iter().map(value).collect()
+    }
+
+    /// A body of these laws without loads and tools.
+    pub fn body<'a>(&'a self, laws: &'a [Law], fixed: &'a [FixedDof]) -> StaticProblem<'a> {
+        let solid = Solid { volume: &self.volume, laws, region: &[], dilation: Dilation::Standard };
+        StaticProblem { nodes: self.nodes(), solid, loads: &[], fixed, held: &[], contact: None, tools: &[] }
+    }
+}
+
+/// Without damping or relaxation, loads at once.
+pub fn moving<'a>(
+    body: &'a StaticProblem<'a>,
+    mass: &'a Mass,
+    displacement: &'a [Vector3],
+    velocity: &'a [Vector3],
+) -> TimeProblem<'a> {
+    let inertia = Some(Inertia { mass, damping: 0.0, displacement, velocity });
+    TimeProblem { body, ramps: Ramps::all(Ramp::AtOnce), inertia, relaxation: &[] }
+}
+
+/// Equal steps without control of their error.
+pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
+    TimeParams {
+        end,
+        steps,
+        smallest: 1e-3,
+        accuracy: None,
+        rho_inf,
+        newton: NewtonParams { tolerance: 1e-11, iterations: 20, chords: true },
+        augmentations: 0,
+    }
+}
+
+/// Length of the longest vector.
+pub fn largest(v: &[Vector3]) -> f64 {
+    v.iter().map(Vector3::norm).fold(0.0, f64::max)
+}
+
+/// Largest distance of two fields.
+pub fn distance(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}

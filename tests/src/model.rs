@@ -1,0 +1,171 @@
+//! Meshes with all their projections, every law, and a static solution that must reach its end.
+
+use fem::VolumeRule;
+use geometry::generate::{Jitter, box_mesh};
+use geometry::{CellKind, Facet, Mesh};
+use material::{
+    Hencky, Law, LinearElastic, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, SaintVenantKirchhoff,
+};
+use shape::{DilationGroups, Rows, VolumeRows};
+use shape::{FixedDof, Point3, Vector3};
+use statics::{Dilation, NewtonParams, Solid, StaticParams, StaticPath, StaticProblem, solve_static};
+
+/// How the volume change is carried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// None.
+    Standard,
+    /// One dilation for each element.
+    Element,
+    /// One dilation for each node.
+    Nodal,
+    /// A pressure field.
+    Mixed,
+}
+
+/// A mesh with the tables of one method.
+pub struct Model {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Its standard quadrature.
+    pub volume: VolumeRows,
+    groups: Option<DilationGroups>,
+    pressure: Option<Rows>,
+}
+
+/// Every method: standard elements, and the cures of volumetric locking with the elements they belong to.
+pub const METHODS: [(CellKind, Projection); 8] = [
+    (CellKind::Tet4, Projection::Standard),
+    (CellKind::Tet10, Projection::Standard),
+    (CellKind::Hex8, Projection::Standard),
+    (CellKind::Hex20, Projection::Standard),
+    (CellKind::Hex8, Projection::Element),
+    (CellKind::Tet10, Projection::Element),
+    (CellKind::Tet4, Projection::Nodal),
+    (CellKind::Tet10, Projection::Mixed),
+];
+
+impl Model {
+    /// The tables of a projection.
+    pub fn new(mesh: Mesh, projection: Projection) -> Model {
+        let rule = VolumeRule::STANDARD;
+        let volume = fem::volume_rows(&mesh, &rule).unwrap();
+        let groups = match projection {
+            Projection::Element => Some(fem::element_dilation(&mesh, &rule).unwrap()),
+            Projection::Nodal => Some(DilationGroups::nodal(&volume).unwrap()),
+            _ => None,
+        };
+        let pressure = (projection == Projection::Mixed).then(|| fem::pressure_rows(&mesh, &rule).unwrap());
+        Model { mesh, volume, groups, pressure }
+    }
+
+    /// A box of 40 x 30 x 20 mm, inner nodes shifted by up to 0.2 of their spacing.
+    pub fn block((kind, projection): (CellKind, Projection), cells: [usize; 3]) -> Model {
+        let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
+        Model::new(box_mesh(kind, Point3::origin(), SIZE, cells, [1.0; 3], jitter).unwrap(), projection)
+    }
+
+    /// The projection as a solid takes it.
+    pub fn dilation(&self) -> Dilation<'_> {
+        match (&self.groups, &self.pressure) {
+            (Some(groups), _) => Dilation::Groups(groups),
+            (_, Some(rows)) => Dilation::Mixed(rows),
+            _ => Dilation::Standard,
+        }
+    }
+
+    /// A problem of one law without loads, supports and tools.
+    pub fn problem<'a>(&'a self, law: &'a Law) -> StaticProblem<'a> {
+        StaticProblem {
+            nodes: self.mesh.points(),
+            solid: Solid {
+                volume: &self.volume,
+                laws: std::slice::from_ref(law),
+                region: &[],
+                dilation: self.dilation(),
+            },
+            loads: &[],
+            fixed: &[],
+            held: &[],
+            contact: None,
+            tools: &[],
+        }
+    }
+
+    /// Facets of some sides.
+    pub fn facets(&self, sides: &[&str]) -> Vec<Facet> {
+        sides.iter().flat_map(|s| self.mesh.group(s).unwrap().to_vec()).collect()
+    }
+
+    /// `axes` of the nodes on a side held at a displacement field.
+    pub fn hold(&self, sides: &[&str], axes: &[u8], field: impl Fn(&Point3) -> Vector3) -> Vec<FixedDof> {
+        (self.mesh.facet_group_nodes(&self.facets(sides)).into_iter())
+            .flat_map(|node| {
+                let u = field(&self.mesh.points()[node as usize]);
+                axes.iter().map(move |&axis| FixedDof { node, axis, value: u[axis as usize] })
+            })
+            .collect()
+    }
+
+    /// The three planes x, y, z = 0 as frictionless walls.
+    pub fn walls(&self) -> Vec<FixedDof> {
+        ["x-min", "y-min", "z-min"]
+            .iter()
+            .zip(0..)
+            .flat_map(|(side, axis)| self.hold(&[side], &[axis], |_| Vector3::zeros()))
+            .collect()
+    }
+
+    /// Largest distance (relative to the field's largest value) between `u` and a field over the nodes.
+    pub fn error(&self, u: &[Vector3], field: impl Fn(&Point3) -> Vector3) -> f64 {
+        let exact: Vec<Vector3> = self.mesh.points().iter().map(field).collect();
+        let largest = exact.iter().map(Vector3::norm).fold(0.0, f64::max);
+        u.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
+    }
+}
+
+/// Far corner of [`Model::block`], m.
+pub const SIZE: Point3 = Point3::new(0.04, 0.03, 0.02);
+/// Sides of a box.
+pub const ALL_SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
+/// Young's modulus, Pa.
+pub const YOUNG: f64 = 20e3;
+
+/// Every law, of one small-strain limit.
+pub fn laws(young: f64, poisson: f64) -> Vec<Law> {
+    let (mu, bulk) = (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson)));
+    vec![
+        Law::Linear(LinearElastic::new(young, poisson).unwrap()),
+        Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(young, poisson).unwrap()),
+        Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()),
+        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(young, poisson).unwrap()),
+        Law::Hencky(Hencky::new(young, poisson).unwrap()),
+        Law::MooneyRivlin(MooneyRivlin::new(0.3 * mu, 0.2 * mu, bulk).unwrap()),
+        Law::Ogden(Ogden::new(&ogden(mu), bulk).unwrap()),
+    ]
+}
+
+/// Two terms whose initial shear modulus is `mu`: `sum mu_p alpha_p = 2 mu`.
+pub fn ogden(mu: f64) -> [(f64, f64); 2] {
+    [(1.2 * mu / 3.0, 3.0), (-0.8 * mu / 2.0, -2.0)]
+}
+
+/// Equal steps to a relative residual of 1e-11.
+pub fn steps(steps: usize) -> StaticParams {
+    StaticParams {
+        steps,
+        smallest: 1.0 / 64.0,
+        newton: NewtonParams { tolerance: 1e-11, iterations: 30, chords: true },
+        augmentations: 0,
+        limit_within: None,
+    }
+}
+
+/// The whole way, or a panic with what ended it.
+pub fn solve(name: &str, problem: &StaticProblem, params: &StaticParams) -> StaticPath {
+    let path = solve_static(problem, params, |_, _, _| {}).unwrap_or_else(|e| panic!("{name}: {e}"));
+    if let Some(failure) = &path.failure {
+        panic!("{name}: {failure}");
+    }
+    path
+}

@@ -1,0 +1,62 @@
+//! Tools of every shape, and where their distances have kinks.
+
+use contact::ToolShape;
+use proptest::prelude::*;
+use shape::{Matrix3, Vector3};
+
+/// One tool of each shape, and a box without rounding; millimetres in size.
+pub const SHAPES: [ToolShape; 6] = [
+    ToolShape::Plate,
+    ToolShape::RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 },
+    ToolShape::RoundedBox { half: [3e-3, 2e-3, 4e-3], radius: 0.0 },
+    ToolShape::Sphere { radius: 5e-3 },
+    ToolShape::Cylinder { radius: 4e-3, half_length: 6e-3 },
+    ToolShape::Capsule { radius: 3e-3, half_length: 5e-3 },
+];
+
+/// Distance (m) from `p` to where the gradient or the Hessian jumps, or less.
+pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
+    let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |m, v| m.min(v.abs()));
+    let rho = p.x.hypot(p.y);
+    match *shape {
+        ToolShape::Plate => f64::INFINITY,
+        ToolShape::RoundedBox { half, radius } => {
+            // Deepest axis last: inside the core its face changes at a tie, beyond it the others count from q = 0 on.
+            let mut q = [0, 1, 2].map(|a| (p[a].abs() - half[a] + radius, p[a]));
+            q.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let [(low, _), (next, _), (top, along)] = q;
+            if top < 0.0 { least(&[(top - next) / 2.0, along]) } else { least(&[low, next, along]) }
+        }
+        ToolShape::Sphere { .. } => p.norm(),
+        ToolShape::Cylinder { radius, half_length } => {
+            let (side, flat) = (rho - radius, p.z.abs() - half_length);
+            let along = if side > flat { rho } else { p.z };
+            let inside = side.max(flat) < 0.0;
+            least(&[if inside { (side - flat) / 2.0 } else { side.min(flat) }, along])
+        }
+        ToolShape::Capsule { half_length, .. } => {
+            let beyond = p.z.abs() - half_length;
+            least(&[beyond, if beyond > 0.0 { rho.hypot(beyond) } else { rho }])
+        }
+    }
+}
+
+/// Vectors with components up to `reach`.
+pub fn vector(reach: f64) -> impl Strategy<Value = Vector3> {
+    prop::array::uniform3(-reach..reach).prop_map(Vector3::from)
+}
+
+/// Any rotation.
+pub fn rotation() -> impl Strategy<Value = Matrix3> {
+    vector(3.0).prop_map(|axis| nalgebra::Rotation3::new(axis).into_inner())
+}
+
+/// `df/dx` by central differences of step `h`.
+pub fn differences(h: f64, f: impl Fn(&Vector3) -> Vector3) -> Matrix3 {
+    let columns = [0, 1, 2].map(|a| {
+        let mut step = Vector3::zeros();
+        step[a] = h;
+        (f(&step) - f(&-step)) / (2.0 * h)
+    });
+    Matrix3::from_columns(&columns)
+}
