@@ -4,9 +4,9 @@ mod common;
 
 use cases::scene::{self, Scene};
 use common::BLOCK;
-use harness::group::{Extras, Group};
 use harness::outcome::{Metric, Outcome};
 use harness::run::Repeats;
+use harness::run::{Extras, Group};
 
 const CLOUD: &str = r#", { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
 output = { transfer = { to = "reference-nodes", scheme = "inverse-distance" }, beside = "tet4" }

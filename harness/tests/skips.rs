@@ -7,12 +7,12 @@ use std::path::Path;
 
 use cases::scene::{self, Scene};
 use common::{BLOCK, PRESSED, cases, inside, moving, write};
-use harness::cli::VerifyArgs;
-use harness::group::{Extras, Group};
+use harness::outcome::Counters;
 use harness::outcome::Outcome;
 use harness::run::Repeats;
+use harness::run::{Extras, Group};
 use harness::study::Plan;
-use harness::work::Work;
+use harness::study::VerifyArgs;
 
 fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
     let group = Group::new(scene, None, Repeats { most: repeats, seconds: 60.0 }).unwrap();
@@ -23,13 +23,11 @@ fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
 /// Every stage against its counter; returns the (stage, ran) pairs met.
 fn check(outcome: &Outcome) -> BTreeSet<(&'static str, bool)> {
     let who = format!("{} {}", outcome.identity.case, outcome.identity.method);
-    for stage in &outcome.plan {
-        match outcome.work.of(stage.stage) {
-            Some(count) => assert_eq!(count > 0, stage.ran, "{who}: {stage:?}, counted {count}"),
-            None => panic!("{who}: {stage:?} counts nothing"),
-        }
+    for stage in outcome.plan.stages() {
+        let count = outcome.counters.of(stage.stage);
+        assert_eq!(count > 0, stage.ran, "{who}: {stage:?}, counted {count}");
     }
-    outcome.plan.iter().map(|stage| (stage.stage, stage.ran)).collect()
+    outcome.plan.stages().iter().map(|stage| (stage.stage.name(), stage.ran)).collect()
 }
 
 /// What no small committed scene has: two materials, multipliers, a method as reference, a transfer scheme.
@@ -125,11 +123,11 @@ fn a_run_factors_once_however_often_it_is_timed() {
     let scene = scene::load(Path::new(&cases("first.toml"))).unwrap();
     let (once, often) = (runs(&scene, 1), runs(&scene, 4));
     for (once, often) in once.iter().zip(&often) {
-        assert_eq!((once.work.assemblies, once.work.factorisations, once.work.solves), (1, 1, 1));
-        assert_eq!(once.work, often.work);
+        assert_eq!((once.counters.assemblies, once.counters.factorisations, once.counters.solves), (1, 1, 1));
+        assert_eq!(once.counters, often.counters);
     }
     // Loads ask for values alone; gradients are evaluated where a support is weak, and nowhere else.
-    let [elements, cloud] = [once[0].work, once[1].work];
+    let [elements, cloud] = [once[0].counters, once[1].counters];
     assert!(elements.surface_rows > 0 && elements.flux_rows == 0, "{elements:?}");
     assert!(cloud.surface_rows > 0 && cloud.flux_rows > 0 && cloud.multiplier_rows == 0, "{cloud:?}");
 }
@@ -145,7 +143,7 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
     for (text, skips) in [(PRESSED, false), (far.as_str(), true)] {
         let scene = scene::parse(text, "pressed.toml").unwrap();
         for outcome in runs(&scene, 1) {
-            let work = outcome.work;
+            let work = outcome.counters;
             let tools = scene.tools.len() as u64;
             assert!(work.contact_evaluations >= tools * work.newton_iterations, "{work:?}");
             assert_eq!(work.contact_skips, if skips { work.contact_evaluations } else { 0 }, "{work:?}");
@@ -163,7 +161,7 @@ fn stored_runs_do_nothing() {
     let reference = r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }"#;
     let scene = write(&dir, "block.toml", &format!("{BLOCK}\n{reference}\n"));
     let study = write(&dir, "study.toml", &format!("title = \"One\"\n[[run]]\nscene = '{scene}'\n"));
-    let work = |resume: bool| -> Work {
+    let work = |resume: bool| -> Counters {
         let plan = Plan::new(scene::load_study(Path::new(&study)).unwrap()).unwrap();
         let args = VerifyArgs {
             study: None,
@@ -176,10 +174,10 @@ fn stored_runs_do_nothing() {
         };
         let finished = plan.execute(&args);
         assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
-        finished.work
+        finished.counters
     };
     // The method and the reference it is compared with.
     assert_eq!(work(false).factorisations, 2);
-    assert_eq!(work(true), Work::default());
+    assert_eq!(work(true), Counters::default());
     assert_eq!(work(false).factorisations, 2);
 }

@@ -4,9 +4,9 @@ mod common;
 
 use cases::scene::{self, Scene};
 use common::BLOCK;
-use harness::group::{Extras, Group};
 use harness::outcome::{Metric, SchemeSettings, Transfer};
 use harness::run::Repeats;
+use harness::run::{Extras, Group};
 use interp::Scheme;
 
 /// A cloud on the nodes of a mesh, its displacement carried to the given targets by the given schemes.

@@ -5,7 +5,7 @@ use catalogue::Problem;
 use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::model::Scene;
-use super::procedure::ProcedureKind;
+use super::procedure::{Procedure, ProcedureKind};
 use super::tool::ToolShape;
 
 /// What holds a cloud in every procedure.
@@ -40,14 +40,18 @@ impl Scene {
                 add(&format!("tool[{i}].shape"), "the distance to a mesh".into(), help);
             }
         }
-        let kind = self.procedure.kind;
+        let kind = self.procedure.kind();
         let explicit = kind == ProcedureKind::Explicit;
         let implicit = kind == ProcedureKind::ImplicitDynamic;
-        if implicit && !self.tools.is_empty() && self.procedure.implicit.spectral_radius > 0.0 {
+        let radius = match &self.procedure {
+            Procedure::ImplicitDynamic(implicit) => implicit.spectral_radius,
+            _ => 0.0,
+        };
+        if !self.tools.is_empty() && radius > 0.0 {
             let help = "leave it out: above 0 stiff contact gains energy";
             add("procedure.spectral-radius", "a spectral radius above 0 with tools".into(), help);
         }
-        let ramp = |tool: &super::tool::Tool| tool.over.or(self.procedure.duration);
+        let ramp = |tool: &super::tool::Tool| tool.over.or(self.procedure.duration());
         for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {
             if ramp(tool) != ramp(&self.tools[0]) {
                 let help = "give all tools the same, or take kind = \"explicit\"";

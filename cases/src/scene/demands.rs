@@ -4,7 +4,7 @@ use super::field::{Prescribed, ScalarField, VectorField};
 use super::method::{Cloud, Dilation, Efg, Element, Family};
 use super::model::{LoadKind, Material, Relaxation, Scene};
 use super::output::Reference;
-use super::procedure::ProcedureKind;
+use super::procedure::{Procedure, ProcedureKind};
 use super::report::Report;
 use super::tool::Drive;
 use catalogue::Problem;
@@ -18,25 +18,17 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     refined(scene, report);
     vibrating(scene, report);
     if scene.output.repeated.is_some() {
-        let at_rest = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Static);
+        let at_rest = matches!(scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Static);
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
         report.require(
-            at_rest || scene.procedure.kind == ProcedureKind::Prepare,
+            at_rest || scene.procedure.kind() == ProcedureKind::Prepare,
             "output.repeated",
             "is of solutions at rest, not of motion",
             help,
         );
     }
-    if scene.procedure.duration.is_some() && timeless(scene) {
-        let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
-        report.add("procedure.duration", Problem::new("has nothing to last").help(help));
-    }
-    if !timeless(scene) {
-        if scene.procedure.duration.is_none() {
-            report.missing("procedure.duration", "dynamics needs an end: duration = \"2 s\"");
-        }
-        let massless =
-            scene.procedure.kind == ProcedureKind::ImplicitDynamic && !scene.procedure.implicit.inertia;
+    if let Some(ramp) = scene.procedure.ramp() {
+        let massless = matches!(&scene.procedure, Procedure::ImplicitDynamic(implicit) if !implicit.inertia);
         let lacking = |(_, material, _): &&(String, &Material, &[Relaxation])| material.density().is_none();
         for (key, material, _) in materials(scene).iter().filter(|m| !massless && lacking(m)) {
             let help =
@@ -45,7 +37,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
         }
         let moves = |p: &Prescribed| !matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
         let led = scene.supports.iter().position(|s| s.motion.iter().flatten().any(moves));
-        if let (Some(i), false, Some(0.0)) = (led, massless, scene.procedure.over) {
+        if let (Some(i), false, Some(0.0)) = (led, massless, ramp.over) {
             let help = "a mass can't jump: give the time it takes";
             let problem = format!("is no time for support[{i}] to move in");
             report.add("procedure.over", Problem::new(problem).help(help));
@@ -58,7 +50,7 @@ fn refined(scene: &Scene, report: &mut Report) {
     for (i, method) in scene.methods.iter().enumerate() {
         let Family::Efg(Efg { cloud: Cloud::Refined { .. }, .. }) = &method.family else { continue };
         report.require(
-            scene.procedure.kind == ProcedureKind::Linear,
+            scene.procedure.kind() == ProcedureKind::Linear,
             &format!("method[{i}].cloud.refine"),
             "wants a solution at every step, which only a linear procedure is cheap enough for",
             "take [procedure] kind = \"linear\", or leave refine out",
@@ -68,7 +60,7 @@ fn refined(scene: &Scene, report: &mut Report) {
 
 /// Where nothing is solved there is no displacement to compare, carry over or tell.
 fn unsolved(scene: &Scene, report: &mut Report) {
-    if scene.procedure.kind != ProcedureKind::Prepare {
+    if scene.procedure.kind() != ProcedureKind::Prepare {
         return;
     }
     let output = &scene.output;
@@ -86,7 +78,7 @@ fn unsolved(scene: &Scene, report: &mut Report) {
 
 /// Vibrations are free: mass and stiffness are all there is, and what is told of them is no displacement.
 fn vibrating(scene: &Scene, report: &mut Report) {
-    let vibrates = scene.procedure.kind == ProcedureKind::Modes;
+    let vibrates = scene.procedure.kind() == ProcedureKind::Modes;
     for (i, method) in scene.methods.iter().enumerate() {
         let key = format!("method[{i}].mass");
         if vibrates && method.mass.is_none() {
@@ -120,10 +112,6 @@ fn vibrating(scene: &Scene, report: &mut Report) {
     }
 }
 
-fn timeless(scene: &Scene) -> bool {
-    !matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic)
-}
-
 /// Every material with its key.
 fn materials(scene: &Scene) -> Vec<(String, &Material, &[Relaxation])> {
     let regions = scene.regions.iter().enumerate();
@@ -136,15 +124,15 @@ fn laws(scene: &Scene, report: &mut Report) {
     let materials = materials(scene);
     let linear = |material: &Material| matches!(material, Material::Linear(_));
     for (key, material, prony) in &materials {
-        let small = matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes);
+        let small = matches!(scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes);
         if small && !linear(material) {
             let problem = Problem::new("is a law of large strain, but the procedure is linear");
             let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";
             report.add(&format!("{key}.law"), problem.found(material.name()).help(help));
         }
-        if !prony.is_empty() && timeless(scene) {
+        if !prony.is_empty() && scene.procedure.ramp().is_none() {
             let problem =
-                format!("relaxes over time, which a {} procedure has not", scene.procedure.kind.name());
+                format!("relaxes over time, which a {} procedure has not", scene.procedure.kind().name());
             let help = "leave it out: young and poisson are then the moduli of the load's own duration";
             report.add(&format!("{key}.prony"), Problem::new(problem).help(help));
         }
@@ -163,7 +151,7 @@ fn laws(scene: &Scene, report: &mut Report) {
 fn tools(scene: &Scene, report: &mut Report) {
     for (i, tool) in scene.tools.iter().enumerate() {
         let at = |name: &str| format!("tool[{i}].{name}");
-        if matches!(scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes) {
+        if matches!(scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes) {
             let problem =
                 Problem::new(format!("'{}' touches the body, but the procedure is linear", tool.name));
             let help = "contact is not linear: add [procedure] kind = \"static\" and steps = 10";
@@ -172,8 +160,9 @@ fn tools(scene: &Scene, report: &mut Report) {
         if scene.tools[..i].iter().any(|other| other.name == tool.name) {
             report.add(&at("name"), Problem::new("is the name of another tool").help("names are unique"));
         }
-        if tool.over.is_some() && timeless(scene) {
-            let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
+        if tool.over.is_some() && scene.procedure.ramp().is_none() {
+            let help =
+                format!("a {} procedure has no time axis: leave it out", scene.procedure.kind().name());
             report.add(&at("drive.over"), Problem::new("is the time of a ramp").help(help));
         }
         if matches!(tool.drive, Drive::Pressure(_)) && tool.face_area().is_none() {

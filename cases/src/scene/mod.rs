@@ -38,7 +38,7 @@ pub use method::{
 };
 pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
-pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
+pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static};
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};

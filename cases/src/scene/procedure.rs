@@ -47,40 +47,97 @@ pub enum OnStall {
     Relax,
 }
 
-/// How the scene is stepped. In a static procedure loads, prescribed displacements and drives of tools grow in proportion
-/// over its steps, in dynamics over its duration or a time of their own, and a tool over that of its drive; loads are dead loads, per undeformed
-/// area and volume and of fixed direction.
+/// How the scene is solved: one procedure, with what it alone takes. In a static procedure loads, prescribed displacements and
+/// drives of tools grow in proportion over its steps, in dynamics over its duration or a time of their own, and a tool over that
+/// of its drive; loads are dead loads, per undeformed area and volume and of fixed direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Procedure {
-    /// Its kind; linear where the file has no `[procedure]`.
-    pub kind: ProcedureKind,
-    /// Equal load steps at whose ends results are told, 1 unless given: a step of a static procedure or of implicit dynamics
-    /// that fails is halved on the way, and explicit dynamics takes as many time steps as it needs.
+pub enum Procedure {
+    /// Tables only; nothing is solved.
+    Prepare,
+    /// One linear solve; what a file without `[procedure]` means.
+    Linear,
+    /// Free vibrations.
+    Modes {
+        /// Lowest modes that are reported and compared.
+        count: usize,
+    },
+    /// Quasi-static load steps.
+    Static(Static),
+    /// Explicit dynamics.
+    Explicit(Explicit),
+    /// Implicit dynamics.
+    ImplicitDynamic(Implicit),
+}
+
+impl Procedure {
+    /// Its kind.
+    pub fn kind(&self) -> ProcedureKind {
+        match self {
+            Procedure::Prepare => ProcedureKind::Prepare,
+            Procedure::Linear => ProcedureKind::Linear,
+            Procedure::Modes { .. } => ProcedureKind::Modes,
+            Procedure::Static(_) => ProcedureKind::Static,
+            Procedure::Explicit(_) => ProcedureKind::Explicit,
+            Procedure::ImplicitDynamic(_) => ProcedureKind::ImplicitDynamic,
+        }
+    }
+
+    /// The time axis, where there is one.
+    pub fn ramp(&self) -> Option<Ramp> {
+        match self {
+            Procedure::Explicit(explicit) => Some(explicit.ramp),
+            Procedure::ImplicitDynamic(implicit) => Some(implicit.ramp),
+            _ => None,
+        }
+    }
+
+    /// End of the time axis in seconds, where there is one.
+    pub fn duration(&self) -> Option<f64> {
+        self.ramp().map(|ramp| ramp.duration)
+    }
+}
+
+/// A quasi-static path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Static {
+    /// Equal load steps at whose ends results are reported; one that fails is halved on the way.
     pub steps: usize,
-    /// End of the time axis in seconds (dynamics).
-    pub duration: Option<f64>,
-    /// Time in seconds over which loads and supports grow before they are held (dynamics); 0 is at once, and the file that says
-    /// nothing means the duration.
-    pub over: Option<f64>,
-    /// How a step is solved (static procedure, implicit dynamics).
+    /// How a step is solved.
     pub newton: Newton,
-    /// Part of the load to within which a limit point of a static path is sought, if it is.
+    /// Part of the load to within which a limit point is sought, if it is.
     pub limit_within: Option<f64>,
-    /// Lowest modes that are told and compared (kind = "modes").
-    pub modes: usize,
-    /// What follows where a static path finds no equilibrium.
+    /// What follows where no equilibrium is found.
     pub on_stall: OnStall,
-    /// Mass-proportional damping in one per second (dynamics); of the tools too where they have a mass (explicit).
+}
+
+/// The time axis of dynamics, with how loads and supports grow over it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramp {
+    /// End in seconds.
+    pub duration: f64,
+    /// Time in seconds over which loads and supports grow before they are constant; 0 is at once, and the file that gives none
+    /// means the duration.
+    pub over: Option<f64>,
+    /// Equal intervals at whose ends results are reported.
+    pub steps: usize,
+    /// Mass-proportional damping in one per second, of the tools too where they have a mass (explicit).
     pub damping: f64,
-    /// How explicit dynamics is stepped.
-    pub explicit: Explicit,
-    /// How implicit dynamics is stepped.
-    pub implicit: Implicit,
+}
+
+impl Ramp {
+    /// Time in seconds over which loads and supports grow.
+    pub fn growth(&self) -> f64 {
+        self.over.unwrap_or(self.duration)
+    }
 }
 
 /// How implicit dynamics is stepped: generalised-alpha, in steps no longer than the time between two results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Implicit {
+    /// Time axis and growth of the loads.
+    pub ramp: Ramp,
+    /// How a step is solved.
+    pub newton: Newton,
     /// Whether mass acts; without it, a quasi-static motion in which tissue relaxes.
     pub inertia: bool,
     /// Spectral radius at infinite frequency, 0 to 1.
@@ -89,18 +146,18 @@ pub struct Implicit {
     pub accuracy: Option<f64>,
 }
 
-impl Implicit {
-    /// Where the file says nothing. At 0.8 what a step cannot resolve loses a fifth per step. Above 0 a step balances a mean of
-    /// the forces at both its ends: a tool that has left the tissue pushes on for a step, and stiff contact gains energy that
-    /// way (a block between plates of 5 MPa/mm swung by 38 mm at 0.5 where it should move by 3 mm).
-    pub fn standard(tools: bool) -> Implicit {
-        Implicit { inertia: true, spectral_radius: if tools { 0.0 } else { 0.8 }, accuracy: None }
-    }
+/// Spectral radius where the file gives none. At 0.8 what a step cannot resolve loses a fifth per step. Above 0 a step balances a
+/// mean of the forces at both its ends: a tool that has left the tissue pushes on for a step, and stiff contact gains energy that
+/// way (a block between plates of 5 MPa/mm swung by 38 mm at 0.5 where it should move by 3 mm).
+pub(crate) fn spectral_radius(tools: bool) -> f64 {
+    if tools { 0.0 } else { 0.8 }
 }
 
 /// How explicit dynamics is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Explicit {
+    /// Time axis and growth of the loads.
+    pub ramp: Ramp,
     /// Time step over the critical one.
     pub safety: f64,
     /// Time step in seconds; from the critical one if the file gives none.
@@ -109,13 +166,14 @@ pub struct Explicit {
     pub tool_mass: f64,
 }
 
-impl Explicit {
-    /// Where the file says nothing. A tool of a tenth of the body's mass hardly slows its motion and is heavy enough for the
-    /// steps that a soft body takes.
-    pub const STANDARD: Explicit = Explicit { safety: 0.9, step: None, tool_mass: 0.1 };
-}
+/// Time step over the critical one where the file gives none.
+pub(crate) const SAFETY: f64 = 0.9;
 
-/// Modes that are told where the file says nothing.
+/// Mass of a driven tool over the body's where the file gives none: a tenth hardly slows its motion and is heavy enough for the
+/// steps that a soft body takes.
+pub(crate) const TOOL_MASS: f64 = 0.1;
+
+/// Modes that are reported where the file gives no number.
 pub(crate) const MODES: usize = 24;
 
 /// How a static step is solved.

@@ -212,7 +212,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     }
     for (i, essential) in run.essentials.iter().enumerate() {
         let key = format!("{key}.essentials[{i}]");
-        if let Some(what) = unheld(essential, scene.procedure.kind) {
+        if let Some(what) = unheld(essential, scene.procedure.kind()) {
             report.add(&key, Problem::new(format!("{what} is not available yet")).help(HELD));
         }
         let linear = |efg: &&Efg| {

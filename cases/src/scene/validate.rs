@@ -62,17 +62,17 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
                 let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
                 match exact_by_name(name, &params) {
                     Err(bad) => report.add("reference", Problem::new(format!("can't be built: {bad}"))),
-                    Ok(exact) if scene.procedure.kind == ProcedureKind::Modes => {
+                    Ok(exact) if scene.procedure.kind() == ProcedureKind::Modes => {
                         let problem = Problem::new("knows no vibrations").found(name);
                         let help = "take \"lame-cube\" or \"roller-box\", or leave the reference out";
                         if exact.vibrations().is_none() {
                             report.add("reference.exact", problem.help(help));
                         }
                     }
-                    Ok(exact) if exact.at(0.0).is_some() && scene.procedure.duration.is_none() => {
+                    Ok(exact) if exact.at(0.0).is_some() && scene.procedure.ramp().is_none() => {
                         let problem = format!(
                             "moves in time, which a {} procedure has not",
-                            scene.procedure.kind.name()
+                            scene.procedure.kind().name()
                         );
                         let help = "take kind = \"explicit\" or \"implicit-dynamic\", or a solution at rest";
                         report.add("reference.exact", Problem::new(problem).found(name).help(help));
@@ -108,14 +108,9 @@ fn targets(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Whether the procedure has a time axis.
-fn in_time(scene: &Scene) -> bool {
-    matches!(scene.procedure.kind, ProcedureKind::Explicit | ProcedureKind::ImplicitDynamic)
-}
-
 /// Whether probes can be compared with an exact solution on their way.
 fn moves(scene: &Scene) -> bool {
-    in_time(scene)
+    scene.procedure.ramp().is_some()
         && !scene.output.probes.is_empty()
         && matches!(scene.reference, Some(Reference::Exact { .. }))
 }
@@ -136,28 +131,28 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         }
         Needs::Steps
             if matches!(
-                scene.procedure.kind,
+                scene.procedure.kind(),
                 ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
             ) =>
         {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
-        Needs::Dynamics if !in_time(scene) => {
+        Needs::Dynamics if !scene.procedure.ramp().is_some() => {
             "needs [procedure] kind = \"explicit\" or \"implicit-dynamic\" in the scene"
         }
-        Needs::Explicit if scene.procedure.kind != ProcedureKind::Explicit => {
+        Needs::Explicit if scene.procedure.kind() != ProcedureKind::Explicit => {
             "needs [procedure] kind = \"explicit\" in the scene"
         }
         Needs::Newton
-            if !matches!(scene.procedure.kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic) =>
+            if !matches!(scene.procedure.kind(), ProcedureKind::Static | ProcedureKind::ImplicitDynamic) =>
         {
             "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene"
         }
-        Needs::Modes if scene.procedure.kind != ProcedureKind::Modes => {
+        Needs::Modes if scene.procedure.kind() != ProcedureKind::Modes => {
             "needs [procedure] kind = \"modes\" in the scene"
         }
         Needs::ModesReference
-            if scene.procedure.kind != ProcedureKind::Modes || scene.reference.is_none() =>
+            if scene.procedure.kind() != ProcedureKind::Modes || scene.reference.is_none() =>
         {
             "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene"
         }
@@ -170,7 +165,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         }
         Needs::StepsReference
             if matches!(
-                scene.procedure.kind,
+                scene.procedure.kind(),
                 ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare
             ) || !matches!(scene.reference, Some(Reference::Method { .. })) =>
         {
@@ -179,7 +174,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Exact if !moves(scene) => {
             "needs output.probes and dynamics with [reference] exact = \"...\" in the scene"
         }
-        Needs::Motion if !in_time(scene) || scene.output.probes.is_empty() => {
+        Needs::Motion if !scene.procedure.ramp().is_some() || scene.output.probes.is_empty() => {
             "needs output.probes and dynamics in the scene"
         }
         Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",

@@ -1,6 +1,6 @@
 //! Scenes of free vibrations: what they say, and what has no part in them.
 
-use cases::scene::{Mass, ProcedureKind, parse};
+use cases::scene::{Mass, Procedure, parse};
 
 const SCENE: &str = r#"title = "A box on rollers"
 body = { shape = "box", size = ["40 mm", "30 mm", "20 mm"] }
@@ -15,7 +15,7 @@ check = [{ metric = "slow-modes", at_most = 0 }]
 #[test]
 fn modes_and_masses_are_read() {
     let scene = parse(SCENE, "s.toml").expect("sound");
-    assert_eq!((scene.procedure.kind, scene.procedure.modes), (ProcedureKind::Modes, 12));
+    assert_eq!(scene.procedure, Procedure::Modes { count: 12 });
     assert_eq!(scene.methods[0].mass, Some(Mass::Lumped));
     assert!(scene.unavailable().is_empty());
 }

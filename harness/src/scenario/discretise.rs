@@ -3,12 +3,13 @@
 use cases::scene::{self, ErrorKind, Family};
 use geometry::{CellKind, Cloud, CloudError, Mesh, Point3, Vector3, cloud, cloud_from_mesh};
 
-use super::Scenario;
-use crate::discretise::{Coupled, Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration};
+use super::{Scenario, body, cloud_file, grading};
+use crate::Failure;
+use crate::discretise::place::{self, tolerance};
+use crate::discretise::{
+    Coupled, Dilation, Discretisation, Efg, Essential, Fem, Functions, Integration, Refine,
+};
 use crate::error::Key;
-use crate::place::{self, tolerance};
-use crate::refine::Refine;
-use crate::{Failure, body, cloud_file};
 
 /// Stabilisation of Nitsche's method with smoothed gradients where the scene gives none: times (lambda + 2 mu) / h with h
 /// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
@@ -85,7 +86,7 @@ impl Scenario<'_> {
             }
             scene::Cloud::Graded { nodes, seed, towards } => {
                 let shape = need_shape()?;
-                let refinement = crate::grading::refinement(shape, towards)?;
+                let refinement = grading::refinement(shape, towards)?;
                 let cloud = cloud(shape, *nodes, *seed, &[refinement]).map_err(bad)?;
                 (cloud, background(*nodes)?, None)
             }

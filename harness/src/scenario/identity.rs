@@ -10,7 +10,7 @@ use crate::outcome::Identity;
 impl Scenario<'_> {
     /// Which run this is.
     pub fn identity(&self) -> Identity {
-        let large = !matches!(self.scene.procedure.kind, ProcedureKind::Linear | ProcedureKind::Modes);
+        let large = !matches!(self.scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes);
         let identity = Identity {
             case: self.case.clone(),
             purpose: purpose(self.scene.purpose),

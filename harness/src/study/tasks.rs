@@ -2,7 +2,7 @@
 
 use cases::scene::{self, Scene, Size};
 
-use crate::group::resize;
+use crate::run::resize;
 
 /// One run of a study.
 pub(super) struct Task {

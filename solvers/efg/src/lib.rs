@@ -37,6 +37,7 @@ mod node_smoothed;
 mod recovery;
 mod row_list;
 mod smoothed;
+mod source;
 mod support;
 
 pub use approximation::Approximation;
@@ -55,4 +56,5 @@ pub use kernel::{
 pub use node_smoothed::{node_smoothed_regions, node_smoothed_rows, node_smoothed_trace};
 pub use recovery::gradient_error;
 pub use smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
+pub use source::{CloudSource, Functions, Integration};
 pub use support::Support;

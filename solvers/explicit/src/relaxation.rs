@@ -73,119 +73,189 @@ pub fn relax_under(
     start: Vec<Vector3>,
     params: RelaxationParams,
 ) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
-    let n = force.node_count();
+    check(force.node_count(), mass, &start, params)?;
+    let springs = pressing.as_ref().and_then(|p| p.springs());
+    let mut way = Way::new(force, mass, fixed, start)?;
+    let limit = |way: &mut Way| {
+        let (held, u) = (&way.held, &way.u);
+        critical_step_touching(way.force, mass, u, |k| !held[k], springs, params.critical)
+            .map(|found| found.dt)
+    };
+    let mut dt = limit(&mut way)?;
+    let mut confirmed = 0;
+    for step in 0..params.steps {
+        way.forces(step, dt, load, pressing.as_deref_mut())?;
+        if params.recheck > 0 && step > 0 && step.is_multiple_of(params.recheck) {
+            dt = limit(&mut way)?;
+        }
+        way.find_slowest(dt, pressing.as_deref());
+        way.advance(step, dt, pressing.as_deref_mut())?;
+        confirmed = if way.info.error < params.tolerance { confirmed + 1 } else { 0 };
+        if confirmed == CONFIRM {
+            if let Some(pressing) = &mut pressing {
+                let time = step as f64 * dt;
+                let within = pressing.check_sides(&way.u);
+                within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+            }
+            return Ok((way.u, way.info));
+        }
+    }
+    let RelaxationInfo { steps, error, .. } = way.info;
+    Err(ExplicitError::NotRelaxed { steps, error, tolerance: params.tolerance })
+}
+
+fn check(n: usize, mass: &[f64], start: &[Vector3], params: RelaxationParams) -> Result<(), ExplicitError> {
     for (what, found) in [("masses", mass.len()), ("displacements", start.len())] {
         if found != n {
             return Err(ExplicitError::Length { what, found, expected: n });
         }
     }
-    if !(params.tolerance > 0.0 && params.tolerance < 1.0) {
-        let (what, value) = ("tolerance of the relaxation", params.tolerance);
-        return Err(ExplicitError::BadParameter { what, value, allowed: "between 0 and 1" });
+    if params.tolerance > 0.0 && params.tolerance < 1.0 {
+        return Ok(());
     }
-    let held = held(n, fixed.iter().map(|f| (f.node, f.axis)))?;
-    let mut u = start;
-    for f in fixed {
-        u[f.node as usize][f.axis as usize] = f.value;
-    }
-    let springs = pressing.as_ref().and_then(|p| p.springs());
-    let limit = |force: &mut InternalForce, u: &[Vector3]| {
-        critical_step_touching(force, mass, u, |k| !held[k], springs, params.critical).map(|found| found.dt)
-    };
-    let mut dt = limit(force, &u)?;
-    let expected = shear_frequency(force, mass);
-    let mut info = RelaxationInfo {
-        steps: 0,
-        error: f64::INFINITY,
-        residual: f64::INFINITY,
-        omega_min: expected,
-        slow_mode: 1.0,
-        dt,
-    };
-    let zeros = vec![Vector3::zeros(); n];
-    let (mut du, mut internal, mut previous, mut external) =
-        (zeros.clone(), zeros.clone(), zeros.clone(), zeros);
-    let mut touch: Vec<Vector3> = Vec::new();
-    let mut confirmed = 0;
-    for step in 0..params.steps {
-        let at = |error| ExplicitError::InvertedAt { step, time: step as f64 * dt, at: error };
-        std::mem::swap(&mut internal, &mut previous);
-        force.evaluate(&u, &mut internal).map_err(at)?;
-        external.fill(Vector3::zeros());
-        load(&u, &mut external);
-        if let Some(pressing) = &mut pressing {
-            touch.clear();
-            touch.resize(n, Vector3::zeros());
-            let time = step as f64 * dt;
-            pressing.touch(&u, &mut touch).map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
-            internal.iter_mut().zip(&touch).for_each(|(f, t)| *f -= t);
-        }
-        if params.recheck > 0 && step > 0 && step.is_multiple_of(params.recheck) {
-            dt = limit(force, &u)?;
-        }
+    let (what, value) = ("tolerance of the relaxation", params.tolerance);
+    Err(ExplicitError::BadParameter { what, value, allowed: "between 0 and 1" })
+}
 
-        let (mut stiff, mut inert) = (0.0, 0.0);
-        for i in 0..n {
-            stiff += du[i].dot(&(internal[i] - previous[i]));
-            inert += mass[i] * du[i].norm_squared();
+/// The motion to rest.
+struct Way<'a, 'b> {
+    force: &'a mut InternalForce<'b>,
+    mass: &'a [f64],
+    held: Vec<bool>,
+    u: Vec<Vector3>,
+    /// Of the last step.
+    du: Vec<Vector3>,
+    internal: Vec<Vector3>,
+    /// Internal forces of the step before.
+    previous: Vec<Vector3>,
+    external: Vec<Vector3>,
+    touch: Vec<Vector3>,
+    /// Of a shear wave across the body, rad/s.
+    expected: f64,
+    info: RelaxationInfo,
+}
+
+impl<'a, 'b> Way<'a, 'b> {
+    fn new(
+        force: &'a mut InternalForce<'b>,
+        mass: &'a [f64],
+        fixed: &[FixedDof],
+        mut u: Vec<Vector3>,
+    ) -> Result<Way<'a, 'b>, ExplicitError> {
+        let n = mass.len();
+        let held = held(n, fixed.iter().map(|f| (f.node, f.axis)))?;
+        for f in fixed {
+            u[f.node as usize][f.axis as usize] = f.value;
         }
-        if let Some(pressing) = &pressing {
+        let expected = shear_frequency(force, mass);
+        let info = RelaxationInfo {
+            steps: 0,
+            error: f64::INFINITY,
+            residual: f64::INFINITY,
+            omega_min: expected,
+            slow_mode: 1.0,
+            dt: 0.0,
+        };
+        let zeros = || vec![Vector3::zeros(); n];
+        let (du, internal, previous, external) = (zeros(), zeros(), zeros(), zeros());
+        let touch = Vec::new();
+        Ok(Way { force, mass, held, u, du, internal, previous, external, touch, expected, info })
+    }
+
+    /// Internal forces less those of contact, and the external ones.
+    fn forces(
+        &mut self,
+        step: usize,
+        dt: f64,
+        load: &mut StaticLoad,
+        pressing: Option<&mut Pressing>,
+    ) -> Result<(), ExplicitError> {
+        let time = step as f64 * dt;
+        std::mem::swap(&mut self.internal, &mut self.previous);
+        let inverted = |at| ExplicitError::InvertedAt { step, time, at };
+        self.force.evaluate(&self.u, &mut self.internal).map_err(inverted)?;
+        self.external.fill(Vector3::zeros());
+        load(&self.u, &mut self.external);
+        if let Some(pressing) = pressing {
+            self.touch.clear();
+            self.touch.resize(self.u.len(), Vector3::zeros());
+            pressing.touch(&self.u, &mut self.touch).map_err(|cause| ExplicitError::ContactAt {
+                step,
+                time,
+                cause,
+            })?;
+            self.internal.iter_mut().zip(&self.touch).for_each(|(f, t)| *f -= t);
+        }
+        Ok(())
+    }
+
+    /// The lowest frequency that the last step moved in, by its Rayleigh quotient.
+    fn find_slowest(&mut self, dt: f64, pressing: Option<&Pressing>) {
+        let (mut stiff, mut inert) = (0.0, 0.0);
+        for i in 0..self.u.len() {
+            stiff += self.du[i].dot(&(self.internal[i] - self.previous[i]));
+            inert += self.mass[i] * self.du[i].norm_squared();
+        }
+        if let Some(pressing) = pressing {
             let (of_tools, mass) = pressing.quotient(dt);
             stiff += of_tools;
             inert += mass;
         }
-        // Softening makes the quotient negative for a while; the last good one stays.
+        // Softening makes the quotient negative for a while; the last positive one stays.
         if stiff > 0.0 && inert > 0.0 {
-            info.omega_min = (stiff / inert).sqrt();
+            self.info.omega_min = (stiff / inert).sqrt();
         }
-        let k = (2.0 / (info.omega_min * dt)).max(1.0);
+    }
+
+    /// One step, and how far it is from rest.
+    fn advance(
+        &mut self,
+        step: usize,
+        dt: f64,
+        pressing: Option<&mut Pressing>,
+    ) -> Result<(), ExplicitError> {
+        let k = (2.0 / (self.info.omega_min * dt)).max(1.0);
         let r = (k - 1.0) / (k + 1.0);
         let s = 0.5 * (1.0 + r) * dt;
-
         let (mut largest_step, mut largest_u, mut residual, mut largest_force) =
             (0.0f64, 0.0f64, 0.0f64, 0.0f64);
-        for i in 0..n {
+        for i in 0..self.u.len() {
             for axis in 0..3 {
-                largest_force = largest_force.max(internal[i][axis].abs());
-                largest_u = largest_u.max(u[i][axis].abs());
-                if held[3 * i + axis] {
+                largest_force = largest_force.max(self.internal[i][axis].abs());
+                largest_u = largest_u.max(self.u[i][axis].abs());
+                if self.held[3 * i + axis] {
                     continue;
                 }
-                let out = external[i][axis] - internal[i][axis];
-                let move_by = r * r * du[i][axis] + s * s / mass[i] * out;
+                let out = self.external[i][axis] - self.internal[i][axis];
+                let move_by = r * r * self.du[i][axis] + s * s / self.mass[i] * out;
                 if !move_by.is_finite() {
                     let (what, time) = ("out-of-balance force", step as f64 * dt);
                     return Err(ExplicitError::NotFinite { step, time, what, node: i });
                 }
                 residual = residual.max(out.abs());
                 largest_step = largest_step.max(move_by.abs());
-                du[i][axis] = move_by;
-                u[i][axis] += move_by;
+                self.du[i][axis] = move_by;
+                self.u[i][axis] += move_by;
             }
         }
-        if let Some(pressing) = &mut pressing {
+        if let Some(pressing) = pressing {
             let (moved, lacking) = pressing.advance(dt, r, s);
             largest_step = largest_step.max(moved);
             residual = residual.max(lacking);
         }
         let rho = r + 0.2 * (1.0 - r);
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
-        info.steps = step + 1;
-        info.dt = dt;
-        info.error = relative(largest_step * rho / (1.0 - rho), largest_u.max(largest_step));
-        info.residual = relative(residual, largest_force.max(residual));
-        info.slow_mode = info.omega_min / expected;
-        confirmed = if info.error < params.tolerance { confirmed + 1 } else { 0 };
-        if confirmed == CONFIRM {
-            if let Some(pressing) = &mut pressing {
-                let time = step as f64 * dt;
-                let within = pressing.check_sides(&u);
-                within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
-            }
-            return Ok((u, info));
-        }
+        let omega_min = self.info.omega_min;
+        self.info = RelaxationInfo {
+            steps: step + 1,
+            error: relative(largest_step * rho / (1.0 - rho), largest_u.max(largest_step)),
+            residual: relative(residual, largest_force.max(residual)),
+            omega_min,
+            slow_mode: omega_min / self.expected,
+            dt,
+        };
+        Ok(())
     }
-    Err(ExplicitError::NotRelaxed { steps: info.steps, error: info.error, tolerance: params.tolerance })
 }
 
 /// `pi sqrt(mu / rho) / (2 L)` of the softest law, L the longest side of the box around the points, rad/s.

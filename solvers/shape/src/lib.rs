@@ -11,6 +11,7 @@ mod dilation;
 mod fixed;
 mod order;
 mod rows;
+mod source;
 mod tables;
 mod trace;
 
@@ -19,6 +20,7 @@ pub use dilation::DilationGroups;
 pub use fixed::FixedDof;
 pub use order::locality_order;
 pub use rows::{Rows, ShapeError, Unity};
+pub use source::{Quadrature, RowSource, SourceError, equal_groups};
 pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
 pub use trace::TraceRows;
 

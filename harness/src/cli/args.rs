@@ -1,0 +1,165 @@
+//! The command line. Stable: others script against it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::study::VerifyArgs;
+
+/// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
+/// same scenes.
+///
+/// Exit codes: 0 all held; 1 a check failed; 2 bad usage or input; 3 could not run or did not converge; 4 nothing ran;
+/// 5 incomplete.
+#[derive(Parser)]
+#[command(name = "tissuebench", version, max_term_width = 100)]
+pub struct Cli {
+    /// Threads of the solvers (default: all cores)
+    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run one scene, with some or all of its methods
+    Run(RunArgs),
+    /// Print the stages a scene needs, those it does not, and why
+    Plan {
+        /// The scene file
+        scene: PathBuf,
+        /// Only this method (may be given several times)
+        #[arg(long = "method", value_name = "ID")]
+        methods: Vec<String>,
+    },
+    /// Run a study: many scenes and methods; its checks gate the exit code
+    Verify(VerifyArgs),
+    /// Render tables, figures and the report of stored results
+    Report {
+        /// A folder that `verify` wrote
+        results: PathBuf,
+        /// Where to put the report (default: RESULTS/report)
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
+    Baseline(BaselineArgs),
+    /// Run every method of a scene and store what they agree on, as a reference for other scenes
+    Reference(ReferenceArgs),
+    /// List cases, elements, kernels, transfer schemes and exact solutions
+    List,
+    /// Print the JSON schema of scene files
+    Schema,
+    /// Inspect and convert mesh files
+    Mesh {
+        /// What to do with them
+        #[command(subcommand)]
+        action: MeshAction,
+    },
+}
+
+/// Arguments of `run`.
+#[derive(Args)]
+pub struct RunArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// What to print on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+    /// Also write records, tables and figures to this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `reference`.
+#[derive(Args)]
+pub struct ReferenceArgs {
+    /// The scene file; the last method's values are stored, all methods span the uncertainty
+    pub scene: PathBuf,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Solve nothing: take the values of this reference of the same scene, made before
+    #[arg(long, value_name = "FILE", conflicts_with = "methods")]
+    pub told: Option<PathBuf>,
+    /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
+    #[arg(long, value_name = "FILE")]
+    pub beside: Vec<PathBuf>,
+    /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
+    #[arg(long, value_name = "MESH")]
+    pub points: PathBuf,
+    /// Length unit of that file
+    #[arg(long, default_value = "mm", value_parser = length_unit)]
+    pub unit: f64,
+    /// The file to write (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `baseline`.
+#[derive(Args)]
+pub struct BaselineArgs {
+    /// A folder that `verify` wrote
+    pub results: PathBuf,
+    /// The accepted numbers
+    #[arg(long, value_name = "FILE", default_value = "tests/baseline/quick.toml")]
+    pub file: PathBuf,
+    /// Accept the differences whose text contains this, or all; without it a terminal asks for each
+    #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
+    pub accept: Option<String>,
+    /// Ask nothing: print the differences and exit with 1 if there are any
+    #[arg(long, conflicts_with = "accept")]
+    pub check: bool,
+    /// The results are a part of the study: runs that are not in them are not missing
+    #[arg(long)]
+    pub part: bool,
+}
+
+/// What `run` prints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table for people
+    Table,
+    /// One JSON object per run, one per line
+    Json,
+}
+
+/// What to do with mesh files.
+#[derive(Subcommand)]
+pub enum MeshAction {
+    /// Print counts, volume and quality
+    Info {
+        /// Gmsh 2.2 files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Length unit of the coordinates
+        #[arg(long, default_value = "mm", value_parser = length_unit)]
+        unit: f64,
+    },
+    /// Read one mesh file, write it as another kind of cells
+    Convert {
+        /// The file to read (Gmsh 2.2)
+        from: PathBuf,
+        /// The file to write (Gmsh 2.2)
+        to: PathBuf,
+        /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
+        #[arg(long)]
+        element: Option<String>,
+    },
+}
+
+fn length_unit(text: &str) -> Result<f64, String> {
+    match text {
+        "m" => Ok(1.0),
+        "cm" => Ok(1e-2),
+        "mm" => Ok(1e-3),
+        "um" => Ok(1e-6),
+        _ => Err("a length unit: m, cm, mm or um".into()),
+    }
+}

@@ -1,0 +1,123 @@
+//! `tissuebench baseline`: the numbers of a folder of results against those accepted before.
+
+use std::io::{BufRead, IsTerminal, Write};
+
+use reports::ReportError;
+use reports::baseline::{Baseline, Change, Comparison};
+
+use crate::cli::args::BaselineArgs;
+use crate::outcome::provenance::processor;
+
+/// Differences printed before the rest is only counted.
+const SHOWN: usize = 40;
+
+/// Compares, and accepts what is asked for; the exit code: 0 if no difference is left, else 1.
+pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
+    let now = Baseline::of(&reports::read_run(&args.results)?.records, &processor());
+    if !args.file.exists() {
+        return first(args, &now);
+    }
+    let mut accepted = Baseline::load(&args.file)?;
+    let found = accepted.compare(&now, !args.part);
+    println!(
+        "{}: {} numbers compared, {}; {} differences",
+        args.file.display(),
+        found.compared,
+        if found.bitwise { "bit by bit" } else { "within 1e-6, as the processor is another" },
+        found.changes.len()
+    );
+    let chosen = choose(&found, args);
+    let left = found.changes.len() - chosen.len();
+    if !chosen.is_empty() {
+        if !found.bitwise && (left > 0 || args.part) {
+            eprintln!(
+                "tissuebench: {} is of another kind of processor ({}): accept all of its numbers or none",
+                args.file.display(),
+                accepted.processor
+            );
+            return Ok(1);
+        }
+        chosen.iter().for_each(|change| accepted.accept(change, &now));
+        if found.bitwise { &accepted } else { &now }.save(&args.file)?;
+        println!("accepted {}, left {left}", chosen.len());
+    }
+    Ok(u8::from(left > 0))
+}
+
+/// Makes the file if all numbers are accepted.
+fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
+    if args.accept.as_deref() != Some("") {
+        eprintln!("tissuebench: {} does not exist; `--accept` makes it", args.file.display());
+        return Ok(1);
+    }
+    now.save(&args.file)?;
+    println!("{}: {} numbers of {} runs", args.file.display(), now.count(), now.runs.len());
+    Ok(0)
+}
+
+/// Prints the differences and returns those accepted: by `--accept`, or one by one on a terminal.
+fn choose<'a>(found: &'a Comparison, args: &BaselineArgs) -> Vec<&'a Change> {
+    let ask = args.accept.is_none() && !args.check && std::io::stdin().is_terminal();
+    if ask {
+        return review(&found.changes);
+    }
+    for change in found.changes.iter().take(SHOWN) {
+        println!("{}", describe(change));
+    }
+    if found.changes.len() > SHOWN {
+        println!("... and {} more", found.changes.len() - SHOWN);
+    }
+    let accepted =
+        |change: &&Change| args.accept.as_ref().is_some_and(|text| describe(change).contains(text));
+    found.changes.iter().filter(accepted).collect()
+}
+
+/// Asks for each difference: yes, no, all that are left, or quit.
+fn review(changes: &[Change]) -> Vec<&Change> {
+    let mut chosen = Vec::new();
+    let mut lines = std::io::stdin().lock().lines();
+    for (index, change) in changes.iter().enumerate() {
+        print!(
+            "{}\n  [{} of {}] accept? (y)es, (n)o, (a)ll, (q)uit: ",
+            describe(change),
+            index + 1,
+            changes.len()
+        );
+        let _ = std::io::stdout().flush();
+        match lines.next().and_then(Result::ok).as_deref().map(str::trim) {
+            Some("y") => chosen.push(change),
+            Some("a") => {
+                chosen.extend(&changes[index..]);
+                break;
+            }
+            Some("n") => {}
+            _ => break,
+        }
+    }
+    chosen
+}
+
+fn describe(change: &Change) -> String {
+    match change {
+        Change::Added { run } => format!("new run       {run}"),
+        Change::Removed { run } => format!("run missing   {run}"),
+        Change::Renamed { from, to } => format!("run renamed   {from}\n           to {to}"),
+        Change::Number { run, quantity, before, now } => {
+            let worst = before.iter().zip(now).max_by(|a, b| change_of(a).total_cmp(&change_of(b)));
+            let text = match worst {
+                Some((before, now)) => format!("{before:e} -> {now:e} ({:.1e})", change_of(&(before, now))),
+                None if before.is_empty() => "is new".into(),
+                None => "is missing".into(),
+            };
+            let steps =
+                if before.len() == now.len() && now.len() > 1 { ", the largest of its steps" } else { "" };
+            format!("{run}\n  {quantity}: {text}{steps}")
+        }
+    }
+}
+
+/// Relative change of a number.
+fn change_of((before, now): &(&f64, &f64)) -> f64 {
+    let scale = before.abs().max(now.abs());
+    if scale > 0.0 { (*now - *before).abs() / scale } else { 0.0 }
+}

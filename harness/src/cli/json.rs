@@ -1,0 +1,177 @@
+//! The JSON object of one run, as scripts read it.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+use crate::outcome::{Counters, LoadStep, Outcome, Plan, Unfinished};
+
+/// One run as `tissuebench run --format json` prints it.
+#[derive(Serialize)]
+pub struct RunObject<'a> {
+    scene: &'a str,
+    method: &'a str,
+    /// `ok`; `relaxed` where dynamic relaxation went on from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
+    /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
+    /// or `could-not-run`.
+    status: &'static str,
+    /// Why it failed or ended early, with file, line and key; absent on success.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    message: Option<String>,
+    nodes: u64,
+    elements: u64,
+    dofs: u64,
+    metrics: BTreeMap<&'a str, Number>,
+    phases: BTreeMap<String, f64>,
+    probes: Vec<ProbeObject>,
+    /// Rigid tools at the end.
+    tools: Vec<ToolObject<'a>>,
+    /// Load steps of a static procedure, as far as it came; absent in a linear one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    steps: Vec<StepObject<'a>>,
+    plan: &'a Plan,
+    /// What evaluated the internal forces of explicit dynamics or relaxation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    force_kernel: Option<&'a str>,
+    /// Instructions of its lanes; absent where it is the plain loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lane_path: Option<&'a str>,
+    /// What solved the equations of a linear procedure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    linear_solver: Option<&'a str>,
+    /// Counts of what was done; all 0 in a run that failed.
+    work: Counters,
+}
+
+#[derive(Serialize)]
+struct Number {
+    value: f64,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct ToolObject<'a> {
+    name: &'a str,
+    /// m.
+    closure: f64,
+    /// On the tool, N.
+    force: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct StepObject<'a> {
+    /// Part of the loading, 0 to 1.
+    load: f64,
+    /// J.
+    strain_energy: Option<f64>,
+    smallest_j: f64,
+    iterations: u64,
+    tools: Vec<ToolObject<'a>>,
+    /// Displacement at the probes, m.
+    probes: Vec<[f64; 3]>,
+    /// Time and energies in dynamics.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    metrics: BTreeMap<&'a str, Number>,
+}
+
+fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
+    let each = names.iter().zip(&step.tools);
+    each.map(|(name, t)| ToolObject { name, closure: t.closure, force: t.force.into() }).collect()
+}
+
+#[derive(Serialize)]
+struct ProbeObject {
+    x: [f64; 3],
+    u: [f64; 3],
+    /// xx, yy, zz, xy, yz, zx.
+    stress: Option<[f64; 6]>,
+}
+
+impl<'a> RunObject<'a> {
+    /// A finished run; times are medians over its repeats.
+    pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
+        let mut metrics: BTreeMap<&str, Number> = outcome
+            .metrics
+            .iter()
+            .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
+            .collect();
+        metrics.insert("memory", Number { value: outcome.memory as f64, unit: "B" });
+        let frames = outcome.latencies.iter().flat_map(|latency| {
+            let times = latency.statistics().into_iter().filter(|(_, unit, _)| *unit == "s");
+            times.map(|(name, _, seconds)| match name {
+                "median" => (latency.phase.to_string(), seconds),
+                _ => (format!("{}-{name}", latency.phase), seconds),
+            })
+        });
+        RunObject {
+            scene: &outcome.identity.case,
+            method: &outcome.identity.method,
+            status: outcome.status,
+            message: outcome.stalled.as_ref().or(outcome.relaxed.as_ref()).map(ToString::to_string),
+            nodes: outcome.size.nodes,
+            elements: outcome.size.elements,
+            dofs: outcome.size.dofs,
+            metrics,
+            phases: (outcome.phases.iter())
+                .map(|timed| (timed.phase.into(), timed.summary().median))
+                .chain(frames)
+                .collect(),
+            probes: outcome
+                .probes
+                .iter()
+                .map(|p| ProbeObject {
+                    x: p.x.coords.into(),
+                    u: p.u.into(),
+                    stress: p
+                        .stress
+                        .map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]),
+                })
+                .collect(),
+            tools: outcome.last.as_ref().map_or_else(Vec::new, |last| tools(&outcome.tools, last)),
+            steps: outcome
+                .steps
+                .iter()
+                .map(|step| StepObject {
+                    load: step.load,
+                    strain_energy: step.strain_energy,
+                    smallest_j: step.smallest_j,
+                    iterations: step.iterations,
+                    tools: tools(&outcome.tools, step),
+                    probes: step.probes.iter().map(|&u| u.into()).collect(),
+                    metrics: step
+                        .more
+                        .iter()
+                        .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
+                        .collect(),
+                })
+                .collect(),
+            plan: &outcome.plan,
+            force_kernel: outcome.identity.force_kernel.as_deref(),
+            lane_path: outcome.identity.lane_path.as_deref(),
+            linear_solver: outcome.identity.linear_solver.as_deref(),
+            work: outcome.counters,
+        }
+    }
+
+    /// A run that gave no numbers: what it would have done, and how large it got.
+    pub fn failed(scene: &'a str, method: &'a str, run: &'a Unfinished) -> RunObject<'a> {
+        RunObject {
+            scene,
+            method,
+            status: run.failure.status(),
+            message: Some(run.failure.to_string()),
+            nodes: run.size.nodes,
+            elements: run.size.elements,
+            dofs: run.size.dofs,
+            metrics: BTreeMap::new(),
+            phases: BTreeMap::new(),
+            probes: Vec::new(),
+            tools: Vec::new(),
+            steps: Vec::new(),
+            plan: &run.plan,
+            force_kernel: None,
+            lane_path: None,
+            linear_solver: None,
+            work: Counters::default(),
+        }
+    }
+}

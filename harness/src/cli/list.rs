@@ -1,0 +1,159 @@
+//! Text for people: lists, plans, the table of a run, verdicts.
+
+use std::fmt::Write as _;
+
+use cases::exact::{exact_names, exact_parameters};
+use cases::scene::{Basis, Element, Mass, SupportShape};
+use catalogue::{metric::METRICS, names};
+use reports::{Check, Status};
+
+use crate::outcome::timing::PHASES;
+use crate::outcome::{Outcome, Plan};
+use crate::run::stored::Stored;
+
+/// Prints what scenes may name.
+pub fn print() {
+    println!(
+        "elements    {}",
+        [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex20].map(Element::name).join(", ")
+    );
+    println!("kernels     {}", names(efg::KERNELS).join(", "));
+    println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
+    println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
+    println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
+    println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
+    println!("essential   nitsche, penalty, multipliers, elimination, coupling");
+    println!("transfer    {}, own", names(interp::SCHEMES).join(", "));
+    println!("exact solutions, with their parameters");
+    for name in exact_names() {
+        let parameters = exact_parameters(name).unwrap_or_default();
+        let list: Vec<String> = parameters
+            .iter()
+            .map(|p| if p.unit.is_empty() { p.name.to_string() } else { format!("{} [{}]", p.name, p.unit) })
+            .collect();
+        println!("  {name:24} {}", list.join(", "));
+    }
+    println!("metrics");
+    for metric in METRICS {
+        println!("  {:24} {}", metric.name, metric.meaning);
+    }
+    let mut scenes: Vec<String> = std::fs::read_dir("cases")
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path().display().to_string())
+        .filter(|path| path.ends_with(".toml") && !path.ends_with("Cargo.toml"))
+        .collect();
+    scenes.sort();
+    if !scenes.is_empty() {
+        println!("scenes and studies here\n  {}", scenes.join("\n  "));
+    }
+}
+
+/// The plan of one method.
+pub fn stages(method: &str, plan: &Plan) -> String {
+    let mut text = format!("{method}\n");
+    for stage in plan.stages() {
+        let word = if stage.ran { "run " } else { "skip" };
+        writeln!(text, "  {word}  {:28} {}", stage.stage.name(), stage.why).expect("a string");
+    }
+    text
+}
+
+/// The forces of a stored reference and how far its solutions differ.
+pub fn reference(stored: &Stored) -> String {
+    let mut text = String::new();
+    for step in &stored.steps {
+        for tool in &step.tools {
+            let off = [tool.low, tool.high].map(|f| 100.0 * (f / tool.force - 1.0));
+            writeln!(
+                text,
+                "{:7.3} mm  {:9.5} N  {:+.2} % {:+.2} %  probes within {:.4} mm",
+                1e3 * tool.closure,
+                tool.force,
+                off[0],
+                off[1],
+                1e3 * step.probe_band
+            )
+            .expect("a string");
+        }
+    }
+    text
+}
+
+/// One line on a check that did not hold.
+pub fn verdict(check: &Check) -> String {
+    let word = match check.status {
+        Status::Fail => "FAILED",
+        Status::NotRun => "NOT RUN",
+        Status::Pass => "passed",
+        Status::KnownFailure => "known not to pass",
+    };
+    format!("{word}: {} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
+}
+
+/// A table of finished runs: sizes, errors, displacement, milliseconds per phase.
+pub fn outcomes(outcomes: &[Outcome]) -> String {
+    let columns: [(&str, &str, f64); 16] = [
+        ("l2", "L2 [%]", 100.0),
+        ("energy", "energy [%]", 100.0),
+        ("pressure", "pressure [%]", 100.0),
+        ("rms", "RMS [mm]", 1e3),
+        ("max-x", "max x [mm]", 1e3),
+        ("max-y", "max y [mm]", 1e3),
+        ("max-z", "max z [mm]", 1e3),
+        ("tip", "probe/exact", 1.0),
+        ("history-error", "history [%]", 100.0),
+        ("period", "period [s]", 1.0),
+        ("strain-energy-error", "work error [%]", 100.0),
+        ("load-carried", "load [%]", 100.0),
+        ("tool-force", "force [N]", 1.0),
+        ("tool-force-error", "force error [%]", 100.0),
+        ("smallest-j", "least J", 1.0),
+        ("newton-iterations", "iterations", 1.0),
+    ];
+    let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut head: Vec<String> = ["method", "nodes", "dofs"].map(String::from).to_vec();
+    head.extend(shown.iter().map(|c| c.1.to_string()));
+    let phases = PHASES.iter().chain(&["total"]).filter(|p| outcomes.iter().any(|o| phase(o, p).is_some()));
+    let phases: Vec<_> = phases.copied().collect();
+    head.extend(phases.iter().map(|p| format!("{p} [ms]")));
+    rows.push(head);
+    for outcome in outcomes {
+        let mut row = vec![
+            outcome.identity.method.clone(),
+            outcome.size.nodes.to_string(),
+            outcome.size.dofs.to_string(),
+        ];
+        row.extend(shown.iter().map(|c| outcome.metric(c.0).map_or("-".into(), |v| digits(v * c.2))));
+        row.extend(phases.iter().map(|p| phase(outcome, p).map_or("-".into(), |s| digits(s * 1e3))));
+        rows.push(row);
+    }
+    let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let lines = rows.iter().map(|row| {
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .enumerate()
+            .map(|(c, (cell, &w))| if c == 0 { format!("{cell:<w$}") } else { format!("{cell:>w$}") });
+        cells.collect::<Vec<_>>().join("  ")
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn phase(outcome: &Outcome, name: &str) -> Option<f64> {
+    outcome.phases.iter().find(|timed| timed.phase == name).map(|timed| timed.summary().median)
+}
+
+/// Four significant digits, in exponents where plain digits would hide them.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        v if !(1e-3..1e5).contains(&v) => format!("{value:.3e}"),
+        v if v < 1.0 => format!("{value:.5}"),
+        v if v < 100.0 => format!("{value:.3}"),
+        _ => format!("{value:.1}"),
+    }
+}

@@ -1,0 +1,114 @@
+//! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
+//! 4 nothing ran, 5 incomplete.
+
+mod args;
+mod baseline;
+mod json;
+mod list;
+mod mesh_files;
+mod plan;
+mod reference;
+mod run;
+mod verify;
+
+use std::path::Path;
+
+use cases::scene::{self, ErrorKind, Scene, SceneError};
+
+use crate::Failure;
+use baseline::baseline;
+use plan::plan;
+use reference::reference;
+use run::run;
+use verify::verify;
+
+pub use args::{Cli, Command};
+
+/// Runs one command and returns its exit code.
+pub fn main(cli: Cli) -> u8 {
+    if let Some(threads) = cli.threads
+        && let Err(bad) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
+    {
+        eprintln!("tissuebench: {bad}");
+        return 3;
+    }
+    match cli.command {
+        Command::Run(args) => run(&args),
+        Command::Plan { scene, methods } => plan(&scene, &methods),
+        Command::Verify(args) => verify(&args),
+        Command::Report { results, out } => {
+            let out = out.unwrap_or_else(|| results.join("report"));
+            report(&results, &out)
+        }
+        Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| {
+            eprintln!("tissuebench: {bad}");
+            2
+        }),
+        Command::Reference(args) => match reference(&args) {
+            Ok(()) => 0,
+            Err(code) => code,
+        },
+        Command::List => {
+            list::print();
+            0
+        }
+        Command::Schema => {
+            println!("{}", serde_json::to_string_pretty(&scene::schema()).expect("a JSON value"));
+            0
+        }
+        Command::Mesh { action } => match mesh_files::act(&action) {
+            Ok(()) => 0,
+            Err(failure) => fail(&failure),
+        },
+    }
+}
+
+fn fail(failure: &Failure) -> u8 {
+    eprintln!("tissuebench: {failure}");
+    failure.exit_code()
+}
+
+/// Prints what is wrong with an input file; 2, or 3 if it is only ahead of what can run.
+fn refuse(errors: &[SceneError]) -> u8 {
+    for error in errors {
+        eprintln!("{error}");
+    }
+    if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
+}
+
+/// The scene, and the indices of the methods asked for.
+fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
+    let scene = scene::load(path).map_err(|errors| refuse(&errors))?;
+    let ahead = scene.unavailable();
+    if !ahead.is_empty() {
+        return Err(refuse(&ahead));
+    }
+    let mut chosen = Vec::new();
+    for id in methods {
+        match scene.methods.iter().position(|m| m.id == *id) {
+            Some(index) => chosen.push(index),
+            None => {
+                let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
+                eprintln!("{}: no method '{id}'; it has {}", path.display(), known.join(", "));
+                return Err(2);
+            }
+        }
+    }
+    if methods.is_empty() {
+        chosen = (0..scene.methods.len()).collect();
+    }
+    Ok((scene, chosen))
+}
+
+fn report(results: &Path, out: &Path) -> u8 {
+    match reports::render(results, out) {
+        Ok(rendered) => {
+            eprintln!("{} files in {}", rendered.files.len(), out.display());
+            0
+        }
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            2
+        }
+    }
+}

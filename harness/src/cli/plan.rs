@@ -1,0 +1,29 @@
+//! `tissuebench plan`: the stages of a scene's methods, without running them.
+
+use std::path::Path;
+
+use crate::cli::{list, open};
+use crate::run::{Group, Repeats};
+
+/// Prints what each method would do; returns the exit code.
+pub(super) fn plan(path: &Path, methods: &[String]) -> u8 {
+    let (scene, chosen) = match open(path, methods) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    let mut code = 0;
+    for index in chosen {
+        let method = &scene.methods[index];
+        // A plan needs no reference: only what the run itself would do.
+        let stages = Group::unreferenced(&scene, Repeats::ONCE)
+            .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
+        match stages {
+            Ok((stages, _)) => print!("{}", list::stages(&method.id, &stages)),
+            Err(failure) => {
+                eprintln!("{failure} (method '{}')", method.id);
+                code = code.max(failure.exit_code());
+            }
+        }
+    }
+    code
+}

@@ -1,0 +1,50 @@
+//! `tissuebench reference`: runs every method of a scene and stores what they agree on.
+
+use std::path::PathBuf;
+
+use crate::Failure;
+use crate::cli::args::ReferenceArgs;
+use crate::cli::{fail, list, open};
+use crate::run::stored::Stored;
+use crate::study::make_reference::make;
+
+/// Runs every method of a scene and writes what they agree on.
+pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
+    let (scene, _) = open(&args.scene, &args.methods)?;
+    let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+    let mesh = geometry::msh::read(&args.points, args.unit)
+        .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
+    let read = |path: &PathBuf| -> Result<Stored, u8> {
+        let of_file = |problem| fail(&Failure::Input(format!("{}: {problem}", path.display())));
+        let stored = Stored::read(path).map_err(|problem| fail(&Failure::Input(problem)))?;
+        stored.belongs(&text, mesh.points()).map_err(of_file)?;
+        Ok(stored)
+    };
+    let told = args.told.as_ref().map(read).transpose()?;
+    let mut used: Vec<String> = match &told {
+        Some(told) => told.methods().map(Into::into).collect(),
+        None if args.methods.is_empty() => scene.methods.iter().map(|m| m.id.clone()).collect(),
+        None => args.methods.clone(),
+    };
+    // Refused before hours are spent on the methods.
+    let mut beside = Vec::new();
+    for path in &args.beside {
+        let other = read(path)?;
+        // A solution is no witness of itself.
+        if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
+            let problem = format!("{}: '{twice}' is there already; name others by --method", path.display());
+            return Err(fail(&Failure::Input(problem)));
+        }
+        used.extend(other.methods().map(Into::into));
+        beside.push(other);
+    }
+    let mut stored = match told {
+        Some(told) => told,
+        None => make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?,
+    };
+    beside.iter().for_each(|other| stored.widen(other));
+    print!("{}", list::reference(&stored));
+    let json = serde_json::to_string(&stored).expect("finite numbers and text");
+    std::fs::write(&args.out, json + "\n")
+        .map_err(|bad| fail(&Failure::Run(format!("{} can't be written: {bad}", args.out.display()))))
+}

@@ -1,0 +1,158 @@
+//! `tissuebench run`: one scene by some or all of its methods.
+
+use std::io::IsTerminal;
+
+use cases::scene::{self, Scene};
+use reports::{RunSet, Status};
+
+use crate::Failure;
+use crate::cli::args::{Format, RunArgs};
+use crate::cli::json::RunObject;
+use crate::cli::{list, open, report};
+use crate::outcome::{Outcome, Unfinished, provenance};
+use crate::run::{Extras, Group, Repeats, case_name};
+use crate::study::{self, check, folder, stalled};
+
+/// Repeats of a single run's timings.
+const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
+
+/// Runs the scene and reports it; returns the exit code.
+pub(super) fn run(args: &RunArgs) -> u8 {
+    let (scene, chosen) = match open(&args.scene, &args.methods) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    let machine = provenance::machine();
+    if let Some(Err(taken)) = args.out.as_deref().map(|out| folder::free_for(&args.scene, out)) {
+        eprintln!("tissuebench: {taken}");
+        return 2;
+    }
+    let mut made = Made {
+        args,
+        case: case_name(&scene),
+        scene: &scene,
+        set: RunSet::default(),
+        outcomes: Vec::new(),
+        code: 0,
+    };
+    let group = match Group::new(&scene, None, REPEATS) {
+        Ok(group) => group,
+        Err(failure) => return made.unreferenced(&chosen, &failure),
+    };
+    if let Some(failure) = group.reference_stalled() {
+        made.reference_stalled(failure);
+    }
+    for index in chosen {
+        let method = &scene.methods[index];
+        if std::io::stderr().is_terminal() {
+            // A static run may take minutes.
+            eprintln!("{} ...", method.id);
+        }
+        let extras = Extras { picture: args.out.is_some(), frames: true, split: None };
+        match group.run(&group.scenario(method.clone(), 0), extras) {
+            Ok(outcome) => made.finished(method, outcome),
+            Err(unfinished) => made.failed(method, unfinished),
+        }
+    }
+    made.conclude(machine)
+}
+
+/// What the methods of the scene have left so far.
+struct Made<'a> {
+    args: &'a RunArgs,
+    case: String,
+    scene: &'a Scene,
+    set: RunSet,
+    outcomes: Vec<Outcome>,
+    code: u8,
+}
+
+impl Made<'_> {
+    /// No method ran because their reference could not: each says what it would have done.
+    fn unreferenced(&self, chosen: &[usize], failure: &Failure) -> u8 {
+        if self.args.format == Format::Json {
+            for &index in chosen {
+                let method = &self.scene.methods[index];
+                let planned = Group::unreferenced(self.scene, REPEATS)
+                    .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
+                let (plan, size) = planned.unwrap_or_default();
+                let unfinished = Unfinished { failure: failure.clone(), plan, size };
+                print_json(&RunObject::failed(&self.case, &method.id, &unfinished));
+            }
+        }
+        eprintln!("{failure} (every method)");
+        failure.exit_code()
+    }
+
+    fn reference_stalled(&mut self, failure: &Failure) {
+        eprintln!("reference stalled: {failure} (every method is compared with the steps it reached)");
+        let reason = format!("reference stalled: {failure}");
+        let (case, method) = (self.case.clone(), "reference".into());
+        self.set.failures.push(reports::Failure { case, method, reason });
+        self.code = failure.exit_code();
+    }
+
+    fn finished(&mut self, method: &scene::Method, outcome: Outcome) {
+        if self.args.format == Format::Json {
+            print_json(&RunObject::finished(&outcome));
+        }
+        let records = outcome.records();
+        for check in &self.scene.checks {
+            let own = check.methods.is_empty() || check.methods.contains(&method.id);
+            if own && !check::needs_levels(check) {
+                let value = check::value(check.metric.name, &records);
+                self.set.checks.push(check::judge(check, &self.case, &method.id, value));
+            }
+        }
+        self.set.records.extend(records);
+        self.set.plans.extend(outcome.plan_entries());
+        self.set.fields.extend(outcome.field.clone());
+        if let Some(reason) = &outcome.relaxed {
+            eprintln!("relaxed: {reason} (method '{}')", method.id);
+        }
+        if let Some(failure) = &outcome.stalled {
+            eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
+            self.set.failures.push(stalled(&outcome, failure));
+            self.code = self.code.max(failure.exit_code());
+        }
+        self.outcomes.push(outcome);
+    }
+
+    fn failed(&mut self, method: &scene::Method, unfinished: Unfinished) {
+        if self.args.format == Format::Json {
+            print_json(&RunObject::failed(&self.case, &method.id, &unfinished));
+        }
+        let failure = unfinished.failure;
+        eprintln!("{failure} (method '{}')", method.id);
+        let (case, method, reason) = (self.case.clone(), method.id.clone(), failure.to_string());
+        self.set.failures.push(reports::Failure { case, method, reason });
+        self.code = self.code.max(failure.exit_code());
+    }
+
+    /// Prints the table and the checks that do not hold, and writes the folder of results.
+    fn conclude(mut self, machine: reports::Machine) -> u8 {
+        if self.args.format == Format::Table && !self.outcomes.is_empty() {
+            println!("{}", list::outcomes(&self.outcomes));
+        }
+        for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
+            eprintln!("{}", list::verdict(check));
+            self.code = self.code.max(1);
+        }
+        let Some(out) = &self.args.out else { return self.code };
+        self.set.records.extend(study::reference_records(self.scene));
+        let text = std::fs::read_to_string(&self.args.scene).unwrap_or_default();
+        self.set.provenance = provenance::provenance(machine, &[(self.case, text)]);
+        self.set.provenance.source = folder::source(&self.args.scene);
+        match reports::write_run(out, &self.set) {
+            Ok(()) => self.code.max(report(out, &out.join("report"))),
+            Err(bad) => {
+                eprintln!("tissuebench: {bad}");
+                3
+            }
+        }
+    }
+}
+
+fn print_json(object: &RunObject) {
+    println!("{}", serde_json::to_string(object).expect("finite numbers and text"));
+}

@@ -1,0 +1,35 @@
+//! The displacement field where runs are compared.
+
+use super::{Field, Request, Solved};
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::outcome::{Meters, Plan, StageName};
+
+/// Displacement (m) at the targets, or at the method's own nodes without targets. Where the plan has no transfer, the
+/// parameters of the nodes are displacements already, and nothing is evaluated.
+pub(crate) fn displacement(
+    run: &Solved,
+    plan: &Plan,
+    request: &Request,
+    meters: &mut Meters,
+) -> Result<Field, Failure> {
+    let Solved { method, prepared, solution, .. } = *run;
+    if !plan.runs(StageName::Transfer) {
+        return Ok(Field { values: solution.u.clone(), outside: 0 });
+    }
+    let points = if request.targets.is_empty() { method.nodes() } else { request.targets };
+    let once = || -> Result<Field, Failure> {
+        let (rows, outside) = method.at_points(&prepared.volume, points)?;
+        Ok(Field { values: rows.rows().apply(&solution.u), outside })
+    };
+    meters.counters.transfer_rows += points.len() as u64;
+    let timed = matches!(method, Discretisation::Efg(_)) && !request.targets.is_empty();
+    if !timed {
+        return once();
+    }
+    let mut field = meters.timings.time("transfer", once)?;
+    for _ in 1..request.repeats.most {
+        field = meters.timings.time("transfer", once)?;
+    }
+    Ok(field)
+}

@@ -1,0 +1,221 @@
+//! What a finished run is compared with and what it is like: errors, maxima, energies, counts, probes.
+
+mod displacement;
+pub(crate) mod mean_pressure;
+mod modes;
+pub(crate) mod norms;
+mod picture;
+mod probe_history;
+mod request;
+mod step_history;
+mod transfer;
+
+use cases::exact::Exact;
+use geometry::{Matrix3, Point3, Vector3};
+use material::Law;
+use statics::Body;
+
+use crate::Failure;
+use crate::discretise::{Discretisation, Efg, Essential};
+use crate::outcome::{Metric, Probe, push};
+use crate::prepare::Prepared;
+use crate::procedure::Solution;
+use crate::scenario::setup::Setup;
+use mean_pressure::cauchy;
+use norms::{difference, exact_at, norms, relative};
+
+pub(crate) use displacement::displacement;
+pub(crate) use modes::report as report_modes;
+pub(crate) use picture::picture;
+pub(crate) use probe_history::metrics as probe_history;
+pub(crate) use request::Request;
+pub use request::{Reference, Repeats};
+pub(crate) use step_history::report as report_steps;
+pub(crate) use transfer::transfers;
+
+/// A solved run, of which everything is measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Solved<'a> {
+    pub(crate) method: &'a Discretisation,
+    pub(crate) setup: &'a Setup,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) solution: &'a Solution,
+}
+
+/// Displacement (m) where runs are compared, and how many of these points lie outside the body.
+pub(crate) struct Field {
+    pub(crate) values: Vec<Vector3>,
+    pub(crate) outside: usize,
+}
+
+/// Errors, maxima, energies, counts.
+pub(crate) fn measure(
+    metrics: &mut Vec<Metric>,
+    run: &Solved,
+    field: &Field,
+    request: &Request,
+) -> Result<(), Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let body = Body {
+        nodes: method.nodes(),
+        volume: &prepared.volume.rows,
+        materials: &setup.materials,
+        region: &prepared.volume.region,
+        dilation: prepared.volume.groups.as_ref(),
+    };
+    if let Some(exact) = setup.exact.as_deref() {
+        errors_in_the_volume(metrics, run, &body, exact)?;
+    }
+    errors_at_targets(metrics, run, &field.values, request);
+    for (axis, name) in ["max-x", "max-y", "max-z"].into_iter().enumerate() {
+        push(metrics, name, field.values.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())), "m");
+    }
+    push(metrics, "max", field.values.iter().fold(0.0, |m: f64, u| m.max(u.norm())), "m");
+    push(metrics, "targets-outside", field.outside as f64, "1");
+    let energy = match &solution.history {
+        Some(history) => history.last.strain_energy,
+        None => Some(statics::strain_energy(&body, &solution.u)?),
+    };
+    if let Some(energy) = energy {
+        push(metrics, "strain-energy", energy, "J");
+    }
+    if let Some(residual) = solution.residual {
+        push(metrics, "residual", residual, "1");
+    }
+    if let Some(info) = &solution.linear {
+        push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
+        if info.eliminated + info.dropped > 0 {
+            push(metrics, "constraints-eliminated", info.eliminated as f64, "1");
+            push(metrics, "constraints-dropped", info.dropped as f64, "1");
+        }
+    }
+    if let Discretisation::Efg(Efg { essential: Essential::Coupling(coupled), .. }) = method {
+        push(metrics, "finite-element-nodes", coupled.vertices.len() as f64, "1");
+    }
+    let resultant = prepared.resultant();
+    for (axis, name) in ["load-x", "load-y", "load-z"].into_iter().enumerate() {
+        push(metrics, name, resultant[axis], "N");
+    }
+    of_tables(metrics, prepared);
+    Ok(())
+}
+
+/// Norms over the body against an exact solution. Stresses are compared with Hooke's; a pressure field of its own is another
+/// stress than the displacement's.
+fn errors_in_the_volume(
+    metrics: &mut Vec<Metric>,
+    run: &Solved,
+    body: &Body,
+    exact: &dyn Exact,
+) -> Result<(), Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let hooke =
+        setup.laws.iter().all(Law::is_small_strain) && prepared.volume.pressure.is_none() && !setup.relaxes();
+    let (fine, region) = method.error_rows(&prepared.volume)?;
+    if !hooke {
+        if let Some(value) = norms::l2(&fine, &solution.u, exact) {
+            push(metrics, "l2", value, "1");
+        }
+        return Ok(());
+    }
+    let n = norms(body, &fine, &region, &solution.u, exact)?;
+    for (name, value) in [("l2", n.l2), ("energy", n.energy), ("pressure", n.pressure), ("stress", n.stress)]
+    {
+        if let Some(value) = value {
+            push(metrics, name, value, "1");
+        }
+    }
+    Ok(())
+}
+
+/// Differences from an exact solution or the references where displacements are compared.
+fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3], request: &Request) {
+    let points = if request.targets.is_empty() { run.method.nodes() } else { request.targets };
+    let against = match (&run.setup.exact, request.reference) {
+        (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
+        (None, Some(reference)) => Some(reference.targets.clone()),
+        (None, None) => None,
+    };
+    if let Some(integrated) = request.integrated {
+        push_difference(metrics, "integration-rms", field, &integrated.targets);
+        if let Some(against) = &against {
+            push_difference(metrics, "discretisation-rms", &integrated.targets, against);
+        }
+    }
+    if let Some(against) = against {
+        push_difference(metrics, "rms", field, &against);
+        push(metrics, "max-error", difference(field, &against).max, "m");
+        if let Some(relative) = relative(field, &against) {
+            push(metrics, "relative-rms", relative.rms, "1");
+            push(metrics, "relative-max", relative.max, "1");
+            push(metrics, "peak-error", relative.peak, "1");
+        }
+    }
+    if let Some(beside) = request.beside {
+        push_difference(metrics, "beside-rms", field, &beside.targets);
+    }
+}
+
+/// Errors of probes against an exact solution.
+pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &dyn Exact) {
+    let Some(first) = probes.first() else { return };
+    let e = exact.displacement(&first.x);
+    if e.norm() > 0.0 {
+        push(metrics, "tip", first.u.dot(&e) / e.norm_squared(), "1");
+    }
+    let error = |p: &Probe| {
+        let e = exact.displacement(&p.x);
+        (e.norm() > 0.0).then(|| (p.u - e).norm() / e.norm())
+    };
+    if let Some(worst) = probes.iter().filter_map(error).reduce(f64::max) {
+        push(metrics, "probe-error", worst, "1");
+    }
+}
+
+/// What the rows of a method are like: the volume they integrate, neighbours, conditioning, fallbacks.
+pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
+    push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
+    if let Some(mls) = &prepared.volume.mls {
+        push(metrics, "neighbours-min", mls.neighbours_min as f64, "1");
+        push(metrics, "neighbours-mean", mls.neighbours_mean, "1");
+        push(metrics, "neighbours-max", mls.neighbours_max as f64, "1");
+        push(metrics, "condition-median", mls.condition_median, "1");
+        push(metrics, "condition-max", mls.condition_max, "1");
+        push(metrics, "fallbacks", mls.fallbacks() as f64, "1");
+        push(metrics, "fallbacks-enlarged", mls.enlarged as f64, "1");
+        push(metrics, "fallbacks-regularised", mls.regularised as f64, "1");
+        push(metrics, "fallbacks-reduced", mls.reduced as f64, "1");
+    }
+    if let Some(error) = prepared.volume.volume_error {
+        push(metrics, "volume-error", error, "1");
+    }
+}
+
+/// RMS of a difference per direction (`NAME-x` and so on) and of the magnitude (`NAME`).
+pub(crate) fn push_difference(metrics: &mut Vec<Metric>, name: &str, field: &[Vector3], against: &[Vector3]) {
+    let d = difference(field, against);
+    for (axis, value) in ["x", "y", "z"].into_iter().zip(d.rms) {
+        push(metrics, &format!("{name}-{axis}"), value, "m");
+    }
+    push(metrics, name, d.rms_magnitude, "m");
+}
+
+/// Displacement and stress at the probes.
+pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let u = &solution.u;
+    if points.is_empty() {
+        return Ok(Vec::new());
+    }
+    let rows = method.gradients_at(&prepared.volume, points)?;
+    // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
+    // its past, which is followed at quadrature points only.
+    let stress: Vec<Option<Matrix3>> = if setup.is_linear() {
+        statics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
+    } else {
+        let known = |h: &Matrix3| (!setup.relaxes()).then(|| cauchy(&setup.laws[0], h));
+        rows.displacement_gradients(u).iter().map(known).collect()
+    };
+    let field = rows.rows().apply(u);
+    Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())
+}

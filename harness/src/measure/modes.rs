@@ -1,0 +1,109 @@
+//! Modes of free vibration, and how they compare with exact ones.
+
+use cases::exact::Vibrations;
+use geometry::{Point3, Vector3};
+
+use super::Solved;
+use crate::Failure;
+use crate::outcome::{Metric, push};
+use crate::procedure::Vibration;
+
+/// Part of the lowest exact frequency below which a mode is a spurious slow one.
+const SLOW: f64 = 0.9;
+/// Part of the frequency of a shear wave across the body below which a mode is rigid: rounding leaves 1e-6.
+const RIGID: f64 = 1e-3;
+/// Multiple of the exact frequency up to which its mode is looked for.
+const FAST: f64 = 1.5;
+/// Share of its displacement that a mode must have in the exact ones to be taken for one of them.
+const ALIKE: f64 = 0.5;
+
+/// What is known of the vibrations of a body.
+pub(crate) struct Modes {
+    pub(crate) metrics: Vec<Metric>,
+    pub(crate) dofs: usize,
+    pub(crate) modes: Vec<Vec<Metric>>,
+}
+
+/// Counts, and comparisons with the exact vibrations if the scene names some.
+pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failure> {
+    let Vibration { modes, count, mass } = vibration;
+    let setup = run.setup;
+    let omega: Vec<f64> = modes.squared.iter().map(|s| s.max(0.0).sqrt()).collect();
+    let count = omega.len().min(*count);
+    let mut metrics = Vec::new();
+    push(&mut metrics, "mass", *mass, "kg");
+    push(&mut metrics, "residual", modes.residual, "1");
+    let rigid = RIGID * modes.scale.sqrt();
+    push(&mut metrics, "rigid-modes", omega.iter().filter(|&&w| w < rigid).count() as f64, "1");
+    push(&mut metrics, "massless", modes.massless as f64, "1");
+    if let (Some(fastest), 0) = (omega.last(), modes.massless) {
+        push(&mut metrics, "critical-step", 2.0 / fastest, "s");
+    }
+    let exact = setup.exact.as_ref().and_then(|exact| exact.vibrations());
+    let lowest = exact.and_then(|exact| exact.lowest(count)).unwrap_or_default();
+    if let Some(first) = lowest.first() {
+        push(&mut metrics, "slow-modes", omega.iter().filter(|&&w| w < SLOW * first).count() as f64, "1");
+        let errors = omega.iter().zip(&lowest).map(|(w, e)| (w / e - 1.0).abs());
+        push(&mut metrics, "spectrum-error", errors.fold(0.0, f64::max), "1");
+    }
+    if let Some(exact) = exact {
+        // Slow ones may be many, and come first.
+        let near = omega.iter().take_while(|&&w| w < FAST * exact.omega()).count();
+        let (shares, dimension) = shares(run, &modes.shapes[..near], exact)?;
+        let mut nearest: Vec<usize> = (0..near).collect();
+        nearest.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
+        nearest.truncate(dimension);
+        // What is one frequency of several modes may part into several: the worst is reported of them.
+        let least = nearest.iter().map(|&n| shares[n]).fold(f64::INFINITY, f64::min);
+        let ratios = nearest.iter().map(|&n| omega[n] / exact.omega());
+        if let Some(worst) = ratios.max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs())) {
+            push(&mut metrics, "mode-overlap", least, "1");
+            if nearest.len() == dimension && least > ALIKE {
+                push(&mut metrics, "frequency-ratio", worst, "1");
+                push(&mut metrics, "frequency-error", (worst - 1.0).abs(), "1");
+            }
+        }
+    }
+    let each = (0..count).map(|n| {
+        let mut metrics = Vec::new();
+        push(&mut metrics, "mode", (n + 1) as f64, "1");
+        push(&mut metrics, "omega", omega[n], "rad/s");
+        if let Some(exact) = lowest.get(n) {
+            push(&mut metrics, "omega-ratio", omega[n] / exact, "1");
+        }
+        metrics
+    });
+    Ok(Modes { modes: each.collect(), metrics, dofs: omega.len() + modes.massless })
+}
+
+/// Of each mode the share in the span of the exact ones of one frequency, the squared cosine in L2 over the body; and how many
+/// these are.
+fn shares(
+    run: &Solved,
+    shapes: &[Vec<Vector3>],
+    exact: &dyn Vibrations,
+) -> Result<(Vec<f64>, usize), Failure> {
+    let (fine, _) = run.method.error_rows(&run.prepared.volume)?;
+    let weights = fine.weights();
+    let inner = |a: &[Vector3], b: &[Vector3]| -> f64 {
+        weights.iter().zip(a.iter().zip(b)).map(|(w, (a, b))| w * a.dot(b)).sum()
+    };
+    let at: Vec<Vec<Vector3>> = fine.points().iter().map(|x: &Point3| exact.shapes(x)).collect();
+    let mut span: Vec<Vec<Vector3>> = Vec::new();
+    for k in 0..at.first().map_or(0, Vec::len) {
+        let mut field: Vec<Vector3> = at.iter().map(|shapes| shapes[k]).collect();
+        for other in &span {
+            let part = inner(other, &field);
+            field.iter_mut().zip(other).for_each(|(f, o)| *f -= o * part);
+        }
+        let size = inner(&field, &field).sqrt();
+        field.iter_mut().for_each(|f| *f /= size);
+        span.push(field);
+    }
+    let share = |shape: &Vec<Vector3>| {
+        let field = fine.rows().apply(shape);
+        let within: f64 = span.iter().map(|other| inner(other, &field).powi(2)).sum();
+        within / inner(&field, &field)
+    };
+    Ok((shapes.iter().map(share).collect(), span.len()))
+}

@@ -1,0 +1,190 @@
+//! What a run leaves for the pictures: the deformed surface, the tools where they stand, and a section between them with its
+//! pressure.
+
+use contact::ToolShape;
+use geometry::{Mesh, Point3, Vector3};
+use reports::{Section, SectionCell, SurfaceField, ToolHull};
+
+use super::{Solved, mean_pressure};
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::outcome::{Identity, LoadStep};
+use crate::scenario::PlacedTool;
+
+/// Displacement of the boundary's corner nodes, and with tools also these and a section; `last` is where the tools stand, `None`
+/// in a linear procedure.
+pub(crate) fn picture(
+    identity: &Identity,
+    run: &Solved,
+    last: Option<&LoadStep>,
+) -> Result<SurfaceField, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let u = &solution.u;
+    let mesh = method.mesh();
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for facet in mesh.boundary() {
+        let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
+        let corners: Vec<u32> = mesh.facet_nodes(facet).take(count).collect();
+        triangles.extend((1..count - 1).map(|k| [corners[0], corners[k], corners[k + 1]]));
+    }
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    for corner in triangles.iter_mut().flatten() {
+        *corner = used.binary_search(corner).expect("listed above") as u32;
+    }
+    let of_mesh = match method {
+        Discretisation::Fem(_) => u.clone(),
+        Discretisation::Efg(_) => method.at_points(&prepared.volume, mesh.points())?.0.rows().apply(u),
+    };
+    let closures = last.iter().flat_map(|step| step.tools.iter().map(|t| t.closure));
+    let tools: Vec<ToolHull> =
+        setup.tools.iter().zip(closures).map(|(set, closure)| hull(set, closure, mesh)).collect();
+    let section = match (setup.tools.first(), last) {
+        (Some(tool), Some(_)) => section(tool, run, &of_mesh),
+        _ => None,
+    };
+    Ok(SurfaceField {
+        case: identity.case.clone(),
+        method: identity.method.clone(),
+        family: identity.family,
+        title: format!("{} ({} nodes)", identity.method, method.nodes().len()),
+        points: used.iter().map(|&n| mesh.points()[n as usize].coords.into()).collect(),
+        triangles,
+        displacement: used.iter().map(|&n| of_mesh[n as usize].into()).collect(),
+        tools,
+        section,
+    })
+}
+
+/// The body's extent along each axis, m.
+fn extent(mesh: &Mesh) -> Vector3 {
+    let first = mesh.points()[0].coords;
+    let (low, high) =
+        mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(&p.coords), high.sup(&p.coords)));
+    high - low
+}
+
+/// Points whose convex hull is the tool at a closure (m); of a plate a slab as wide as the body.
+fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
+    let mut points: Vec<Vector3> = Vec::new();
+    match *set.tool.shape() {
+        ToolShape::Plate => {
+            let half = 0.5 * extent(mesh).max();
+            points.push(Vector3::new(half, half, 0.0));
+            points.push(Vector3::new(half, half, -0.1 * half));
+            mirrored(&mut points, [true, true, false]);
+        }
+        ToolShape::RoundedBox { half, radius } => {
+            points.extend(octant().iter().map(|d| Vector3::from(half).add_scalar(-radius) + d * radius));
+            mirrored(&mut points, [true; 3]);
+        }
+        ToolShape::Sphere { radius } => {
+            points.extend(octant().iter().map(|d| d * radius));
+            mirrored(&mut points, [true; 3]);
+        }
+        ToolShape::Capsule { radius, half_length } => {
+            points.extend(octant().iter().map(|d| Vector3::z() * half_length + d * radius));
+            mirrored(&mut points, [true; 3]);
+        }
+        ToolShape::Cylinder { radius, half_length } => {
+            let rim = octant().into_iter().filter(|d| d.z == 0.0);
+            points.extend(rim.map(|d| d * radius + Vector3::z() * half_length));
+            mirrored(&mut points, [true; 3]);
+        }
+    }
+    let place = set.tool.place(closure).coords;
+    ToolHull {
+        name: set.name.clone(),
+        points: points.iter().map(|p| (place + set.turned * p).into()).collect(),
+    }
+}
+
+/// Unit vectors of the octant of positive coordinates, every 15 degrees: a silhouette of a rounding of radius r is r / 100 too
+/// small at most.
+fn octant() -> Vec<Vector3> {
+    let sine = |k: i32| {
+        if k == 0 {
+            0.0
+        } else if k == 6 {
+            1.0
+        } else {
+            (f64::from(k) * 15.0).to_radians().sin()
+        }
+    };
+    let mut out = vec![Vector3::z()];
+    for up in 0..6 {
+        out.extend(
+            (0..=6)
+                .map(|turn| Vector3::new(sine(6 - up) * sine(6 - turn), sine(6 - up) * sine(turn), sine(up))),
+        );
+    }
+    out
+}
+
+/// Adds the mirror images at the planes of the axes named.
+fn mirrored(points: &mut Vec<Vector3>, axes: [bool; 3]) {
+    for axis in (0..3).filter(|&a| axes[a]) {
+        for mut image in points.clone() {
+            image[axis] = -image[axis];
+            points.push(image);
+        }
+    }
+}
+
+/// The undeformed plane through the first tool's place that holds its way and the body's longest extent across that, cut
+/// through every cell, with the cell's mean pressure; `None` where the quadrature doesn't go by cells.
+fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Section> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
+    let each = method.points_per_cell(&prepared.volume)?;
+    let right = tool.tool.along();
+    let extent = extent(mesh);
+    let across = |axis: &usize| extent[*axis] * (1.0 - right[*axis].powi(2));
+    let longest = (0..3).max_by(|a, b| across(a).total_cmp(&across(b))).unwrap_or(1);
+    let up = Vector3::ith(longest, 1.0);
+    let up = (up - right * right.dot(&up)).normalize();
+    let normal = right.cross(&up);
+    let from = tool.tool.place(0.0);
+    let gradients = prepared.volume.rows.at().displacement_gradients(&solution.u);
+    let pressure = mean_pressure::at_points(&setup.laws, &prepared.volume, &gradients, &solution.pressure);
+    let side: Vec<f64> = mesh.points().iter().map(|x| normal.dot(&(x - from))).collect();
+    let cells = (0..mesh.cell_count()).filter_map(|cell| {
+        let corners = cut(mesh, cell, &side, of_mesh, (&right, &up))?;
+        let points = each * cell..each * (cell + 1);
+        let volume: f64 = weights[points.clone()].iter().sum();
+        let sum: f64 = points.map(|q| weights[q] * pressure[q]).sum();
+        Some(SectionCell { corners, pressure: sum / volume })
+    });
+    Some(Section { right: right.into(), up: up.into(), cells: cells.collect() })
+}
+
+/// Where a plane cuts a cell's straight edges: deformed corners (m) in the order around the cut; `None` where it misses the
+/// cell.
+fn cut(
+    mesh: &Mesh,
+    cell: usize,
+    side: &[f64],
+    u: &[Vector3],
+    (right, up): (&Vector3, &Vector3),
+) -> Option<Vec<[f64; 3]>> {
+    let nodes = mesh.cell(cell);
+    let met = mesh.kind(cell).edges().iter().filter_map(|ends| {
+        let [a, b] = ends.map(|k| nodes[k] as usize);
+        // A node in the plane counts as above it: a face in the plane is cut once, not twice.
+        if (side[a] < 0.0) == (side[b] < 0.0) {
+            return None;
+        }
+        let t = side[a] / (side[a] - side[b]);
+        let x = mesh.points()[a].coords.lerp(&mesh.points()[b].coords, t);
+        Some((x, x + u[a].lerp(&u[b], t)))
+    });
+    let mut met: Vec<(Vector3, Vector3)> = met.collect();
+    if met.len() < 3 {
+        return None;
+    }
+    let middle = met.iter().map(|m| m.0).sum::<Vector3>() / met.len() as f64;
+    let angle = |x: &Vector3| (x - middle).dot(up).atan2((x - middle).dot(right));
+    met.sort_by(|a, b| angle(&a.0).total_cmp(&angle(&b.0)));
+    Some(met.iter().map(|m| Point3::from(m.1).coords.into()).collect())
+}

@@ -1,0 +1,134 @@
+//! Carrying a cloud's displacement to other points: the schemes in use, beside the method's own shape functions.
+
+use std::time::Instant;
+
+use geometry::{Point3, Vector3};
+use shape::RowBlocks;
+
+use super::norms::difference;
+use super::{Request, Solved, push_difference};
+use crate::Failure;
+use crate::outcome::timing::Timings;
+use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, push};
+
+/// Name of the method's own shape functions among the schemes: no transfer at all.
+pub const OWN_ROWS: &str = "own-rows";
+
+/// Applies of one table that are timed together: one alone (10 us) is at the clock's resolution.
+const APPLIES: usize = 20;
+
+/// Every scheme the scene request for, from the cloud's nodes to the targets. What is interpolated is the displacement at the
+/// nodes, not the nodal parameters, which are no displacements.
+pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Result<Vec<Transfer>, Failure> {
+    if request.schemes.is_empty() || request.targets.is_empty() {
+        return Ok(Vec::new());
+    }
+    let Solved { method, prepared, solution, .. } = *run;
+    let u = &solution.u;
+    let nodes = method.nodes();
+    let at_nodes = method.at_points(&prepared.volume, nodes)?.0.rows().apply(u);
+    let own = method.at_points(&prepared.volume, request.targets)?.0.rows().apply(u);
+    let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
+    request
+        .schemes
+        .iter()
+        .map(|(settings, scheme)| {
+            let name = scheme.name();
+            // A mesh serves barycentric interpolation only if its nodes are the cloud's.
+            let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
+            let build = || scheme.rows(nodes, mesh, request.targets);
+            let ((rows, info), timing) = timed(request, build, |(rows, _)| rows.rows(), &at_nodes)?;
+            counters.transfer_tables += 1;
+            let field = rows.rows().apply(&at_nodes);
+            let mut metrics = Vec::new();
+            if let Some(reference) = request.reference {
+                push_difference(&mut metrics, "rms", &field, &reference.targets);
+                push(&mut metrics, "max-error", difference(&field, &reference.targets).max, "m");
+                if let Some(at) = &reference.at {
+                    let moved = rows.rows().apply(&at(nodes)?);
+                    push_difference(&mut metrics, "transfer-only-rms", &moved, &reference.targets);
+                }
+            }
+            if let Some(beside) = request.beside {
+                push_difference(&mut metrics, "beside-rms", &field, &beside.targets);
+                // The other method's own field, taken at this cloud's nodes and interpolated back: nothing but the transfer.
+                if let Some(at) = &beside.at {
+                    let moved = rows.rows().apply(&at(nodes)?);
+                    push_difference(&mut metrics, "beside-transfer-rms", &moved, &beside.targets);
+                }
+            }
+            let change = difference(&field, &own);
+            push(&mut metrics, "transfer-rms", change.rms_magnitude, "m");
+            let error = difference(&rows.rows().apply(&linear(nodes)), &linear(request.targets));
+            push(&mut metrics, "linear-rms", error.rms_magnitude, "m");
+            push(&mut metrics, "outside", info.outside as f64, "1");
+            push(&mut metrics, "fallbacks", info.fallbacks as f64, "1");
+            Ok(transfer(name, *settings, metrics, timing, request))
+        })
+        .chain(std::iter::once_with(|| {
+            let build = || method.at_points(&prepared.volume, request.targets);
+            let (_, timing) = timed(request, build, |(rows, _)| rows.rows(), u)?;
+            let mut metrics = Vec::new();
+            if let Some(reference) = request.reference {
+                push_difference(&mut metrics, "rms", &own, &reference.targets);
+                push(&mut metrics, "max-error", difference(&own, &reference.targets).max, "m");
+            }
+            if let Some(beside) = request.beside {
+                push_difference(&mut metrics, "beside-rms", &own, &beside.targets);
+            }
+            Ok(transfer(OWN_ROWS, SchemeSettings::default(), metrics, timing, request))
+        }))
+        .collect()
+}
+
+fn transfer(
+    scheme: &str,
+    settings: SchemeSettings,
+    metrics: Vec<Metric>,
+    timings: Timings,
+    request: &Request,
+) -> Transfer {
+    Transfer {
+        scheme: scheme.into(),
+        settings,
+        metrics,
+        times: timings.phases().to_vec(),
+        targets: request.targets.len(),
+    }
+}
+
+/// Builds, packs (both are the time to build) and applies, repeated until the time for repeats is spent: a radial basis on 1331
+/// nodes takes seconds.
+fn timed<T, E: Into<Failure>>(
+    request: &Request,
+    mut build: impl FnMut() -> Result<T, E>,
+    rows: impl Fn(&T) -> &shape::Rows,
+    field: &[Vector3],
+) -> Result<(T, Timings), Failure> {
+    let mut timings = Timings::default();
+    let begin = Instant::now();
+    let mut make = || -> Result<(T, RowBlocks), E> {
+        let table = build()?;
+        let blocks = RowBlocks::new(rows(&table));
+        Ok((table, blocks))
+    };
+    let (mut table, mut blocks) = timings.time("prepare", &mut make).map_err(E::into)?;
+    let mut out = vec![Vector3::zeros(); blocks.len()];
+    for repeat in 1..=request.repeats.most {
+        let start = Instant::now();
+        for _ in 0..APPLIES {
+            blocks.apply_into(std::hint::black_box(field), &mut out);
+        }
+        timings.book("transfer", start.elapsed().as_secs_f64() / APPLIES as f64);
+        std::hint::black_box(&out);
+        if repeat < request.repeats.most && begin.elapsed().as_secs_f64() < request.repeats.seconds {
+            (table, blocks) = timings.time("prepare", &mut make).map_err(E::into)?;
+        }
+    }
+    Ok((table, timings))
+}
+
+/// A linear field of 10 % strain and rotation: what the better schemes reproduce without error.
+fn linear_field(x: &Point3) -> Vector3 {
+    Vector3::new(0.1 * x.x + 0.05 * x.y, -0.05 * x.x - 0.04 * x.y + 0.02 * x.z, 0.03 * x.x - 0.04 * x.z)
+}

@@ -1,0 +1,85 @@
+//! The end of a load step or a recorded state of a motion.
+
+use contact::{Tool, ToolState};
+use geometry::Vector3;
+
+use super::Metric;
+
+/// A tool at the end of a load step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolStep {
+    /// Way from its start, m.
+    pub closure: f64,
+    /// Force on the tool, N.
+    pub force: Vector3,
+    /// Force that it exerts along its way, N.
+    pub pushed: f64,
+    /// Surface points in contact.
+    pub active: u64,
+    /// Deepest penetration, m.
+    pub penetration: f64,
+}
+
+impl ToolStep {
+    /// Of the solver's state of a tool.
+    pub(crate) fn of(state: &ToolState, tool: &Tool) -> ToolStep {
+        ToolStep {
+            closure: state.closure,
+            force: state.force,
+            pushed: -state.force.dot(&tool.along()),
+            active: state.active as u64,
+            penetration: state.penetration,
+        }
+    }
+
+    /// Where every tool starts.
+    pub const UNTOUCHED: ToolStep = ToolStep {
+        closure: 0.0,
+        force: Vector3::new(0.0, 0.0, 0.0),
+        pushed: 0.0,
+        active: 0,
+        penetration: 0.0,
+    };
+}
+
+/// The end of a load step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadStep {
+    /// Part of the loading, 0 to 1.
+    pub load: f64,
+    /// One per tool of the scene.
+    pub tools: Vec<ToolStep>,
+    /// Strain energy, J.
+    pub strain_energy: Option<f64>,
+    /// Smallest volume ratio of all quadrature points.
+    pub smallest_j: f64,
+    /// Linear systems solved.
+    pub iterations: u64,
+    /// Displacement at the scene's probes, m.
+    pub probes: Vec<Vector3>,
+    /// Errors against the reference at the same step.
+    pub against: Vec<Metric>,
+    /// What else the procedure tells: time and energies in dynamics.
+    pub more: Vec<Metric>,
+}
+
+impl LoadStep {
+    /// Time in dynamics, s.
+    pub fn time(&self) -> Option<f64> {
+        self.more.iter().find(|m| m.name == "time").map(|m| m.value)
+    }
+
+    /// Before anything acts.
+    pub(crate) fn at_start(tools: usize) -> LoadStep {
+        LoadStep {
+            load: 0.0,
+            tools: vec![ToolStep::UNTOUCHED; tools],
+            strain_energy: Some(0.0),
+            smallest_j: 1.0,
+            iterations: 0,
+            probes: Vec::new(),
+            against: Vec::new(),
+            more: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! A finished run as rows of the long table, and its plan as rows of the report.
+
+use reports::{Family, PlanEntry, Record};
+
+use super::timing::{Summary, Timed};
+use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer};
+
+impl Outcome {
+    /// The run as rows of the long table.
+    pub fn records(&self) -> Vec<Record> {
+        let own = self.row();
+        let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
+        self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
+        for latency in &self.latencies {
+            let phase = Record { quantity: "time".into(), phase: latency.phase.into(), ..own.clone() };
+            rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {
+                unit: unit.into(),
+                statistic: statistic.into(),
+                value,
+                ..phase.clone()
+            }));
+        }
+        rows.push(number(&own, &metric("memory", self.memory as f64, "B")));
+        self.transfers.iter().for_each(|transfer| rows.extend(self.transfer_records(&own, transfer)));
+        rows.extend(self.step_records(&own));
+        for (index, metrics) in self.modes.iter().enumerate() {
+            let mode = Record { mode: Some(index as u64 + 1), ..own.clone() };
+            rows.extend(metrics.iter().map(|m| number(&mode, m)));
+        }
+        rows
+    }
+
+    /// What all rows of the run share.
+    fn row(&self) -> Record {
+        let size = &self.size;
+        let own = Record {
+            nodes: size.nodes,
+            elements: size.elements,
+            points: size.points,
+            dofs: size.dofs,
+            spacing: size.spacing,
+            ..self.identity.clone()
+        };
+        Record { run: run_id(&own), ..own }
+    }
+
+    /// The history, from step 0, the start. The first tool's numbers are `closure` and `tool-force`, the second's `closure-2` and
+    /// `tool-force-2`.
+    fn step_records(&self, own: &Record) -> Vec<Record> {
+        let at = |step: usize| Record { step: Some(step as u64), ..own.clone() };
+        let mut rows = Vec::new();
+        let start = at(0);
+        if !self.steps.is_empty() {
+            for index in 0..self.tools.len() {
+                rows.push(number(&start, &metric(&of_tool("closure", index), 0.0, "m")));
+                rows.push(number(&start, &metric(&of_tool("tool-force", index), 0.0, "N")));
+            }
+        }
+        // Dynamics starts from rest and undeformed: no time, no energy.
+        if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
+            if first.strain_energy.is_some() {
+                rows.push(number(&start, &metric("strain-energy", 0.0, "J")));
+            }
+            for known in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
+                rows.push(number(&start, &metric(&known.name, 0.0, known.unit)));
+            }
+        }
+        for (index, step) in self.steps.iter().enumerate() {
+            let here = at(index + 1);
+            rows.extend(of_step(step).iter().map(|m| number(&here, m)));
+        }
+        rows
+    }
+
+    /// The plan as rows for the report.
+    pub fn plan_entries(&self) -> Vec<PlanEntry> {
+        self.plan
+            .stages()
+            .iter()
+            .map(|stage| PlanEntry {
+                case: self.identity.case.clone(),
+                method: self.identity.method.clone(),
+                stage: stage.stage.name().into(),
+                ran: stage.ran,
+                why: stage.why.clone(),
+            })
+            .collect()
+    }
+
+    /// A transfer is a run of its own: by its scheme, from this method.
+    fn transfer_records(&self, own: &Record, transfer: &Transfer) -> Vec<Record> {
+        let SchemeSettings { neighbours, power, support_scale, shape, polynomial } = transfer.settings;
+        let row = Record {
+            case: own.case.clone(),
+            purpose: own.purpose,
+            published: own.published.clone(),
+            method: transfer.scheme.clone(),
+            series: transfer.scheme.clone(),
+            family: Family::Interp,
+            variant: transfer.scheme.clone(),
+            from: Some(own.method.clone()),
+            // One method id may stand for many kernels.
+            kernel: Some(own.variant.clone()),
+            neighbours,
+            power,
+            support_scale,
+            shape,
+            polynomial,
+            points: transfer.targets as u64,
+            poisson: own.poisson,
+            level: own.level,
+            nodes: own.nodes,
+            elements: own.elements,
+            dofs: own.dofs,
+            spacing: own.spacing,
+            seed: own.seed,
+            ..Record::default()
+        };
+        // Settings of the method that a scheme's row has no column for tell its runs apart all the same.
+        let row = Record { run: digest(&format!("{} {}", own.run, run_id(&row))), ..row };
+        let mut rows: Vec<Record> = transfer.metrics.iter().map(|m| number(&row, m)).collect();
+        transfer.times.iter().for_each(|timed| rows.extend(times(&row, timed)));
+        rows
+    }
+}
+
+/// Id of the run that a row belongs to: of its case, method, settings and size, so that it is the same in every study.
+pub(crate) fn run_id(row: &Record) -> String {
+    let size = (row.poisson.to_bits(), row.level, row.nodes, row.elements, row.seed);
+    digest(&format!("{:?}", (&row.case, &row.method, row.family, &row.variant, row.settings(), size)))
+}
+
+fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex()[..16].to_string()
+}
+
+fn metric(name: &str, value: f64, unit: &'static str) -> Metric {
+    Metric { name: name.into(), value, unit }
+}
+
+/// A plain value as a row.
+fn number(row: &Record, metric: &Metric) -> Record {
+    Record {
+        quantity: metric.name.clone(),
+        unit: metric.unit.into(),
+        statistic: "value".into(),
+        value: metric.value,
+        ..row.clone()
+    }
+}
+
+/// Every repeat of a phase on the wall's clock and of the processors, and what they come to.
+fn times(row: &Record, timed: &Timed) -> Vec<Record> {
+    let of = |quantity: &str, statistic: &str, repeat: Option<usize>, value: f64| Record {
+        quantity: quantity.into(),
+        unit: "s".into(),
+        phase: timed.phase.into(),
+        statistic: statistic.into(),
+        repeat: repeat.map(|r| r as u64 + 1),
+        value,
+        ..row.clone()
+    };
+    let Summary { median, spread, min } = timed.summary();
+    let mut rows: Vec<Record> = [("median", median), ("spread", spread), ("min", min)]
+        .map(|(statistic, value)| of("time", statistic, None, value))
+        .into();
+    rows.extend(timed.cpu_median().map(|median| of("cpu-time", "median", None, median)));
+    for (quantity, all) in [("time", &timed.wall), ("cpu-time", &timed.cpu)] {
+        rows.extend(all.iter().enumerate().map(|(r, &value)| of(quantity, "repeat", Some(r), value)));
+    }
+    rows
+}
+
+/// What is recorded of a step.
+fn of_step(step: &LoadStep) -> Vec<Metric> {
+    let mut all = vec![metric("load-carried", step.load, "1")];
+    all.extend(step.strain_energy.map(|energy| metric("strain-energy", energy, "J")));
+    all.push(metric("smallest-j", step.smallest_j, "1"));
+    if step.iterations > 0 {
+        all.push(metric("newton-iterations", step.iterations as f64, "1"));
+    }
+    for (index, tool) in step.tools.iter().enumerate() {
+        all.push(metric(&of_tool("closure", index), tool.closure, "m"));
+        all.push(metric(&of_tool("tool-force", index), tool.pushed, "N"));
+        all.push(metric(&of_tool("contact-points", index), tool.active as f64, "1"));
+    }
+    all.extend(step.more.iter().chain(&step.against).cloned());
+    all
+}
+
+/// The name of a tool's quantity: the bare one for the first tool, numbered from 2 for the others.
+pub(crate) fn of_tool(quantity: &str, index: usize) -> String {
+    if index == 0 { quantity.into() } else { format!("{quantity}-{}", index + 1) }
+}

@@ -1,0 +1,168 @@
+//! Phases timed apart, over repeats, and the peak of memory.
+
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+
+use super::Counters;
+
+/// The phases every run is told in, in order.
+pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
+
+/// Seconds of one phase, one entry per repeat.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Timed {
+    /// Its name.
+    pub phase: &'static str,
+    /// By the clock on the wall.
+    pub wall: Vec<f64>,
+    /// Of all threads of the process; empty where it is not known.
+    pub cpu: Vec<f64>,
+}
+
+impl Timed {
+    /// Summary of the wall-clock times.
+    pub fn summary(&self) -> Summary {
+        Summary::of(&self.wall)
+    }
+
+    /// Median of the CPU times, where they are known.
+    pub fn cpu_median(&self) -> Option<f64> {
+        (!self.cpu.is_empty()).then(|| Summary::of(&self.cpu).median)
+    }
+
+    /// A phase of its own that takes a constant part of this one.
+    pub fn part(&self, phase: &'static str, factor: f64) -> Timed {
+        let scaled = |all: &[f64]| all.iter().map(|t| t * factor).collect();
+        Timed { phase, wall: scaled(&self.wall), cpu: scaled(&self.cpu) }
+    }
+}
+
+/// Seconds spent per phase.
+#[derive(Clone, Debug, Default)]
+pub struct Timings {
+    phases: Vec<Timed>,
+}
+
+impl Timings {
+    /// Runs `work` and books its time under `phase`.
+    pub fn time<T>(&mut self, phase: &'static str, work: impl FnOnce() -> T) -> T {
+        let cpu = ProcessTime::try_now().ok();
+        let start = Instant::now();
+        let result = work();
+        let wall = start.elapsed().as_secs_f64();
+        let spent = cpu.and_then(|cpu| cpu.try_elapsed().ok()).map(|t| t.as_secs_f64());
+        let timed = self.of(phase);
+        timed.wall.push(wall);
+        timed.cpu.extend(spent);
+        result
+    }
+
+    /// Books a time that was taken elsewhere, by the clock on the wall alone.
+    pub(crate) fn book(&mut self, phase: &'static str, seconds: f64) {
+        self.of(phase).wall.push(seconds);
+    }
+
+    fn of(&mut self, phase: &'static str) -> &mut Timed {
+        let known = self.phases.iter().position(|timed| timed.phase == phase);
+        let at = known.unwrap_or_else(|| {
+            self.phases.push(Timed { phase, ..Timed::default() });
+            self.phases.len() - 1
+        });
+        &mut self.phases[at]
+    }
+
+    /// Phases in the order they first ran.
+    pub fn phases(&self) -> &[Timed] {
+        &self.phases
+    }
+
+    /// Sum of one repeat's phases over the repeats that all phases share; parts of a phase are none.
+    pub fn total(&self) -> Timed {
+        let sums = |of: fn(&Timed) -> &[f64]| -> Vec<f64> {
+            let phases = || self.phases.iter().filter(|timed| PHASES.contains(&timed.phase)).map(of);
+            let repeats = phases().map(<[f64]>::len).min().unwrap_or(0);
+            (0..repeats).map(|r| phases().map(|list| list[r]).sum()).collect()
+        };
+        Timed { phase: "total", wall: sums(|timed| &timed.wall), cpu: sums(|timed| &timed.cpu) }
+    }
+}
+
+/// What a run is metered by.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Meters {
+    /// Seconds, one entry per pass.
+    pub(crate) timings: Timings,
+    /// Counts of one pass.
+    pub(crate) counters: Counters,
+}
+
+/// Median, interquartile range and minimum of repeated timings, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Median.
+    pub median: f64,
+    /// Interquartile range.
+    pub spread: f64,
+    /// Smallest.
+    pub min: f64,
+}
+
+impl Summary {
+    /// Quantiles by linear interpolation between order statistics; zero for no samples.
+    fn of(samples: &[f64]) -> Summary {
+        let mut sorted = samples.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let quantile = |p: f64| match sorted.len() {
+            0 => 0.0,
+            n => {
+                let at = p * (n - 1) as f64;
+                let (low, high) = (at.floor() as usize, at.ceil() as usize);
+                sorted[low] + (at - low as f64) * (sorted[high] - sorted[low])
+            }
+        };
+        Summary { median: quantile(0.5), spread: quantile(0.75) - quantile(0.25), min: quantile(0.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_of_five_samples() {
+        let s = Summary::of(&[5.0, 1.0, 2.0, 4.0, 3.0]);
+        assert_eq!(s, Summary { median: 3.0, spread: 2.0, min: 1.0 });
+    }
+
+    #[test]
+    fn a_total_counts_only_whole_repeats() {
+        let mut t = Timings::default();
+        t.book("prepare", 1.0);
+        t.book("solve", 2.0);
+        t.book("prepare", 10.0);
+        assert_eq!(t.total().wall, [3.0]);
+    }
+
+    #[test]
+    fn cpu_seconds_are_those_of_the_work_and_not_of_waiting() {
+        let mut t = Timings::default();
+        t.time("solve", || std::thread::sleep(std::time::Duration::from_millis(20)));
+        let solve = &t.phases()[0];
+        assert!(solve.wall[0] >= 0.02);
+        // Other tests of this process may run meanwhile, on as many threads as there are.
+        assert!(solve.cpu.iter().all(|&cpu| cpu >= 0.0) && solve.cpu.len() <= 1);
+        let begin = Instant::now();
+        t.time("factor", || {
+            while begin.elapsed().as_secs_f64() < 0.05 {
+                std::hint::black_box(0);
+            }
+        });
+        assert!(t.phases()[1].cpu_median().is_none_or(|cpu| cpu > 0.0));
+        assert_eq!(t.total().cpu.len(), solve_repeats(&t));
+    }
+
+    fn solve_repeats(t: &Timings) -> usize {
+        t.phases().iter().map(|timed| timed.cpu.len()).min().unwrap_or(0)
+    }
+}

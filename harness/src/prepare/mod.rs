@@ -1,0 +1,461 @@
+//! The prepare phase: every table that assembly reads, for one method on one body under one setup.
+
+mod nodal_patch;
+pub(crate) mod reach;
+
+use cases::scene::ConstraintRows;
+use geometry::quadrature;
+use geometry::{Mesh, Point3, Vector3};
+use shape::FixedDof;
+use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
+use statics::{
+    Assembled, Body, ConstraintRow, Factored, HeldSurface, LinearProblem, Load, SolveError, Weak,
+    WeakSupport, multiplier_rows,
+};
+
+use crate::Failure;
+use crate::discretise::place::{self, CutTriangle, Place, tolerance};
+use crate::discretise::{Coupled, Discretisation, Efg, Essential, Volume};
+use crate::error::Key;
+use crate::outcome::Counters;
+use crate::scenario::setup::{self, Applied, Setup, Support};
+use nodal_patch::{mean_rows, nodal_patches, on_facets};
+
+/// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
+const CUT_POINTS: usize = 6;
+
+/// Values of one load at its points.
+enum Values {
+    Traction(Vec<Vector3>),
+    Pressure(Vec<f64>),
+}
+
+/// A surface held weakly, with its tables owned.
+struct OwnedWeak {
+    flux: FluxRows,
+    axes: [bool; 3],
+    values: Vec<Vector3>,
+    region: Vec<u16>,
+    method: Weak,
+    trace: Option<TraceRows>,
+}
+
+/// A surface held by penalty in a static procedure, with its table owned.
+struct OwnedHeld {
+    surface: SurfaceRows,
+    axes: [bool; 3],
+    values: Vec<Vector3>,
+    beta: f64,
+}
+
+/// All tables of one run.
+pub struct Prepared {
+    /// The volume tables.
+    pub volume: Volume,
+    /// Mean node spacing, m.
+    pub spacing: f64,
+    surfaces: Vec<(SurfaceRows, Values)>,
+    body_force: Vec<Vec<Vector3>>,
+    fixed: Vec<FixedDof>,
+    constraints: Vec<ConstraintRow>,
+    /// Whether the constraints are eliminated, not enforced by multipliers.
+    eliminates: bool,
+    weak: Vec<OwnedWeak>,
+    held: Vec<OwnedHeld>,
+    /// Where tools may touch; `None` without tools.
+    pub contact: Option<SurfaceRows>,
+}
+
+/// Fills every table.
+pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) -> Result<Prepared, Failure> {
+    let volume = method.volume(counters)?;
+    let spacing = method.spacing(&volume.rows);
+    let mut prepared = Prepared {
+        volume,
+        spacing,
+        surfaces: Vec::new(),
+        body_force: Vec::new(),
+        fixed: Vec::new(),
+        constraints: Vec::new(),
+        eliminates: matches!(method, Discretisation::Efg(efg) if matches!(efg.essential, Essential::Elimination(_))),
+        weak: Vec::new(),
+        held: Vec::new(),
+        contact: None,
+    };
+    for load in &setup.loads {
+        prepared.load(method, load)?;
+    }
+    for support in &setup.supports {
+        match method {
+            Discretisation::Fem(fem) => prepared.constrain_nodes(&fem.mesh, support, |vertex| vertex)?,
+            Discretisation::Efg(efg) => prepared.constrain_cloud(method, efg, support)?,
+        }
+    }
+    counters.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
+    counters.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
+    let constraints = prepared.constraints.len() as u64;
+    *(if prepared.eliminates { &mut counters.eliminated_rows } else { &mut counters.multiplier_rows }) +=
+        constraints;
+    counters.fixed_dofs += prepared.fixed.len() as u64;
+    if setup.solves_by_newton() {
+        prepared.penalise(setup)?;
+    }
+    if !setup.tools.is_empty() {
+        let surface = method.contact_surface(&prepared.volume)?;
+        let points = surface.weights().len() as u64;
+        counters.contact_points += points;
+        counters.friction_points +=
+            points * setup.tools.iter().filter(|t| t.tool.law().friction() > 0.0).count() as u64;
+        prepared.contact = Some(surface);
+    }
+    Ok(prepared)
+}
+
+impl Prepared {
+    /// The loads, borrowed as the solver takes them.
+    pub fn loads(&self) -> Vec<Load<'_>> {
+        let surfaces = self.surfaces.iter().map(|(surface, values)| match values {
+            Values::Traction(values) => Load::Traction { surface, values: values.clone() },
+            Values::Pressure(values) => Load::Pressure { surface, values: values.clone() },
+        });
+        surfaces.chain(self.body_force.iter().map(|values| Load::Body { values: values.clone() })).collect()
+    }
+
+    /// The weak supports, borrowed as the solver takes them.
+    pub fn weak(&self) -> Vec<WeakSupport<'_>> {
+        self.weak
+            .iter()
+            .map(|w| WeakSupport {
+                flux: &w.flux,
+                axes: w.axes,
+                values: w.values.clone(),
+                region: &w.region,
+                method: w.method,
+                h: self.spacing,
+                trace: w.trace.as_ref(),
+            })
+            .collect()
+    }
+
+    /// Degrees of freedom held at values.
+    pub fn fixed(&self) -> &[FixedDof] {
+        &self.fixed
+    }
+
+    /// The surfaces held by penalty in a static procedure, borrowed as the solver takes them.
+    pub fn held(&self) -> Vec<HeldSurface<'_>> {
+        self.held
+            .iter()
+            .map(|h| HeldSurface {
+                surface: &h.surface,
+                axes: h.axes,
+                values: h.values.clone(),
+                beta: h.beta,
+            })
+            .collect()
+    }
+
+    /// The whole problem over borrowed parts.
+    pub fn problem<'a>(
+        &'a self,
+        nodes: &'a [Point3],
+        setup: &'a Setup,
+        loads: &'a [Load<'a>],
+        weak: &'a [WeakSupport<'a>],
+    ) -> LinearProblem<'a> {
+        let body = Body {
+            nodes,
+            volume: &self.volume.rows,
+            materials: &setup.materials,
+            region: &self.volume.region,
+            dilation: self.volume.groups.as_ref(),
+        };
+        LinearProblem { body, loads, fixed: &self.fixed, constraints: &self.constraints, weak }
+    }
+
+    /// Factors the assembled problem as the method holds the body.
+    pub fn factor<'a>(&self, assembled: Assembled<'a>) -> Result<Factored<'a>, SolveError> {
+        if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
+    }
+
+    /// Resultant of all surface loads and body forces, N.
+    pub fn resultant(&self) -> Vector3 {
+        let mut sum = Vector3::zeros();
+        for (surface, values) in &self.surfaces {
+            for (q, w) in surface.weights().iter().enumerate() {
+                sum += *w
+                    * match values {
+                        Values::Traction(t) => t[q],
+                        Values::Pressure(p) => surface.normals()[q] * -p[q],
+                    };
+            }
+        }
+        for values in &self.body_force {
+            for (b, w) in values.iter().zip(self.volume.rows.weights()) {
+                sum += b * *w;
+            }
+        }
+        sum
+    }
+
+    fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
+        if let Applied::Body(field) = &load.applied {
+            let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
+            self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
+            return Ok(());
+        }
+        let patch = place::patch(&load.key, &load.place, method.mesh())?;
+        let before = self.surfaces.len();
+        let mut surfaces = Vec::new();
+        if !patch.whole.is_empty() {
+            surfaces.push(method.surface(&self.volume, &patch.whole)?);
+        }
+        if !patch.cut.is_empty() {
+            surfaces.push(cut_surface(method, &self.volume, &patch.cut)?);
+        }
+        for surface in surfaces {
+            let at = surface.points().iter().zip(surface.normals());
+            let values = match &load.applied {
+                Applied::Traction(field) => Values::Traction(
+                    at.map(|(x, n)| field(x, n))
+                        .collect::<Result<_, _>>()
+                        .map_err(not_finite(&load.key, "traction"))?,
+                ),
+                Applied::Pressure(field) => Values::Pressure(
+                    at.map(|(x, _)| field(x))
+                        .collect::<Result<_, _>>()
+                        .map_err(not_finite(&load.key, "pressure"))?,
+                ),
+                Applied::Body(_) => unreachable!("returned above"),
+            };
+            self.surfaces.push((surface, values));
+        }
+        if self.surfaces.len() == before {
+            return Err(place::empty(&load.key, &load.place, method.mesh()));
+        }
+        Ok(())
+    }
+
+    /// Holds the vertices of a mesh that lie in a place; `node` tells which node each is.
+    fn constrain_nodes(
+        &mut self,
+        mesh: &Mesh,
+        support: &Support,
+        node: impl Fn(u32) -> u32,
+    ) -> Result<(), Failure> {
+        let vertices = place::nodes(&support.key, &support.place, mesh)?;
+        if vertices.is_empty() {
+            return Err(place::empty(&support.key, &support.place, mesh));
+        }
+        for vertex in vertices {
+            let value =
+                (support.value)(&mesh.points()[vertex as usize]).map_err(not_finite(&support.key, "move"))?;
+            for axis in (0..3).filter(|&a| support.axes[a]) {
+                self.fixed.push(FixedDof { node: node(vertex), axis: axis as u8, value: value[axis] });
+            }
+        }
+        Ok(())
+    }
+
+    /// A support on a basis whose parameters are not displacements, unless elements are coupled to it: on the facets of the
+    /// place, and, where the place has a volume (a clamped end, not a clamped face), on that too.
+    fn constrain_cloud(
+        &mut self,
+        method: &Discretisation,
+        efg: &Efg,
+        support: &Support,
+    ) -> Result<(), Failure> {
+        let patch = place::patch(&support.key, &support.place, &efg.background)?;
+        let (rows, constraints) = (self.weak.len(), self.constraints.len());
+        match efg.essential {
+            Essential::Multipliers => {
+                if !patch.whole.is_empty() {
+                    let surface = method.surface(&self.volume, &patch.whole)?;
+                    let basis = efg.multiplier_basis(&patch.whole)?;
+                    let values = at(support, surface.points())?;
+                    self.constraints.extend(multiplier_rows(&surface, basis.rows(), support.axes, &values)?);
+                }
+            }
+            Essential::Elimination(rows) => {
+                if !patch.whole.is_empty() {
+                    let surface = method.surface(&self.volume, &patch.whole)?;
+                    let patches = nodal_patches(&efg.cloud.points, &surface);
+                    match rows {
+                        ConstraintRows::Means => {
+                            let values = at(support, surface.points())?;
+                            self.constraints.extend(mean_rows(&surface, &patches, support.axes, &values));
+                        }
+                        ConstraintRows::Points => {
+                            let points =
+                                on_facets(&efg.cloud.points, &patches, &efg.background, &patch.whole);
+                            let (rows, _) = method.at_points(&self.volume, &points)?;
+                            self.constraints.extend(collocated(&rows, support.axes, &at(support, &points)?));
+                        }
+                    }
+                }
+            }
+            Essential::Coupling(Coupled { ref vertices, ref nodes }) => {
+                // Those of all supports are listed, and come last among the nodes.
+                let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
+                return self.constrain_nodes(&efg.background, support, |vertex| node(vertex) as u32);
+            }
+            Essential::Nitsche(gamma) => {
+                if !patch.whole.is_empty() {
+                    let flux = method.flux(&self.volume, &patch.whole)?;
+                    let trace = efg.trace(&patch.whole)?;
+                    self.constrain_flux(efg, support, flux, Weak::Nitsche { gamma }, trace)?;
+                }
+            }
+            Essential::Penalty(factor) => {
+                if !patch.whole.is_empty() {
+                    let flux = method.flux(&self.volume, &patch.whole)?;
+                    self.constrain_flux(efg, support, flux, Weak::Penalty { factor }, None)?;
+                }
+            }
+        }
+        match efg.essential {
+            // Volume points outnumber what a cloud can follow; its own nodes do not.
+            Essential::Multipliers | Essential::Elimination(_)
+                if matches!(support.place, Place::Where(_)) =>
+            {
+                let tolerance = tolerance(&efg.background);
+                let inside = efg.cloud.points.iter().filter(|x| place::holds(&support.place, x, tolerance));
+                let nodes: Vec<Point3> = inside.copied().collect();
+                let (rows, _) = method.at_points(&self.volume, &nodes)?;
+                let values = at(support, &nodes)?;
+                self.constraints.extend(collocated(&rows, support.axes, &values));
+            }
+            Essential::Multipliers | Essential::Elimination(_) | Essential::Coupling(_) => {}
+            Essential::Nitsche(factor) | Essential::Penalty(factor) => {
+                if let Some(flux) = self.clamped_volume(efg, support)? {
+                    self.constrain_flux(efg, support, flux, Weak::Penalty { factor }, None)?;
+                }
+            }
+        }
+        if self.weak.len() == rows && self.constraints.len() == constraints {
+            return Err(place::empty(&support.key, &support.place, &efg.background));
+        }
+        Ok(())
+    }
+
+    /// Weak supports as penalties of `factor E / h`, as the linear procedure has them; at finite strain no other kind is known.
+    fn penalise(&mut self, setup: &Setup) -> Result<(), Failure> {
+        let young = setup.materials[0].young();
+        let penalty = |weak: &OwnedWeak| match weak.method {
+            Weak::Penalty { factor } => Some(factor * young / self.spacing),
+            Weak::Nitsche { .. } => None,
+        };
+        let betas: Option<Vec<f64>> = self.weak.iter().map(penalty).collect();
+        let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
+            return Err(Failure::unavailable(
+                Key::Method("essential"),
+                "is not available where a support is held by Newton's method",
+                "essential = \"penalty\" and \"coupling\" are",
+            ));
+        };
+        for (weak, beta) in self.weak.drain(..).zip(betas) {
+            let flux = weak.flux;
+            let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
+            let surface = SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?;
+            self.held.push(OwnedHeld { surface, axes: weak.axes, values: weak.values, beta });
+        }
+        Ok(())
+    }
+
+    fn constrain_flux(
+        &mut self,
+        efg: &Efg,
+        support: &Support,
+        flux: FluxRows,
+        method: Weak,
+        trace: Option<TraceRows>,
+    ) -> Result<(), Failure> {
+        let values = at(support, flux.points())?;
+        let region = if efg.background.region_names().len() > 1 {
+            return Err(Failure::unavailable(
+                Key::Method("essential"),
+                "holds weakly, which is not available for clouds on a body of several regions",
+                "take one region, or essential = \"multipliers\"",
+            ));
+        } else {
+            Vec::new()
+        };
+        self.weak.push(OwnedWeak { flux, axes: support.axes, values, region, method, trace });
+        Ok(())
+    }
+
+    /// Volume points inside the place, as a table of penalty points: weight per spacing, so that one penalty factor
+    /// means the same stiffness per depth of one node spacing as it does on a surface.
+    fn clamped_volume(&self, efg: &Efg, support: &Support) -> Result<Option<FluxRows>, Failure> {
+        if !matches!(support.place, Place::Where(_)) {
+            return Ok(None);
+        }
+        let tolerance = tolerance(&efg.background);
+        let rows = &self.volume.rows;
+        let inside: Vec<usize> = (0..rows.points().len())
+            .filter(|&q| place::holds(&support.place, &rows.points()[q], tolerance))
+            .collect();
+        if inside.is_empty() {
+            return Ok(None);
+        }
+        let (mut offsets, mut nodes, mut values, mut grads) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+        for &q in &inside {
+            let (row_nodes, row_values) = rows.rows().row(q);
+            nodes.extend_from_slice(row_nodes);
+            values.extend_from_slice(row_values);
+            grads.extend_from_slice(rows.row(q).1);
+            offsets.push(nodes.len());
+        }
+        let points = inside.iter().map(|&q| rows.points()[q]).collect();
+        let table = Rows::new(rows.rows().node_count(), offsets, nodes, values, Unity::NotPromised)?;
+        let at = GradRows::new(points, table, grads)?;
+        let weights = inside.iter().map(|&q| rows.weights()[q] / self.spacing).collect();
+        Ok(Some(FluxRows::new(at, weights, vec![Vector3::z(); inside.len()])?))
+    }
+}
+
+fn at(support: &Support, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
+    points.iter().map(&support.value).collect::<Result<_, _>>().map_err(not_finite(&support.key, "move"))
+}
+
+/// A value that is no number somewhere, of what acts at `key`.
+fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
+    let key = Key::Scene(format!("{key}.{below}"));
+    move |problem| {
+        Failure::input(key.clone(), problem, "it has to be finite at every point of the place it acts on")
+    }
+}
+
+/// `u(x_c) = g(x_c)` at points, by one constraint row per point and held axis.
+fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<ConstraintRow> {
+    let mut out = Vec::new();
+    for (c, value) in values.iter().enumerate() {
+        let (nodes, phi) = rows.rows().row(c);
+        for axis in (0..3).filter(|&a| axes[a]) {
+            let terms = nodes.iter().zip(phi).map(|(&n, &v)| (n, axis as u8, v)).collect();
+            out.push(ConstraintRow { terms, value: value[axis] });
+        }
+    }
+    out
+}
+
+/// Surface rows over clipped triangles.
+fn cut_surface(
+    method: &Discretisation,
+    volume: &Volume,
+    cut: &[CutTriangle],
+) -> Result<SurfaceRows, Failure> {
+    let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
+    let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+    for triangle in cut {
+        let area = triangle.area_vector();
+        let [a, b, c] = triangle.corners;
+        for (xi, w) in rule.points.iter().zip(&rule.weights) {
+            points.push(a + (b - a) * xi[0] + (c - a) * xi[1]);
+            weights.push(2.0 * w * area.norm());
+            normals.push(area.normalize());
+        }
+    }
+    let (rows, _) = method.at_points(volume, &points)?;
+    Ok(SurfaceRows::new(rows, weights, normals)?)
+}

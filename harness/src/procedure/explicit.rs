@@ -1,0 +1,292 @@
+//! Explicit dynamics: time steps of central differences with contact, and what each recorded state left.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use cases::scene::Explicit;
+use contact::{ContactSurface, Drive};
+use explicit::{
+    Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
+    Lumping, MovingTool, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
+};
+use geometry::Vector3;
+use lanes::LanePath;
+use shape::Matrix3;
+use statics::{SolveError, nodal_forces};
+
+use super::{Problem, Solution, Stages, StepHistory};
+use crate::Failure;
+use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
+use crate::prepare::Prepared;
+use crate::scenario::setup::Setup;
+
+/// Lanczos steps of the critical step, and the factor for what they miss from below.
+const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
+
+/// Most time steps between two estimates of the critical step: 30 evaluations of the internal forces each, 3 % of these steps.
+const RECHECK: usize = 1000;
+
+pub(super) fn stages(asked: &Explicit) -> Stages {
+    let duration = asked.ramp.duration;
+    let steps = match asked.step {
+        Some(step) => format!("{duration} s in steps of {step:e} s"),
+        None => format!("{duration} s in steps of {} of the critical one", asked.safety),
+    };
+    Stages {
+        mass: (true, "lumped".into()),
+        stiffness: (false, "explicit: forces alone".into()),
+        time_steps: (true, steps),
+        factorisation: (false, "explicit: the mass is diagonal".into()),
+        newton: (false, "explicit".into()),
+        ..Stages::linear()
+    }
+}
+
+/// Runs the motion, from rest and undeformed. One that ends early keeps its numbers, those of the start if no state was
+/// recorded.
+pub(super) fn solve(problem: &Problem, asked: &Explicit, meters: &mut Meters) -> Result<Solution, Failure> {
+    let Meters { timings, counters } = meters;
+    timings.time("solve", || motion(problem, asked, counters))
+}
+
+/// What pushes and leads the body: nodal forces of the loads (N) and the displacements of the supports (m), both at the end of
+/// their growth.
+struct Loading {
+    loads: Vec<Vector3>,
+    led: BTreeMap<(u32, u8), f64>,
+    /// Time over which they grow, s.
+    over: f64,
+}
+
+impl Loading {
+    fn part(&self, t: f64) -> f64 {
+        if t < self.over { t / self.over } else { 1.0 }
+    }
+}
+
+impl Loading {
+    fn new(problem: &Problem, asked: &Explicit) -> Result<Loading, Failure> {
+        let Problem { prepared, .. } = *problem;
+        let loads = nodal_forces(&prepared.volume.rows, &prepared.loads())?;
+        Ok(Loading { loads, led: led(prepared)?, over: asked.ramp.growth() })
+    }
+}
+
+fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Result<Solution, Failure> {
+    let Problem { setup, prepared, .. } = *problem;
+    let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
+    let mass = lumped_mass(rows, &setup.density()?, &volume.region, Lumping::for_table(rows))?;
+    let body = ExplicitBody {
+        volume: rows,
+        laws: &setup.laws,
+        region: &volume.region,
+        groups: volume.groups.as_ref(),
+    };
+    let mut force = InternalForce::new(body, LanePath::best())?;
+    let kernel = force.info();
+    counters.mass_nodes += mass.len() as u64;
+
+    let loading = Loading::new(problem, asked)?;
+    let loaded: Vec<usize> =
+        (0..loading.loads.len()).filter(|&i| loading.loads[i] != Vector3::zeros()).collect();
+    let mut load = |t: f64, _: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
+        loaded.iter().for_each(|&i| f[i] += loading.loads[i] * loading.part(t));
+    };
+    let loading = &loading;
+    let motions: Vec<Box<dyn Fn(f64) -> f64 + Sync>> = loading
+        .led
+        .values()
+        .map(|&value| Box::new(move |t: f64| value * loading.part(t)) as Box<_>)
+        .collect();
+    let prescribed: Vec<Prescribed> = (loading.led.keys().zip(&motions))
+        .map(|(&(node, axis), motion)| Prescribed { node, axis, motion: motion.as_ref() })
+        .collect();
+
+    let zeros = vec![Vector3::zeros(); mass.len()];
+    let surface = prepared.contact.as_ref().map(ContactSurface::new);
+    let tool_mass = asked.tool_mass * mass.iter().sum::<f64>();
+    let moving = moving_tools(setup, asked, tool_mass);
+    let tools = match &surface {
+        Some(surface) => Some(Tools::new(surface, &moving, &zeros)?),
+        None => None,
+    };
+    let held: BTreeSet<usize> =
+        loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
+    let springs = prepared.contact.as_ref().map(|surface| Springs { surface, modulus: stiffest(setup) });
+    let first = critical_step_touching(&mut force, &mass, &zeros, |k| !held.contains(&k), springs, LANCZOS)?;
+    let interval = asked.ramp.duration / asked.ramp.steps as f64;
+    let longest = asked.step.unwrap_or(asked.safety * first.dt);
+    let params = DynamicsParams {
+        dt: divided(interval, longest).0,
+        damping: asked.ramp.damping,
+        critical: LANCZOS,
+        recheck: 0,
+    };
+    let motion =
+        Dynamics::new(&mut force, &mass, &prescribed, params, zeros.clone(), zeros).and_then(|motion| {
+            match tools {
+                Some(tools) => motion.with_tools(tools),
+                None => Ok(motion),
+            }
+        });
+    let mut states = States { critical: first.dt, ..States::default() };
+    let failure = match motion {
+        Err(failure @ ExplicitError::StepTooLarge { .. }) => Some(failure),
+        Err(failure) => return Err(failure.into()),
+        Ok(motion) => {
+            let mut run = Run { motion, asked, setup, prepared, states };
+            let failure = run.march(&mut load, interval).err();
+            counters.time_steps += run.motion.steps() as u64;
+            if let Some(tools) = run.motion.tools() {
+                counters.contact_evaluations += tools.counts().evaluations;
+                counters.contact_skips += tools.counts().skipped;
+            }
+            Run { states, .. } = run;
+            failure
+        }
+    };
+    let States { steps, fields, critical, drift } = states;
+    let last = steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(setup.tools.len()));
+    let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
+    let mut metrics = Vec::new();
+    push(&mut metrics, "time-steps", counters.time_steps as f64, "1");
+    push(&mut metrics, "time-reached", last.load * asked.ramp.duration, "s");
+    push(&mut metrics, "critical-step", critical, "s");
+    push(&mut metrics, "mass", mass.iter().sum(), "kg");
+    push(&mut metrics, "tool-mass", tool_mass, "kg");
+    push(&mut metrics, "energy-drift", drift, "1");
+    Ok(Solution {
+        dofs: 3 * mass.len() - loading.led.len(),
+        u: fields.last().cloned().unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
+        history: Some(StepHistory { steps, fields, last, metrics, failure: failure.map(Failure::from) }),
+        forces: Some(kernel),
+        ..Solution::default()
+    })
+}
+
+fn moving_tools<'a>(setup: &'a Setup, asked: &Explicit, mass: f64) -> Vec<MovingTool<'a>> {
+    let moving = setup.tools.iter().map(|placed| MovingTool {
+        tool: &placed.tool,
+        drive: placed.drive,
+        over: placed.over.unwrap_or(asked.ramp.duration),
+        mass,
+        damping: asked.ramp.damping,
+    });
+    moving.collect()
+}
+
+/// Largest spring constant per area of contact, Pa/m.
+fn stiffest(setup: &Setup) -> f64 {
+    setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
+}
+
+/// Degrees of freedom held, with their displacement (m) at the end. A node on two supports has one value or none.
+pub(crate) fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
+    let mut led = BTreeMap::new();
+    for fixed in prepared.fixed() {
+        let first = *led.entry((fixed.node, fixed.axis)).or_insert(fixed.value);
+        if (first - fixed.value).abs() > 1e-12 * first.abs().max(fixed.value.abs()) {
+            let (node, axis, second) = (fixed.node as usize, fixed.axis, fixed.value);
+            return Err(SolveError::Conflict { node, axis, first, second }.into());
+        }
+    }
+    Ok(led)
+}
+
+/// Smallest volume ratio of all quadrature points.
+pub(crate) fn smallest_j(prepared: &Prepared, u: &[Vector3]) -> f64 {
+    let gradients = prepared.volume.rows.at().displacement_gradients(u);
+    gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).fold(f64::INFINITY, f64::min)
+}
+
+/// An interval in equal steps no longer than `longest`: their length and number.
+fn divided(interval: f64, longest: f64) -> (f64, usize) {
+    // Rounding must not add a step of its own.
+    let count = (interval / longest * (1.0 - 1e-12)).ceil().max(1.0);
+    (interval / count, count as usize)
+}
+
+/// What the motion has left so far.
+#[derive(Default)]
+struct States {
+    steps: Vec<LoadStep>,
+    fields: Vec<Vec<Vector3>>,
+    /// Smallest critical step found, s.
+    critical: f64,
+    /// Largest error of the energy balance.
+    drift: f64,
+}
+
+struct Run<'a, 'b> {
+    motion: Dynamics<'a, 'b>,
+    asked: &'b Explicit,
+    setup: &'b Setup,
+    prepared: &'b Prepared,
+    states: States,
+}
+
+impl Run<'_, '_> {
+    /// All recorded states. The step follows the critical one as the body deforms, unless the scene gives it.
+    fn march(&mut self, load: &mut External<'_>, interval: f64) -> Result<(), ExplicitError> {
+        for state in 0..=self.asked.ramp.steps {
+            let mut left = 1;
+            if state < self.asked.ramp.steps {
+                left = self.choose_step((state + 1) as f64 * interval)?;
+            }
+            // The balance at a state is known with the step that leaves it; the last state has one for that alone.
+            let mut seen: Option<(Balance, Vec<Vector3>)> = None;
+            self.motion.run(1, 1, load, &mut |balance, u| seen = Some((*balance, u.to_vec())))?;
+            let (balance, u) = seen.expect("every step is recorded");
+            if state > 0 {
+                self.states.drift = self.states.drift.max(balance.drift.abs());
+                let step = self.reported(&balance, &u, state as f64 * interval);
+                self.states.steps.push(step);
+                self.states.fields.push(u);
+            }
+            left -= 1;
+            while left > 0 {
+                let now = left.min(RECHECK);
+                self.motion.run(now, 0, load, &mut |_, _| ())?;
+                left -= now;
+                if left > 0 {
+                    left = self.choose_step((state + 1) as f64 * interval)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The step for the way to `end` (s); returns how many there are.
+    fn choose_step(&mut self, end: f64) -> Result<usize, ExplicitError> {
+        let critical = self.motion.critical_step()?.dt;
+        self.states.critical = self.states.critical.min(critical);
+        let longest = self.asked.step.unwrap_or(self.asked.safety * critical);
+        let (dt, count) = divided(end - self.motion.time(), longest);
+        self.motion.set_step(dt)?;
+        Ok(count)
+    }
+
+    fn reported(&self, balance: &Balance, u: &[Vector3], time: f64) -> LoadStep {
+        let states = self.motion.tools().into_iter().flat_map(Tools::motions);
+        let tools = states.zip(&self.setup.tools).map(|(motion, set)| ToolStep::of(&motion.state, &set.tool));
+        let t = &balance.tools;
+        let more = [
+            ("time", time, "s"),
+            ("kinetic-energy", balance.kinetic + t.kinetic, "J"),
+            ("external-work", balance.external + balance.support + t.work, "J"),
+            ("contact-energy", t.stored, "J"),
+            ("friction-dissipation", t.friction, "J"),
+            ("damping-dissipation", balance.damping + t.damping, "J"),
+            ("energy-drift", balance.drift, "1"),
+        ];
+        LoadStep {
+            load: time / self.asked.ramp.duration,
+            tools: tools.collect(),
+            strain_energy: Some(balance.strain),
+            smallest_j: smallest_j(self.prepared, u),
+            iterations: 0,
+            probes: Vec::new(),
+            against: Vec::new(),
+            more: more.map(|(name, value, unit)| Metric { name: name.into(), value, unit }).to_vec(),
+        }
+    }
+}

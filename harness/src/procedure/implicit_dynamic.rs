@@ -1,0 +1,182 @@
+//! Implicit dynamics: time steps by Newton's method with contact, inertia and relaxing tissue, and what each recorded state
+//! left.
+
+use cases::scene::Implicit;
+use contact::ContactSurface;
+use geometry::Vector3;
+use statics::{
+    Inertia, Mass, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
+};
+
+use super::statics::{SMALLEST, newton_params, solves, with_static_problem};
+use super::{Problem, Solution, Stages, StepHistory, newton_reason};
+use crate::Failure;
+use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
+use crate::scenario::setup::Setup;
+
+/// What the solver takes. An accuracy asks for steps as short as it takes.
+fn params(asked: &Implicit) -> TimeParams {
+    TimeParams {
+        end: asked.ramp.duration,
+        steps: asked.ramp.steps,
+        smallest: if asked.accuracy.is_some() { 1e-6 } else { SMALLEST },
+        accuracy: asked.accuracy,
+        rho_inf: asked.spectral_radius,
+        newton: newton_params(&asked.newton),
+        augmentations: asked.newton.augmentations,
+    }
+}
+
+pub(super) fn stages(setup: &Setup, asked: &Implicit) -> Stages {
+    let (duration, steps) = (asked.ramp.duration, asked.ramp.steps);
+    Stages {
+        mass: if asked.inertia { (true, "consistent".into()) } else { (false, "without inertia".into()) },
+        stiffness: (true, "the tangent of every iteration".into()),
+        time_steps: (true, format!("{duration} s in at least {steps} steps")),
+        factorisation: (true, "one for each iteration, analysed once".into()),
+        newton: (true, newton_reason(setup, steps, "time")),
+        ..Stages::linear()
+    }
+}
+
+/// Runs the motion, from rest and undeformed. One that made no step is an error, one that ended early is not.
+pub(super) fn solve(problem: &Problem, asked: &Implicit, meters: &mut Meters) -> Result<Solution, Failure> {
+    let Meters { timings, counters } = meters;
+    timings.time("solve", || motion(problem, asked, counters))
+}
+
+/// Growth of loads, supports and tools.
+fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
+    let over = asked.ramp.growth();
+    let loads = if over > 0.0 { Ramp::Linear { over } } else { Ramp::AtOnce };
+    // A mass that is led starts from rest.
+    let supports = match (asked.inertia, loads) {
+        (true, Ramp::Linear { over }) => Ramp::Smooth { over },
+        _ => loads,
+    };
+    let tools = setup.tools.first().and_then(|tool| tool.over).unwrap_or(asked.ramp.duration);
+    Ramps { loads, supports, tools: Ramp::Linear { over: tools } }
+}
+
+fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Result<Solution, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let contact = prepared.contact.as_ref().map(ContactSurface::new);
+    // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
+    let mass = if asked.inertia {
+        let (fine, region) = method.error_rows(&prepared.volume)?;
+        counters.mass_nodes += method.nodes().len() as u64;
+        Some(Mass::consistent(&fine, &setup.density()?, &region)?)
+    } else {
+        None
+    };
+    let duration = asked.ramp.duration;
+    let (mut steps, mut fields) = (Vec::new(), Vec::new());
+    let path = with_static_problem(method, setup, prepared, contact.as_ref(), |body| {
+        let problem = TimeProblem {
+            body,
+            ramps: ramps(setup, asked),
+            inertia: mass.as_ref().map(|mass| Inertia {
+                mass,
+                damping: asked.ramp.damping,
+                displacement: &[],
+                velocity: &[],
+            }),
+            relaxation: &setup.relaxation,
+        };
+        solve_in_time(&problem, &params(asked), |done, motion, _| {
+            if done.step.wanted {
+                steps.push(reported(done, setup, duration));
+                fields.push(motion.u.clone());
+            }
+        })
+    })?;
+    let iterations = count(&path, counters);
+    let last = match (path.steps.last(), path.failure.clone()) {
+        (Some(last), _) => reported(last, setup, duration),
+        (None, Some(TimeError::Stalled { cause, .. })) => return Err((*cause).into()),
+        (None, Some(failure)) => return Err(failure.into()),
+        (None, None) => return Err(Failure::Run("the motion has no step".into())),
+    };
+    let metrics = metrics(&path, iterations, asked.inertia);
+    Ok(Solution {
+        dofs: problem.free_dofs() + path.pressure.len(),
+        u: path.motion.u,
+        pressure: path.pressure,
+        history: Some(StepHistory { steps, fields, last, metrics, failure: path.failure.map(Failure::from) }),
+        ..Solution::default()
+    })
+}
+
+/// Counts what the motion took; returns the linear systems solved on the way to converged steps.
+fn count(path: &TimePath, counters: &mut Counters) -> u64 {
+    let iterations = path.steps.iter().map(|s| solves(&s.step)).sum();
+    counters.time_steps += path.steps.len() as u64;
+    counters.newton_iterations += iterations;
+    counters.assemblies += path.work.assemblies;
+    counters.factorisations += path.work.factorisations;
+    counters.solves += path.work.solves;
+    counters.contact_evaluations += path.counts.evaluations;
+    counters.contact_skips += path.counts.skipped;
+    iterations
+}
+
+/// Numbers of the whole motion.
+fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
+    let mut metrics = Vec::new();
+    push(&mut metrics, "time-steps", path.steps.len() as f64, "1");
+    push(&mut metrics, "time-reached", path.time(), "s");
+    push(&mut metrics, "newton-iterations", iterations as f64, "1");
+    push(&mut metrics, "cut-backs", path.cut_back as f64, "1");
+    if let Some(last) = path.steps.last().and_then(|s| s.step.iterations.last()) {
+        push(&mut metrics, "residual", last.residual, "1");
+    }
+    if inertia {
+        let largest = path.steps.iter().map(|s| s.error).fold(0.0, f64::max);
+        push(&mut metrics, "step-error", largest, "m");
+        push(&mut metrics, "energy-drift", drift(&path.steps), "1");
+    }
+    metrics
+}
+
+/// Largest energy that the balance lacks or has too much, over the largest of its terms so far.
+fn drift(steps: &[TimeStep]) -> f64 {
+    let (mut drift, mut scale) = (0.0f64, 0.0f64);
+    for TimeStep { energy, .. } in steps {
+        let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];
+        scale = terms.iter().fold(scale, |scale, term| scale.max(term.abs()));
+        if scale > 0.0 {
+            drift = drift.max(energy.lost().abs() / scale);
+        }
+    }
+    drift
+}
+
+fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
+    let TimeStep { step, energy, .. } = done;
+    let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
+    // What contact springs store and friction takes is outside the body, and so is the tools' own work.
+    let mut more = vec![
+        ("time", step.time, "s"),
+        ("kinetic-energy", energy.kinetic, "J"),
+        ("work-on-body", energy.external, "J"),
+        ("damping-dissipation", energy.damped, "J"),
+        ("scheme-dissipation", energy.lost(), "J"),
+    ];
+    // What relaxing tissue stores of it is not known.
+    let strain_energy = if setup.relaxes() {
+        more.push(("internal-work", energy.internal, "J"));
+        None
+    } else {
+        Some(energy.internal)
+    };
+    LoadStep {
+        load: step.time / duration,
+        tools: tools.collect(),
+        strain_energy,
+        smallest_j: step.smallest,
+        iterations: solves(step),
+        probes: Vec::<Vector3>::new(),
+        against: Vec::new(),
+        more: more.into_iter().map(|(name, value, unit)| Metric { name: name.into(), value, unit }).collect(),
+    }
+}

@@ -1,0 +1,119 @@
+//! How a scene is solved: one file for each procedure, with the stages it puts into the plan and its entry point.
+
+mod explicit;
+mod implicit_dynamic;
+mod linear;
+mod modes;
+mod plan;
+mod refine;
+mod relaxation;
+mod solution;
+mod statics;
+
+use cases::scene::Procedure;
+
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::outcome::{LoadStep, Meters, Plan};
+use crate::prepare::Prepared;
+use crate::scenario::setup::Setup;
+
+pub(crate) use modes::Vibration;
+pub(crate) use plan::{Wanted, conclude, plan};
+pub(crate) use refine::refined;
+pub(crate) use solution::{Solution, StepHistory};
+pub(crate) use statics::{solves, static_params, with_static_problem};
+
+/// One method's tables under one setup: what a procedure solves.
+pub(crate) struct Problem<'a> {
+    pub(crate) method: &'a Discretisation,
+    pub(crate) setup: &'a Setup,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) plan: &'a Plan,
+    /// Called with every converged step of a static path, for those who wait.
+    pub(crate) watch: Option<fn(&LoadStep)>,
+}
+
+impl Problem<'_> {
+    /// Unknowns of a procedure that eliminates its supports, without those of a pressure field.
+    fn free_dofs(&self) -> usize {
+        let fixed: std::collections::BTreeSet<(u32, u8)> =
+            self.prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
+        3 * self.method.nodes().len() - fixed.len()
+    }
+}
+
+/// Solves by the setup's procedure.
+pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
+    match &problem.setup.procedure {
+        Procedure::Prepare => Ok(Solution::default()),
+        Procedure::Linear => linear::solve(problem, meters),
+        Procedure::Modes { count } => modes::solve(problem, *count, meters),
+        Procedure::Static(asked) => statics::solve(problem, asked, meters),
+        Procedure::Explicit(asked) => explicit::solve(problem, asked, meters),
+        Procedure::ImplicitDynamic(asked) => implicit_dynamic::solve(problem, asked, meters),
+    }
+}
+
+/// What a procedure puts into the plan: whether each stage runs, and why.
+struct Stages {
+    mass: (bool, String),
+    stiffness: (bool, String),
+    time_steps: (bool, String),
+    factorisation: (bool, String),
+    newton: (bool, String),
+    relaxation: (bool, String),
+    /// Why nothing is moved to other points, where that is so.
+    no_transfer: Option<&'static str>,
+    /// Why nothing acts on the body, where that is so.
+    no_contact: Option<&'static str>,
+}
+
+impl Stages {
+    /// Of one linear solve; other procedures say what differs.
+    fn linear() -> Stages {
+        Stages {
+            mass: (false, "static".into()),
+            stiffness: (true, "linear static".into()),
+            time_steps: (false, "static".into()),
+            factorisation: (true, "one, for all load levels".into()),
+            newton: (false, "linear".into()),
+            relaxation: (false, "no static path that could stall".into()),
+            no_transfer: None,
+            no_contact: None,
+        }
+    }
+
+    /// Of nothing but the tables.
+    fn prepare() -> Stages {
+        const NOTHING: &str = "nothing is solved (kind = \"prepare\")";
+        Stages {
+            stiffness: (false, NOTHING.into()),
+            factorisation: (false, NOTHING.into()),
+            no_transfer: Some(NOTHING),
+            no_contact: Some(NOTHING),
+            ..Stages::linear()
+        }
+    }
+
+    fn of(method: &Discretisation, setup: &Setup) -> Stages {
+        match &setup.procedure {
+            Procedure::Prepare => Stages::prepare(),
+            Procedure::Linear => Stages::linear(),
+            Procedure::Modes { .. } => modes::stages(setup),
+            Procedure::Static(asked) => statics::stages(method, setup, asked),
+            Procedure::Explicit(asked) => explicit::stages(asked),
+            Procedure::ImplicitDynamic(asked) => implicit_dynamic::stages(setup, asked),
+        }
+    }
+}
+
+/// Why Newton's method iterates.
+fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
+    let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
+    match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {
+        (true, true) => format!("{steps}; law and loads are linear, so one each would do"),
+        (false, true) => format!("{steps} of a law of large strain"),
+        (_, false) => format!("{steps} with contact"),
+    }
+}

@@ -1,0 +1,68 @@
+//! Small free vibrations: the mass and the modes.
+
+use cases::scene;
+use explicit::{Lumping, lumped_mass};
+use geometry::Vector3;
+use statics::{Mass, Modes, modes};
+
+use super::{Problem, Solution, Stages};
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::outcome::Meters;
+use crate::scenario::setup::Setup;
+
+/// Modes with the mass that they have.
+pub(crate) struct Vibration {
+    pub(crate) modes: Modes,
+    /// How many are reported.
+    pub(crate) count: usize,
+    /// Mass of the body, kg.
+    pub(crate) mass: f64,
+}
+
+pub(super) fn stages(setup: &Setup) -> Stages {
+    Stages {
+        mass: (true, setup.mass.map_or("consistent", scene::Mass::name).into()),
+        factorisation: (true, "one, dense, into all modes".into()),
+        no_transfer: Some("modes are compared where they are integrated"),
+        ..Stages::linear()
+    }
+}
+
+/// Makes the mass and finds the modes, of which `count` are reported.
+pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Result<Solution, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let Meters { timings, counters } = meters;
+    let nodes = method.nodes();
+    let mass = timings.time("assemble", || mass(problem))?;
+    counters.mass_nodes += nodes.len() as u64;
+    let weak = prepared.weak();
+    let system = prepared.problem(nodes, setup, &[], &weak);
+    let modes = timings.time("solve", || modes(&system, &mass))?;
+    counters.assemblies += 1;
+    counters.factorisations += 1;
+    let total = mass.times(&vec![Vector3::x(); nodes.len()]).iter().map(|p| p.x).sum();
+    Ok(Solution { vibration: Some(Vibration { modes, count, mass: total }), ..Solution::default() })
+}
+
+fn mass(problem: &Problem) -> Result<Mass, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let (volume, density) = (&prepared.volume, setup.density()?);
+    let lumped = || {
+        let rows = &volume.rows;
+        lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
+    };
+    Ok(match (setup.mass, method) {
+        // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
+        (None | Some(scene::Mass::Consistent), _) => {
+            let (fine, region) = method.error_rows(volume)?;
+            Mass::consistent(&fine, &density, &region)?
+        }
+        (Some(scene::Mass::Transformed), Discretisation::Efg(_)) => {
+            let (at_nodes, _) = method.at_points(volume, method.nodes())?;
+            Mass::transformed(at_nodes.rows(), &lumped()?)?
+        }
+        // Parameters of elements are displacements: nothing is left to transform.
+        (Some(scene::Mass::Lumped | scene::Mass::Transformed), _) => Mass::lumped(&lumped()?)?,
+    })
+}

@@ -1,0 +1,228 @@
+//! The plan of a run: the stages it needs, the stages it does not, and why.
+
+use cases::scene::ConstraintRows;
+use explicit::KernelInfo;
+
+use super::Stages;
+use crate::discretise::{Dilation, Discretisation, Efg, Essential, Functions, Integration};
+use crate::outcome::{Counters, Plan, StageName};
+use crate::scenario::setup::Setup;
+
+/// Whether the method's displacement is wanted elsewhere than at its own nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    /// Displacements at points that are not the method's nodes.
+    pub(crate) targets: bool,
+    /// Transfer schemes to compare.
+    pub(crate) schemes: bool,
+}
+
+/// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
+const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+
+/// Stages of a run, in order.
+pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Plan {
+    let mut plan = Plan::default();
+    let stages = Stages::of(method, setup);
+    let mut add = |stage, (runs, why): (bool, String)| plan.add(stage, runs, why);
+    add(StageName::Refinement, refinement(method));
+    add(StageName::Supports, supports(method));
+    add(StageName::ShapeFunctions, (true, shape_functions(method)));
+    add(StageName::Projection, projection(method, setup));
+    add(StageName::Tensors, tensors(setup));
+    add(StageName::Mass, stages.mass);
+    add(StageName::Stiffness, stages.stiffness);
+    add(StageName::TimeSteps, stages.time_steps);
+    add(StageName::Elimination, elimination(method, setup));
+    add(StageName::WeakSupports, weak_supports(method, setup));
+    add(StageName::Factorisation, stages.factorisation);
+    add(StageName::Newton, stages.newton);
+    add(StageName::Relaxation, stages.relaxation);
+    add(StageName::Contact, contact(setup));
+    add(StageName::Friction, friction(setup));
+    add(StageName::Transfer, transfer(method, wanted));
+    add(StageName::Schemes, schemes(method, wanted));
+    if let Some(why) = stages.no_transfer {
+        plan.skip(StageName::Transfer, why);
+        plan.skip(StageName::Schemes, why);
+    }
+    if let Some(why) = stages.no_contact {
+        plan.skip(StageName::Contact, why);
+        plan.skip(StageName::Friction, why);
+    }
+    plan
+}
+
+/// Says in the plan of a finished run what evaluated the internal forces, as a plain loop takes 3 to 10 times as long, and that
+/// a path without a limit point needed no relaxation.
+pub(crate) fn conclude(plan: &mut Plan, forces: Option<KernelInfo>, counters: &Counters) {
+    if let Some(forces) = forces {
+        let how = match forces.path {
+            Some(path) => format!("{} kernel in {} lanes on all threads", forces.kernel.name(), path.name()),
+            None => "plain loop on one thread: no lanes for this law and dilation".into(),
+        };
+        for stage in [StageName::TimeSteps, StageName::Relaxation] {
+            if plan.runs(stage) {
+                plan.explain(stage, |why| format!("{why}; internal forces: {how}"));
+            }
+        }
+    }
+    if plan.runs(StageName::Relaxation) && counters.relaxation_steps == 0 {
+        plan.skip(StageName::Relaxation, "Newton's method reached the whole load");
+    }
+}
+
+fn cloud(method: &Discretisation) -> Option<&Efg> {
+    match method {
+        Discretisation::Fem(_) => None,
+        Discretisation::Efg(efg) => Some(efg),
+    }
+}
+
+fn refinement(method: &Discretisation) -> (bool, String) {
+    match cloud(method).map(|efg| &efg.refine) {
+        Some(Some(refine)) => {
+            let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
+            (true, format!("{times} by the error of the gradients, each after a solution"))
+        }
+        Some(None) => (false, "the cloud stays as it is".into()),
+        None => (false, "the mesh stays as it is".into()),
+    }
+}
+
+fn supports(method: &Discretisation) -> (bool, String) {
+    let Some(efg) = cloud(method) else { return (false, "the elements' nodes are the neighbours".into()) };
+    let supports = match efg.followed {
+        Some(_) => "ellipsoids that follow the cells, and neighbours",
+        None => "radius and neighbours",
+    };
+    (true, format!("{supports} of {} nodes", efg.cloud.points.len()))
+}
+
+fn shape_functions(method: &Discretisation) -> String {
+    let Some(efg) = cloud(method) else { return "one row per Gauss point of each element".into() };
+    let coupled = match efg.coupled() {
+        Some(coupled) => format!(", coupled to {} nodes of finite elements", coupled.vertices.len()),
+        None => String::new(),
+    };
+    integration(efg) + &coupled
+}
+
+fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
+    let dilation = match method {
+        Discretisation::Fem(fem) => fem.dilation,
+        Discretisation::Efg(efg) => efg.dilation,
+    };
+    let poisson = setup.materials.iter().map(|m| m.poisson()).fold(f64::MIN, f64::max);
+    match dilation {
+        Dilation::Standard if poisson < NEARLY_INCOMPRESSIBLE => {
+            (false, format!("nu = {poisson} < {NEARLY_INCOMPRESSIBLE} does not lock"))
+        }
+        Dilation::Standard => (false, "the method asks for none (dilation = \"standard\")".into()),
+        Dilation::Element => (true, "one dilation per cell".into()),
+        Dilation::Nodal => (true, "one dilation per node".into()),
+        Dilation::Mixed => (true, "a pressure field, linear between the corners".into()),
+    }
+}
+
+fn tensors(setup: &Setup) -> (bool, String) {
+    match setup.materials.len() {
+        1 => (false, "homogeneous material: one tensor".into()),
+        count => (true, format!("{count} regions")),
+    }
+}
+
+fn elimination(method: &Discretisation, setup: &Setup) -> (bool, String) {
+    let (eliminated, why) = match cloud(method).map(|efg| &efg.essential) {
+        _ if setup.supports.is_empty() => (false, "no support in the scene"),
+        None => (true, "the basis is Kronecker: nodal parameters are displacements"),
+        Some(Essential::Elimination(ConstraintRows::Means)) => {
+            (true, "mean displacements of nodal patches, by pivoted rows")
+        }
+        Some(Essential::Elimination(ConstraintRows::Points)) => {
+            (true, "displacements at points, by pivoted rows")
+        }
+        Some(Essential::Coupling(_)) => (true, "parameters of finite-element nodes are displacements"),
+        Some(_) => (false, "nodal parameters are not displacements"),
+    };
+    (eliminated, why.into())
+}
+
+fn weak_supports(method: &Discretisation, setup: &Setup) -> (bool, String) {
+    match cloud(method).map(|efg| &efg.essential) {
+        _ if setup.supports.is_empty() => (false, "no support in the scene".into()),
+        None | Some(Essential::Elimination(_) | Essential::Coupling(_)) => {
+            (false, "supports are eliminated".into())
+        }
+        Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
+        Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
+        Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),
+    }
+}
+
+fn contact(setup: &Setup) -> (bool, String) {
+    let tools: Vec<&str> = setup.tools.iter().map(|t| t.name.as_str()).collect();
+    if tools.is_empty() { (false, "no tool in the scene".into()) } else { (true, tools.join(", ")) }
+}
+
+fn friction(setup: &Setup) -> (bool, String) {
+    let why = match (setup.tools.is_empty(), setup.has_friction()) {
+        (true, _) => "no tool in the scene",
+        (false, true) => "Coulomb friction, one slip per point and tool",
+        (false, false) => "no tool has friction",
+    };
+    (setup.has_friction(), why.into())
+}
+
+fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
+    let (runs, why) = match (cloud(method).is_some(), wanted.targets) {
+        (false, false) => (false, "a Kronecker basis: nodal values are displacements"),
+        (false, true) => (true, "evaluated with the elements' shape functions"),
+        (true, true) => (true, "evaluated with the method's own shape functions"),
+        (true, false) => (true, "to the nodes, with the method's own shape functions"),
+    };
+    (runs, why.into())
+}
+
+fn schemes(method: &Discretisation, wanted: Wanted) -> (bool, String) {
+    let cloud = cloud(method).is_some();
+    let why = match (wanted.schemes, cloud) {
+        (true, true) => "asked for, to compare them",
+        (true, false) => "the reference nodes are the elements' own",
+        (false, _) => "none asked for",
+    };
+    (wanted.schemes && cloud, why.into())
+}
+
+fn integration(efg: &Efg) -> String {
+    let functions = match efg.functions {
+        Functions::MovingLeastSquares { .. } => "moving least squares",
+        Functions::MaximumEntropy { .. } => "maximum entropy",
+    };
+    match efg.integration {
+        Integration::Gauss { points } => {
+            format!("{functions} at {points} points per background cell")
+        }
+        Integration::Grid { points, .. } => {
+            format!("{functions} at {points}^3 points per grid cell")
+        }
+        Integration::CellSmoothed { smoothing, face_points } => {
+            let gradients = match smoothing {
+                efg::Smoothing::Constant => "constant",
+                efg::Smoothing::Linear => "linear",
+            };
+            format!(
+                "{functions} at {face_points} points per face, smoothed to {gradients} gradients per cell"
+            )
+        }
+        Integration::NodeSmoothed { stabilisation, face_points } => {
+            let cells = match stabilisation {
+                0.0 => String::new(),
+                share => format!(", cells with {share} of the weight"),
+            };
+            format!(
+                "{functions} at {face_points} points per face, smoothed to one gradient per vertex{cells}"
+            )
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Beyond a limit point: dynamic relaxation from the last equilibrium to the load steps that are left.
+
+use contact::{ContactHistory, ContactSurface, Drive};
+use explicit::{
+    ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
+    RelaxationParams, lumped_mass, relax_under,
+};
+use geometry::Vector3;
+use lanes::LanePath;
+use shape::FixedDof;
+use statics::nodal_forces;
+
+use super::explicit::{led, smallest_j};
+use crate::Failure;
+use crate::discretise::{Dilation, Discretisation};
+use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
+use crate::prepare::Prepared;
+use crate::scenario::setup::Setup;
+
+/// Displacements to 1e-6 of the largest: 10 nm of 10 mm. Most steps for one load step: the kidney takes some thousand.
+const RELAXATION: RelaxationParams = RelaxationParams {
+    tolerance: 1e-6,
+    steps: 100_000,
+    critical: LanczosParams { steps: 15, safety: 0.95 },
+    recheck: 500,
+};
+
+/// kg/m^3, of all regions: at rest no mass is left in the forces, and one density makes the steps of all nodes alike.
+const DENSITY: f64 = 1000.0;
+
+/// The state that relaxation starts from.
+pub struct Start {
+    /// Part of the load carried.
+    pub load: f64,
+    /// Nodal displacements, m.
+    pub u: Vec<Vector3>,
+    /// Closures of the tools, m.
+    pub closures: Vec<f64>,
+    /// What their contact remembers.
+    pub history: Vec<ContactHistory>,
+}
+
+/// What relaxation came to.
+pub struct Relaxed {
+    /// The load steps that came to rest.
+    pub steps: Vec<LoadStep>,
+    /// Nodal displacements at each of them, m.
+    pub fields: Vec<Vec<Vector3>>,
+    /// Steps of the relaxation over all of them.
+    pub made: u64,
+    /// What evaluated the internal forces.
+    pub forces: KernelInfo,
+    /// Why it ended early, if it did.
+    pub failure: Option<ExplicitError>,
+}
+
+/// Whether a method can continue by relaxation where its static path stalls, and why (not).
+pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
+    match method {
+        Discretisation::Efg(_) => (
+            false,
+            "not for clouds, whose path ends where it stalls: a support by penalty and lumped parameters have no usable step",
+        ),
+        Discretisation::Fem(fem) if fem.dilation == Dilation::Mixed => (
+            false,
+            "not with a pressure field, whose path ends where it stalls: its equations are not explicit",
+        ),
+        Discretisation::Fem(_) => (true, "where Newton's method finds no equilibrium"),
+    }
+}
+
+/// Relaxes to the ends of the load steps beyond `from`, one after the other.
+pub(super) fn continue_from(
+    setup: &Setup,
+    count: usize,
+    prepared: &Prepared,
+    from: Start,
+    counters: &mut Counters,
+) -> Result<Relaxed, Failure> {
+    let volume = &prepared.volume;
+    let rows = &volume.rows;
+    let body = ExplicitBody {
+        volume: rows,
+        laws: &setup.laws,
+        region: &volume.region,
+        groups: volume.groups.as_ref(),
+    };
+    let density = vec![DENSITY; setup.laws.len()];
+    let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
+    let mut force = InternalForce::new(body, LanePath::best())?;
+    let loads = nodal_forces(rows, &prepared.loads())?;
+    let held = led(prepared)?;
+    let surface = prepared.contact.as_ref().map(ContactSurface::new);
+    let part_of = |drive: Drive, load: f64| match drive {
+        Drive::Closure(full) => Drive::Closure(full * load),
+        Drive::Force(full) => Drive::Force(full * load),
+    };
+    let mut pressing = surface.as_ref().map(|surface| {
+        let each = setup.tools.iter().zip(&from.closures).zip(from.history);
+        let tools = each.map(|((set, &closure), history)| PressingTool {
+            tool: &set.tool,
+            drive: part_of(set.drive, from.load),
+            closure,
+            history,
+        });
+        Pressing::new(surface, tools.collect())
+    });
+    let mut done =
+        Relaxed { steps: Vec::new(), fields: Vec::new(), made: 0, forces: force.info(), failure: None };
+    let mut u = from.u;
+    for number in 1..=count {
+        let load = number as f64 / count as f64;
+        if load <= from.load * (1.0 + 1e-12) {
+            continue;
+        }
+        let fixed: Vec<FixedDof> =
+            held.iter().map(|(&(node, axis), value)| FixedDof { node, axis, value: value * load }).collect();
+        let mut external = |_: &[Vector3], f: &mut [Vector3]| {
+            f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);
+        };
+        if let Some(pressing) = &mut pressing {
+            pressing.drive(setup.tools.iter().map(|set| part_of(set.drive, load)));
+        }
+        let found =
+            relax_under(&mut force, &mass, &fixed, &mut external, pressing.as_mut(), u.clone(), RELAXATION);
+        let info = match found {
+            Ok((rest, info)) => {
+                u = rest;
+                info
+            }
+            Err(failure) => {
+                if let ExplicitError::NotRelaxed { steps, .. } = failure {
+                    done.made += steps as u64;
+                }
+                done.failure = Some(failure);
+                break;
+            }
+        };
+        done.made += info.steps as u64;
+        let states = pressing.as_ref().map_or(&[][..], Pressing::states);
+        let metric = |name: &str, value, unit| Metric { name: name.into(), value, unit };
+        done.steps.push(LoadStep {
+            load,
+            tools: states
+                .iter()
+                .zip(&setup.tools)
+                .map(|(state, set)| ToolStep::of(state, &set.tool))
+                .collect(),
+            strain_energy: Some(force.energy(&u).map_err(ExplicitError::from)?),
+            smallest_j: smallest_j(prepared, &u),
+            iterations: 0,
+            probes: Vec::new(),
+            against: Vec::new(),
+            more: vec![
+                metric("relaxation-steps", info.steps as f64, "1"),
+                metric("relaxation-error", info.error, "1"),
+                metric("relaxation-residual", info.residual, "1"),
+            ],
+        });
+        done.fields.push(u.clone());
+    }
+    counters.relaxation_steps += done.made;
+    if let Some(pressing) = &pressing {
+        counters.contact_evaluations += pressing.counts().evaluations;
+        counters.contact_skips += pressing.counts().skipped;
+    }
+    Ok(done)
+}

@@ -1,0 +1,53 @@
+//! What a procedure comes to.
+
+use explicit::KernelInfo;
+use geometry::Vector3;
+use statics::SolveInfo;
+
+use super::modes::Vibration;
+use crate::Failure;
+use crate::outcome::{LoadStep, Metric};
+
+/// What a procedure comes to; without nodal parameters where it solves for no displacement.
+#[derive(Default)]
+pub(crate) struct Solution {
+    /// Nodal parameters at the end, m.
+    pub(crate) u: Vec<Vector3>,
+    /// Parameters of the method's own pressure field there, Pa, tension positive; empty without one.
+    pub(crate) pressure: Vec<f64>,
+    /// Unknowns, pressures included.
+    pub(crate) dofs: usize,
+    /// Relative residual of the last equilibrium of a procedure at rest.
+    pub(crate) residual: Option<f64>,
+    /// Of a linear procedure.
+    pub(crate) linear: Option<SolveInfo>,
+    /// Of a procedure in steps.
+    pub(crate) history: Option<StepHistory>,
+    /// Of vibrations.
+    pub(crate) vibration: Option<Vibration>,
+    /// What evaluated the internal forces of explicit dynamics or relaxation.
+    pub(crate) forces: Option<KernelInfo>,
+    /// Why Newton's method ended early where relaxation continued to the whole load.
+    pub(crate) relaxed: Option<Failure>,
+}
+
+/// The load steps of a path or the recorded states of a motion, as far as it came.
+pub(crate) struct StepHistory {
+    /// The ends of the scene's load steps, or its recorded states.
+    pub(crate) steps: Vec<LoadStep>,
+    /// Nodal parameters at each of them, m.
+    pub(crate) fields: Vec<Vec<Vector3>>,
+    /// The last converged or recorded state, among them or not.
+    pub(crate) last: LoadStep,
+    /// Numbers of the whole.
+    pub(crate) metrics: Vec<Metric>,
+    /// Why it ended early, if it did.
+    pub(crate) failure: Option<Failure>,
+}
+
+impl Solution {
+    /// Whether the whole load was reached; a linear procedure has no less.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.history.as_ref().is_none_or(|history| history.failure.is_none())
+    }
+}

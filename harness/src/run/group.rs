@@ -1,0 +1,305 @@
+//! One scene at one Poisson's ratio: its reference first, then its methods against it.
+
+use std::path::Path;
+
+use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
+use geometry::{Point3, msh};
+use interp::Scheme;
+
+use super::stored::Stored;
+use super::{Solved, run};
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::measure::{self, Repeats, Request};
+use crate::outcome::{Counters, LoadStep, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished};
+use crate::prepare::reach;
+use crate::procedure::{Wanted, plan};
+use crate::scenario::{Scenario, point, rule};
+
+/// What every run of a scene shares.
+pub struct Group<'a> {
+    scene: &'a Scene,
+    case: String,
+    poisson: Option<f64>,
+    probes: Vec<Point3>,
+    targets: Vec<Point3>,
+    schemes: Vec<(SchemeSettings, Scheme)>,
+    reference: Option<measure::Reference>,
+    beside: Option<measure::Reference>,
+    reference_counters: Counters,
+    reference_stalled: Option<Failure>,
+    repeats: Repeats,
+    watch: Option<fn(&LoadStep)>,
+}
+
+/// What a run does beside its numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extras {
+    /// Keeps the surface displacement, for pictures.
+    pub picture: bool,
+    /// Runs the loop that the scene asks for (`[output] repeated`) after the first solution.
+    pub frames: bool,
+    /// Solves a cloud once more, integrated by this rule, to tell its errors of integration and of discretisation apart.
+    pub split: Option<scene::Integration>,
+}
+
+/// The case name of a scene: its file's stem.
+pub fn case_name(scene: &Scene) -> String {
+    Path::new(scene.file()).file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+}
+
+impl<'a> Group<'a> {
+    /// Runs the reference method, if the scene compares with one, and finds the target points.
+    pub fn new(scene: &'a Scene, poisson: Option<f64>, repeats: Repeats) -> Result<Group<'a>, Failure> {
+        let mut group = Group::unreferenced(scene, repeats)?;
+        group.poisson = poisson;
+        match &scene.reference {
+            Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
+            Some(Reference::Record(path)) => {
+                let stored = Stored::load(scene, path)?;
+                group.targets = stored.targets();
+                group.reference = Some(stored.reference());
+            }
+            Some(Reference::Exact { .. }) | None => {}
+        }
+        if let Some(id) = &scene.output.beside {
+            group.beside = Some(group.compared(id, None)?.0);
+        }
+        Ok(group)
+    }
+
+    /// The scene without its reference: enough for a plan.
+    pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
+        let probes: Vec<Point3> = scene.output.probes.iter().map(|&x| point(x)).collect();
+        Ok(Group {
+            scene,
+            case: case_name(scene),
+            poisson: None,
+            targets: targets(scene, &probes)?,
+            probes,
+            schemes: schemes(scene),
+            reference: None,
+            beside: None,
+            reference_counters: Counters::default(),
+            reference_stalled: None,
+            repeats,
+            watch: None,
+        })
+    }
+
+    /// One method's solution as a reference, whole or not at all; `targets` are where its displacement is reported, m.
+    /// `watch` is called with every converged step.
+    pub fn solve_for(
+        scene: &'a Scene,
+        id: &str,
+        targets: Vec<Point3>,
+        watch: fn(&LoadStep),
+    ) -> Result<measure::Reference, Failure> {
+        let mut group = Group::unreferenced(scene, Repeats::ONCE)?;
+        (group.targets, group.watch) = (targets, Some(watch));
+        group.run_reference(id, None)?;
+        match group.reference_stalled {
+            Some(failure) => Err(failure),
+            None => Ok(group.reference.expect("it has run")),
+        }
+    }
+
+    fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<(), Failure> {
+        let (reference, stalled) = self.compared(id, size)?;
+        (self.reference, self.reference_stalled) = (Some(reference), stalled);
+        Ok(())
+    }
+
+    /// Runs a method that others are compared with; also why it ended early, if it did.
+    fn compared(
+        &mut self,
+        id: &str,
+        size: Option<&Size>,
+    ) -> Result<(measure::Reference, Option<Failure>), Failure> {
+        let mut method = self.scene.method(id).expect("validated").clone();
+        if let Some(size) = size {
+            resize(&mut method, size);
+        }
+        let mut scenario = self.scenario(method, 0);
+        scenario.size_key = size.map(|_| "reference.size".into());
+        let discretisation = scenario.discretise()?;
+        if self.targets.is_empty() {
+            self.targets = discretisation.nodes().to_vec();
+        }
+        let solved = self.solved(&scenario, &discretisation)?;
+        let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
+        self.reference_counters += solved.outcome.counters;
+        Ok((super::reference(discretisation, solved, &self.targets)?, stalled))
+    }
+
+    /// One method's solution, once and compared with nothing.
+    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Solved, Failure> {
+        let setup = scenario.setup()?;
+        let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
+        let request = Request { watch: self.watch, ..Request::alone(&self.probes, &self.targets) };
+        run(scenario.identity(), plan, discretisation, &setup, &request)
+            .map_err(|failure| scenario.locate(failure))
+    }
+
+    /// A cloud's solution, integrated by another rule, where the cloud is compared: at the targets, or else at its nodes.
+    fn integrated(
+        &self,
+        scenario: &Scenario,
+        rule: scene::Integration,
+    ) -> Result<measure::Reference, Failure> {
+        let mut scenario = scenario.clone();
+        if let Family::Efg(efg) = &mut scenario.method.family {
+            efg.integration = rule;
+        }
+        let discretisation = scenario.discretise()?;
+        let solved = self.solved(&scenario, &discretisation)?;
+        let nodes = discretisation.nodes().to_vec();
+        let at = if self.targets.is_empty() { &nodes } else { &self.targets };
+        super::reference(discretisation, solved, at)
+    }
+
+    /// One of the scene's methods, as a run of this group.
+    pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'a> {
+        Scenario {
+            case: self.case.clone(),
+            scene: self.scene,
+            method,
+            level,
+            poisson: self.poisson,
+            size_key: None,
+        }
+    }
+
+    /// What the reference took, once for all methods; nothing where none had to run.
+    pub fn reference_counters(&self) -> Counters {
+        self.reference_counters
+    }
+
+    /// Why the reference ended early, if it did: nothing is compared with its end then, but with the steps it carried.
+    pub fn reference_stalled(&self) -> Option<&Failure> {
+        self.reference_stalled.as_ref()
+    }
+
+    /// Runs one method.
+    pub fn run(&self, scenario: &Scenario, extras: Extras) -> Result<Outcome, Unfinished> {
+        let discretisation = scenario.discretise()?;
+        let size = size(&discretisation);
+        let setup =
+            scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
+        let plan = plan(&discretisation, &setup, self.wanted());
+        let integrated = match extras.split.filter(|_| matches!(discretisation, Discretisation::Efg(_))) {
+            Some(rule) => {
+                let fail = |failure| Unfinished { failure, plan: plan.clone(), size };
+                Some(self.integrated(scenario, rule).map_err(fail)?)
+            }
+            None => None,
+        };
+        let request = Request {
+            probes: &self.probes,
+            targets: &self.targets,
+            schemes: self.schemes_for(&discretisation),
+            picture: extras.picture,
+            repeats: self.repeats,
+            reference: self.reference.as_ref(),
+            beside: self.beside.as_ref(),
+            integrated: integrated.as_ref(),
+            repeated: self.scene.output.repeated.as_ref().filter(|_| extras.frames),
+            watch: None,
+        };
+        let mut identity = scenario.identity();
+        identity.split = integrated.as_ref().and(extras.split).map(rule);
+        match run(identity, plan.clone(), &discretisation, &setup, &request) {
+            Ok(mut solved) => {
+                let locate = |failure| scenario.locate(failure);
+                solved.outcome.stalled = solved.outcome.stalled.map(locate);
+                solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
+                Ok(solved.outcome)
+            }
+            Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan, size }),
+        }
+    }
+
+    /// The plan of one method, without running it. An empty place is refused as a run refuses it.
+    pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
+        let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
+        reach::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
+        Ok((plan(&discretisation, &setup, self.wanted()), size(&discretisation)))
+    }
+
+    fn wanted(&self) -> Wanted {
+        // Known before the reference has run, so that a plan says what the run will do.
+        let nodes_of_reference =
+            matches!(self.scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
+        let targets = nodes_of_reference || !self.targets.is_empty();
+        Wanted { targets, schemes: targets && !self.schemes.is_empty() }
+    }
+
+    fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
+        match method {
+            Discretisation::Efg(_) => &self.schemes,
+            Discretisation::Fem(_) => &[],
+        }
+    }
+}
+
+/// Gives a method another size; a cloud of an exact count becomes the nodes of a mesh of that size.
+pub fn resize(method: &mut scene::Method, size: &Size) {
+    match &mut method.family {
+        Family::Fem(fem) => fem.size = size.clone(),
+        Family::Efg(efg) => match (&mut efg.cloud, size) {
+            (
+                scene::Cloud::Uniform { nodes, .. }
+                | scene::Cloud::Graded { nodes, .. }
+                | scene::Cloud::Refined { nodes, .. },
+                Size::Nodes(n),
+            ) => *nodes = *n,
+            (scene::Cloud::Mesh { size: old, .. }, _) => *old = size.clone(),
+            (cloud, _) => *cloud = scene::Cloud::Mesh { size: size.clone(), jitter: None },
+        },
+    }
+}
+
+/// What is known of the sizes before any table is filled.
+fn size(method: &Discretisation) -> Sizes {
+    let (nodes, elements) = (method.nodes().len() as u64, method.mesh().cell_count() as u64);
+    Sizes { nodes, elements, ..Sizes::default() }
+}
+
+/// The key of a transfer, which may stand alone or in a list.
+fn transfer_key(scene: &Scene, index: usize, below: &str) -> String {
+    let listed = format!("output.transfer[{index}]");
+    let key = if scene.has(&listed) { listed } else { "output.transfer".into() };
+    format!("{key}.{below}")
+}
+
+fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
+    for (index, transfer) in scene.output.transfers.iter().enumerate() {
+        match &transfer.to {
+            Target::ReferenceNodes => {}
+            Target::Probes => return Ok(probes.to_vec()),
+            Target::File(file) => {
+                let mesh = msh::read(&file.path, file.unit).map_err(|bad| {
+                    let (key, problem) =
+                        (transfer_key(scene, index, "to.file"), format!("can't be read: {bad}"));
+                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, "give a Gmsh 2.2 ASCII file")
+                })?;
+                return Ok(mesh.points().to_vec());
+            }
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// Schemes with their settings; the method's own rows are always compared with them.
+fn schemes(scene: &Scene) -> Vec<(SchemeSettings, Scheme)> {
+    let named = scene.output.transfers.iter().filter_map(|transfer| transfer.scheme.as_ref());
+    let mut list = Vec::new();
+    for (scheme, values) in named {
+        let scheme = (SchemeSettings::of(values), *scheme);
+        // One that is asked for twice is one scheme.
+        if !list.contains(&scheme) {
+            list.push(scheme);
+        }
+    }
+    list
+}

@@ -1,0 +1,244 @@
+//! One run: prepare, assemble, factor, solve (timed apart, repeated), then errors, probes and transfers.
+
+mod group;
+mod memory;
+mod repeated;
+pub(crate) mod stored;
+
+use std::time::Instant;
+
+use cases::scene::Procedure;
+use geometry::{Point3, Vector3};
+
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::measure::{
+    self, Field, Reference, Request, displacement, measure, of_tables, picture, probe_errors, probe_history,
+    probes, report_modes, report_steps, transfers,
+};
+use crate::outcome::timing::Timed;
+use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
+use crate::prepare::{Prepared, prepare};
+use crate::procedure::{self, Problem, Solution, conclude, refined};
+use crate::scenario::setup::Setup;
+use memory::Baseline;
+use repeated::repeated;
+
+pub use crate::measure::Repeats;
+pub(crate) use group::resize;
+pub use group::{Extras, Group, case_name};
+
+/// A finished run with its nodal parameters.
+pub(crate) struct Solved {
+    /// Identity, numbers, times.
+    pub(crate) outcome: Outcome,
+    prepared: Prepared,
+    /// Nodal parameters, m.
+    u: Vec<Vector3>,
+    /// The method on the cloud that it ended with, where that follows an error.
+    refined: Option<Discretisation>,
+}
+
+/// Runs one method by its plan.
+///
+/// All of it runs on a thread of the pool: from outside, whatever is done in parallel is handed over and waited for, which takes
+/// 0.03 to 0.1 ms each time, as long as the forces of 6000 elements.
+pub(crate) fn run(
+    identity: Identity,
+    plan: Plan,
+    method: &Discretisation,
+    setup: &Setup,
+    request: &Request,
+) -> Result<Solved, Failure> {
+    rayon::scope(|_| on_pool(identity, plan, method, setup, request))
+}
+
+fn on_pool(
+    identity: Identity,
+    plan: Plan,
+    method: &Discretisation,
+    setup: &Setup,
+    request: &Request,
+) -> Result<Solved, Failure> {
+    let baseline = Baseline::new();
+    let mut meters = Meters::default();
+    let Pass { refined, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
+    let memory = baseline.peak();
+    let method = refined.as_ref().unwrap_or(method);
+    let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
+    let mut outcome = Outcome::new(identity, size(method, &prepared, solution.dofs), plan);
+    outcome.memory = memory;
+    if solution.u.is_empty() {
+        unloaded(&mut outcome, &run)?;
+        outcome.phases = phases(&meters, &run);
+        outcome.counters = meters.counters;
+    } else {
+        loaded(&mut outcome, &run, request, meters)?;
+    }
+    Ok(Solved { outcome, prepared, u: solution.u, refined })
+}
+
+/// What a pass over a run leaves.
+struct Pass {
+    refined: Option<Discretisation>,
+    prepared: Prepared,
+    solution: Solution,
+}
+
+/// The timed part, as often as it is repeated; the counters are those of the last pass.
+fn passes(
+    method: &Discretisation,
+    setup: &Setup,
+    plan: &Plan,
+    request: &Request,
+    meters: &mut Meters,
+) -> Result<Pass, Failure> {
+    let start = Instant::now();
+    let mut pass = once(method, setup, plan, request, meters)?;
+    for _ in 1..request.repeats.most {
+        if start.elapsed().as_secs_f64() > request.repeats.seconds {
+            break;
+        }
+        // Two at once would take twice the memory.
+        drop(pass);
+        pass = once(method, setup, plan, request, meters)?;
+    }
+    Ok(pass)
+}
+
+fn once(
+    method: &Discretisation,
+    setup: &Setup,
+    plan: &Plan,
+    request: &Request,
+    meters: &mut Meters,
+) -> Result<Pass, Failure> {
+    meters.counters = Counters::default();
+    let Meters { timings, counters } = meters;
+    let refined = if plan.runs(StageName::Refinement) {
+        timings.time("refine", || refined(method, setup, plan, counters))?
+    } else {
+        None
+    };
+    let current = refined.as_ref().unwrap_or(method);
+    let prepared = timings.time("prepare", || prepare(current, setup, counters))?;
+    let problem = Problem { method: current, setup, prepared: &prepared, plan, watch: request.watch };
+    let solution = procedure::solve(&problem, meters)?;
+    Ok(Pass { refined, prepared, solution })
+}
+
+/// A run without a displacement, one that ends before anything is solved or has modes: what its tables are like.
+fn unloaded(outcome: &mut Outcome, run: &measure::Solved) -> Result<(), Failure> {
+    if let Some(vibration) = &run.solution.vibration {
+        let found = report_modes(run, vibration)?;
+        (outcome.metrics, outcome.modes, outcome.size.dofs) = (found.metrics, found.modes, found.dofs as u64);
+    }
+    of_tables(&mut outcome.metrics, run.prepared);
+    Ok(())
+}
+
+/// A run with a displacement: all that is compared, evaluated and drawn of it.
+fn loaded(
+    outcome: &mut Outcome,
+    run: &measure::Solved,
+    request: &Request,
+    mut meters: Meters,
+) -> Result<(), Failure> {
+    let measure::Solved { setup, solution, .. } = *run;
+    let field = displacement(run, &outcome.plan, request, &mut meters)?;
+    outcome.phases = phases(&meters, run);
+    let mut counters = meters.counters;
+    if let Some(forces) = solution.forces {
+        outcome.identity.force_kernel = Some(forces.kernel.name().into());
+        outcome.identity.lane_path = forces.path.map(|path| path.name().into());
+    }
+    outcome.identity.linear_solver = solution.linear.as_ref().map(|info| info.path.name().into());
+    conclude(&mut outcome.plan, solution.forces, &counters);
+    compare(outcome, run, &field, request)?;
+    outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
+    outcome.probes = probes(run, request.probes)?;
+    if let Some(exact) = &setup.exact {
+        probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref());
+    }
+    // A path that ended early is compared with the reference step by step, not at its end, and has no loop.
+    let whole = solution.is_whole();
+    if outcome.plan.runs(StageName::Schemes) {
+        outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
+    }
+    if let Some(ask) = request.repeated.filter(|_| whole) {
+        outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
+    }
+    if request.picture {
+        outcome.field = Some(picture(&outcome.identity, run, outcome.last.as_ref())?);
+    }
+    outcome.counters = counters;
+    Ok(())
+}
+
+/// Errors at the end and at every step, and how the run ended.
+fn compare(
+    outcome: &mut Outcome,
+    run: &measure::Solved,
+    field: &Field,
+    request: &Request,
+) -> Result<(), Failure> {
+    let solution = run.solution;
+    measure(&mut outcome.metrics, run, field, &request.at_end(solution.is_whole()))?;
+    if let Some(history) = &solution.history {
+        let steps = report_steps(&mut outcome.metrics, run, history, request)?;
+        if history.failure.is_none() && run.setup.procedure.ramp().is_some() {
+            let exact = run.setup.exact.as_deref();
+            outcome.metrics.extend(probe_history(&steps, exact, request.probes));
+        }
+        (outcome.steps, outcome.last) = (steps, Some(history.last.clone()));
+        outcome.stalled = history.failure.clone();
+    }
+    outcome.relaxed = solution.relaxed.clone();
+    outcome.status = match (&outcome.stalled, &outcome.relaxed) {
+        (Some(failure), _) => failure.early_status(),
+        (None, Some(_)) => "relaxed",
+        (None, None) => "ok",
+    };
+    Ok(())
+}
+
+/// Seconds per phase with their total, and per element and step of explicit dynamics.
+fn phases(meters: &Meters, run: &measure::Solved) -> Vec<Timed> {
+    let mut phases = meters.timings.phases().to_vec();
+    phases.push(meters.timings.total());
+    let steps = meters.counters.time_steps;
+    if let (Procedure::Explicit(_), true, Some(solve)) =
+        (&run.setup.procedure, steps > 0, phases.iter().find(|timed| timed.phase == "solve"))
+    {
+        let each = 1.0 / (steps as f64 * run.method.mesh().cell_count() as f64);
+        phases.push(solve.part("element-step", each));
+    }
+    phases
+}
+
+fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
+    Size {
+        nodes: method.nodes().len() as u64,
+        elements: method.mesh().cell_count() as u64,
+        points: prepared.volume.rows.weights().len() as u64,
+        dofs: dofs as u64,
+        spacing: prepared.spacing,
+    }
+}
+
+/// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.
+pub(crate) fn reference(
+    method: Discretisation,
+    solved: Solved,
+    targets: &[Point3],
+) -> Result<Reference, Failure> {
+    let Solved { outcome, prepared, u, refined } = solved;
+    let method = refined.unwrap_or(method);
+    let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
+        Ok(method.at_points(&prepared.volume, points)?.0.rows().apply(&u))
+    };
+    let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
+    let nodes = outcome.size.nodes as usize;
+    let (method, steps, finished) = (outcome.identity.method, outcome.steps, outcome.stalled.is_none());
+    Ok(Reference { method, nodes, targets: points, steps, finished, at: Some(Box::new(at)) })
+}

@@ -1,0 +1,214 @@
+//! A simulator's loop: the scene's loading played up and down in frames, prepared once, each frame timed.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use cases::scene::{Procedure, Repeated};
+use contact::ContactSurface;
+use geometry::{Point3, Vector3};
+use shape::{Rows, Unity};
+use statics::{Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
+
+use crate::Failure;
+use crate::discretise::Discretisation;
+use crate::measure::Solved;
+use crate::outcome::{FOR_P99, Latency, Metric, push};
+use crate::prepare::Prepared;
+use crate::procedure::{solves, static_params, with_static_problem};
+
+/// Part of the loading in a frame: up from `2 / cycle` to 1 in half a cycle and down again, never to nothing, where a tool
+/// driven by force would have none.
+fn part(frame: usize, cycle: usize) -> f64 {
+    let (half, at) = (cycle / 2, frame % cycle);
+    let step = if at < half { at + 1 } else { cycle - at };
+    step as f64 / half as f64
+}
+
+/// Runs the loop after the first solution; metrics and deviations say how far it agrees with that.
+pub(super) fn repeated(
+    ask: &Repeated,
+    run: &Solved,
+    probes: &[Point3],
+    metrics: &mut Vec<Metric>,
+) -> Result<Vec<Latency>, Failure> {
+    match &run.setup.procedure {
+        Procedure::Static(asked) => nonlinear(ask, run, &static_params(asked)),
+        _ => linear(ask, run, probes, metrics),
+    }
+}
+
+fn linear(
+    ask: &Repeated,
+    run: &Solved,
+    probes: &[Point3],
+    metrics: &mut Vec<Metric>,
+) -> Result<Vec<Latency>, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let u = &solution.u;
+    let (loads, weak) = (prepared.loads(), prepared.weak());
+    let problem = prepared.problem(method.nodes(), setup, &loads, &weak);
+    let factored = prepared.factor(assemble(&problem)?)?;
+    let unit: Vec<Vec<Vector3>> = (loads.iter())
+        .map(|load| nodal_forces(&prepared.volume.rows, std::slice::from_ref(load)))
+        .collect::<Result<_, _>>()?;
+    let mut latencies = Vec::new();
+    let outputs = outputs(method, prepared, probes, &loads)?;
+    if !outputs.is_empty() {
+        let start = Instant::now();
+        let loaded: Vec<u32> = (0..method.nodes().len() as u32)
+            .filter(|&node| unit.iter().any(|f| f[node as usize] != Vector3::zeros()))
+            .collect();
+        let condensed = factored.condense(&outputs, &loaded)?;
+        latencies.push(Latency {
+            phase: "condense",
+            seconds: vec![start.elapsed().as_secs_f64()],
+            iterations: 0,
+            broke_off: None,
+            deviation: None,
+        });
+        let unit: Vec<Vec<Vector3>> =
+            unit.iter().map(|f| loaded.iter().map(|&node| f[node as usize]).collect()).collect();
+        let mut forces = vec![Vector3::zeros(); loaded.len()];
+        let mut out = vec![Vector3::zeros(); outputs.len()];
+        let mut frame = |parts: &dyn Fn(usize) -> f64, supports: f64, out: &mut [Vector3]| {
+            forces.fill(Vector3::zeros());
+            for (l, unit) in unit.iter().enumerate() {
+                let part = parts(l);
+                forces.iter_mut().zip(unit).for_each(|(f, u)| *f += u * part);
+            }
+            condensed.apply(black_box(&forces), supports, black_box(out));
+        };
+        frame(&|_| 1.0, 1.0, &mut out);
+        let direct = outputs.apply(u);
+        let largest = direct.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let gap = out.iter().zip(&direct).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            push(metrics, "repeated-error", gap / largest, "1");
+        }
+        // Every load at a part of its own: not a multiple of one solution.
+        let share = ask.cycle / (unit.len() + 1);
+        latencies.push(timed("repeated", ask, |k| {
+            frame(&|l| part(k + l * share, ask.cycle), part(k, ask.cycle), &mut out);
+            Ok(0)
+        })?);
+    }
+    let mut forces = vec![Vector3::zeros(); method.nodes().len()];
+    // Told beside: what 99 % of the frames take, and no more than a fiftieth of the time that the loop may take.
+    let ask = Repeated { frames: ask.frames.min(FOR_P99), within: 0.02 * ask.within, ..*ask };
+    let share = ask.cycle / (unit.len() + 1);
+    latencies.push(timed("repeated-field", &ask, |k| {
+        forces.fill(Vector3::zeros());
+        for (l, unit) in unit.iter().enumerate() {
+            let part = part(k + l * share, ask.cycle);
+            forces.iter_mut().zip(unit).for_each(|(f, u)| *f += u * part);
+        }
+        field(&factored, &forces, part(k, ask.cycle))
+    })?);
+    Ok(latencies)
+}
+
+fn field(factored: &Factored, forces: &[Vector3], supports: f64) -> Result<usize, Failure> {
+    black_box(factored.solve_forces(forces, supports)?);
+    Ok(0)
+}
+
+/// The probes, and the mean displacement of each loaded face: what a jaw that presses there would tell.
+fn outputs(
+    method: &Discretisation,
+    prepared: &Prepared,
+    probes: &[Point3],
+    loads: &[Load],
+) -> Result<Rows, Failure> {
+    let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
+    if !probes.is_empty() {
+        let rows = method.at_points(&prepared.volume, probes)?.0;
+        for probe in 0..probes.len() {
+            let (at, value) = rows.rows().row(probe);
+            nodes.extend_from_slice(at);
+            values.extend_from_slice(value);
+            offsets.push(nodes.len());
+        }
+    }
+    for load in loads {
+        let (Load::Traction { surface, .. } | Load::Pressure { surface, .. }) = load else { continue };
+        let area: f64 = surface.weights().iter().sum();
+        let mut mean = vec![0.0; method.nodes().len()];
+        for (q, w) in surface.weights().iter().enumerate() {
+            let (at, value) = surface.rows().row(q);
+            at.iter().zip(value).for_each(|(&node, v)| mean[node as usize] += w * v / area);
+        }
+        for (node, value) in mean.into_iter().enumerate().filter(|(_, v)| *v != 0.0) {
+            nodes.push(node as u32);
+            values.push(value);
+        }
+        offsets.push(nodes.len());
+    }
+    Ok(Rows::new(method.nodes().len(), offsets, nodes, values, Unity::NotPromised)?)
+}
+
+fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<Latency>, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let end = solution.history.as_ref().and_then(|history| history.last.tools.first());
+    let contact = prepared.contact.as_ref().map(ContactSurface::new);
+    with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
+        let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
+        let params = StaticParams { newton: NewtonParams { tolerance, ..params.newton }, ..*params };
+        let mut frames = Frames::new(problem, &params)?;
+        let (mut at, mut deviation) = (0, None);
+        let mut latency = timed("repeated", ask, |k| {
+            at = k;
+            let part = part(k, ask.cycle);
+            let step = frames.to(part)?;
+            if part == 1.0 && deviation.is_none() {
+                let norm = |u: &[Vector3]| u.iter().map(Vector3::norm).fold(0.0, f64::max);
+                let (now, then) = match (step.tools.first(), end) {
+                    (Some(tool), Some(end)) => (tool.force.norm(), end.force.norm()),
+                    _ => (norm(frames.u()), norm(&solution.u)),
+                };
+                deviation = (then > 0.0).then(|| (now / then - 1.0).abs());
+            }
+            Ok(solves(&step) as usize)
+        });
+        if let Ok(latency) = &mut latency {
+            latency.deviation = deviation;
+        }
+        let broke_off = Latency {
+            phase: "repeated",
+            seconds: Vec::new(),
+            iterations: 0,
+            broke_off: Some(at),
+            deviation: None,
+        };
+        Ok(vec![latency.unwrap_or(broke_off)])
+    })
+}
+
+/// Times each frame, which tells its iterations, until all are done or the time is spent.
+fn timed(
+    phase: &'static str,
+    ask: &Repeated,
+    mut frame: impl FnMut(usize) -> Result<usize, Failure>,
+) -> Result<Latency, Failure> {
+    let (mut seconds, mut iterations) = (Vec::with_capacity(ask.frames), 0);
+    let start = Instant::now();
+    for k in 0..ask.frames {
+        if k > 0 && start.elapsed().as_secs_f64() > ask.within {
+            break;
+        }
+        let before = Instant::now();
+        iterations += frame(k)?;
+        seconds.push(before.elapsed().as_secs_f64());
+    }
+    Ok(Latency { phase, seconds, iterations, broke_off: None, deviation: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_loading_goes_up_and_down_and_never_to_nothing() {
+        let parts: Vec<f64> = (0..9).map(|k| part(k, 8)).collect();
+        assert_eq!(parts, [0.25, 0.5, 0.75, 1.0, 1.0, 0.75, 0.5, 0.25, 0.25]);
+    }
+}

@@ -1,0 +1,242 @@
+//! A reference in a file: what several fine solutions of one scene agree on, and how far they differ. It is made once by
+//! `tissuebench reference`, takes too long to be made at every run, and is compared with by `[reference] record`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use cases::scene::{ErrorKind, Scene};
+use geometry::{Point3, Vector3};
+use reports::{Family, Record};
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::measure::{Reference, norms};
+use crate::outcome::{LoadStep, ToolStep, of_tool, provenance, run_id};
+
+/// The file, as JSON. Lengths in m, forces in N.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stored {
+    /// The scene it was made from.
+    pub case: String,
+    /// BLAKE3 of that scene without its title, source, purpose and methods: what the solutions are solutions of.
+    pub problem: String,
+    /// Version and commit of the program that made it.
+    pub program: String,
+    /// Compiler and instruction sets: they change the last bits.
+    pub made_on: String,
+    /// The solution whose values stand here; the others only widen the bands.
+    pub source: Source,
+    /// The other solutions.
+    pub beside: Vec<Source>,
+    /// Positions of the probes.
+    pub probes: Vec<[f64; 3]>,
+    /// The ends of the load steps.
+    pub steps: Vec<StoredStep>,
+    /// Where the displacement at the end is told.
+    pub points: Vec<[f64; 3]>,
+    /// The displacement there.
+    pub displacement: Vec<[f64; 3]>,
+    /// Largest root mean square by which another solution's displacement differs from it.
+    pub displacement_band: f64,
+}
+
+/// A solution by its method and size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// Id in the scene.
+    pub method: String,
+    /// Nodes.
+    pub nodes: usize,
+    /// Its table in the scene, as TOML.
+    pub table: String,
+}
+
+/// What a scene asks, and the tables of its methods that may answer.
+pub(crate) struct Asked {
+    pub(crate) problem: String,
+    /// By id.
+    pub(crate) methods: BTreeMap<String, String>,
+}
+
+impl Asked {
+    /// `text` is that of a scene that has been read.
+    pub(crate) fn of(text: &str) -> Asked {
+        let mut table: toml::Table = text.parse().expect("a scene is TOML");
+        let mut methods = BTreeMap::new();
+        if let Some(toml::Value::Array(tables)) = table.remove("method") {
+            for table in tables {
+                let id = table.get("id").and_then(toml::Value::as_str).unwrap_or_default().to_string();
+                methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
+            }
+        }
+        for words in ["title", "source", "purpose", "published"] {
+            table.remove(words);
+        }
+        Asked { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
+    }
+}
+
+/// The end of a load step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredStep {
+    /// Part of the loading, 0 to 1.
+    pub load: f64,
+    /// One per tool.
+    pub tools: Vec<StoredTool>,
+    /// Displacement at the probes.
+    pub probes: Vec<[f64; 3]>,
+    /// Largest distance of another solution's displacement at a probe.
+    pub probe_band: f64,
+}
+
+/// A tool at the end of a load step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredTool {
+    /// Way from its start.
+    pub closure: f64,
+    /// Force along its way.
+    pub force: f64,
+    /// Smallest of all solutions.
+    pub low: f64,
+    /// Largest of all solutions.
+    pub high: f64,
+}
+
+impl Stored {
+    /// Ids of the methods whose solutions it is made of.
+    pub fn methods(&self) -> impl Iterator<Item = &str> {
+        self.beside.iter().chain([&self.source]).map(|s| s.method.as_str())
+    }
+
+    /// Says what differs if this is not of the same problem and points, or by methods that the scene has in another form.
+    pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
+        let Source { method, nodes, .. } = &self.source;
+        let asked = Asked::of(text);
+        if self.problem != asked.problem {
+            return Err(format!("{method} on {nodes} nodes is of another scene, or another text of it"));
+        }
+        for Source { method, nodes, table } in self.beside.iter().chain([&self.source]) {
+            if asked.methods.get(method) != Some(table) {
+                return Err(format!(
+                    "{method} on {nodes} nodes is not by the scene's '{method}', but by\n{table}"
+                ));
+            }
+        }
+        let same = self.points.iter().copied().eq(points.iter().map(|x| <[f64; 3]>::from(x.coords)));
+        if same { Ok(()) } else { Err(format!("{method} on {nodes} nodes is of other points")) }
+    }
+
+    /// Widens the bands so far that they reach over those of another solution of the same scene at the same points.
+    pub fn widen(&mut self, other: &Stored) {
+        for (step, beside) in self.steps.iter_mut().zip(&other.steps) {
+            for (tool, beside) in step.tools.iter_mut().zip(&beside.tools) {
+                tool.low = tool.low.min(beside.low);
+                tool.high = tool.high.max(beside.high);
+            }
+            for (u, v) in step.probes.iter().zip(&beside.probes) {
+                let apart = (Vector3::from(*u) - Vector3::from(*v)).norm();
+                step.probe_band = step.probe_band.max(apart + beside.probe_band);
+            }
+        }
+        let [here, there] = [&self.displacement, &other.displacement]
+            .map(|all| all.iter().map(|&u| u.into()).collect::<Vec<_>>());
+        let apart = norms::difference(&there, &here).rms_magnitude;
+        self.displacement_band = self.displacement_band.max(apart + other.displacement_band);
+        self.beside.extend(other.beside.iter().chain([&other.source]).cloned());
+        // Not by the order in which they were joined.
+        self.beside.sort_by(|a, b| a.method.cmp(&b.method));
+    }
+
+    /// Reads a file; says what is wrong with it.
+    pub fn read(path: &Path) -> Result<Stored, String> {
+        let file = path.display();
+        let text = std::fs::read_to_string(path).map_err(|bad| format!("{file}: can't be read: {bad}"))?;
+        let stored: Stored =
+            serde_json::from_str(&text).map_err(|bad| format!("{file}: is no reference: {bad}"))?;
+        let (points, told) = (stored.points.len(), stored.displacement.len());
+        if points == told {
+            Ok(stored)
+        } else {
+            Err(format!("{file}: {points} points but {told} displacements"))
+        }
+    }
+
+    /// Reads the record that a scene compares with and holds it against the scene's probes.
+    pub fn load(scene: &Scene, path: &Path) -> Result<Stored, Failure> {
+        let wrong = |problem: String, help: &str| {
+            Failure::of_scene(scene, ErrorKind::Invalid, "reference.record", &problem, help)
+        };
+        let remake = "make it with tissuebench reference SCENE";
+        let stored = Stored::read(path).map_err(|problem| wrong(problem, remake))?;
+        let probes = &scene.output.probes;
+        let far = |(a, b): (&[f64; 3], &[f64; 3])| (Point3::from(*a) - Point3::from(*b)).norm() > 1e-9;
+        if stored.probes.len() != probes.len() || stored.probes.iter().zip(probes).any(far) {
+            let problem = format!("{}: was made for other probes", path.display());
+            return Err(wrong(problem, "give output.probes as in the scene it was made from"));
+        }
+        Ok(stored)
+    }
+
+    /// The points whose displacement is told, m.
+    pub fn targets(&self) -> Vec<Point3> {
+        self.points.iter().map(|&x| Point3::from(x)).collect()
+    }
+
+    /// As a run's reference.
+    pub fn reference(&self) -> Reference {
+        let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
+        let steps = self.steps.iter().map(|step| LoadStep {
+            load: step.load,
+            tools: (step.tools.iter())
+                .map(|t| ToolStep { closure: t.closure, pushed: t.force, ..ToolStep::UNTOUCHED })
+                .collect(),
+            strain_energy: None,
+            smallest_j: 1.0,
+            iterations: 0,
+            probes: vectors(&step.probes),
+            against: Vec::new(),
+            more: Vec::new(),
+        });
+        Reference {
+            method: self.source.method.clone(),
+            nodes: self.source.nodes,
+            targets: vectors(&self.displacement),
+            steps: steps.collect(),
+            finished: true,
+            at: None,
+        }
+    }
+
+    /// Its forces and their bands as rows of the long table; `case` has the name and purpose of the case and its Poisson's ratio.
+    pub fn records(&self, case: &Record) -> Vec<Record> {
+        let own = Record {
+            method: "reference".into(),
+            series: "reference".into(),
+            family: Family::Reference,
+            variant: self.source.method.clone(),
+            nodes: self.source.nodes as u64,
+            ..case.clone()
+        };
+        let own = Record { run: run_id(&own), ..own };
+        let mut rows = Vec::new();
+        for (number, step) in self.steps.iter().enumerate() {
+            let mut push = |quantity: String, unit: &str, statistic: &str, value: f64| {
+                let (unit, statistic) = (unit.into(), statistic.into());
+                let step = Some(number as u64 + 1);
+                rows.push(Record { quantity, unit, step, statistic, value, ..own.clone() });
+            };
+            for (index, tool) in step.tools.iter().enumerate() {
+                push(of_tool("closure", index), "m", "value", tool.closure);
+                for (statistic, value) in [("value", tool.force), ("low", tool.low), ("high", tool.high)] {
+                    push(of_tool("tool-force", index), "N", statistic, value);
+                }
+            }
+            push("probe-band".into(), "m", "value", step.probe_band);
+        }
+        rows
+    }
+}

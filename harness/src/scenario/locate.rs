@@ -1,0 +1,221 @@
+//! From what stopped a run to the key of the scene that caused it: file, line and value.
+
+use algebra::AlgebraError;
+use cases::scene::{Cloud, ErrorKind, Family, Functions, Procedure, Scene, SupportRule};
+use efg::EfgError;
+use explicit::ExplicitError;
+use statics::{SolveError, StaticError, TimeError};
+
+use crate::Failure;
+use crate::error::{Finding, Key};
+use crate::scenario::Scenario;
+
+impl Scenario<'_> {
+    /// The failure of this run at the key of the scene that it is about.
+    pub fn locate(&self, failure: Failure) -> Failure {
+        let finding = match failure {
+            Failure::Scene(_) => return failure,
+            Failure::At(finding) => *finding,
+            Failure::Input(problem) => finding(ErrorKind::Invalid, Key::Method(""), problem, ""),
+            Failure::Run(problem) => finding(ErrorKind::NotRun, Key::Method(""), problem, ""),
+            Failure::Efg(error) => self.of_cloud(&error),
+            Failure::Solve(error) => self.of_solve(&error),
+            Failure::Static(error) => self.of_static(&error),
+            Failure::Explicit(error) => self.of_explicit(&error),
+            Failure::InTime(error) => self.of_time(&error),
+        };
+        let key = self.key(&finding.key);
+        let help = finding.help.as_deref();
+        Failure::Scene(Box::new(self.scene.error(finding.kind, &key, &finding.problem, help)))
+    }
+
+    fn key(&self, key: &Key) -> String {
+        let index = self.scene.methods.iter().position(|m| m.id == self.method.id);
+        let method = index.map_or("method".into(), |i| format!("method[{i}]"));
+        match key {
+            Key::Scene(key) => key.clone(),
+            Key::Method(below) => joined(&method, below),
+            Key::Background(below) => joined(&format!("{method}.background"), below),
+            Key::Size(below) => match (&self.size_key, &self.method.family) {
+                (Some(key), _) => joined(key, below),
+                (None, Family::Efg(efg)) if !matches!(efg.cloud, Cloud::Mesh { .. }) => {
+                    format!("{method}.nodes")
+                }
+                (None, _) => joined(&format!("{method}.size"), below),
+            },
+        }
+    }
+
+    fn of_cloud(&self, error: &EfgError) -> Finding {
+        let support = match &self.method.family {
+            Family::Efg(efg) => match efg.functions {
+                Functions::MovingLeastSquares { support: SupportRule::Scale(_), .. } => {
+                    Key::Method("support_scale")
+                }
+                Functions::MovingLeastSquares { support: SupportRule::Neighbours { .. }, .. } => {
+                    Key::Method("neighbours")
+                }
+                Functions::MaximumEntropy { .. } => Key::Method("basis"),
+            },
+            Family::Fem(_) => Key::Method(""),
+        };
+        let (kind, key, help) = match error {
+            EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
+                (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
+            }
+            EfgError::FlatCells { .. } => {
+                (ErrorKind::NotRun, Key::Method("support"), "take support = \"round\", or another mesh")
+            }
+            EfgError::OutsideHull { .. } => (
+                ErrorKind::NotRun,
+                support,
+                "nodes have to surround every point: take the nodes of the mesh that is integrated over on a convex body, or \
+                 basis = \"linear\"",
+            ),
+            EfgError::BadRadius { .. } => {
+                (ErrorKind::NotRun, support, "a node needs another one at a distance")
+            }
+            EfgError::TooFewNodes { .. } => (ErrorKind::Invalid, Key::Size(""), "ask for more nodes"),
+            EfgError::EmptyGrid { .. } => {
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it finer")
+            }
+            EfgError::HugeGrid { .. } => {
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it coarser")
+            }
+            EfgError::NoRule { .. } => (
+                ErrorKind::Invalid,
+                Key::Method("integration.points"),
+                "in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known",
+            ),
+            _ => (ErrorKind::NotRun, Key::Method(""), ""),
+        };
+        finding(kind, key, error.to_string(), help)
+    }
+
+    fn of_static(&self, error: &StaticError) -> Finding {
+        match error {
+            StaticError::Solve(error) => self.of_solve(error),
+            StaticError::Contact(_) => {
+                finding(ErrorKind::NotRun, Key::Scene("tool".into()), error.to_string(), "")
+            }
+            StaticError::Parameter { .. } => {
+                finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")
+            }
+            _ => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+        }
+    }
+
+    fn of_explicit(&self, error: &ExplicitError) -> Finding {
+        let given = matches!(&self.scene.procedure, Procedure::Explicit(explicit) if explicit.step.is_some());
+        let (key, help) = match error {
+            ExplicitError::StepTooLarge { .. } if given => {
+                (Key::Scene("procedure.step".into()), "leave it out: the step then follows the critical one")
+            }
+            ExplicitError::StepTooLarge { .. } => {
+                (Key::Method(""), "procedure.safety = 0.7 leaves more room")
+            }
+            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool-mass"),
+            ExplicitError::ContactAt { .. } => (Key::Scene("tool".into()), ""),
+            ExplicitError::InvertedAt { .. } => {
+                (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")
+            }
+            _ => (Key::Method(""), ""),
+        };
+        finding(ErrorKind::NotRun, key, error.to_string(), help)
+    }
+
+    fn of_time(&self, error: &TimeError) -> Finding {
+        let first = match error {
+            TimeError::Stalled { cause, .. } => cause,
+            error => error,
+        };
+        let (kind, key, help) = match first {
+            TimeError::Parameter { .. } => (ErrorKind::Invalid, Key::Scene("procedure".into()), ""),
+            TimeError::Inaccurate { .. } => (
+                ErrorKind::NotRun,
+                Key::Scene("procedure.accuracy".into()),
+                "no step is short enough: allow more",
+            ),
+            _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+        };
+        finding(kind, key, error.to_string(), help)
+    }
+
+    fn of_solve(&self, error: &SolveError) -> Finding {
+        let cloud = matches!(self.method.family, Family::Efg(_));
+        let essential = Key::Method("essential");
+        let text = error.to_string();
+        match error {
+            SolveError::RigidMotion { .. } => rigid(self.scene, text),
+            SolveError::Conflict { .. } => finding(
+                ErrorKind::Invalid,
+                supports(self.scene),
+                text,
+                "let the places of the supports meet only where their values agree",
+            ),
+            SolveError::NotCoercive { .. } => {
+                finding(ErrorKind::NotRun, essential, text, "{ method = \"nitsche\", factor = ... }")
+            }
+            SolveError::Inconsistent { .. }
+            | SolveError::Dependent { .. }
+            | SolveError::BadWeak { .. }
+            | SolveError::Algebra(AlgebraError::ZeroPivot) => {
+                finding(ErrorKind::NotRun, if cloud { essential } else { supports(self.scene) }, text, "")
+            }
+            SolveError::NotPositiveDefinite | SolveError::OrphanNode { .. } if cloud => finding(
+                ErrorKind::NotRun,
+                Key::Method("integration"),
+                text,
+                "take more integration points, or a finer background",
+            ),
+            SolveError::NotPositiveDefinite => finding(ErrorKind::NotRun, Key::Method("element"), text, ""),
+            SolveError::OrphanNode { .. } => {
+                let help = "every node of the mesh has to belong to a cell";
+                finding(ErrorKind::NotRun, Key::Size(""), text, help)
+            }
+            SolveError::Algebra(AlgebraError::TooLarge { .. }) => {
+                finding(ErrorKind::NotRun, Key::Size(""), text, "make it coarser")
+            }
+            _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
+        }
+    }
+}
+
+/// What helps a static procedure that ends early, if anything does.
+const MORE_STEPS: &str =
+    "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may carry more";
+
+/// A motion that no support holds is blamed on the supports there are; on the body if there is none.
+fn rigid(scene: &Scene, motions: String) -> Finding {
+    let help = "hold it: [[support]] with a place (on or where) and fix = \"xyz\", or the axes that are free";
+    let (key, problem) = match scene.supports.len() {
+        0 => (Key::Scene("body".into()), format!("is held by no [[support]]: {motions}")),
+        1 => (supports(scene), format!("does not hold the body: {motions}")),
+        count => {
+            let lines: Vec<String> = (0..count)
+                .map(|i| scene.error(ErrorKind::NotRun, &format!("support[{i}]"), "", None).line.to_string())
+                .collect();
+            let problem = format!(
+                "does not hold the body, all {count} together (lines {}): {motions}",
+                lines.join(", ")
+            );
+            (Key::Scene("support".into()), problem)
+        }
+    };
+    finding(ErrorKind::NotRun, key, problem, help)
+}
+
+/// The list of supports, or what the only one prescribes.
+fn supports(scene: &Scene) -> Key {
+    let only = ["support[0].fix", "support[0].move"].into_iter().find(|key| scene.has(key));
+    let key = if scene.supports.len() == 1 { only.unwrap_or("support[0]") } else { "support" };
+    Key::Scene(key.into())
+}
+
+fn finding(kind: ErrorKind, key: Key, problem: String, help: &str) -> Finding {
+    Finding { kind, key, problem, help: (!help.is_empty()).then(|| help.into()) }
+}
+
+fn joined(key: &str, below: &str) -> String {
+    if below.is_empty() { key.into() } else { format!("{key}.{below}") }
+}

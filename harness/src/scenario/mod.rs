@@ -1,0 +1,176 @@
+//! From a checked scene and one of its methods to what the solvers take: its laws, supports and loads, and the exact solution.
+
+mod body;
+mod cloud_file;
+mod discretise;
+mod grading;
+mod identity;
+mod law;
+mod locate;
+pub(crate) mod setup;
+mod tools;
+
+pub(crate) use body::point;
+pub(crate) use identity::{purpose, rule};
+pub(crate) use tools::PlacedTool;
+
+use cases::exact::{Exact, Params, exact_by_name};
+use cases::scene::{self, LoadKind, Prescribed, Reference, Scene, VectorField};
+use geometry::{Point3, Vector3};
+use material::{Law, LinearElastic, Prony};
+
+use crate::Failure;
+use crate::error::Key;
+use setup::{Applied, Load, Setup, Support};
+use tools::tools;
+
+/// A scene's method with what a study changes of it.
+#[derive(Clone, Debug)]
+pub struct Scenario<'a> {
+    /// Case name: the stem of the scene's file.
+    pub case: String,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The method, sizes and kernel already overridden.
+    pub method: scene::Method,
+    /// Level of the size, 0 if it is given otherwise.
+    pub level: u32,
+    /// Poisson's ratio in place of the scene's.
+    pub poisson: Option<f64>,
+    /// The key that the size is from where it is not the method's own.
+    pub size_key: Option<String>,
+}
+
+impl Scenario<'_> {
+    /// The laws by region, and their limits at small strain.
+    fn laws(&self) -> Result<(Vec<Law>, Vec<LinearElastic>), Failure> {
+        self.materials()
+            .enumerate()
+            .map(|(region, (key, material, _))| {
+                // A study's other ratio is that of the scene's own material.
+                let law = law::law(material, self.poisson.filter(|_| region == 0), &key)?;
+                let linear = law::small_strain(&law, &key)?;
+                Ok((law, linear))
+            })
+            .collect()
+    }
+
+    /// Materials, supports, loads and the exact solution.
+    pub fn setup(&self) -> Result<Setup, Failure> {
+        self.acting().map_err(|failure| self.locate(failure))
+    }
+
+    fn acting(&self) -> Result<Setup, Failure> {
+        let (laws, materials) = self.laws()?;
+        let e = materials[0];
+        let exact = self.exact(e)?;
+        let supports = self
+            .scene
+            .supports
+            .iter()
+            .enumerate()
+            .map(|(index, support)| {
+                let motion = support.motion.clone();
+                let exact = motion.iter().flatten().any(|p| matches!(p, Prescribed::Exact));
+                let exact = if exact { Some(self.exact(e)?.ok_or_else(no_exact)?) } else { None };
+                Ok(Support {
+                    key: format!("support[{index}]"),
+                    place: support.place.clone(),
+                    axes: std::array::from_fn(|a| support.motion[a].is_some()),
+                    value: Box::new(move |x| {
+                        let known = exact.as_ref().map(|e| e.displacement(x));
+                        let mut u = Vector3::zeros();
+                        for axis in 0..3 {
+                            u[axis] = match &motion[axis] {
+                                Some(Prescribed::Field(field)) => value(field, x)?,
+                                Some(Prescribed::Exact) => known.map_or(0.0, |u| u[axis]),
+                                None => 0.0,
+                            };
+                        }
+                        Ok(u)
+                    }),
+                })
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let loads = self
+            .scene
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(index, load)| {
+                let applied = match load.kind.clone() {
+                    LoadKind::Traction(VectorField::Exact) => {
+                        let exact = self.exact(e)?.ok_or_else(no_exact)?;
+                        Applied::Traction(Box::new(move |x, n| Ok(exact.traction(x, n))))
+                    }
+                    LoadKind::Traction(VectorField::Components(c)) => {
+                        Applied::Traction(Box::new(move |x, _| components(&c, x)))
+                    }
+                    LoadKind::Pressure(field) => Applied::Pressure(Box::new(move |x| value(&field, x))),
+                    LoadKind::Body(VectorField::Exact) => {
+                        let exact = self.exact(e)?.ok_or_else(no_exact)?;
+                        Applied::Body(Box::new(move |x| Ok(exact.body_force(x))))
+                    }
+                    LoadKind::Body(VectorField::Components(c)) => {
+                        Applied::Body(Box::new(move |x| components(&c, x)))
+                    }
+                };
+                Ok(Load { key: format!("load[{index}]"), place: load.place.clone(), applied })
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Setup {
+            laws,
+            materials,
+            densities: self.materials().map(|(_, material, _)| material.density()).collect(),
+            relaxation: self.relaxation()?,
+            supports,
+            loads,
+            tools: tools(self.scene)?,
+            procedure: self.scene.procedure,
+            mass: self.method.mass,
+            exact,
+        })
+    }
+
+    /// Every material with its key and its relaxation: the scene's own, then those of its regions.
+    fn materials(&self) -> impl Iterator<Item = (String, &scene::Material, &[scene::Relaxation])> {
+        let regions = self.scene.regions.iter().enumerate();
+        std::iter::once(("material".to_string(), &self.scene.material, self.scene.prony.as_slice()))
+            .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, r.prony.as_slice())))
+    }
+
+    fn relaxation(&self) -> Result<Vec<Option<Prony>>, Failure> {
+        let series = self.materials().map(|(key, _, terms)| {
+            let terms: Vec<(f64, f64)> = terms.iter().map(|t| (t.g, t.tau)).collect();
+            let wrong = |bad: material::MaterialError| {
+                Failure::input(Key::Scene(format!("{key}.prony")), bad.to_string(), "")
+            };
+            if terms.is_empty() { Ok(None) } else { Prony::new(&terms).map(Some).map_err(wrong) }
+        });
+        series.collect()
+    }
+
+    /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene
+    /// names none.
+    fn exact(&self, e: LinearElastic) -> Result<Option<Box<dyn Exact>>, Failure> {
+        let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
+        let values = parameters.clone();
+        let params = Params { young: e.young(), poisson: e.poisson(), values };
+        let exact = exact_by_name(name, &params)
+            .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))?;
+        Ok(Some(self.scene.procedure.duration().and_then(|end| exact.at(end)).unwrap_or(exact)))
+    }
+}
+
+fn no_exact() -> Failure {
+    let problem = "has no exact solution, which \"exact\" values need";
+    Failure::input(Key::Scene("reference".into()), problem, "add [reference] exact = \"...\"")
+}
+
+fn value(field: &scene::ScalarField, x: &Point3) -> Result<f64, String> {
+    field.value([x.x, x.y, x.z]).map_err(|bad| bad.to_string())
+}
+
+fn components(fields: &[scene::ScalarField; 3], x: &Point3) -> Result<Vector3, String> {
+    Ok(Vector3::new(value(&fields[0], x)?, value(&fields[1], x)?, value(&fields[2], x)?))
+}

@@ -1,0 +1,37 @@
+//! Which runs of a study are made, and where their results go.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Arguments of `verify`.
+#[derive(Args)]
+pub struct VerifyArgs {
+    /// The study file (default: cases/verify.toml)
+    pub study: Option<PathBuf>,
+    /// Only the runs of the quick tier
+    #[arg(long)]
+    pub quick: bool,
+    /// Only runs whose case or method contains this text
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Only the K-th of N equal shares of the runs
+    #[arg(long, value_name = "K/N", value_parser = shard)]
+    pub shard: Option<(usize, usize)>,
+    /// Runs at a time; more than 1 spoils the timings
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
+    /// Keep stored results of runs whose scene, method and program have not changed
+    #[arg(long)]
+    pub resume: bool,
+    /// Where to put records, tables, figures and the report
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+}
+
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let fix = "write it as K/N with K from 1 to N, such as 1/4";
+    let (k, n) = text.split_once('/').ok_or(fix)?;
+    let (k, n): (usize, usize) = (k.parse().map_err(|_| fix)?, n.parse().map_err(|_| fix)?);
+    if (1..=n).contains(&k) { Ok((k, n)) } else { Err(fix.into()) }
+}

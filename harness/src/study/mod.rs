@@ -1,0 +1,393 @@
+//! A study: many scenes and methods, run in a fixed order, checked, written out.
+
+mod args;
+pub mod check;
+pub(crate) mod folder;
+pub(crate) mod make_reference;
+mod progress;
+mod task;
+mod tasks;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use cases::scene::{self, Check, ErrorKind, Scene, Size, Study};
+use reports::{Check as Verdict, Machine, Record, RunSet, SurfaceField};
+
+use crate::Failure;
+use crate::outcome::{Counters, provenance};
+use crate::run::stored::Stored;
+use crate::run::{Extras, Group, Repeats, case_name};
+use crate::scenario::purpose;
+use progress::Progress;
+use task::TaskResult;
+use tasks::{Task, list};
+
+pub use args::VerifyArgs;
+pub(crate) use task::stalled;
+
+/// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
+const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
+/// Repeats in the quick tier, whose purpose is the checks: medians of three for runs below 20 ms.
+const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
+
+/// A study with its scenes read.
+pub struct Plan {
+    study: Study,
+    scenes: Vec<(PathBuf, String, Scene)>,
+    tasks: Vec<Task>,
+}
+
+/// What a study came to.
+pub struct Finished {
+    /// Everything to be written.
+    pub set: RunSet,
+    /// Exit codes of runs that failed.
+    pub failed: Vec<u8>,
+    /// Runs done.
+    pub ran: usize,
+    /// Counts of what was done now, references included; stored runs took none.
+    pub counters: Counters,
+}
+
+impl Plan {
+    /// Reads the scenes of a study and lists its runs.
+    pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
+        let mut scenes: Vec<(PathBuf, String, Scene)> = Vec::new();
+        let mut tasks = Vec::new();
+        let mut errors = Vec::new();
+        for (index, run) in study.runs.iter().enumerate() {
+            let known = scenes.iter().position(|(path, ..)| *path == run.scene);
+            let at = match known {
+                Some(at) => at,
+                None => match scene::load(&run.scene) {
+                    Ok(scene) if !scene.unavailable().is_empty() => {
+                        errors.extend(scene.unavailable());
+                        continue;
+                    }
+                    Ok(scene) => {
+                        let text = std::fs::read_to_string(&run.scene).unwrap_or_default();
+                        let named =
+                            |(_, _, other): &&(PathBuf, String, Scene)| case_name(other) == case_name(&scene);
+                        if let Some((path, ..)) = scenes.iter().find(named) {
+                            let problem = format!("is in a file of the same name as {}", path.display());
+                            let help = "rename one of them: results are filed under the names of scenes";
+                            errors.push(scene.error(ErrorKind::Invalid, "title", &problem, Some(help)));
+                        }
+                        scenes.push((run.scene.clone(), text, scene));
+                        scenes.len() - 1
+                    }
+                    Err(bad) => {
+                        errors.extend(bad);
+                        continue;
+                    }
+                },
+            };
+            list(&mut tasks, index, at, run, &scenes[at].2);
+        }
+        if errors.is_empty() { Ok(Plan { study, scenes, tasks }) } else { Err(errors) }
+    }
+
+    /// Keeps the runs that the arguments select.
+    pub fn select(&mut self, args: &VerifyArgs) {
+        let (runs, scenes) = (&self.study.runs, &self.scenes);
+        self.tasks.retain_mut(|task| {
+            // Shares deal out whole run tables, so that orders see all their levels.
+            let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
+            task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
+            let fits =
+                |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
+            !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
+        });
+    }
+
+    /// The run tables that ask for a task.
+    fn tables<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a scene::Run> {
+        task.runs.iter().map(|&run| &self.study.runs[run])
+    }
+
+    /// Whether it is asked for as one of many clouds only.
+    fn is_one_of_many(&self, task: &Task) -> bool {
+        self.tables(task).all(|run| run.seeds > 0)
+    }
+
+    /// Number of runs.
+    pub fn len(&self) -> usize {
+        self.tasks.len()
+    }
+
+    /// Whether nothing is to be run.
+    pub fn is_empty(&self) -> bool {
+        self.tasks.is_empty()
+    }
+
+    /// Runs everything. Results come in the order of the study, whatever the number of jobs.
+    pub fn execute(&self, args: &VerifyArgs) -> Finished {
+        let store = args.out.join("tasks");
+        let machine = provenance::machine();
+        let runner = task::runner(&provenance::program(), &machine);
+        let progress = Progress::new(self.tasks.len());
+        let groups = self.groups();
+        let next = AtomicUsize::new(0);
+        let done: Mutex<BTreeMap<usize, TaskResult>> = Mutex::new(BTreeMap::new());
+        std::thread::scope(|scope| {
+            for _ in 0..args.jobs {
+                scope.spawn(|| {
+                    while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        self.group(members, args, &store, &runner, &progress, &done);
+                    }
+                });
+            }
+        });
+        progress.finish();
+        self.collect(done.into_inner().expect("no worker panicked"), machine)
+    }
+
+    /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (index, task) in self.tasks.iter().enumerate() {
+            let same = |other: &Task| other.scene == task.scene && other.poisson == task.poisson;
+            match groups.iter_mut().find(|g| same(&self.tasks[g[0]])) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        groups
+    }
+
+    fn group(
+        &self,
+        members: &[usize],
+        args: &VerifyArgs,
+        store: &Path,
+        runner: &str,
+        progress: &Progress,
+        done: &Mutex<BTreeMap<usize, TaskResult>>,
+    ) {
+        let first = &self.tasks[members[0]];
+        let (_, text, scene) = &self.scenes[first.scene];
+        let case = case_name(scene);
+        // Made when first needed: with all members stored, not even the reference is run.
+        let mut group: Option<Result<Group, Failure>> = None;
+        for &index in members {
+            let task = &self.tasks[index];
+            progress.running(format!("{case} {}", task.method.id));
+            let split = self.tables(task).find_map(|run| run.split);
+            // Clouds of many seeds are of one kind: one loop is enough for them all.
+            let frames = !args.quick && !self.is_one_of_many(task);
+            let repeats = if args.quick { QUICK } else { REPEATS };
+            let Task { method, level, poisson, picture, .. } = task;
+            let what = format!("{method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
+            let key = task::key(runner, text, &files(scene), &what);
+            let stored = if args.resume { TaskResult::load(store, &key) } else { None };
+            let known = stored.is_some();
+            let result = stored.unwrap_or_else(|| {
+                let mut shared = Counters::default();
+                let group = group.get_or_insert_with(|| {
+                    let group = Group::new(scene, task.poisson, repeats);
+                    shared = group.as_ref().map_or(shared, Group::reference_counters);
+                    group
+                });
+                let outcome = match group {
+                    Ok(group) => {
+                        let extras = Extras { picture: task.picture, frames, split };
+                        group.run(&group.scenario(task.method.clone(), task.level), extras)
+                    }
+                    Err(failure) => Err(failure.clone().into()),
+                };
+                let mut result = match outcome {
+                    Ok(outcome) => TaskResult::finished(&outcome),
+                    Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
+                };
+                result.counters += shared;
+                if let (Ok(Some(stalled)), None) =
+                    (group.as_ref().map(Group::reference_stalled), &result.failure)
+                {
+                    let reason = format!("reference stalled: {stalled}");
+                    let run = reports::Failure { case: case.clone(), method: task.method.id.clone(), reason };
+                    result.failure = Some((run, stalled.exit_code()));
+                }
+                result
+            });
+            if !known && let Err(bad) = result.store(store, &key) {
+                progress.warn(format!("warning: {} could not be stored: {bad}", store.display()));
+            }
+            done.lock().expect("no worker panicked").insert(index, result);
+            progress.done();
+        }
+    }
+
+    fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
+        let mut set = RunSet::default();
+        let mut failed = Vec::new();
+        let mut counters = Counters::default();
+        for (&index, result) in &results {
+            let task = &self.tasks[index];
+            counters += result.counters;
+            set.records.extend(result.records.iter().cloned());
+            set.plans.extend(result.plans.iter().cloned());
+            for field in &result.fields {
+                // Of a method at several sizes the finest is shown.
+                let same =
+                    |other: &&mut SurfaceField| other.case == field.case && other.method == field.method;
+                match set.fields.iter_mut().find(same) {
+                    Some(other) if other.points.len() >= field.points.len() => {}
+                    Some(other) => *other = field.clone(),
+                    None => set.fields.push(field.clone()),
+                }
+            }
+            let verdicts = self.verdicts(task, result);
+            if let Some((failure, code)) = &result.failure {
+                set.failures.push(failure.clone());
+                // Of many clouds one may stall: how many did is a result. One without any numbers is in no count. So is
+                // a path known to end where it does.
+                let counted = self.is_one_of_many(task) && !result.records.is_empty();
+                let known =
+                    |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
+                if !counted && !verdicts.iter().any(known) {
+                    failed.push(*code);
+                }
+            }
+            set.checks.extend(verdicts);
+        }
+        for (_, _, scene) in &self.scenes {
+            set.records.extend(reference_records(scene));
+        }
+        set.checks.extend(self.family_verdicts(&results));
+        let texts: Vec<(String, String)> =
+            self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
+        set.provenance = provenance::provenance(machine, &texts);
+        Finished { set, failed, ran: results.len(), counters }
+    }
+
+    /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
+    fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
+        let scene = &self.scenes[task.scene].2;
+        let label = label(task, &result.records, self.is_one_of_many(task));
+        self.checks(task)
+            .filter(|check| !check::needs_levels(check))
+            .map(|check| {
+                let value = check::value(check.metric.name, &result.records);
+                let mut verdict = check::judge(check, &case_name(scene), &label, value);
+                if let (None, Some((failure, _))) = (value, &result.failure) {
+                    verdict.reason = failure.reason.clone();
+                }
+                verdict
+            })
+            .collect()
+    }
+
+    fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
+        let scene = &self.scenes[task.scene].2;
+        // A scene's checks are of its own cloud.
+        let own = if self.is_one_of_many(task) { &[] } else { &scene.checks[..] };
+        let all = own.iter().chain(self.tables(task).flat_map(|run| &run.checks));
+        all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
+    }
+
+    /// Checks of orders: once for each method and Poisson's ratio of a run table.
+    fn family_verdicts(&self, results: &BTreeMap<usize, TaskResult>) -> Vec<Verdict> {
+        let mut verdicts = Vec::new();
+        // In the order of the first result of each.
+        let mut families: Vec<(usize, &Task)> = Vec::new();
+        let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
+        for task in results.keys().map(|&index| &self.tasks[index]) {
+            for &run in &task.runs {
+                if !families.iter().any(|(other, first)| *other == run && same(first, task)) {
+                    families.push((run, task));
+                }
+            }
+        }
+        for (run, first) in families {
+            let of = |task: &Task| task.runs.contains(&run) && same(first, task);
+            let members: Vec<&[Record]> = (results.iter())
+                .filter(|(index, _)| of(&self.tasks[**index]))
+                .map(|(_, result)| result.records.as_slice())
+                .collect();
+            let case = case_name(&self.scenes[first.scene].2);
+            let own = |c: &&Check| c.methods.is_empty() || c.methods.contains(&first.method.id);
+            for check in self.study.runs[run].checks.iter().filter(own).filter(|c| check::needs_levels(c)) {
+                let value = check::order(check.metric.name, &members);
+                let label = match first.poisson {
+                    Some(poisson) => format!("{} nu={poisson}", first.method.id),
+                    None => first.method.id.clone(),
+                };
+                verdicts.push(check::judge(check, &case, &label, value));
+            }
+        }
+        verdicts
+    }
+}
+
+/// The rows of a stored reference; one that can't be read has failed every method that asked for it.
+pub fn reference_records(scene: &Scene) -> Vec<Record> {
+    let Some(scene::Reference::Record(path)) = &scene.reference else { return Vec::new() };
+    let case = Record {
+        case: case_name(scene),
+        purpose: purpose(scene.purpose),
+        published: scene.published.map_or("", |p| p.name()).into(),
+        poisson: scene.material.elastic().map_or(0.0, |e| e.poisson),
+        ..Record::default()
+    };
+    Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
+}
+
+/// Method id with what tells this run from others of the same id.
+fn label(task: &Task, records: &[Record], seeded: bool) -> String {
+    let mut text = task.method.id.clone();
+    if task.level > 0 {
+        text += &format!(" level {}", task.level);
+    }
+    if let (Some(first), 0) = (records.first(), task.level) {
+        text += &format!(" {} {} nodes", first.variant, first.nodes);
+    }
+    if let Some(poisson) = task.poisson {
+        text += &format!(" nu={poisson}");
+    }
+    if seeded {
+        text += &format!(" seed={}", records.first().map_or(0, |r| r.seed));
+    }
+    text
+}
+
+/// Mesh files that a scene names: a changed mesh is a changed run.
+fn files(scene: &Scene) -> Vec<PathBuf> {
+    let of_size = |size: &Size| match size {
+        Size::File(file) => Some(file.path.clone()),
+        _ => None,
+    };
+    let mut found = Vec::new();
+    if let scene::Body::File(file) = &scene.body {
+        found.push(file.path.clone());
+    }
+    for method in &scene.methods {
+        match &method.family {
+            scene::Family::Fem(fem) => found.extend(of_size(&fem.size)),
+            scene::Family::Efg(efg) => {
+                found.extend(efg.background.as_ref().and_then(of_size));
+                match &efg.cloud {
+                    scene::Cloud::Mesh { size, .. } => found.extend(of_size(size)),
+                    scene::Cloud::File { file, .. } => found.push(file.path.clone()),
+                    _ => {}
+                }
+            }
+        }
+    }
+    for transfer in &scene.output.transfers {
+        if let scene::Target::File(file) = &transfer.to {
+            found.push(file.path.clone());
+        }
+    }
+    if let Some(scene::Reference::Method { size: Some(size), .. }) = &scene.reference {
+        found.extend(of_size(size));
+    }
+    if let Some(scene::Reference::Record(path)) = &scene.reference {
+        found.push(path.clone());
+    }
+    found.sort();
+    found.dedup();
+    found
+}

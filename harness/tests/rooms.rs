@@ -1,0 +1,109 @@
+//! The rooms of the harness stand in one order, and each uses only those to its right; files and functions stay small.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// From left to right.
+const ROOMS: [&str; 10] =
+    ["cli", "study", "run", "measure", "procedure", "prepare", "scenario", "discretise", "outcome", "error"];
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// Every Rust file below a folder with its text.
+fn files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if entry.is_dir() {
+            found.extend(files(&entry));
+        } else if entry.extension().is_some_and(|e| e == "rs") {
+            let text = std::fs::read_to_string(&entry).unwrap();
+            found.push((entry, text));
+        }
+    }
+    found
+}
+
+/// The room of a file: the first part of its path below `src`.
+fn room(path: &Path) -> Option<usize> {
+    let below = path.strip_prefix(source()).unwrap().with_extension("");
+    let first = below.components().next()?.as_os_str().to_str()?.to_string();
+    ROOMS.iter().position(|room| *room == first)
+}
+
+/// Rooms that a text names after `crate::`, in a path or in a list.
+fn used(text: &str) -> BTreeSet<usize> {
+    let known = |name: &str| ROOMS.iter().position(|room| *room == name);
+    let word = |text: &str| {
+        text.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("").to_string()
+    };
+    let mut found = BTreeSet::new();
+    for after in text.split("crate::").skip(1) {
+        match after.strip_prefix('{') {
+            Some(list) => {
+                let end = list.find(';').unwrap_or(list.len());
+                found.extend(list[..end].split([',', '{', '}']).filter_map(|item| known(&word(item.trim()))));
+            }
+            None => found.extend(known(&word(after))),
+        }
+    }
+    found
+}
+
+#[test]
+fn arrows_go_one_way() {
+    let mut arrows = 0;
+    for (path, text) in files(&source()) {
+        let Some(here) = room(&path) else { continue };
+        for there in used(&text) {
+            let (path, from, to) = (path.display(), ROOMS[here], ROOMS[there]);
+            assert!(there >= here, "{path}: {from} uses {to}, a room to its left");
+            arrows += usize::from(there > here);
+        }
+    }
+    assert!(arrows > 100, "{arrows}: the arrows were not read");
+    let rooms: BTreeSet<usize> = files(&source()).iter().filter_map(|(path, _)| room(path)).collect();
+    assert_eq!(rooms.len(), ROOMS.len(), "a room is empty: {rooms:?}");
+}
+
+#[test]
+fn an_arrow_back_would_be_seen() {
+    assert_eq!(used("use crate::run::Group;"), BTreeSet::from([2]));
+    assert_eq!(used("use crate::{Failure, cli::args, outcome::{Meters, Plan}};"), BTreeSet::from([0, 8]));
+    assert_eq!(used("let x = crate::study::check(1);"), BTreeSet::from([1]));
+}
+
+/// Lines of the longest function of a text that rustfmt has laid out: from `fn` to the brace that closes it at its indent.
+fn longest_function(text: &str) -> usize {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut longest = 0;
+    for (start, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let names_one =
+            ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn "].iter().any(|head| code.starts_with(head));
+        if !names_one {
+            continue;
+        }
+        let close = format!("{}}}", &line[..line.len() - code.len()]);
+        if let Some(length) = lines[start..].iter().position(|l| *l == close) {
+            longest = longest.max(length + 1);
+        }
+    }
+    longest
+}
+
+#[test]
+fn files_and_functions_stay_small() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();
+    let mut count = 0;
+    for folder in ["harness/src", "reports/src", "cases/src", "solvers", "xtask/src", "tests"] {
+        for (path, text) in files(&root.join(folder)) {
+            let (lines, longest) = (text.lines().count(), longest_function(&text));
+            assert!(lines <= 500, "{}: {lines} lines", path.display());
+            assert!(longest <= 100, "{}: a function of {longest} lines", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 300, "{count} files");
+}

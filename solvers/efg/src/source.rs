@@ -1,0 +1,274 @@
+//! A cloud as a source of tables: its shape functions over a background that is integrated over.
+
+use std::sync::Arc;
+
+use geometry::shapes::Shape;
+use geometry::{Cloud, Facet, Mesh};
+use shape::{
+    DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
+    SurfaceRows, TraceRows, VolumeRows, equal_groups,
+};
+
+use crate::{
+    Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support, flux_rows, gauss_regions,
+    gauss_rows, grid_rows, node_smoothed_regions, node_smoothed_rows, node_smoothed_trace, smoothed_regions,
+    smoothed_rows, smoothed_trace, surface_rows,
+};
+
+/// The shape functions of a cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Functions {
+    /// Moving least squares.
+    MovingLeastSquares {
+        /// Kernel.
+        kernel: Kernel,
+        /// Basis.
+        basis: Basis,
+        /// Supports.
+        support: Support,
+    },
+    /// Local maximum entropy with this `beta h^2`.
+    MaximumEntropy {
+        /// Locality.
+        gamma: f64,
+    },
+}
+
+impl Functions {
+    /// Shape functions over a cloud; their supports follow the cells of `followed`, where that is given.
+    fn over(self, cloud: &Cloud, followed: Option<&Mesh>) -> Result<Approximation, EfgError> {
+        let nodes = cloud.points.clone();
+        match self {
+            Functions::MovingLeastSquares { kernel, basis, support } => match followed {
+                Some(mesh) => Approximation::stretched(nodes, support.ellipsoids(mesh)?, kernel, basis),
+                None => {
+                    let radii = support.radii(&nodes, &cloud.spacing)?;
+                    Approximation::new(nodes, radii, kernel, basis)
+                }
+            },
+            Functions::MaximumEntropy { gamma } => {
+                Approximation::maximum_entropy(nodes, &cloud.spacing, gamma)
+            }
+        }
+    }
+}
+
+/// How a cloud is integrated over.
+#[derive(Clone)]
+pub enum Integration {
+    /// Gauss points in each background cell.
+    Gauss {
+        /// Points per tetrahedron.
+        points: usize,
+    },
+    /// Gauss points in the cells of a regular grid, those outside the body dropped.
+    Grid {
+        /// Edge of a grid cell, m.
+        spacing: f64,
+        /// Points along each axis of a cell.
+        points: usize,
+        /// The body.
+        shape: Arc<dyn Shape + Send + Sync>,
+    },
+    /// Conforming cell smoothing: gradients inside a tetrahedron from values on its faces.
+    CellSmoothed {
+        /// Gradients inside a tetrahedron: constant or linear.
+        smoothing: Smoothing,
+        /// Points per triangular face.
+        face_points: usize,
+    },
+    /// Node smoothing: gradients at each vertex of the background, the mean of those of the cells around.
+    NodeSmoothed {
+        /// Share of the weight that the cells keep.
+        stabilisation: f64,
+        /// Points per triangular face.
+        face_points: usize,
+    },
+}
+
+impl Integration {
+    /// Points per cell, where the points go by background cells: those of a cell stand together, equally many in each.
+    pub fn points_per_cell(&self) -> Option<usize> {
+        match *self {
+            Integration::Gauss { points } => Some(points),
+            Integration::CellSmoothed { smoothing, .. } => Some(smoothing.points_per_cell()),
+            Integration::Grid { .. } | Integration::NodeSmoothed { .. } => None,
+        }
+    }
+
+    /// Face points of smoothed gradients.
+    fn smoothed_face_points(&self) -> Option<usize> {
+        match *self {
+            Integration::CellSmoothed { face_points, .. } | Integration::NodeSmoothed { face_points, .. } => {
+                Some(face_points)
+            }
+            Integration::Gauss { .. } | Integration::Grid { .. } => None,
+        }
+    }
+}
+
+/// Points per background tetrahedron of the error quadrature of clouds (degree 5).
+const ERROR_POINTS: usize = 14;
+
+/// Face points of surface integrals with gradients of the shape functions (degree 4): boundary terms are not what limits them.
+const FACE_POINTS: usize = 6;
+
+/// Face points of contact with such gradients: as on linear elements, where more change the force by 0.1 %.
+const CONTACT_POINTS: usize = 3;
+
+/// Shape functions over a background of linear tetrahedra.
+pub struct CloudSource {
+    approximation: Approximation,
+    /// Nodes of the cloud, and their mean spacing, m.
+    nodes: usize,
+    spacing: f64,
+    background: Arc<Mesh>,
+    integration: Integration,
+}
+
+impl CloudSource {
+    /// Finds the supports. Those of moving least squares follow the cells of `followed`, where it is given; the vertices of the
+    /// background in `coupled` are nodes of finite elements.
+    ///
+    /// # Errors
+    /// As [`Approximation::new`], [`Approximation::coupled`].
+    pub fn new(
+        functions: Functions,
+        cloud: &Cloud,
+        followed: Option<&Mesh>,
+        background: Arc<Mesh>,
+        coupled: Option<&[u32]>,
+        integration: Integration,
+    ) -> Result<CloudSource, EfgError> {
+        let mut approximation = functions.over(cloud, followed)?;
+        if let Some(vertices) = coupled {
+            approximation = approximation.coupled(&background, vertices)?;
+        }
+        let nodes = cloud.points.len();
+        let spacing = cloud.spacing.iter().sum::<f64>() / nodes as f64;
+        Ok(CloudSource { approximation, nodes, spacing, background, integration })
+    }
+}
+
+impl RowSource for CloudSource {
+    fn mesh(&self) -> &Mesh {
+        &self.background
+    }
+
+    fn spacing(&self, _volume: &VolumeRows) -> f64 {
+        self.spacing
+    }
+
+    fn supports(&self) -> usize {
+        self.nodes
+    }
+
+    fn volume(&self) -> Result<Quadrature, SourceError> {
+        let (approximation, background) = (&self.approximation, &*self.background);
+        let mut lost = None;
+        let (rows, info) = match &self.integration {
+            Integration::Gauss { points } => gauss_rows(approximation, background, *points)?,
+            Integration::Grid { spacing, points, shape } => {
+                let [min, max] = shape.bounds();
+                let inside = |x: &Point3| shape.inside(x);
+                let (rows, grid, info) = grid_rows(approximation, inside, (min, max), *spacing, *points)?;
+                lost = Some(grid.volume / shape.volume() - 1.0);
+                (rows, info)
+            }
+            Integration::CellSmoothed { smoothing, face_points } => {
+                smoothed_rows(approximation, background, *smoothing, *face_points)?
+            }
+            Integration::NodeSmoothed { stabilisation, face_points } => {
+                node_smoothed_rows(approximation, background, *stabilisation, *face_points)?
+            }
+        };
+        let mut diagnostics = diagnostics(&info);
+        diagnostics.extend(lost.map(|lost| ("volume-error", lost)));
+        Ok(Quadrature { rows, diagnostics })
+    }
+
+    /// A grid does not know the region of its points: a body of one region is all that it serves.
+    fn regions(&self) -> Vec<u16> {
+        match self.integration {
+            Integration::Gauss { points } => gauss_regions(&self.background, points),
+            Integration::Grid { .. } => Vec::new(),
+            Integration::CellSmoothed { smoothing, .. } => smoothed_regions(&self.background, smoothing),
+            Integration::NodeSmoothed { stabilisation, .. } => {
+                node_smoothed_regions(&self.background, stabilisation)
+            }
+        }
+    }
+
+    fn points_per_cell(&self) -> Option<usize> {
+        self.integration.points_per_cell()
+    }
+
+    fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError> {
+        let cells = self.background.cell_count();
+        Ok(self.points_per_cell().map(|each| equal_groups(each * cells, cells)).transpose()?)
+    }
+
+    fn pressure(&self) -> Result<Option<Rows>, SourceError> {
+        Ok(None)
+    }
+
+    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError> {
+        let (rows, _) = gauss_rows(&self.approximation, &self.background, ERROR_POINTS)?;
+        Ok((rows, gauss_regions(&self.background, ERROR_POINTS)))
+    }
+
+    fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
+        Ok(surface_rows(&self.approximation, &self.background, facets, self.face_points())?.0)
+    }
+
+    /// Smoothed gradients want their own face points: a block of smoothed cells between two plates came out 3 % too wide with
+    /// three contact points on faces of one.
+    fn contact_surface(&self) -> Result<SurfaceRows, SourceError> {
+        let points = self.integration.smoothed_face_points().unwrap_or(CONTACT_POINTS);
+        Ok(surface_rows(&self.approximation, &self.background, &self.background.boundary(), points)?.0)
+    }
+
+    /// Those of the smoothing, so that the integration constraint holds to rounding.
+    fn face_points(&self) -> usize {
+        self.integration.smoothed_face_points().unwrap_or(FACE_POINTS)
+    }
+
+    fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError> {
+        Ok(flux_rows(&self.approximation, &self.background, facets, self.face_points())?.0)
+    }
+
+    /// Nitsche's traction is made of the smoothed gradients.
+    fn trace(&self, facets: &[Facet]) -> Result<Option<TraceRows>, SourceError> {
+        Ok(match self.integration {
+            Integration::CellSmoothed { smoothing, face_points } => {
+                Some(smoothed_trace(&self.background, facets, smoothing, face_points)?)
+            }
+            Integration::NodeSmoothed { stabilisation, face_points } => {
+                Some(node_smoothed_trace(&self.background, facets, stabilisation, face_points)?)
+            }
+            Integration::Gauss { .. } | Integration::Grid { .. } => None,
+        })
+    }
+
+    fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError> {
+        Ok((self.approximation.point_rows(points)?.0, 0))
+    }
+
+    fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError> {
+        Ok(self.approximation.grad_rows(points)?.0)
+    }
+}
+
+fn diagnostics(info: &MlsInfo) -> Vec<(&'static str, f64)> {
+    vec![
+        ("neighbours-min", info.neighbours_min as f64),
+        ("neighbours-mean", info.neighbours_mean),
+        ("neighbours-max", info.neighbours_max as f64),
+        ("condition-median", info.condition_median),
+        ("condition-max", info.condition_max),
+        ("fallbacks", info.fallbacks() as f64),
+        ("fallbacks-enlarged", info.enlarged as f64),
+        ("fallbacks-regularised", info.regularised as f64),
+        ("fallbacks-reduced", info.reduced as f64),
+    ]
+}

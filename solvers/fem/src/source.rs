@@ -1,0 +1,97 @@
+//! Finite elements as a source of tables.
+
+use std::sync::Arc;
+
+use geometry::{FaceKind, Facet, Mesh};
+use shape::{
+    DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
+    SurfaceRows, VolumeRows,
+};
+
+use crate::{
+    SurfaceRule, VolumeRule, element_dilation, flux_rows, nearest_grad_rows, nearest_point_rows,
+    pressure_rows, regions, surface_rows, volume_rows,
+};
+
+/// Elements of a mesh, whose nodes are the method's.
+pub struct Elements {
+    mesh: Arc<Mesh>,
+    rule: VolumeRule,
+}
+
+impl Elements {
+    /// The cells of a mesh with their quadrature.
+    pub fn new(mesh: Arc<Mesh>, rule: VolumeRule) -> Elements {
+        Elements { mesh, rule }
+    }
+}
+
+impl RowSource for Elements {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The edge of a cube of the mean cell's volume, six tetrahedra to a cube. A size from the number of nodes would not do: on
+    /// coarse meshes it falls more slowly than the cells and flatters the observed order by up to 15 %.
+    fn spacing(&self, volume: &VolumeRows) -> f64 {
+        let cubes: f64 = (0..self.mesh.cell_count())
+            .map(|c| if self.mesh.kind(c).is_tet() { 1.0 / 6.0 } else { 1.0 })
+            .sum();
+        (volume.weights().iter().sum::<f64>() / cubes).cbrt()
+    }
+
+    fn volume(&self) -> Result<Quadrature, SourceError> {
+        Ok(volume_rows(&self.mesh, &self.rule)?.into())
+    }
+
+    fn regions(&self) -> Vec<u16> {
+        regions(&self.mesh, &self.rule)
+    }
+
+    fn points_per_cell(&self) -> Option<usize> {
+        self.mesh.uniform_kind().map(|kind| self.rule.points(kind))
+    }
+
+    fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError> {
+        Ok(Some(element_dilation(&self.mesh, &self.rule)?))
+    }
+
+    fn pressure(&self) -> Result<Option<Rows>, SourceError> {
+        Ok(Some(pressure_rows(&self.mesh, &self.rule)?))
+    }
+
+    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError> {
+        Ok((volume_rows(&self.mesh, &VolumeRule::FINE)?, regions(&self.mesh, &VolumeRule::FINE)))
+    }
+
+    fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
+        Ok(surface_rows(&self.mesh, facets, &SurfaceRule::FINE)?)
+    }
+
+    /// 3 points per linear triangle and 2 x 2 per quadrilateral (on a kidney of 1331 nodes between two jaws, more change the
+    /// force by 0.1 %), 16 and 5 x 5 per quadratic face (with 3 x 3 on hex20 of 3519 nodes the force was 1.1 % lower where the
+    /// jaw's edge crosses the faces).
+    fn contact_surface(&self) -> Result<SurfaceRows, SourceError> {
+        let quadratic = self.mesh.uniform_kind().is_some_and(|kind| kind.order() == 2);
+        let rule = if quadratic { SurfaceRule::FINE } else { SurfaceRule::STANDARD };
+        Ok(surface_rows(&self.mesh, &self.mesh.boundary(), &rule)?)
+    }
+
+    fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError> {
+        Ok(flux_rows(&self.mesh, facets, &SurfaceRule::FINE)?)
+    }
+
+    fn face_points(&self) -> usize {
+        SurfaceRule::FINE.points(FaceKind::Tri3)
+    }
+
+    /// A coarse mesh is smaller than its curved body: points outside take the value at the nearest point of its surface.
+    fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError> {
+        let (rows, outside) = nearest_point_rows(&self.mesh, points)?;
+        Ok((rows, outside.points.len()))
+    }
+
+    fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError> {
+        Ok(nearest_grad_rows(&self.mesh, points)?.0)
+    }
+}

@@ -1,0 +1,93 @@
+//! Where tables come from: the one question every family of methods answers.
+
+use std::error::Error;
+
+use geometry::{Facet, Mesh};
+
+use crate::{
+    DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, ShapeError, SurfaceRows, TraceRows,
+    VolumeRows,
+};
+
+/// Why a table can't be filled; each family has errors of its own.
+pub type SourceError = Box<dyn Error + Send + Sync>;
+
+/// The quadrature of a method, with what was met as it was made.
+pub struct Quadrature {
+    /// Values, gradients and weights.
+    pub rows: VolumeRows,
+    /// Numbers about the rows, each by the name of a metric: neighbours, conditioning, lost volume.
+    pub diagnostics: Vec<(&'static str, f64)>,
+}
+
+impl From<VolumeRows> for Quadrature {
+    fn from(rows: VolumeRows) -> Quadrature {
+        Quadrature { rows, diagnostics: Vec::new() }
+    }
+}
+
+/// The shape functions of one method on one body, ready to be evaluated. Finite elements and meshless clouds implement it once
+/// each; assembly, loads, supports, errors and transfer ask nothing else of a method.
+///
+/// Facets and cells are those of [`mesh`](RowSource::mesh): the elements themselves, or the background that a cloud is integrated
+/// over.
+pub trait RowSource: Send + Sync {
+    /// The cells that carry quadrature, facets and regions.
+    fn mesh(&self) -> &Mesh;
+
+    /// Size h (m) such that halving every cell or spacing halves it; `volume` is the method's own quadrature.
+    fn spacing(&self, volume: &VolumeRows) -> f64;
+
+    /// Nodes whose support had to be found; none where cells tell the neighbours.
+    fn supports(&self) -> usize {
+        0
+    }
+
+    /// The method's own quadrature.
+    fn volume(&self) -> Result<Quadrature, SourceError>;
+
+    /// Region of each point of that quadrature.
+    fn regions(&self) -> Vec<u16>;
+
+    /// Points of that quadrature in each cell, where it goes by cells of one kind: those of a cell stand together.
+    fn points_per_cell(&self) -> Option<usize>;
+
+    /// One group of points for each cell; `None` where the quadrature does not go by cells.
+    fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;
+
+    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none.
+    fn pressure(&self) -> Result<Option<Rows>, SourceError>;
+
+    /// A finer quadrature, for error norms and consistent masses, with the region of each point.
+    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError>;
+
+    /// Values on facets.
+    fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError>;
+
+    /// Values on the whole outer boundary, where tools may touch.
+    fn contact_surface(&self) -> Result<SurfaceRows, SourceError>;
+
+    /// Values and gradients on facets, for weak supports.
+    fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;
+
+    /// What gradients smoothed over cells are on facets; `None` where the gradients are those of the shape functions.
+    fn trace(&self, _facets: &[Facet]) -> Result<Option<TraceRows>, SourceError> {
+        Ok(None)
+    }
+
+    /// Points on a triangular facet of [`surface`](RowSource::surface).
+    fn face_points(&self) -> usize;
+
+    /// Values at points of the body, and how many of the points lie outside and took the value of the nearest point.
+    fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError>;
+
+    /// Values and gradients at points, as [`at_points`](RowSource::at_points).
+    fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError>;
+}
+
+/// One group of points for each cell, of a quadrature with equally many points in every cell that stand together.
+pub fn equal_groups(points: usize, cells: usize) -> Result<DilationGroups, ShapeError> {
+    let each = points / cells;
+    let offsets = (0..=cells).map(|cell| cell * each).collect();
+    DilationGroups::new(points, offsets, (0..points as u32).collect(), vec![1.0; points])
+}
