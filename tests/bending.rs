@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use cases::scene::parse_study;
-use harness::cli::VerifyArgs;
-use harness::{check, study::Plan};
+use harness::study::{Plan, VerifyArgs, check};
+
 use one_percent::within_one_percent;
 use reports::Record;
 

@@ -20,7 +20,7 @@ pub enum Failure {
     /// Assembly or solution failed.
     #[error(transparent)]
     Solve(#[from] statics::SolveError),
-    /// A static procedure carried nothing.
+    /// A static procedure reached no load.
     #[error(transparent)]
     Static(Box<statics::StaticError>),
     /// Explicit dynamics could not start or go on.
@@ -154,6 +154,15 @@ impl From<statics::TimeError> for Failure {
         match error {
             statics::TimeError::Static(error) => error.into(),
             error => Failure::InTime(Box::new(error)),
+        }
+    }
+}
+
+impl From<shape::SourceError> for Failure {
+    fn from(error: shape::SourceError) -> Failure {
+        match error.downcast::<efg::EfgError>() {
+            Ok(error) => Failure::Efg(*error),
+            Err(other) => Failure::Run(other.to_string()),
         }
     }
 }

@@ -6,7 +6,7 @@ use cases::scene::{self, Scene};
 use common::BLOCK;
 use harness::outcome::{Metric, Outcome};
 use harness::run::Repeats;
-use harness::run::{Extras, Group};
+use harness::run::{Group, RunOptions};
 
 const CLOUD: &str = r#", { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
 output = { transfer = { to = "reference-nodes", scheme = "inverse-distance" }, beside = "tet4" }
@@ -20,8 +20,10 @@ fn split(reference: &str, points: Option<usize>) -> Vec<Outcome> {
     let text = format!("{}{CLOUD}reference = {reference}\n", BLOCK.trim_end().trim_end_matches(']'));
     let scene: Scene = scene::parse(&text, "beside.toml").unwrap();
     let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
-    let extras =
-        Extras { split: points.map(|points| scene::Integration::Gauss { points }), ..Extras::default() };
+    let extras = RunOptions {
+        split: points.map(|points| scene::Integration::Gauss { points }),
+        ..RunOptions::default()
+    };
     let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), extras);
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }

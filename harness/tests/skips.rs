@@ -10,13 +10,13 @@ use common::{BLOCK, PRESSED, cases, inside, moving, write};
 use harness::outcome::Counters;
 use harness::outcome::Outcome;
 use harness::run::Repeats;
-use harness::run::{Extras, Group};
+use harness::run::{Group, RunOptions};
 use harness::study::Plan;
 use harness::study::VerifyArgs;
 
 fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
     let group = Group::new(scene, None, Repeats { most: repeats, seconds: 60.0 }).unwrap();
-    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), Extras::default());
+    let run = |m: &scene::Method| group.run(&group.scenario(m.clone(), 0), RunOptions::default());
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }
 
@@ -111,7 +111,7 @@ fn a_plan_told_beforehand_is_that_of_the_run() {
         let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
         for method in scene.methods.iter().take(2) {
             let (told, size) = before.plan(&before.scenario(method.clone(), 0)).unwrap();
-            let outcome = group.run(&group.scenario(method.clone(), 0), Extras::default()).unwrap();
+            let outcome = group.run(&group.scenario(method.clone(), 0), RunOptions::default()).unwrap();
             assert_eq!(told, outcome.plan, "{name}");
             assert_eq!((size.nodes, size.elements), (outcome.size.nodes, outcome.size.elements), "{name}");
         }

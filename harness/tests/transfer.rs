@@ -6,7 +6,7 @@ use cases::scene::{self, Scene};
 use common::BLOCK;
 use harness::outcome::{Metric, SchemeSettings, Transfer};
 use harness::run::Repeats;
-use harness::run::{Extras, Group};
+use harness::run::{Group, RunOptions};
 use interp::Scheme;
 
 /// A cloud on the nodes of a mesh, its displacement carried to the given targets by the given schemes.
@@ -23,7 +23,7 @@ fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
     let scene: Scene = scene::parse(&text, "transfer.toml").unwrap_or_else(|bad| panic!("{bad:?}"));
     let group = Group::new(&scene, None, Repeats { most: 1, seconds: 0.0 }).unwrap();
     let method = scene.methods.iter().find(|m| m.id == "efg").unwrap();
-    let run = group.run(&group.scenario(method.clone(), 0), Extras::default());
+    let run = group.run(&group.scenario(method.clone(), 0), RunOptions::default());
     run.unwrap_or_else(|bad| panic!("{}", bad.failure)).transfers
 }
 

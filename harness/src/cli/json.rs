@@ -10,7 +10,7 @@ use crate::outcome::{Counters, LoadStep, Outcome, Plan, Unfinished};
 pub struct RunObject<'a> {
     scene: &'a str,
     method: &'a str,
-    /// `ok`; `relaxed` where dynamic relaxation went on from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
+    /// `ok`; `relaxed` where dynamic relaxation continued from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
     /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
     /// or `could-not-run`.
     status: &'static str,

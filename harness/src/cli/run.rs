@@ -10,7 +10,7 @@ use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
 use crate::cli::{list, open, report};
 use crate::outcome::{Outcome, Unfinished, provenance};
-use crate::run::{Extras, Group, Repeats, case_name};
+use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, check, folder, stalled};
 
 /// Repeats of a single run's timings.
@@ -48,8 +48,8 @@ pub(super) fn run(args: &RunArgs) -> u8 {
             // A static run may take minutes.
             eprintln!("{} ...", method.id);
         }
-        let extras = Extras { picture: args.out.is_some(), frames: true, split: None };
-        match group.run(&group.scenario(method.clone(), 0), extras) {
+        let options = RunOptions { picture: args.out.is_some(), frames: true, split: None };
+        match group.run(&group.scenario(method.clone(), 0), options) {
             Ok(outcome) => made.finished(method, outcome),
             Err(unfinished) => made.failed(method, unfinished),
         }

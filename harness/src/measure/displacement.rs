@@ -2,7 +2,6 @@
 
 use super::{Field, Request, Solved};
 use crate::Failure;
-use crate::discretise::Discretisation;
 use crate::outcome::{Meters, Plan, StageName};
 
 /// Displacement (m) at the targets, or at the method's own nodes without targets. Where the plan has no transfer, the
@@ -19,11 +18,11 @@ pub(crate) fn displacement(
     }
     let points = if request.targets.is_empty() { method.nodes() } else { request.targets };
     let once = || -> Result<Field, Failure> {
-        let (rows, outside) = method.at_points(&prepared.volume, points)?;
+        let (rows, outside) = prepared.source.at_points(points)?;
         Ok(Field { values: rows.rows().apply(&solution.u), outside })
     };
     meters.counters.transfer_rows += points.len() as u64;
-    let timed = matches!(method, Discretisation::Efg(_)) && !request.targets.is_empty();
+    let timed = !method.interpolates && !request.targets.is_empty();
     if !timed {
         return once();
     }

@@ -16,7 +16,7 @@ use material::Law;
 use statics::Body;
 
 use crate::Failure;
-use crate::discretise::{Discretisation, Efg, Essential};
+use crate::discretise::{Discretisation, Essential};
 use crate::outcome::{Metric, Probe, push};
 use crate::prepare::Prepared;
 use crate::procedure::Solution;
@@ -89,7 +89,7 @@ pub(crate) fn measure(
             push(metrics, "constraints-dropped", info.dropped as f64, "1");
         }
     }
-    if let Discretisation::Efg(Efg { essential: Essential::Coupling(coupled), .. }) = method {
+    if let Essential::Coupling(coupled) = &method.essential {
         push(metrics, "finite-element-nodes", coupled.vertices.len() as f64, "1");
     }
     let resultant = prepared.resultant();
@@ -108,10 +108,10 @@ fn errors_in_the_volume(
     body: &Body,
     exact: &dyn Exact,
 ) -> Result<(), Failure> {
-    let Solved { method, setup, prepared, solution } = *run;
+    let Solved { setup, prepared, solution, .. } = *run;
     let hooke =
         setup.laws.iter().all(Law::is_small_strain) && prepared.volume.pressure.is_none() && !setup.relaxes();
-    let (fine, region) = method.error_rows(&prepared.volume)?;
+    let (fine, region) = prepared.fine_volume()?;
     if !hooke {
         if let Some(value) = norms::l2(&fine, &solution.u, exact) {
             push(metrics, "l2", value, "1");
@@ -175,19 +175,8 @@ pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &
 /// What the rows of a method are like: the volume they integrate, neighbours, conditioning, fallbacks.
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
-    if let Some(mls) = &prepared.volume.mls {
-        push(metrics, "neighbours-min", mls.neighbours_min as f64, "1");
-        push(metrics, "neighbours-mean", mls.neighbours_mean, "1");
-        push(metrics, "neighbours-max", mls.neighbours_max as f64, "1");
-        push(metrics, "condition-median", mls.condition_median, "1");
-        push(metrics, "condition-max", mls.condition_max, "1");
-        push(metrics, "fallbacks", mls.fallbacks() as f64, "1");
-        push(metrics, "fallbacks-enlarged", mls.enlarged as f64, "1");
-        push(metrics, "fallbacks-regularised", mls.regularised as f64, "1");
-        push(metrics, "fallbacks-reduced", mls.reduced as f64, "1");
-    }
-    if let Some(error) = prepared.volume.volume_error {
-        push(metrics, "volume-error", error, "1");
+    for (name, value) in &prepared.volume.diagnostics {
+        push(metrics, name, *value, "1");
     }
 }
 
@@ -202,12 +191,12 @@ pub(crate) fn push_difference(metrics: &mut Vec<Metric>, name: &str, field: &[Ve
 
 /// Displacement and stress at the probes.
 pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Failure> {
-    let Solved { method, setup, prepared, solution } = *run;
+    let Solved { setup, prepared, solution, .. } = *run;
     let u = &solution.u;
     if points.is_empty() {
         return Ok(Vec::new());
     }
-    let rows = method.gradients_at(&prepared.volume, points)?;
+    let rows = prepared.source.gradients_at(points)?;
     // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
     // its past, which is followed at quadrature points only.
     let stress: Vec<Option<Matrix3>> = if setup.is_linear() {

@@ -83,7 +83,7 @@ fn shares(
     shapes: &[Vec<Vector3>],
     exact: &dyn Vibrations,
 ) -> Result<(Vec<f64>, usize), Failure> {
-    let (fine, _) = run.method.error_rows(&run.prepared.volume)?;
+    let (fine, _) = run.prepared.fine_volume()?;
     let weights = fine.weights();
     let inner = |a: &[Vector3], b: &[Vector3]| -> f64 {
         weights.iter().zip(a.iter().zip(b)).map(|(w, (a, b))| w * a.dot(b)).sum()

@@ -7,7 +7,6 @@ use reports::{Section, SectionCell, SurfaceField, ToolHull};
 
 use super::{Solved, mean_pressure};
 use crate::Failure;
-use crate::discretise::Discretisation;
 use crate::outcome::{Identity, LoadStep};
 use crate::scenario::PlacedTool;
 
@@ -33,9 +32,10 @@ pub(crate) fn picture(
     for corner in triangles.iter_mut().flatten() {
         *corner = used.binary_search(corner).expect("listed above") as u32;
     }
-    let of_mesh = match method {
-        Discretisation::Fem(_) => u.clone(),
-        Discretisation::Efg(_) => method.at_points(&prepared.volume, mesh.points())?.0.rows().apply(u),
+    let of_mesh = if method.interpolates {
+        u.clone()
+    } else {
+        prepared.source.at_points(mesh.points())?.0.rows().apply(u)
     };
     let closures = last.iter().flat_map(|step| step.tools.iter().map(|t| t.closure));
     let tools: Vec<ToolHull> =
@@ -137,7 +137,7 @@ fn mirrored(points: &mut Vec<Vector3>, axes: [bool; 3]) {
 fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Section> {
     let Solved { method, setup, prepared, solution } = *run;
     let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
-    let each = method.points_per_cell(&prepared.volume)?;
+    let each = prepared.source.points_per_cell()?;
     let right = tool.tool.along();
     let extent = extent(mesh);
     let across = |axis: &usize| extent[*axis] * (1.0 - right[*axis].powi(2));

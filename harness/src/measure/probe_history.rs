@@ -1,11 +1,11 @@
-//! Probes on their way through a motion: against an exact one, and how fast they swing.
+//! Histories of probes in dynamics: errors against an exact motion, and the period of a vibration.
 
 use cases::exact::Exact;
 use geometry::{Point3, Vector3};
 
 use crate::outcome::{LoadStep, Metric};
 
-/// Numbers of the probes' way over all recorded states of a whole motion.
+/// Numbers of the probes' displacement over all recorded states of a whole motion.
 pub(crate) fn metrics(steps: &[LoadStep], exact: Option<&dyn Exact>, probes: &[Point3]) -> Vec<Metric> {
     let states: Vec<(f64, &[Vector3])> =
         steps.iter().filter_map(|step| Some((step.time()?, step.probes.as_slice()))).collect();
@@ -64,7 +64,7 @@ mod tests {
         let elastic = Elastic::new(20e3, 0.3).unwrap();
         let bar = BarWave::new(elastic, 100.0, [0.1, 1000.0], 0.0).unwrap();
         let probes = [0.1, 0.04].map(|x| Point3::new(x, 0.0, 0.0));
-        let told = |part: f64, at_end: f64| {
+        let found = |part: f64, at_end: f64| {
             let states = [0.01, 0.02, 0.03].map(|t| {
                 let u = probes.map(|x| bar.at(t).unwrap().displacement(&x) * part);
                 (t, [u[0] + Vector3::new(0.0, if t > 0.025 { at_end } else { 0.0 }, 0.0), u[1]])
@@ -72,11 +72,11 @@ mod tests {
             let states: Vec<(f64, &[Vector3])> = states.iter().map(|(t, u)| (*t, u.as_slice())).collect();
             error(&states, Some(&bar), &probes).unwrap()
         };
-        assert_eq!(told(1.0, 0.0), 0.0);
-        assert!((told(0.99, 0.0) - 0.01).abs() < 1e-12);
+        assert_eq!(found(1.0, 0.0), 0.0);
+        assert!((found(0.99, 0.0) - 0.01).abs() < 1e-12);
         let largest = bar.at(0.03).unwrap().displacement(&probes[0]).norm();
-        assert!((told(1.0, 0.1 * largest) - 0.1).abs() < 1e-12);
-        assert!(told(1.0, f64::NAN).is_nan());
+        assert!((found(1.0, 0.1 * largest) - 0.1).abs() < 1e-12);
+        assert!(found(1.0, f64::NAN).is_nan());
         let still = PureBending::new(elastic, 0.5);
         assert_eq!(error(&[(0.01, &[Vector3::zeros(); 2])], Some(&still), &probes), None);
     }

@@ -12,7 +12,6 @@ pub(crate) fn report(
     history: &StepHistory,
     request: &Request,
 ) -> Result<Vec<LoadStep>, Failure> {
-    let Solved { method, prepared, .. } = *run;
     let StepHistory { steps, fields, last, metrics: of_procedure, failure } = history;
     let mut steps = steps.clone();
     push(metrics, "load-carried", last.load, "1");
@@ -28,7 +27,7 @@ pub(crate) fn report(
         push(metrics, "penetration", deepest, "m");
     }
     if !request.probes.is_empty() {
-        let (rows, _) = method.at_points(&prepared.volume, request.probes)?;
+        let (rows, _) = run.prepared.source.at_points(request.probes)?;
         for (step, u) in steps.iter_mut().zip(fields) {
             step.probes = rows.rows().apply(u);
         }

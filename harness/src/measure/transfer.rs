@@ -26,8 +26,8 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
     let Solved { method, prepared, solution, .. } = *run;
     let u = &solution.u;
     let nodes = method.nodes();
-    let at_nodes = method.at_points(&prepared.volume, nodes)?.0.rows().apply(u);
-    let own = method.at_points(&prepared.volume, request.targets)?.0.rows().apply(u);
+    let at_nodes = prepared.source.at_points(nodes)?.0.rows().apply(u);
+    let own = prepared.source.at_points(request.targets)?.0.rows().apply(u);
     let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
     request
         .schemes
@@ -66,7 +66,7 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             Ok(transfer(name, *settings, metrics, timing, request))
         })
         .chain(std::iter::once_with(|| {
-            let build = || method.at_points(&prepared.volume, request.targets);
+            let build = || prepared.source.at_points(request.targets);
             let (_, timing) = timed(request, build, |(rows, _)| rows.rows(), u)?;
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {

@@ -59,7 +59,7 @@ pub struct LoadStep {
     pub probes: Vec<Vector3>,
     /// Errors against the reference at the same step.
     pub against: Vec<Metric>,
-    /// What else the procedure tells: time and energies in dynamics.
+    /// What else the procedure reports: time and energies in dynamics.
     pub more: Vec<Metric>,
 }
 

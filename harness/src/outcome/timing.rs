@@ -6,7 +6,7 @@ use cpu_time::ProcessTime;
 
 use super::Counters;
 
-/// The phases every run is told in, in order.
+/// The phases of every run, in order.
 pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
 
 /// Seconds of one phase, one entry per repeat.

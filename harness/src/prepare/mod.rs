@@ -4,10 +4,11 @@ mod nodal_patch;
 pub(crate) mod reach;
 
 use cases::scene::ConstraintRows;
+use fem::SurfaceRule;
 use geometry::quadrature;
-use geometry::{Mesh, Point3, Vector3};
+use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::FixedDof;
-use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows, TraceRows, Unity};
+use shape::{FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows};
 use statics::{
     Assembled, Body, ConstraintRow, Factored, HeldSurface, LinearProblem, Load, SolveError, Weak,
     WeakSupport, multiplier_rows,
@@ -15,7 +16,7 @@ use statics::{
 
 use crate::Failure;
 use crate::discretise::place::{self, CutTriangle, Place, tolerance};
-use crate::discretise::{Coupled, Discretisation, Efg, Essential, Volume};
+use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
 use crate::outcome::Counters;
 use crate::scenario::setup::{self, Applied, Setup, Support};
@@ -41,7 +42,7 @@ struct OwnedWeak {
 }
 
 /// A surface held by penalty in a static procedure, with its table owned.
-struct OwnedHeld {
+struct OwnedPenalty {
     surface: SurfaceRows,
     axes: [bool; 3],
     values: Vec<Vector3>,
@@ -50,6 +51,8 @@ struct OwnedHeld {
 
 /// All tables of one run.
 pub struct Prepared {
+    /// Where further tables come from.
+    pub source: Box<dyn RowSource>,
     /// The volume tables.
     pub volume: Volume,
     /// Mean node spacing, m.
@@ -61,23 +64,24 @@ pub struct Prepared {
     /// Whether the constraints are eliminated, not enforced by multipliers.
     eliminates: bool,
     weak: Vec<OwnedWeak>,
-    held: Vec<OwnedHeld>,
+    held: Vec<OwnedPenalty>,
     /// Where tools may touch; `None` without tools.
     pub contact: Option<SurfaceRows>,
 }
 
 /// Fills every table.
 pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) -> Result<Prepared, Failure> {
-    let volume = method.volume(counters)?;
-    let spacing = method.spacing(&volume.rows);
+    let (source, volume) = method.volume(counters)?;
+    let spacing = source.spacing(&volume.rows);
     let mut prepared = Prepared {
+        source,
         volume,
         spacing,
         surfaces: Vec::new(),
         body_force: Vec::new(),
         fixed: Vec::new(),
         constraints: Vec::new(),
-        eliminates: matches!(method, Discretisation::Efg(efg) if matches!(efg.essential, Essential::Elimination(_))),
+        eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
         held: Vec::new(),
         contact: None,
@@ -86,9 +90,12 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
         prepared.load(method, load)?;
     }
     for support in &setup.supports {
-        match method {
-            Discretisation::Fem(fem) => prepared.constrain_nodes(&fem.mesh, support, |vertex| vertex)?,
-            Discretisation::Efg(efg) => prepared.constrain_cloud(method, efg, support)?,
+        match &method.essential {
+            Essential::Nodal => prepared.constrain_nodes(method.mesh(), support, |vertex| vertex)?,
+            Essential::Coupling(coupled) => {
+                prepared.constrain_nodes(method.mesh(), support, |vertex| coupled.node(vertex))?;
+            }
+            _ => prepared.constrain_cloud(method, support)?,
         }
     }
     counters.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
@@ -101,7 +108,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
         prepared.penalise(setup)?;
     }
     if !setup.tools.is_empty() {
-        let surface = method.contact_surface(&prepared.volume)?;
+        let surface = prepared.source.contact_surface()?;
         let points = surface.weights().len() as u64;
         counters.contact_points += points;
         counters.friction_points +=
@@ -178,6 +185,20 @@ impl Prepared {
         if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
 
+    /// A finer quadrature than the method's own, for error norms and consistent masses, with the region of each point where
+    /// there are several.
+    pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {
+        let regions = self.source.mesh().region_names().len() > 1;
+        let region = if regions { self.source.fine_regions() } else { Vec::new() };
+        Ok((self.source.fine_volume()?, region))
+    }
+
+    /// Linear shape functions of the mesh's own nodes at the points of the facets' surface: a basis of multipliers.
+    fn multiplier_basis(&self, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
+        let rule = SurfaceRule::STANDARD.with(FaceKind::Tri3, self.source.face_points())?;
+        Ok(fem::surface_rows(self.source.mesh(), facets, &rule)?)
+    }
+
     /// Resultant of all surface loads and body forces, N.
     pub fn resultant(&self) -> Vector3 {
         let mut sum = Vector3::zeros();
@@ -208,10 +229,10 @@ impl Prepared {
         let before = self.surfaces.len();
         let mut surfaces = Vec::new();
         if !patch.whole.is_empty() {
-            surfaces.push(method.surface(&self.volume, &patch.whole)?);
+            surfaces.push(self.source.surface(&patch.whole)?);
         }
         if !patch.cut.is_empty() {
-            surfaces.push(cut_surface(method, &self.volume, &patch.cut)?);
+            surfaces.push(cut_surface(&*self.source, &patch.cut)?);
         }
         for surface in surfaces {
             let at = surface.points().iter().zip(surface.normals());
@@ -236,7 +257,7 @@ impl Prepared {
         Ok(())
     }
 
-    /// Holds the vertices of a mesh that lie in a place; `node` tells which node each is.
+    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node.
     fn constrain_nodes(
         &mut self,
         mesh: &Mesh,
@@ -259,81 +280,76 @@ impl Prepared {
 
     /// A support on a basis whose parameters are not displacements, unless elements are coupled to it: on the facets of the
     /// place, and, where the place has a volume (a clamped end, not a clamped face), on that too.
-    fn constrain_cloud(
-        &mut self,
-        method: &Discretisation,
-        efg: &Efg,
-        support: &Support,
-    ) -> Result<(), Failure> {
-        let patch = place::patch(&support.key, &support.place, &efg.background)?;
+    fn constrain_cloud(&mut self, method: &Discretisation, support: &Support) -> Result<(), Failure> {
+        let patch = place::patch(&support.key, &support.place, method.mesh())?;
         let (rows, constraints) = (self.weak.len(), self.constraints.len());
-        match efg.essential {
+        match method.essential {
             Essential::Multipliers => {
                 if !patch.whole.is_empty() {
-                    let surface = method.surface(&self.volume, &patch.whole)?;
-                    let basis = efg.multiplier_basis(&patch.whole)?;
+                    let surface = self.source.surface(&patch.whole)?;
+                    let basis = self.multiplier_basis(&patch.whole)?;
                     let values = at(support, surface.points())?;
                     self.constraints.extend(multiplier_rows(&surface, basis.rows(), support.axes, &values)?);
                 }
             }
             Essential::Elimination(rows) => {
                 if !patch.whole.is_empty() {
-                    let surface = method.surface(&self.volume, &patch.whole)?;
-                    let patches = nodal_patches(&efg.cloud.points, &surface);
+                    let surface = self.source.surface(&patch.whole)?;
+                    let patches = nodal_patches(method.nodes(), &surface);
                     match rows {
                         ConstraintRows::Means => {
                             let values = at(support, surface.points())?;
                             self.constraints.extend(mean_rows(&surface, &patches, support.axes, &values));
                         }
                         ConstraintRows::Points => {
-                            let points =
-                                on_facets(&efg.cloud.points, &patches, &efg.background, &patch.whole);
-                            let (rows, _) = method.at_points(&self.volume, &points)?;
+                            let points = on_facets(method.nodes(), &patches, method.mesh(), &patch.whole);
+                            let (rows, _) = self.source.at_points(&points)?;
                             self.constraints.extend(collocated(&rows, support.axes, &at(support, &points)?));
                         }
                     }
                 }
             }
-            Essential::Coupling(Coupled { ref vertices, ref nodes }) => {
-                // Those of all supports are listed, and come last among the nodes.
-                let node = |vertex| nodes.len() - vertices.len() + vertices.partition_point(|&v| v < vertex);
-                return self.constrain_nodes(&efg.background, support, |vertex| node(vertex) as u32);
+            Essential::Nodal | Essential::Coupling(_) => {
+                unreachable!("constrained node by node")
             }
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
-                    let flux = method.flux(&self.volume, &patch.whole)?;
-                    let trace = efg.trace(&patch.whole)?;
-                    self.constrain_flux(efg, support, flux, Weak::Nitsche { gamma }, trace)?;
+                    let flux = self.source.flux(&patch.whole)?;
+                    let trace = self.source.trace(&patch.whole)?;
+                    self.constrain_flux(method, support, flux, Weak::Nitsche { gamma }, trace)?;
                 }
             }
             Essential::Penalty(factor) => {
                 if !patch.whole.is_empty() {
-                    let flux = method.flux(&self.volume, &patch.whole)?;
-                    self.constrain_flux(efg, support, flux, Weak::Penalty { factor }, None)?;
+                    let flux = self.source.flux(&patch.whole)?;
+                    self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
                 }
             }
         }
-        match efg.essential {
+        match method.essential {
             // Volume points outnumber what a cloud can follow; its own nodes do not.
             Essential::Multipliers | Essential::Elimination(_)
                 if matches!(support.place, Place::Where(_)) =>
             {
-                let tolerance = tolerance(&efg.background);
-                let inside = efg.cloud.points.iter().filter(|x| place::holds(&support.place, x, tolerance));
+                let tolerance = tolerance(method.mesh());
+                let inside = method.nodes().iter().filter(|x| place::holds(&support.place, x, tolerance));
                 let nodes: Vec<Point3> = inside.copied().collect();
-                let (rows, _) = method.at_points(&self.volume, &nodes)?;
+                let (rows, _) = self.source.at_points(&nodes)?;
                 let values = at(support, &nodes)?;
                 self.constraints.extend(collocated(&rows, support.axes, &values));
             }
-            Essential::Multipliers | Essential::Elimination(_) | Essential::Coupling(_) => {}
+            Essential::Multipliers
+            | Essential::Elimination(_)
+            | Essential::Coupling(_)
+            | Essential::Nodal => {}
             Essential::Nitsche(factor) | Essential::Penalty(factor) => {
-                if let Some(flux) = self.clamped_volume(efg, support)? {
-                    self.constrain_flux(efg, support, flux, Weak::Penalty { factor }, None)?;
+                if let Some(flux) = self.clamped_volume(method, support)? {
+                    self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
                 }
             }
         }
         if self.weak.len() == rows && self.constraints.len() == constraints {
-            return Err(place::empty(&support.key, &support.place, &efg.background));
+            return Err(place::empty(&support.key, &support.place, method.mesh()));
         }
         Ok(())
     }
@@ -357,21 +373,21 @@ impl Prepared {
             let flux = weak.flux;
             let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
             let surface = SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?;
-            self.held.push(OwnedHeld { surface, axes: weak.axes, values: weak.values, beta });
+            self.held.push(OwnedPenalty { surface, axes: weak.axes, values: weak.values, beta });
         }
         Ok(())
     }
 
     fn constrain_flux(
         &mut self,
-        efg: &Efg,
+        method: &Discretisation,
         support: &Support,
         flux: FluxRows,
-        method: Weak,
+        weak: Weak,
         trace: Option<TraceRows>,
     ) -> Result<(), Failure> {
         let values = at(support, flux.points())?;
-        let region = if efg.background.region_names().len() > 1 {
+        let region = if method.has_regions() {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
                 "holds weakly, which is not available for clouds on a body of several regions",
@@ -380,17 +396,21 @@ impl Prepared {
         } else {
             Vec::new()
         };
-        self.weak.push(OwnedWeak { flux, axes: support.axes, values, region, method, trace });
+        self.weak.push(OwnedWeak { flux, axes: support.axes, values, region, method: weak, trace });
         Ok(())
     }
 
     /// Volume points inside the place, as a table of penalty points: weight per spacing, so that one penalty factor
     /// means the same stiffness per depth of one node spacing as it does on a surface.
-    fn clamped_volume(&self, efg: &Efg, support: &Support) -> Result<Option<FluxRows>, Failure> {
+    fn clamped_volume(
+        &self,
+        method: &Discretisation,
+        support: &Support,
+    ) -> Result<Option<FluxRows>, Failure> {
         if !matches!(support.place, Place::Where(_)) {
             return Ok(None);
         }
-        let tolerance = tolerance(&efg.background);
+        let tolerance = tolerance(method.mesh());
         let rows = &self.volume.rows;
         let inside: Vec<usize> = (0..rows.points().len())
             .filter(|&q| place::holds(&support.place, &rows.points()[q], tolerance))
@@ -440,11 +460,7 @@ fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<Cons
 }
 
 /// Surface rows over clipped triangles.
-fn cut_surface(
-    method: &Discretisation,
-    volume: &Volume,
-    cut: &[CutTriangle],
-) -> Result<SurfaceRows, Failure> {
+fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
     let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
     let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
     for triangle in cut {
@@ -456,6 +472,6 @@ fn cut_surface(
             normals.push(area.normalize());
         }
     }
-    let (rows, _) = method.at_points(volume, &points)?;
+    let (rows, _) = source.at_points(&points)?;
     Ok(SurfaceRows::new(rows, weights, normals)?)
 }

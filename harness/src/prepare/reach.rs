@@ -4,7 +4,7 @@ use geometry::{Point3, quadrature};
 
 use crate::Failure;
 use crate::discretise::place::{self, Patch, Place, tolerance};
-use crate::discretise::{Discretisation, Efg, Essential, Integration};
+use crate::discretise::{Discretisation, Essential};
 use crate::scenario::setup::{Applied, Setup, Support};
 
 /// Fails as a run would on the first support or load whose place is empty or names a surface that the mesh does not
@@ -18,14 +18,13 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
         }
     }
     for support in &setup.supports {
-        let held_somewhere = match method {
-            Discretisation::Fem(fem) => !place::nodes(&support.key, &support.place, &fem.mesh)?.is_empty(),
-            Discretisation::Efg(Efg { essential: Essential::Coupling(_), background, .. }) => {
-                !place::nodes(&support.key, &support.place, background)?.is_empty()
+        let held_somewhere = match method.essential {
+            Essential::Nodal | Essential::Coupling(_) => {
+                !place::nodes(&support.key, &support.place, mesh)?.is_empty()
             }
-            Discretisation::Efg(efg) => {
+            _ => {
                 let patch = place::patch(&support.key, &support.place, mesh)?;
-                !patch.whole.is_empty() || holds_inside(efg, support, &patch)
+                !patch.whole.is_empty() || holds_inside(method, support, &patch)
             }
         };
         if !held_somewhere {
@@ -35,31 +34,29 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether one of the points at which a cloud is held inside its volume lies in the place.
-fn holds_inside(efg: &Efg, support: &Support, patch: &Patch) -> bool {
+/// Whether one of the points at which a cloud is constrained inside its volume lies in the place.
+fn holds_inside(method: &Discretisation, support: &Support, patch: &Patch) -> bool {
     if !matches!(support.place, Place::Where(_)) {
         return false;
     }
-    let tolerance = tolerance(&efg.background);
+    let mesh = method.mesh();
+    let tolerance = tolerance(mesh);
     let inside = |x: &Point3| place::holds(&support.place, x, tolerance);
-    if matches!(efg.essential, Essential::Multipliers | Essential::Elimination(_)) {
-        return efg.cloud.points.iter().any(inside);
+    if matches!(method.essential, Essential::Multipliers | Essential::Elimination(_)) {
+        return method.nodes().iter().any(inside);
     }
-    let points = match efg.integration {
-        Integration::Gauss { points } => points,
-        Integration::CellSmoothed { smoothing, .. } => smoothing.points_per_cell(),
-        Integration::NodeSmoothed { .. } if efg.background.points().iter().any(inside) => return true,
-        Integration::NodeSmoothed { stabilisation: 0.0, .. } => return false,
-        Integration::NodeSmoothed { .. } => 1,
-        // The clipped grid itself costs a test of every point; a region of the body that holds no centroid of a cell
-        // cuts its boundary.
-        Integration::Grid { .. } if !patch.cut.is_empty() => return true,
-        Integration::Grid { .. } => 1,
-    };
+    let points = method.inner;
+    // A region of the body that holds no centroid of a cell cuts its boundary.
+    if (points.vertices && mesh.points().iter().any(inside)) || (points.grid && !patch.cut.is_empty()) {
+        return true;
+    }
+    if points.per_cell == 0 {
+        return false;
+    }
     // A number of points without a rule is refused where the tables are filled.
-    let Some(rule) = quadrature::tet(points) else { return true };
-    (0..efg.background.cell_count()).any(|cell| {
-        let p: Vec<&Point3> = efg.background.cell_points(cell).collect();
+    let Some(rule) = quadrature::tet(points.per_cell) else { return true };
+    (0..mesh.cell_count()).any(|cell| {
+        let p: Vec<&Point3> = mesh.cell_points(cell).collect();
         let at = |xi: &[f64; 3]| p[0] + (p[1] - p[0]) * xi[0] + (p[2] - p[0]) * xi[1] + (p[3] - p[0]) * xi[2];
         rule.points.iter().any(|xi| inside(&at(xi)))
     })

@@ -63,7 +63,7 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
     let contact = prepared.contact.as_ref().map(ContactSurface::new);
     // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
     let mass = if asked.inertia {
-        let (fine, region) = method.error_rows(&prepared.volume)?;
+        let (fine, region) = prepared.fine_volume()?;
         counters.mass_nodes += method.nodes().len() as u64;
         Some(Mass::consistent(&fine, &setup.density()?, &region)?)
     } else {

@@ -7,7 +7,6 @@ use statics::{Mass, Modes, modes};
 
 use super::{Problem, Solution, Stages};
 use crate::Failure;
-use crate::discretise::Discretisation;
 use crate::outcome::Meters;
 use crate::scenario::setup::Setup;
 
@@ -52,14 +51,14 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
         let rows = &volume.rows;
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
     };
-    Ok(match (setup.mass, method) {
+    Ok(match (setup.mass, method.interpolates) {
         // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
         (None | Some(scene::Mass::Consistent), _) => {
-            let (fine, region) = method.error_rows(volume)?;
+            let (fine, region) = prepared.fine_volume()?;
             Mass::consistent(&fine, &density, &region)?
         }
-        (Some(scene::Mass::Transformed), Discretisation::Efg(_)) => {
-            let (at_nodes, _) = method.at_points(volume, method.nodes())?;
+        (Some(scene::Mass::Transformed), false) => {
+            let (at_nodes, _) = prepared.source.at_points(method.nodes())?;
             Mass::transformed(at_nodes.rows(), &lumped()?)?
         }
         // Parameters of elements are displacements: nothing is left to transform.

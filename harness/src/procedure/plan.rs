@@ -4,7 +4,7 @@ use cases::scene::ConstraintRows;
 use explicit::KernelInfo;
 
 use super::Stages;
-use crate::discretise::{Dilation, Discretisation, Efg, Essential, Functions, Integration};
+use crate::discretise::{Dilation, Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
 
@@ -27,7 +27,7 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     let mut add = |stage, (runs, why): (bool, String)| plan.add(stage, runs, why);
     add(StageName::Refinement, refinement(method));
     add(StageName::Supports, supports(method));
-    add(StageName::ShapeFunctions, (true, shape_functions(method)));
+    add(StageName::ShapeFunctions, (true, method.shape_functions.clone()));
     add(StageName::Projection, projection(method, setup));
     add(StageName::Tensors, tensors(setup));
     add(StageName::Mass, stages.mass);
@@ -72,49 +72,27 @@ pub(crate) fn conclude(plan: &mut Plan, forces: Option<KernelInfo>, counters: &C
     }
 }
 
-fn cloud(method: &Discretisation) -> Option<&Efg> {
-    match method {
-        Discretisation::Fem(_) => None,
-        Discretisation::Efg(efg) => Some(efg),
-    }
-}
-
 fn refinement(method: &Discretisation) -> (bool, String) {
-    match cloud(method).map(|efg| &efg.refine) {
-        Some(Some(refine)) => {
+    match &method.refine {
+        Some(refine) => {
             let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
             (true, format!("{times} by the error of the gradients, each after a solution"))
         }
-        Some(None) => (false, "the cloud stays as it is".into()),
+        None if method.supports.is_some() => (false, "the cloud stays as it is".into()),
         None => (false, "the mesh stays as it is".into()),
     }
 }
 
 fn supports(method: &Discretisation) -> (bool, String) {
-    let Some(efg) = cloud(method) else { return (false, "the elements' nodes are the neighbours".into()) };
-    let supports = match efg.followed {
-        Some(_) => "ellipsoids that follow the cells, and neighbours",
-        None => "radius and neighbours",
-    };
-    (true, format!("{supports} of {} nodes", efg.cloud.points.len()))
-}
-
-fn shape_functions(method: &Discretisation) -> String {
-    let Some(efg) = cloud(method) else { return "one row per Gauss point of each element".into() };
-    let coupled = match efg.coupled() {
-        Some(coupled) => format!(", coupled to {} nodes of finite elements", coupled.vertices.len()),
-        None => String::new(),
-    };
-    integration(efg) + &coupled
+    match &method.supports {
+        Some(how) => (true, how.clone()),
+        None => (false, "the elements' nodes are the neighbours".into()),
+    }
 }
 
 fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
-    let dilation = match method {
-        Discretisation::Fem(fem) => fem.dilation,
-        Discretisation::Efg(efg) => efg.dilation,
-    };
     let poisson = setup.materials.iter().map(|m| m.poisson()).fold(f64::MIN, f64::max);
-    match dilation {
+    match method.dilation {
         Dilation::Standard if poisson < NEARLY_INCOMPRESSIBLE => {
             (false, format!("nu = {poisson} < {NEARLY_INCOMPRESSIBLE} does not lock"))
         }
@@ -133,30 +111,30 @@ fn tensors(setup: &Setup) -> (bool, String) {
 }
 
 fn elimination(method: &Discretisation, setup: &Setup) -> (bool, String) {
-    let (eliminated, why) = match cloud(method).map(|efg| &efg.essential) {
+    let (eliminated, why) = match &method.essential {
         _ if setup.supports.is_empty() => (false, "no support in the scene"),
-        None => (true, "the basis is Kronecker: nodal parameters are displacements"),
-        Some(Essential::Elimination(ConstraintRows::Means)) => {
+        Essential::Nodal => (true, "the basis is Kronecker: nodal parameters are displacements"),
+        Essential::Elimination(ConstraintRows::Means) => {
             (true, "mean displacements of nodal patches, by pivoted rows")
         }
-        Some(Essential::Elimination(ConstraintRows::Points)) => {
-            (true, "displacements at points, by pivoted rows")
+        Essential::Elimination(ConstraintRows::Points) => (true, "displacements at points, by pivoted rows"),
+        Essential::Coupling(_) => (true, "parameters of finite-element nodes are displacements"),
+        Essential::Nitsche(_) | Essential::Penalty(_) | Essential::Multipliers => {
+            (false, "nodal parameters are not displacements")
         }
-        Some(Essential::Coupling(_)) => (true, "parameters of finite-element nodes are displacements"),
-        Some(_) => (false, "nodal parameters are not displacements"),
     };
     (eliminated, why.into())
 }
 
 fn weak_supports(method: &Discretisation, setup: &Setup) -> (bool, String) {
-    match cloud(method).map(|efg| &efg.essential) {
+    match &method.essential {
         _ if setup.supports.is_empty() => (false, "no support in the scene".into()),
-        None | Some(Essential::Elimination(_) | Essential::Coupling(_)) => {
+        Essential::Nodal | Essential::Elimination(_) | Essential::Coupling(_) => {
             (false, "supports are eliminated".into())
         }
-        Some(Essential::Nitsche(gamma)) => (true, format!("Nitsche, factor {gamma}")),
-        Some(Essential::Penalty(factor)) => (true, format!("penalty, factor {factor}")),
-        Some(Essential::Multipliers) => (true, "Lagrange multipliers".into()),
+        Essential::Nitsche(gamma) => (true, format!("Nitsche, factor {gamma}")),
+        Essential::Penalty(factor) => (true, format!("penalty, factor {factor}")),
+        Essential::Multipliers => (true, "Lagrange multipliers".into()),
     }
 }
 
@@ -175,7 +153,7 @@ fn friction(setup: &Setup) -> (bool, String) {
 }
 
 fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
-    let (runs, why) = match (cloud(method).is_some(), wanted.targets) {
+    let (runs, why) = match (!method.interpolates, wanted.targets) {
         (false, false) => (false, "a Kronecker basis: nodal values are displacements"),
         (false, true) => (true, "evaluated with the elements' shape functions"),
         (true, true) => (true, "evaluated with the method's own shape functions"),
@@ -185,44 +163,11 @@ fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
 }
 
 fn schemes(method: &Discretisation, wanted: Wanted) -> (bool, String) {
-    let cloud = cloud(method).is_some();
+    let cloud = !method.interpolates;
     let why = match (wanted.schemes, cloud) {
         (true, true) => "asked for, to compare them",
         (true, false) => "the reference nodes are the elements' own",
         (false, _) => "none asked for",
     };
     (wanted.schemes && cloud, why.into())
-}
-
-fn integration(efg: &Efg) -> String {
-    let functions = match efg.functions {
-        Functions::MovingLeastSquares { .. } => "moving least squares",
-        Functions::MaximumEntropy { .. } => "maximum entropy",
-    };
-    match efg.integration {
-        Integration::Gauss { points } => {
-            format!("{functions} at {points} points per background cell")
-        }
-        Integration::Grid { points, .. } => {
-            format!("{functions} at {points}^3 points per grid cell")
-        }
-        Integration::CellSmoothed { smoothing, face_points } => {
-            let gradients = match smoothing {
-                efg::Smoothing::Constant => "constant",
-                efg::Smoothing::Linear => "linear",
-            };
-            format!(
-                "{functions} at {face_points} points per face, smoothed to {gradients} gradients per cell"
-            )
-        }
-        Integration::NodeSmoothed { stabilisation, face_points } => {
-            let cells = match stabilisation {
-                0.0 => String::new(),
-                share => format!(", cells with {share} of the weight"),
-            };
-            format!(
-                "{functions} at {face_points} points per face, smoothed to one gradient per vertex{cells}"
-            )
-        }
-    }
 }

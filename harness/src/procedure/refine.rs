@@ -6,7 +6,7 @@ use geometry::{CloudError, Sizes, cloud_of_sizes};
 
 use super::{Problem, linear};
 use crate::Failure;
-use crate::discretise::{Discretisation, Efg};
+use crate::discretise::Discretisation;
 use crate::error::Key;
 use crate::outcome::{Counters, Meters, Plan};
 use crate::prepare::prepare;
@@ -19,20 +19,22 @@ pub(crate) fn refined(
     plan: &Plan,
     counters: &mut Counters,
 ) -> Result<Option<Discretisation>, Failure> {
-    let Discretisation::Efg(Efg { refine: Some(refine), .. }) = method else { return Ok(None) };
+    let Some(first) = &method.refine else { return Ok(None) };
     let mut current = method.clone();
-    for _ in 0..refine.steps {
+    let mut refine = first.clone();
+    for _ in 0..first.steps {
         let mut own = Meters::default();
         let prepared = prepare(&current, setup, &mut own.counters)?;
         let problem = Problem { method: &current, setup, prepared: &prepared, plan, watch: None };
         let solution = linear::solve(&problem, &mut own)?;
-        let Discretisation::Efg(efg) = &mut current else { return Ok(None) };
-        let error = gradient_error(&prepared.volume.rows, &solution.u, &efg.cloud.points);
+        let error = gradient_error(&prepared.volume.rows, &solution.u, &refine.cloud.points);
         let none = |bad: CloudError| {
             Failure::at(ErrorKind::NotRun, Key::Method("cloud"), format!("makes no cloud: {bad}"), "")
         };
-        let sizes = Sizes::new(&efg.cloud, &error, refine.ratio).map_err(|bad| none(bad.into()))?;
-        efg.cloud = cloud_of_sizes(&*refine.shape, error.len(), refine.seed, &sizes).map_err(none)?;
+        let sizes = Sizes::new(&refine.cloud, &error, refine.ratio).map_err(|bad| none(bad.into()))?;
+        let cloud = cloud_of_sizes(&*refine.shape, error.len(), refine.seed, &sizes).map_err(none)?;
+        current = (refine.on)(cloud.clone())?;
+        refine.cloud = cloud;
         counters.refinements += 1;
     }
     Ok(Some(current))

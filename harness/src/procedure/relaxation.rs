@@ -30,7 +30,7 @@ const DENSITY: f64 = 1000.0;
 
 /// The state that relaxation starts from.
 pub struct Start {
-    /// Part of the load carried.
+    /// Part of the load reached.
     pub load: f64,
     /// Nodal displacements, m.
     pub u: Vec<Vector3>,
@@ -56,16 +56,16 @@ pub struct Relaxed {
 
 /// Whether a method can continue by relaxation where its static path stalls, and why (not).
 pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
-    match method {
-        Discretisation::Efg(_) => (
+    match method.dilation {
+        _ if !method.interpolates => (
             false,
             "not for clouds, whose path ends where it stalls: a support by penalty and lumped parameters have no usable step",
         ),
-        Discretisation::Fem(fem) if fem.dilation == Dilation::Mixed => (
+        Dilation::Mixed => (
             false,
             "not with a pressure field, whose path ends where it stalls: its equations are not explicit",
         ),
-        Discretisation::Fem(_) => (true, "where Newton's method finds no equilibrium"),
+        _ => (true, "where Newton's method finds no equilibrium"),
     }
 }
 

@@ -34,10 +34,10 @@ pub struct Group<'a> {
 
 /// What a run does beside its numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extras {
+pub struct RunOptions {
     /// Keeps the surface displacement, for pictures.
     pub picture: bool,
-    /// Runs the loop that the scene asks for (`[output] repeated`) after the first solution.
+    /// Runs the loop that the scene requests (`[output] repeated`) after the first solution.
     pub frames: bool,
     /// Solves a cloud once more, integrated by this rule, to tell its errors of integration and of discretisation apart.
     pub split: Option<scene::Integration>,
@@ -129,7 +129,7 @@ impl<'a> Group<'a> {
         let solved = self.solved(&scenario, &discretisation)?;
         let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
         self.reference_counters += solved.outcome.counters;
-        Ok((super::reference(discretisation, solved, &self.targets)?, stalled))
+        Ok((super::reference(solved, &self.targets)?, stalled))
     }
 
     /// One method's solution, once and compared with nothing.
@@ -155,7 +155,7 @@ impl<'a> Group<'a> {
         let solved = self.solved(&scenario, &discretisation)?;
         let nodes = discretisation.nodes().to_vec();
         let at = if self.targets.is_empty() { &nodes } else { &self.targets };
-        super::reference(discretisation, solved, at)
+        super::reference(solved, at)
     }
 
     /// One of the scene's methods, as a run of this group.
@@ -175,19 +175,19 @@ impl<'a> Group<'a> {
         self.reference_counters
     }
 
-    /// Why the reference ended early, if it did: nothing is compared with its end then, but with the steps it carried.
+    /// Why the reference ended early, if it did: nothing is compared with its end then, but with the steps it reached.
     pub fn reference_stalled(&self) -> Option<&Failure> {
         self.reference_stalled.as_ref()
     }
 
     /// Runs one method.
-    pub fn run(&self, scenario: &Scenario, extras: Extras) -> Result<Outcome, Unfinished> {
+    pub fn run(&self, scenario: &Scenario, options: RunOptions) -> Result<Outcome, Unfinished> {
         let discretisation = scenario.discretise()?;
         let size = size(&discretisation);
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
         let plan = plan(&discretisation, &setup, self.wanted());
-        let integrated = match extras.split.filter(|_| matches!(discretisation, Discretisation::Efg(_))) {
+        let integrated = match options.split.filter(|_| matches!(scenario.method.family, Family::Efg(_))) {
             Some(rule) => {
                 let fail = |failure| Unfinished { failure, plan: plan.clone(), size };
                 Some(self.integrated(scenario, rule).map_err(fail)?)
@@ -198,16 +198,16 @@ impl<'a> Group<'a> {
             probes: &self.probes,
             targets: &self.targets,
             schemes: self.schemes_for(&discretisation),
-            picture: extras.picture,
+            picture: options.picture,
             repeats: self.repeats,
             reference: self.reference.as_ref(),
             beside: self.beside.as_ref(),
             integrated: integrated.as_ref(),
-            repeated: self.scene.output.repeated.as_ref().filter(|_| extras.frames),
+            repeated: self.scene.output.repeated.as_ref().filter(|_| options.frames),
             watch: None,
         };
         let mut identity = scenario.identity();
-        identity.split = integrated.as_ref().and(extras.split).map(rule);
+        identity.split = integrated.as_ref().and(options.split).map(rule);
         match run(identity, plan.clone(), &discretisation, &setup, &request) {
             Ok(mut solved) => {
                 let locate = |failure| scenario.locate(failure);
@@ -235,10 +235,7 @@ impl<'a> Group<'a> {
     }
 
     fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
-        match method {
-            Discretisation::Efg(_) => &self.schemes,
-            Discretisation::Fem(_) => &[],
-        }
+        if method.interpolates { &[] } else { &self.schemes }
     }
 }
 

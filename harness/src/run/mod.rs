@@ -26,7 +26,7 @@ use repeated::repeated;
 
 pub use crate::measure::Repeats;
 pub(crate) use group::resize;
-pub use group::{Extras, Group, case_name};
+pub use group::{Group, RunOptions, case_name};
 
 /// A finished run with its nodal parameters.
 pub(crate) struct Solved {
@@ -35,8 +35,6 @@ pub(crate) struct Solved {
     prepared: Prepared,
     /// Nodal parameters, m.
     u: Vec<Vector3>,
-    /// The method on the cloud that it ended with, where that follows an error.
-    refined: Option<Discretisation>,
 }
 
 /// Runs one method by its plan.
@@ -75,7 +73,7 @@ fn on_pool(
     } else {
         loaded(&mut outcome, &run, request, meters)?;
     }
-    Ok(Solved { outcome, prepared, u: solution.u, refined })
+    Ok(Solved { outcome, prepared, u: solution.u })
 }
 
 /// What a pass over a run leaves.
@@ -227,15 +225,10 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
 }
 
 /// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.
-pub(crate) fn reference(
-    method: Discretisation,
-    solved: Solved,
-    targets: &[Point3],
-) -> Result<Reference, Failure> {
-    let Solved { outcome, prepared, u, refined } = solved;
-    let method = refined.unwrap_or(method);
+pub(crate) fn reference(solved: Solved, targets: &[Point3]) -> Result<Reference, Failure> {
+    let Solved { outcome, prepared, u } = solved;
     let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
-        Ok(method.at_points(&prepared.volume, points)?.0.rows().apply(&u))
+        Ok(prepared.source.at_points(points)?.0.rows().apply(&u))
     };
     let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
     let nodes = outcome.size.nodes as usize;

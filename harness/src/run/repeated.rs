@@ -93,7 +93,7 @@ fn linear(
         })?);
     }
     let mut forces = vec![Vector3::zeros(); method.nodes().len()];
-    // Told beside: what 99 % of the frames take, and no more than a fiftieth of the time that the loop may take.
+    // Timed too: what 99 % of the frames take, and no more than a fiftieth of the time that the loop may take.
     let ask = Repeated { frames: ask.frames.min(FOR_P99), within: 0.02 * ask.within, ..*ask };
     let share = ask.cycle / (unit.len() + 1);
     latencies.push(timed("repeated-field", &ask, |k| {
@@ -112,7 +112,7 @@ fn field(factored: &Factored, forces: &[Vector3], supports: f64) -> Result<usize
     Ok(0)
 }
 
-/// The probes, and the mean displacement of each loaded face: what a jaw that presses there would tell.
+/// The probes, and the mean displacement of each loaded face: what a jaw that presses there would measure.
 fn outputs(
     method: &Discretisation,
     prepared: &Prepared,
@@ -121,7 +121,7 @@ fn outputs(
 ) -> Result<Rows, Failure> {
     let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
     if !probes.is_empty() {
-        let rows = method.at_points(&prepared.volume, probes)?.0;
+        let rows = prepared.source.at_points(probes)?.0;
         for probe in 0..probes.len() {
             let (at, value) = rows.rows().row(probe);
             nodes.extend_from_slice(at);
@@ -183,7 +183,7 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
     })
 }
 
-/// Times each frame, which tells its iterations, until all are done or the time is spent.
+/// Times each frame, which returns its iterations, until all are done or the time is spent.
 fn timed(
     phase: &'static str,
     ask: &Repeated,

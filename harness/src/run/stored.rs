@@ -33,7 +33,7 @@ pub struct Stored {
     pub probes: Vec<[f64; 3]>,
     /// The ends of the load steps.
     pub steps: Vec<StoredStep>,
-    /// Where the displacement at the end is told.
+    /// Where the displacement at the end is given.
     pub points: Vec<[f64; 3]>,
     /// The displacement there.
     pub displacement: Vec<[f64; 3]>,
@@ -53,16 +53,16 @@ pub struct Source {
     pub table: String,
 }
 
-/// What a scene asks, and the tables of its methods that may answer.
-pub(crate) struct Asked {
+/// The problem of a scene, and the tables of its methods.
+pub(crate) struct Problem {
     pub(crate) problem: String,
     /// By id.
     pub(crate) methods: BTreeMap<String, String>,
 }
 
-impl Asked {
+impl Problem {
     /// `text` is that of a scene that has been read.
-    pub(crate) fn of(text: &str) -> Asked {
+    pub(crate) fn of(text: &str) -> Problem {
         let mut table: toml::Table = text.parse().expect("a scene is TOML");
         let mut methods = BTreeMap::new();
         if let Some(toml::Value::Array(tables)) = table.remove("method") {
@@ -74,7 +74,7 @@ impl Asked {
         for words in ["title", "source", "purpose", "published"] {
             table.remove(words);
         }
-        Asked { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
+        Problem { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }
     }
 }
 
@@ -115,12 +115,12 @@ impl Stored {
     /// Says what differs if this is not of the same problem and points, or by methods that the scene has in another form.
     pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
         let Source { method, nodes, .. } = &self.source;
-        let asked = Asked::of(text);
-        if self.problem != asked.problem {
+        let problem = Problem::of(text);
+        if self.problem != problem.problem {
             return Err(format!("{method} on {nodes} nodes is of another scene, or another text of it"));
         }
         for Source { method, nodes, table } in self.beside.iter().chain([&self.source]) {
-            if asked.methods.get(method) != Some(table) {
+            if problem.methods.get(method) != Some(table) {
                 return Err(format!(
                     "{method} on {nodes} nodes is not by the scene's '{method}', but by\n{table}"
                 ));
@@ -157,11 +157,11 @@ impl Stored {
         let text = std::fs::read_to_string(path).map_err(|bad| format!("{file}: can't be read: {bad}"))?;
         let stored: Stored =
             serde_json::from_str(&text).map_err(|bad| format!("{file}: is no reference: {bad}"))?;
-        let (points, told) = (stored.points.len(), stored.displacement.len());
-        if points == told {
+        let (points, values) = (stored.points.len(), stored.displacement.len());
+        if points == values {
             Ok(stored)
         } else {
-            Err(format!("{file}: {points} points but {told} displacements"))
+            Err(format!("{file}: {points} points but {values} displacements"))
         }
     }
 
@@ -181,7 +181,7 @@ impl Stored {
         Ok(stored)
     }
 
-    /// The points whose displacement is told, m.
+    /// The points whose displacement is given, m.
     pub fn targets(&self) -> Vec<Point3> {
         self.points.iter().map(|&x| Point3::from(x)).collect()
     }

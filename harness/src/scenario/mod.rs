@@ -1,6 +1,7 @@
 //! From a checked scene and one of its methods to what the solvers take: its laws, supports and loads, and the exact solution.
 
 mod body;
+mod cloud;
 mod cloud_file;
 mod discretise;
 mod grading;

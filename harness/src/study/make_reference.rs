@@ -5,7 +5,7 @@ use geometry::{Point3, Vector3};
 
 use crate::Failure;
 use crate::outcome::{LoadStep, ToolStep, provenance};
-use crate::run::stored::{Asked, Source, Stored, StoredStep, StoredTool};
+use crate::run::stored::{Problem, Source, Stored, StoredStep, StoredTool};
 use crate::run::{Group, case_name};
 
 /// A line for those who wait an hour for the end, and all that is left where there is none.
@@ -15,8 +15,8 @@ fn waiting(step: &LoadStep) {
     eprintln!("{:6.2} % of the load in {} iterations{tools}", 100.0 * step.load, step.iterations);
 }
 
-/// Runs the named methods of the scene, or all of them. The last one's values are told, all of them span the bands.
-/// `points` below z = 0 are told by their mirror images if the scene has only the half above.
+/// Runs the named methods of the scene, or all of them. The last one's values are stored, all of them span the bands.
+/// `points` below z = 0 are evaluated at their mirror images if the scene has only the half above.
 pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Result<Stored, Failure> {
     let mut all = Vec::new();
     for method in scene.methods.iter().filter(|m| only.is_empty() || only.contains(&m.id)) {
@@ -25,11 +25,11 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
         eprintln!("{}: {} nodes", solution.source.method, solution.source.nodes);
         all.push(solution);
     }
-    let Some(mut told) = all.pop() else {
+    let Some(mut stored) = all.pop() else {
         return Err(Failure::Run(format!("{} has no method to make a reference with", scene.file())));
     };
-    all.iter().for_each(|other| told.widen(other));
-    Ok(told)
+    all.iter().for_each(|other| stored.widen(other));
+    Ok(stored)
 }
 
 /// The solution by one method, without bands.
@@ -50,7 +50,7 @@ fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stor
     };
     let displacement = points.iter().zip(&solution.targets);
     let (program, machine) = (provenance::program(), provenance::machine());
-    let Asked { problem, methods } = Asked::of(text);
+    let Problem { problem, methods } = Problem::of(text);
     Ok(Stored {
         case: case_name(scene),
         problem,

@@ -19,7 +19,7 @@ use reports::{Check as Verdict, Machine, Record, RunSet, SurfaceField};
 use crate::Failure;
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
-use crate::run::{Extras, Group, Repeats, case_name};
+use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::scenario::purpose;
 use progress::Progress;
 use task::TaskResult;
@@ -193,8 +193,8 @@ impl Plan {
                 });
                 let outcome = match group {
                     Ok(group) => {
-                        let extras = Extras { picture: task.picture, frames, split };
-                        group.run(&group.scenario(task.method.clone(), task.level), extras)
+                        let options = RunOptions { picture: task.picture, frames, split };
+                        group.run(&group.scenario(task.method.clone(), task.level), options)
                     }
                     Err(failure) => Err(failure.clone().into()),
                 };

@@ -35,7 +35,7 @@ pub(crate) fn hex_points(
     for (xi, weight) in rule.points.iter().zip(&rule.weights) {
         let mut x = Vector3::zeros();
         let mut jacobian = Matrix3::zeros();
-        for (p, sign) in mesh.cell_points(cell).zip(&geometry::HEX_CORNERS) {
+        for (p, sign) in mesh.cell_points(cell).zip(&geometry::element::HEX_CORNERS) {
             let f: [f64; 3] = std::array::from_fn(|a| 0.5 * (1.0 + sign[a] * xi[a]));
             x += p.coords * (f[0] * f[1] * f[2]);
             let slope =

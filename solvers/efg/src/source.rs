@@ -212,9 +212,12 @@ impl RowSource for CloudSource {
         Ok(None)
     }
 
-    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError> {
-        let (rows, _) = gauss_rows(&self.approximation, &self.background, ERROR_POINTS)?;
-        Ok((rows, gauss_regions(&self.background, ERROR_POINTS)))
+    fn fine_volume(&self) -> Result<VolumeRows, SourceError> {
+        Ok(gauss_rows(&self.approximation, &self.background, ERROR_POINTS)?.0)
+    }
+
+    fn fine_regions(&self) -> Vec<u16> {
+        gauss_regions(&self.background, ERROR_POINTS)
     }
 
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {

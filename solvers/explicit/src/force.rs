@@ -1,6 +1,6 @@
 //! Internal forces of a body by the fastest kernel that fits its table and laws.
 
-use shape::{DilationGroups, VolumeRows};
+use shape::{DilationGroups, Layout, VolumeRows};
 
 use super::hex8::Hex8;
 use super::moduli::LaneLaw;
@@ -69,14 +69,14 @@ enum Engine {
 }
 
 impl<'a> InternalForce<'a> {
-    /// Chooses the kernel by the table and the laws; lanes run on `path`.
+    /// Chooses the kernel by what the table says of itself and by the laws; lanes run on `path`.
     pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
         let laws = || LaneLaw::of_regions(&body);
-        let element = laws().and_then(|laws| match body.volume.rows().uniform_len() {
-            Some(4) => Tet4::new(&body, laws).map(Engine::Tet4),
-            Some(8) => Hex8::new(&body, laws).map(Engine::Hex8),
-            _ => None,
+        let element = laws().and_then(|laws| match body.volume.layout() {
+            Layout::LinearTetrahedra => Tet4::new(&body, laws).map(Engine::Tet4),
+            Layout::TrilinearHexahedra => Hex8::new(&body, laws).map(Engine::Hex8),
+            Layout::General => None,
         });
         let engine = element.or_else(|| match body.groups {
             None => Ragged::new(&body, laws()?).map(Engine::Ragged),

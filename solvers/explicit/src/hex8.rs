@@ -5,6 +5,7 @@
 //! stored per point (656 bytes per element instead of 1616), and `du/dxi` takes 156 operations per element and three
 //! components for what would be 576. Forces go back by the transpose of each step.
 
+use geometry::element::HEX_CORNERS;
 use shape::DilationGroups;
 
 use super::Kernel;
@@ -12,7 +13,7 @@ use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
 use super::hex8_lanes::{Block, Point, dilated, internal};
 use super::moduli::LaneLaw;
-use super::trilinear::{CORNERS, NODE, fit, reference};
+use super::trilinear::{NODE, fit, reference};
 use lanes::{LANES, LanePath};
 use shape::locality_order;
 use shape::{Matrix3, Point3, Vector3};
@@ -36,16 +37,12 @@ struct Chunk {
 }
 
 impl Hex8 {
-    /// None for anything but runs of eight points over the same eight nodes with the gradients of a trilinear
-    /// hexahedron and one law, and for groups other than one per element.
+    /// Of rows laid out as trilinear hexahedra; none for groups other than one per element, or a law that changes inside one.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Hex8> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let count = rows.len() / 8;
-        let like = |q: usize| {
-            let first = q - q % 8;
-            rows.row(q).0 == rows.row(first).0 && body.region(q) == body.region(first)
-        };
-        if count == 0 || rows.len() % 8 != 0 || rows.uniform_len() != Some(8) || !(0..rows.len()).all(like) {
+        // A cell is of one region; a table that says otherwise is none of a mesh.
+        if (0..rows.len()).any(|q| body.region(q) != body.region(q - q % 8)) {
             return None;
         }
         if let Some(groups) = body.groups {
@@ -57,7 +54,7 @@ impl Hex8 {
             }
         }
         // Which Gauss point comes where: lowest axis fastest, corner order, ... whatever the first element shows.
-        let tables = NODE.map(|a| reference(&CORNERS[a]));
+        let tables = NODE.map(|a| reference(&HEX_CORNERS[a]));
         let place: Vec<usize> = (0..8)
             .map(|q| (0..8).find(|&c| fit(volume.row(q).1, &tables[c]).is_some()))
             .collect::<Option<_>>()?;

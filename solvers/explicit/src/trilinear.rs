@@ -4,19 +4,8 @@
 //! operations. A derivative along one axis does not depend on that axis: it takes four values at the eight points, eight
 //! sums for the four. Straight-line code: with a loop inside, one over lanes around it stays scalar.
 
+use geometry::element::{Element, Hex8};
 use shape::{Matrix3, Vector3};
-
-/// Corner signs in the order of the nodes.
-pub(super) const CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// 1 / sqrt 3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;
@@ -26,11 +15,7 @@ pub(super) const NODE: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// `dN_a/dxi` at the Gauss point of the given signs.
 pub(super) fn reference(signs: &[f64; 3]) -> [Vector3; 8] {
-    let xi = signs.map(|s| s * GAUSS);
-    CORNERS.map(|c| {
-        let n = [0, 1, 2].map(|k| 1.0 + c[k] * xi[k]);
-        Vector3::new(c[0] * n[1] * n[2], n[0] * c[1] * n[2], n[0] * n[1] * c[2]) * 0.125
-    })
+    Hex8::shape_grad(signs.map(|s| s * GAUSS)).map(Vector3::from)
 }
 
 /// The `A` of `grad N_a = A dN_a/dxi` by least squares, if it leaves nothing over.
@@ -110,7 +95,7 @@ mod tests {
         let v: [f64; 8] = std::array::from_fn(|k| (1.3 * k as f64).sin());
         let d = slopes(v);
         for q in 0..8 {
-            let table = reference(&CORNERS[NODE[q]]);
+            let table = reference(&Hex8::NODES[NODE[q]]);
             let expected: Vector3 = (0..8).map(|k| table[NODE[k]] * v[k]).sum();
             for beta in 0..3 {
                 // Values near 1, eight of them.

@@ -6,7 +6,8 @@
 
 mod bounds;
 mod closest;
-pub mod element;
+#[cfg(test)]
+mod element_tests;
 mod error;
 mod face;
 mod locate;

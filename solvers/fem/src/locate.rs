@@ -3,8 +3,8 @@
 use geometry::{CellKind, Mesh, Point3, Vector3};
 
 use crate::bounds::{Bounds, cell_bounds};
-use crate::element::{self, Element, with_element};
 use crate::map::{Nodes, cofactors};
+use geometry::element::{self, Element, with_element};
 
 /// How far outside its reference cell a point may lie and still count as inside, in reference units: rounding
 /// leaves points of a face some 1e-15 outside both its cells.

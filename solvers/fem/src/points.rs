@@ -6,10 +6,10 @@ use shape::{GradRows, PointRows, Rows};
 
 use crate::FemError;
 use crate::closest::Surface;
-use crate::element::{Element, with_element};
 use crate::locate::{Locator, Place};
 use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
+use geometry::element::{Element, with_element};
 
 /// Points that the mesh does not hold, answered at the nearest point of its surface instead.
 #[derive(Clone, Debug, PartialEq)]

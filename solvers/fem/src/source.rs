@@ -60,8 +60,12 @@ impl RowSource for Elements {
         Ok(Some(pressure_rows(&self.mesh, &self.rule)?))
     }
 
-    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError> {
-        Ok((volume_rows(&self.mesh, &VolumeRule::FINE)?, regions(&self.mesh, &VolumeRule::FINE)))
+    fn fine_volume(&self) -> Result<VolumeRows, SourceError> {
+        Ok(volume_rows(&self.mesh, &VolumeRule::FINE)?)
+    }
+
+    fn fine_regions(&self) -> Vec<u16> {
+        regions(&self.mesh, &VolumeRule::FINE)
     }
 
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {

@@ -4,11 +4,11 @@ use geometry::quadrature::Rule;
 use geometry::{CellKind, FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows};
 
-use crate::element::{Element, with_element};
 use crate::face::{Face, into_cell, with_face};
 use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
 use crate::{FemError, SurfaceRule};
+use geometry::element::{Element, with_element};
 
 /// Values, weights `w |dx/ds x dx/dt|` (m^2) and outward unit normals at the points of every facet, in the order
 /// given. Curved faces count as they are. Rows hold the facet's own nodes, in the order of

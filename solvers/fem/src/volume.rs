@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use geometry::{CellKind, Mesh, Point3, Vector3};
 use rayon::prelude::*;
-use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
+use shape::{DilationGroups, GradRows, Layout, Rows, Unity, VolumeRows};
 
-use crate::element::{Element, Hex8, Tet4, with_element};
 use crate::map::{Nodes, inverse, physical};
 use crate::{FemError, VolumeRule};
+use geometry::element::{Element, Hex8, Tet4, with_element};
 
 /// Shape values of all elements sum to one within a few last bits (20 terms of size 1: some 1e-15).
 pub(crate) const UNITY: Unity = Unity::Within(1e-12);
@@ -63,7 +63,17 @@ pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemErro
     results.into_iter().collect::<Result<(), FemError>>()?;
 
     let rows = Rows::new(mesh.points().len(), offsets, nodes, values, UNITY)?;
-    Ok(VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?)
+    let rows = VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?;
+    Ok(rows.laid_out(layout(mesh, rule))?)
+}
+
+/// What is known of the rows of a mesh.
+fn layout(mesh: &Mesh, rule: &VolumeRule) -> Layout {
+    match mesh.uniform_kind() {
+        Some(CellKind::Tet4) => Layout::LinearTetrahedra,
+        Some(CellKind::Hex8) if rule.points(CellKind::Hex8) == 8 => Layout::TrilinearHexahedra,
+        _ => Layout::General,
+    }
 }
 
 /// Cell of every quadrature point of [`volume_rows`] with the same rule.

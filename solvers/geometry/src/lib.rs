@@ -17,8 +17,8 @@
 
 mod cell;
 mod cloud;
+pub mod element;
 pub mod generate;
-mod isoparametric;
 mod locate;
 mod mesh;
 pub mod msh;
@@ -33,7 +33,6 @@ pub use cloud::{
     Cloud, CloudError, PointFile, PointFileError, PointProblem, Refinement, Sizes, cloud, cloud_from_mesh,
     cloud_of_sizes, edges, read_points,
 };
-pub use isoparametric::HEX_CORNERS;
 pub use locate::{LocateError, Location, Locator, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};

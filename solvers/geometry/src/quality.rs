@@ -1,6 +1,6 @@
 //! Mesh quality: volumes, Jacobians, dihedral angles, aspect; the worst element is always named.
 
-use crate::{CellKind, Mesh, Point3, Vector3, isoparametric, quadrature};
+use crate::{CellKind, Mesh, Point3, Vector3, element, quadrature};
 
 /// A cell whose map folds over itself.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -50,7 +50,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
         let kind = mesh.kind(element);
         let points: Vec<Point3> = mesh.cell_points(element).copied().collect();
         let (rule, nodes) = &probes[kind as usize];
-        let det = |xi: &[f64; 3]| isoparametric::map(kind, &points, *xi).1.determinant();
+        let det = |xi: &[f64; 3]| element::map(kind, &points, *xi).1.determinant();
         let (mut low, mut high, mut volume) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for (xi, w) in rule.points.iter().zip(&rule.weights) {
             let d = det(xi);
@@ -97,7 +97,7 @@ pub fn volumes(mesh: &Mesh) -> Vec<f64> {
             let points: Vec<Point3> = mesh.cell_points(cell).copied().collect();
             let rule = &probes[kind as usize].0;
             (rule.points.iter().zip(&rule.weights))
-                .map(|(xi, w)| w * isoparametric::map(kind, &points, *xi).1.determinant())
+                .map(|(xi, w)| w * element::map(kind, &points, *xi).1.determinant())
                 .sum()
         })
         .collect()
@@ -129,7 +129,7 @@ fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, Vec<[f64; 3]>) {
         CellKind::Hex8 => Some(quadrature::hex(2)),
         CellKind::Hex20 => Some(quadrature::hex(4)),
     };
-    (rule.expect("a tabulated rule"), isoparametric::reference_nodes(kind))
+    (rule.expect("a tabulated rule"), element::nodes(kind).to_vec())
 }
 
 fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {

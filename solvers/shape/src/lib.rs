@@ -21,7 +21,7 @@ pub use fixed::FixedDof;
 pub use order::locality_order;
 pub use rows::{Rows, ShapeError, Unity};
 pub use source::{Quadrature, RowSource, SourceError, equal_groups};
-pub use tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+pub use tables::{FluxRows, GradRows, Layout, PointRows, SurfaceRows, VolumeRows};
 pub use trace::TraceRows;
 
 /// A position in the reference configuration, in metres.

@@ -58,8 +58,11 @@ pub trait RowSource: Send + Sync {
     /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none.
     fn pressure(&self) -> Result<Option<Rows>, SourceError>;
 
-    /// A finer quadrature, for error norms and consistent masses, with the region of each point.
-    fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), SourceError>;
+    /// A finer quadrature, for error norms and consistent masses.
+    fn fine_volume(&self) -> Result<VolumeRows, SourceError>;
+
+    /// Region of each point of the finer quadrature.
+    fn fine_regions(&self) -> Vec<u16>;
 
     /// Values on facets.
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError>;

@@ -121,11 +121,24 @@ impl GradRows {
     }
 }
 
+/// What the maker of a volume quadrature knows of its rows; kernels are chosen by it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// Nothing.
+    #[default]
+    General,
+    /// Each row is at a point of a linear tetrahedron: four nodes, gradients that are constant in it and sum to zero.
+    LinearTetrahedra,
+    /// Each run of eight rows is the 2 x 2 x 2 Gauss points of one trilinear hexahedron.
+    TrilinearHexahedra,
+}
+
 /// A volume quadrature: values and gradients at points with weights (m^3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeRows {
     at: GradRows,
     weights: Vec<f64>,
+    layout: Layout,
 }
 
 impl VolumeRows {
@@ -133,7 +146,31 @@ impl VolumeRows {
     pub fn new(at: GradRows, weights: Vec<f64>) -> Result<VolumeRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_weights(&weights)?;
-        Ok(VolumeRows { at, weights })
+        Ok(VolumeRows { at, weights, layout: Layout::General })
+    }
+
+    /// The same rows with what their maker knows of them.
+    ///
+    /// # Errors
+    /// Rows of another length than the layout's.
+    pub fn laid_out(self, layout: Layout) -> Result<VolumeRows, ShapeError> {
+        let (points, nodes) = match layout {
+            Layout::General => (1, None),
+            Layout::LinearTetrahedra => (1, Some(4)),
+            Layout::TrilinearHexahedra => (8, Some(8)),
+        };
+        let found = self.at.rows.uniform_len();
+        if let Some(expected) = nodes.filter(|&expected| found != Some(expected)) {
+            return Err(ShapeError::Length { what: "nodes of a row", found: found.unwrap_or(0), expected });
+        }
+        let count = self.weights.len();
+        check_len("points of whole cells", count, count.next_multiple_of(points))?;
+        Ok(VolumeRows { layout, ..self })
+    }
+
+    /// What the maker knows of the rows.
+    pub fn layout(&self) -> Layout {
+        self.layout
     }
 
     /// The rows without their weights.

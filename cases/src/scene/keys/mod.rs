@@ -12,10 +12,10 @@ pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
 
-use super::procedure::{OnStall, ProcedureKind};
+use super::procedure::ProcedureKeys;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
-use super::units::{Density, Length, Pressure, Q, Rate, Time, Unit};
+use super::units::{Density, Length, Pressure, Q, Time, Unit};
 
 /// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
 #[derive(Deserialize, JsonSchema)]
@@ -154,44 +154,4 @@ pub(crate) struct RegionKeys {
 pub(crate) enum Names {
     One(String),
     Several(Vec<String>),
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct ProcedureKeys {
-    pub kind: ProcedureKind,
-    /// Load steps at whose ends results are told; 1 unless given
-    pub steps: Option<u32>,
-    /// Relative residual of a step by Newton's method; 1e-8 unless given
-    pub tolerance: Option<f64>,
-    /// Most iterations of such a step; 25 unless given
-    pub iterations: Option<u32>,
-    /// Uzawa iterations of contact per such step; 0 (a plain penalty) unless given
-    pub augmentations: Option<u32>,
-    /// Part of the load to within which a limit point is sought, where a static path loses its stability: steps are halved
-    /// down to it; unless given a limit point is told where a load step ends beyond one
-    pub limit_within: Option<f64>,
-    /// Lowest modes of vibration that are told and compared; 24 unless given
-    pub modes: Option<u32>,
-    /// What follows where a static path finds no equilibrium: "stop" unless given, or "relax", which goes on by dynamic
-    /// relaxation (finite elements without a pressure field; a cloud stops)
-    pub on_stall: Option<OnStall>,
-    /// End of the time axis
-    pub duration: Option<Q<Time>>,
-    /// Time over which loads and supports grow in dynamics, and are then held; the duration unless given, "0 s" is at once
-    pub over: Option<Q<Time>>,
-    /// Mass-proportional damping in dynamics, of the tools too where they have a mass (explicit); none unless given
-    pub damping: Option<Q<Rate>>,
-    /// Whether mass acts in implicit dynamics; true unless given, false for a quasi-static motion of tissue that relaxes
-    pub inertia: Option<bool>,
-    /// Spectral radius of implicit dynamics at infinite frequency, 0 to 1; 0.8 unless given, and 0 with tools
-    pub spectral_radius: Option<f64>,
-    /// Local error of a displacement that a step of implicit dynamics may make; any unless given
-    pub accuracy: Option<Q<Length>>,
-    /// Time step over the critical one; 0.9 unless given
-    pub safety: Option<f64>,
-    /// Time step; safety times the critical one unless given
-    pub step: Option<Q<Time>>,
-    /// Mass of a tool driven by force over that of the body; 0.1 unless given
-    pub tool_mass: Option<f64>,
 }

@@ -13,7 +13,7 @@ pub(crate) use tri6::Tri6;
 
 use geometry::{CellKind, FaceKind};
 
-use crate::element;
+use geometry::element;
 
 /// A Lagrange element of `N` nodes on a reference face.
 pub(crate) trait Face<const N: usize> {

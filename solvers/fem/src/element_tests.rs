@@ -3,8 +3,8 @@
 use geometry::CellKind;
 use proptest::prelude::*;
 
-use super::{Element, centre, excess, nodes};
 use crate::face::{Face, into_cell, is_triangle, with_face};
+use geometry::element::{Element, centre, excess, nodes, with_element};
 
 /// A point inside the reference cell of a kind, from three numbers in (0, 1).
 fn inside(kind: CellKind, r: [f64; 3]) -> [f64; 3] {

@@ -1,4 +1,4 @@
-use geometry::CellKind;
+use crate::CellKind;
 
 use super::Element;
 
@@ -9,7 +9,7 @@ pub struct Hex8;
 
 impl Element<8> for Hex8 {
     const KIND: CellKind = CellKind::Hex8;
-    const NODES: [[f64; 3]; 8] = geometry::HEX_CORNERS;
+    const NODES: [[f64; 3]; 8] = super::HEX_CORNERS;
 
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 8] {

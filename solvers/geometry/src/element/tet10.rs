@@ -1,4 +1,4 @@
-use geometry::CellKind;
+use crate::CellKind;
 
 use super::{Element, Tet4};
 

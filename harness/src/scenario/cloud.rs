@@ -1,0 +1,322 @@
+//! Clouds: nodes, background cells, supports, integration and essential conditions of an element-free method.
+
+use std::sync::Arc;
+
+use cases::scene::{self, ErrorKind};
+use efg::{CloudSource, Functions, Integration};
+use geometry::shapes::Shape;
+use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh};
+
+use super::discretise::dilation;
+use super::{Scenario, body, cloud_file, grading};
+use crate::Failure;
+use crate::discretise::place;
+use crate::discretise::{Coupled, Dilation, Discretisation, Essential, InnerPoints, Refine};
+use crate::error::Key;
+
+/// Stabilisation of Nitsche's method with smoothed gradients where the scene gives none: times (lambda + 2 mu) / h with h
+/// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
+const NITSCHE_SMOOTHED: f64 = 4.0;
+/// The same with other gradients and h the node spacing. 10 is too little at
+/// support scale 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
+const NITSCHE: f64 = 100.0;
+/// Penalty where the scene gives none: times E / h.
+const PENALTY: f64 = 1e4;
+
+/// A body in closed form, which clouds of an exact count and grids need.
+type Body = Arc<dyn Shape + Send + Sync>;
+
+/// Nodes with the cells that they are integrated over, and the mesh whose nodes they are, if any.
+struct Placed {
+    cloud: Cloud,
+    background: Mesh,
+    cells: Option<Mesh>,
+}
+
+/// All of an element-free method but its nodes.
+#[derive(Clone)]
+struct CloudMethod {
+    background: Arc<Mesh>,
+    /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
+    followed: Option<Arc<Mesh>>,
+    functions: Functions,
+    integration: Integration,
+    essential: Essential,
+    /// Vertices of the background that are constrained, where finite elements stand there.
+    coupled: Option<Vec<u32>>,
+    dilation: Dilation,
+    /// Steps, ratio and seed of a cloud that follows an error.
+    refine: Option<(scene::Refine, u64, Body)>,
+}
+
+impl Scenario<'_> {
+    pub(super) fn cloud(&self, efg: &scene::Efg) -> Result<Discretisation, Failure> {
+        let shape = body::shape(&self.scene.body);
+        let Placed { cloud, background, cells } = self.placed(efg, shape.as_ref())?;
+        let refine = match (&efg.cloud, &shape) {
+            (scene::Cloud::Refined { seed, refine, .. }, Some(shape)) => {
+                Some((*refine, *seed, shape.clone()))
+            }
+            _ => None,
+        };
+        let adapted = matches!(
+            efg.functions,
+            scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Ellipsoid, .. }
+        );
+        let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let coupled = match efg.essential {
+            scene::Essential::Coupling => Some(self.constrained_vertices(&background)?),
+            _ => None,
+        };
+        let background = Arc::new(self.with_regions(background)?);
+        let method = CloudMethod {
+            integration: integration(efg.integration, spacing, shape, &background)?,
+            background,
+            followed: cells.filter(|_| adapted).map(Arc::new),
+            functions: functions(efg.functions),
+            essential: essential(efg),
+            coupled,
+            dilation: dilation(efg.dilation),
+            refine,
+        };
+        method.on(cloud)
+    }
+
+    /// Places the nodes and finds their background.
+    fn placed(&self, efg: &scene::Efg, shape: Option<&Body>) -> Result<Placed, Failure> {
+        let bad = |e: CloudError| match e {
+            CloudError::TooFew { .. } | CloudError::TooMany { .. } => {
+                Failure::input(Key::Size(""), format!("makes no cloud: {e}"), "")
+            }
+            _ => Failure::at(ErrorKind::NotRun, Key::Size(""), format!("makes no cloud: {e}"), ""),
+        };
+        let need_shape = || {
+            shape.map(|shape| &**shape).ok_or_else(|| {
+                Failure::unavailable(
+                    Key::Method("nodes"),
+                    "makes a cloud of an exact count, which needs a body in closed form (box, cylinder, ball, \
+                     whole sphere-shell, kidney)",
+                    "take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }",
+                )
+            })
+        };
+        let cells_of = |size: &scene::Size| body::mesh(&self.scene.body, CellKind::Tet4, size, None);
+        let background = |count: usize| match &efg.background {
+            Some(size) => cells_of(size).map_err(Failure::of_background),
+            None => cells_of(&scene::Size::Nodes(count)),
+        };
+        Ok(match &efg.cloud {
+            scene::Cloud::Mesh { size, jitter } => {
+                let mesh = body::mesh(&self.scene.body, CellKind::Tet4, size, *jitter)?;
+                let background = match &efg.background {
+                    Some(size) => cells_of(size).map_err(Failure::of_background)?,
+                    None => mesh.clone(),
+                };
+                Placed { cloud: cloud_from_mesh(&mesh), background, cells: Some(mesh) }
+            }
+            scene::Cloud::File { file, nodes } => {
+                let read = cloud_file::read(file, *nodes)?;
+                let background = background(read.cloud.points.len())?;
+                read.within(shape.map(|shape| &**shape), &background)?;
+                Placed { cloud: read.cloud, background, cells: read.mesh }
+            }
+            scene::Cloud::Uniform { nodes, seed } | scene::Cloud::Refined { nodes, seed, .. } => {
+                let cloud = cloud(need_shape()?, *nodes, *seed, &[]).map_err(bad)?;
+                Placed { cloud, background: background(*nodes)?, cells: None }
+            }
+            scene::Cloud::Graded { nodes, seed, towards } => {
+                let shape = need_shape()?;
+                let refinement = grading::refinement(shape, towards)?;
+                let cloud = cloud(shape, *nodes, *seed, &[refinement]).map_err(bad)?;
+                Placed { cloud, background: background(*nodes)?, cells: None }
+            }
+        })
+    }
+
+    /// All vertices of the background on the scene's supports, ascending.
+    fn constrained_vertices(&self, background: &Mesh) -> Result<Vec<u32>, Failure> {
+        let mut vertices = Vec::new();
+        for (index, support) in self.scene.supports.iter().enumerate() {
+            let key = format!("support[{index}]");
+            place::whole(&key, &support.place, background)?;
+            vertices.extend(place::nodes(&key, &support.place, background)?);
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        Ok(vertices)
+    }
+}
+
+impl CloudMethod {
+    /// The method on a cloud.
+    fn on(&self, cloud: Cloud) -> Result<Discretisation, Failure> {
+        let (nodes, essential) = match &self.coupled {
+            Some(vertices) => {
+                let nodes = efg::coupled_nodes(&cloud.points, &self.background, vertices)?;
+                let free = nodes.len() - vertices.len();
+                (nodes, Essential::Coupling(Coupled { vertices: vertices.clone(), free }))
+            }
+            None => (cloud.points.clone(), self.essential.clone()),
+        };
+        let refine = self.refine.as_ref().map(|(refine, seed, shape)| {
+            let method = self.clone();
+            Refine {
+                steps: refine.steps,
+                ratio: refine.ratio,
+                seed: *seed,
+                shape: shape.clone(),
+                cloud: cloud.clone(),
+                on: Arc::new(move |cloud| method.on(cloud)),
+            }
+        });
+        let (supports, shape_functions) = (Some(self.supports(&cloud)), self.shape_functions());
+        let method = self.clone();
+        Ok(Discretisation {
+            nodes: Arc::new(nodes),
+            mesh: self.background.clone(),
+            interpolates: false,
+            essential,
+            dilation: self.dilation,
+            inner: inner(&self.integration),
+            refine,
+            supports,
+            shape_functions,
+            source: Arc::new(move || {
+                let CloudMethod { background, followed, functions, integration, coupled, .. } = &method;
+                let (followed, coupled) = (followed.as_deref(), coupled.as_deref());
+                let (background, integration) = (background.clone(), integration.clone());
+                Ok(Box::new(CloudSource::new(
+                    *functions,
+                    &cloud,
+                    followed,
+                    background,
+                    coupled,
+                    integration,
+                )?))
+            }),
+        })
+    }
+
+    /// How the supports are found, for the plan.
+    fn supports(&self, cloud: &Cloud) -> String {
+        let supports = match self.followed {
+            Some(_) => "ellipsoids that follow the cells, and neighbours",
+            None => "radius and neighbours",
+        };
+        format!("{supports} of {} nodes", cloud.points.len())
+    }
+
+    /// How the shape functions are made and where, for the plan.
+    fn shape_functions(&self) -> String {
+        let functions = match self.functions {
+            Functions::MovingLeastSquares { .. } => "moving least squares",
+            Functions::MaximumEntropy { .. } => "maximum entropy",
+        };
+        let points = match &self.integration {
+            Integration::Gauss { points } => format!("{points} points per background cell"),
+            Integration::Grid { points, .. } => format!("{points}^3 points per grid cell"),
+            Integration::CellSmoothed { smoothing, face_points } => {
+                let gradients = match smoothing {
+                    efg::Smoothing::Constant => "constant",
+                    efg::Smoothing::Linear => "linear",
+                };
+                format!("{face_points} points per face, smoothed to {gradients} gradients per cell")
+            }
+            Integration::NodeSmoothed { stabilisation, face_points } => {
+                let cells = match stabilisation {
+                    0.0 => String::new(),
+                    share => format!(", cells with {share} of the weight"),
+                };
+                format!("{face_points} points per face, smoothed to one gradient per vertex{cells}")
+            }
+        };
+        let coupled = match &self.coupled {
+            Some(vertices) => format!(", coupled to {} nodes of finite elements", vertices.len()),
+            None => String::new(),
+        };
+        format!("{functions} at {points}{coupled}")
+    }
+}
+
+/// Where the points of a rule lie.
+fn inner(integration: &Integration) -> InnerPoints {
+    let per_cell = match integration {
+        Integration::NodeSmoothed { stabilisation, .. } => usize::from(*stabilisation != 0.0),
+        // The clipped grid itself costs a test of every point: a centroid per cell stands for it.
+        Integration::Grid { .. } => 1,
+        by_cells => by_cells.points_per_cell().unwrap_or(0),
+    };
+    let vertices = matches!(integration, Integration::NodeSmoothed { .. });
+    InnerPoints { per_cell, vertices, grid: matches!(integration, Integration::Grid { .. }) }
+}
+
+/// The rule that a scene names; a grid's cells are as large as the mean spacing (m) of the nodes unless it says otherwise.
+fn integration(
+    rule: scene::Integration,
+    spacing: f64,
+    shape: Option<Body>,
+    background: &Mesh,
+) -> Result<Integration, Failure> {
+    Ok(match rule {
+        scene::Integration::Gauss { points } => Integration::Gauss { points },
+        scene::Integration::Grid { points, spacing: given } => {
+            let refused = |problem| {
+                let help = "take rule = \"gauss\" or \"cell-smoothed\"";
+                Failure::unavailable(Key::Method("integration.rule"), problem, help)
+            };
+            let clips = "clips a grid by a body in closed form; a mesh and an octant have no inside test";
+            let shape = shape.ok_or_else(|| refused(clips))?;
+            if background.region_names().len() > 1 {
+                return Err(refused("does not know the region of a grid's points, and the body has several"));
+            }
+            let points = (points as f64).cbrt().round() as usize;
+            Integration::Grid { spacing: given.unwrap_or(spacing), points, shape }
+        }
+        scene::Integration::CellSmoothed { order, face_points } => Integration::CellSmoothed {
+            smoothing: if order == 2 { efg::Smoothing::Linear } else { efg::Smoothing::Constant },
+            face_points,
+        },
+        scene::Integration::NodeSmoothed { stabilisation, face_points } => {
+            Integration::NodeSmoothed { stabilisation, face_points }
+        }
+    })
+}
+
+/// How the scene constrains the cloud; a coupling is made with its nodes.
+fn essential(efg: &scene::Efg) -> Essential {
+    match efg.essential {
+        scene::Essential::Nitsche { factor } => {
+            let smoothed = matches!(
+                efg.integration,
+                scene::Integration::CellSmoothed { .. } | scene::Integration::NodeSmoothed { .. }
+            );
+            Essential::Nitsche(factor.unwrap_or(if smoothed { NITSCHE_SMOOTHED } else { NITSCHE }))
+        }
+        scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
+        scene::Essential::Multipliers => Essential::Multipliers,
+        scene::Essential::Elimination { rows } => Essential::Elimination(rows),
+        scene::Essential::Coupling => Essential::Nodal,
+    }
+}
+
+/// The shape functions that a scene names.
+fn functions(functions: scene::Functions) -> Functions {
+    match functions {
+        scene::Functions::MovingLeastSquares { kernel, support, basis, .. } => {
+            Functions::MovingLeastSquares {
+                kernel,
+                basis: match basis {
+                    scene::Basis::Linear => efg::Basis::Linear,
+                    scene::Basis::Quadratic => efg::Basis::Quadratic,
+                },
+                support: match support {
+                    scene::SupportRule::Scale(factor) => efg::Support::Dilatation { factor },
+                    scene::SupportRule::Neighbours { k, factor } => {
+                        efg::Support::Neighbours { count: k, factor }
+                    }
+                },
+            }
+        }
+        scene::Functions::MaximumEntropy { gamma } => Functions::MaximumEntropy { gamma },
+    }
+}
