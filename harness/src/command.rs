@@ -193,7 +193,7 @@ fn run(args: &RunArgs) -> u8 {
     }
     set.records.extend(study::reference_records(&scene));
     if let Some(out) = &args.out {
-        let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+        let text = scene.text().to_string();
         set.provenance = provenance::provenance(machine, &[(case, text)]);
         set.provenance.source = folder::source(&args.scene);
         match reports::write_run(out, &set) {
@@ -253,7 +253,7 @@ fn plan(path: &Path, methods: &[String]) -> u8 {
 /// Runs every method of a scene and writes what they agree on.
 fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, _) = open(&args.scene, &args.methods)?;
-    let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+    let text = scene.text().to_string();
     let mesh = geometry::msh::read(&args.points, args.unit)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     let read = |path: &PathBuf| -> Result<Stored, u8> {
