@@ -106,7 +106,8 @@ impl<'t> Document<'t> {
     pub fn read<T: JsonSchema + DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
         self.check(&schema::<T>())?;
         let values = || Deserializer::from(self.root.clone());
-        let wrong = |bad: toml::de::Error| vec![self.error(bad.span(), "", Problem::new(clip(bad.message())))];
+        let wrong =
+            |bad: toml::de::Error| vec![self.error(bad.span(), "", Problem::new(clip(bad.message())))];
         let keys = T::deserialize(values()).map_err(wrong)?;
         let text = if self.files.are_several() {
             let mut table = toml::Table::deserialize(values()).map_err(wrong)?;

@@ -136,8 +136,10 @@ fn unique(shared: &Document<'_>) -> Result<(), Vec<SceneError>> {
 /// Puts the shared tables where the scene's methods name them.
 fn take<'t>(document: &mut Document<'t>, shared: Document<'t>) -> Result<(), Vec<SceneError>> {
     let known = tables(&shared);
-    let ids: Vec<String> =
-        known.iter().map(|m| value(m, "id").and_then(|id| written(id.get_ref())).unwrap_or_default()).collect();
+    let ids: Vec<String> = known
+        .iter()
+        .map(|m| value(m, "id").and_then(|id| written(id.get_ref())).unwrap_or_default())
+        .collect();
     let base = document.sources.add(shared.sources.own());
     let mut taken = Vec::new();
     let mut errors = Vec::new();
@@ -192,8 +194,7 @@ fn with<'t>(
 /// The same value with all spans moved.
 fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
     let span = |span: Range<usize>| span.start + base..span.end + base;
-    let item =
-        |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
+    let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
     match value {
         DeValue::Table(table) => DeValue::Table(
             (table.iter())
