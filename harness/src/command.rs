@@ -294,7 +294,7 @@ fn reference(args: &ReferenceArgs) -> Result<(), u8> {
 }
 
 fn verify(args: &VerifyArgs) -> u8 {
-    let path = args.study.clone().unwrap_or_else(|| "cases/verify.toml".into());
+    let path = args.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into());
     let study = match scene::load_study(&path) {
         Ok(study) => study,
         Err(errors) => {
