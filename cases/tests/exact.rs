@@ -195,7 +195,8 @@ fn bounds(scene: &str, metric: &str) -> [f64; 2] {
 fn the_cantilever_swings_in_timoshenkos_period() {
     let elastic = Elastic::new(20e3, 0.0).unwrap();
     let beam = VibratingCantilever { elastic, density: 1000.0, length: 0.1, side: 0.01 };
-    let [low, high] = bounds("scenes/dynamics/cantilever-vibration.toml", "period").map(|t| t / beam.timoshenko() - 1.0);
+    let [low, high] =
+        bounds("scenes/dynamics/cantilever-vibration.toml", "period").map(|t| t / beam.timoshenko() - 1.0);
     assert!(low < -0.0029 && low > -0.0031 && high > 0.0029 && high < 0.0031, "{low} {high}");
     // To first order in the slenderness by Rayleigh's quotient: 4.648 / 2 (1 + E / (k G)) / 1200.
     let lengthening = beam.timoshenko() / beam.bernoulli() - 1.0;

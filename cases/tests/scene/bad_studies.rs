@@ -7,15 +7,31 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("title = \"t\"\n[[run]]\nscene = \"no.toml\" #<", "run[0].scene", &["'no.toml' can't be found"]),
     ("title = \"t\"\n[[runs]] #<\nscene = \"scenes/first.toml\"", "runs", &["did you mean 'run'?"]),
     ("title = \"t\"\n[[run]] #<\nlevels = [1]", "run[0].scene", &["is missing"]),
-    ("title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [0] #<", "run[0].levels", &["no level"]),
-    ("title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\npoisson = [0.5] #<", "run[0].poisson", &["0.4999"]),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [0] #<",
+        "run[0].levels",
+        &["no level"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\npoisson = [0.5] #<",
+        "run[0].poisson",
+        &["0.4999"],
+    ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\npoisson = [\"0.3\"] #<",
         "run[0].poisson[0]",
         &["without quotes"],
     ),
-    ("title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nnodes = [3] #<", "run[0].nodes", &["4 nodes or more"]),
-    ("title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nseeds = 1 #<", "run[0].seeds", &["no spread", "50 is"]),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nnodes = [3] #<",
+        "run[0].nodes",
+        &["4 nodes or more"],
+    ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nseeds = 1 #<",
+        "run[0].seeds",
+        &["no spread", "50 is"],
+    ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nseeds = 5 #<",
         "run[0].seeds",

@@ -520,13 +520,48 @@ fn every_file_of_the_project_is_sound() {
     assert!(paths.len() > 25, "{}", paths.len());
 }
 
+/// Tables of methods that a file has, without their sizes: a scene's business.
+fn written_out(path: &Path) -> Vec<toml::Table> {
+    let mut file: toml::Table = std::fs::read_to_string(path).expect("a file").parse().expect("TOML");
+    let Some(toml::Value::Array(methods)) = file.remove("method") else { return vec![] };
+    let tables = methods.into_iter().filter_map(|method| match method {
+        toml::Value::Table(mut table) if !table.contains_key("use") => {
+            table.remove("size");
+            Some(table)
+        }
+        _ => None,
+    });
+    tables.collect()
+}
+
+#[test]
+fn no_two_scenes_write_out_the_same_method() {
+    let mut paths = vec![folder().join("methods.toml")];
+    files(&folder().join("scenes"), &mut paths);
+    // The scene that newcomers start from is one file.
+    paths.retain(|path| !path.ends_with("first.toml"));
+    let mut known: Vec<(&Path, toml::Table)> = Vec::new();
+    for path in &paths {
+        for table in written_out(path) {
+            if let Some((other, _)) = known.iter().find(|(_, known)| *known == table) {
+                panic!("{} and {} both write out\n{table}", other.display(), path.display());
+            }
+            known.push((path, table));
+        }
+    }
+    assert!(known.len() > 30, "{}", known.len());
+}
+
 #[test]
 fn the_schema_knows_every_key_of_the_outline() {
     let schema = schema();
+    let methods = schema["properties"]["method"]["items"]["oneOf"].as_array().expect("kinds of methods");
+    assert!(methods.len() == 3 && methods[2]["properties"]["use"]["type"] == "string");
     let keys = schema["properties"].as_object().expect("an object");
     for key in [
         "title",
         "source",
+        "methods_from",
         "body",
         "material",
         "region",
