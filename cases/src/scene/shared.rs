@@ -35,7 +35,6 @@ struct SharedKeys {
 
 /// Reads a scene with the shared methods that it takes.
 pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
-    let shared_text;
     let mut document = Document::parse(text, file)?;
     let Some(from) = document.root.get_ref().get("methods_from") else {
         unshared(&document)?;
@@ -49,7 +48,7 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
     };
     let path = beside(file, path);
     let shared_file = path.display().to_string();
-    shared_text = std::fs::read_to_string(&path).map_err(|bad| {
+    let shared_text = std::fs::read_to_string(&path).map_err(|bad| {
         let help = format!("{shared_file}: {bad}; paths are relative to the folder of the file they are in");
         wrong(Problem::new("can't be read").found(shared_file.as_str()).help(help))
     })?;
