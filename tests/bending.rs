@@ -20,7 +20,7 @@ const QUANTITIES: [&str; 6] = ["rms-x", "rms-y", "rms-z", "rms", "l2", "energy"]
 
 /// Runs the methods at levels 1 and 2.
 fn bending() -> Vec<Record> {
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/pure-bending.toml");
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/scenes/beam/pure-bending.toml");
     let text = format!(
         "title = \"Bending\"\n[[run]]\nscene = '{}'\nmethods = {METHODS:?}\nlevels = [1, 2]\npoisson = {RATIOS:?}\n",
         scene.display()

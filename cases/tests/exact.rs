@@ -195,7 +195,8 @@ fn bounds(scene: &str, metric: &str) -> [f64; 2] {
 fn the_cantilever_swings_in_timoshenkos_period() {
     let elastic = Elastic::new(20e3, 0.0).unwrap();
     let beam = VibratingCantilever { elastic, density: 1000.0, length: 0.1, side: 0.01 };
-    let [low, high] = bounds("cantilever-vibration.toml", "period").map(|t| t / beam.timoshenko() - 1.0);
+    let [low, high] =
+        bounds("scenes/dynamics/cantilever-vibration.toml", "period").map(|t| t / beam.timoshenko() - 1.0);
     assert!(low < -0.0029 && low > -0.0031 && high > 0.0029 && high < 0.0031, "{low} {high}");
     // To first order in the slenderness by Rayleigh's quotient: 4.648 / 2 (1 + E / (k G)) / 1200.
     let lengthening = beam.timoshenko() / beam.bernoulli() - 1.0;
@@ -208,7 +209,7 @@ fn the_plate_feels_the_force_that_is_left() {
     let elastic = Elastic::new(20e3, 0.3).unwrap();
     let exact = RelaxingCompression::new(elastic, 0.05, 0.2, [0.6, 0.4]).unwrap().at(1.0).unwrap();
     let force = -exact.stress(&Point3::origin())[(2, 2)] * 0.04 * 0.04;
-    let [low, high] = bounds("relaxation.toml", "tool-force").map(|f| f / force - 1.0);
+    let [low, high] = bounds("scenes/dynamics/relaxation.toml", "tool-force").map(|f| f / force - 1.0);
     assert!(low < -3e-4 && low > -4e-4 && high > 3e-4 && high < 4.5e-4, "{low} {high}");
 }
 

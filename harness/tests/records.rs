@@ -5,7 +5,7 @@ mod common;
 use std::collections::HashSet;
 use std::path::Path;
 
-use common::{BLOCK, cases, inside, tissuebench, write};
+use common::{BLOCK, inside, tissuebench, write, written_out};
 use reports::{Purpose, Record, RunSet, Status, read_run};
 use tempfile::TempDir;
 
@@ -102,7 +102,7 @@ fn report(out: &str, name: &str) -> Vec<(String, String)> {
 fn a_scene_under_another_name_is_the_same_scene() {
     let dir = tempfile::tempdir().unwrap();
     for case in ["pure-bending", "patch-displacement", "bonded-cylinder"] {
-        let text = std::fs::read_to_string(cases(&format!("{case}.toml"))).unwrap();
+        let text = written_out(&format!("{case}.toml"));
         let methods = if case == "bonded-cylinder" { "" } else { "methods = ['tet4', 'hex20']\n" };
         let study = |name: &str| {
             let scene = write(&dir, &format!("{name}.toml"), &text);

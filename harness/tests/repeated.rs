@@ -15,7 +15,7 @@ fn run(text: &str, method: &str) -> Value {
 
 #[test]
 fn a_condensed_operator_answers_as_a_solve_does() {
-    let scene = std::fs::read_to_string(common::cases("pure-bending.toml")).unwrap();
+    let scene = common::written_out("pure-bending.toml");
     for method in ["tet10", "efg-projected"] {
         let object = run(&scene, method);
         let error = object["metrics"]["repeated-error"]["value"].as_f64().unwrap();
@@ -30,7 +30,7 @@ fn a_condensed_operator_answers_as_a_solve_does() {
 
 #[test]
 fn frames_of_a_static_path_come_to_its_end() {
-    let scene = std::fs::read_to_string(common::cases("plates.toml")).unwrap();
+    let scene = common::written_out("plates.toml");
     let scene = scene + "\n[output]\nrepeated = { frames = 30, cycle = 8 }\n";
     let dir = tempfile::tempdir().unwrap();
     let (path, out) = (write(&dir, "plates.toml", &scene), common::inside(&dir, "out"));
@@ -59,7 +59,7 @@ fn motion_has_no_loop() {
         assert_fails(&done, 2, problem);
         assert!(done.stderr.contains(key), "{}", done.stderr);
     }
-    let bar = std::fs::read_to_string(common::cases("bar-wave-explicit.toml")).unwrap();
+    let bar = common::written_out("bar-wave-explicit.toml");
     let scene = write(&dir, "bar.toml", &bar.replacen("[output]", "[output]\nrepeated = { frames = 10 }", 1));
     assert_fails(&tissuebench(&["run", &scene]), 2, "is of solutions at rest, not of motion");
 }

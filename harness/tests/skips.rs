@@ -155,29 +155,51 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
     }
 }
 
+/// Work of a study of one run.
+fn work(study: &str, dir: &tempfile::TempDir, resume: bool) -> Counters {
+    let plan = Plan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
+    let args = VerifyArgs {
+        study: None,
+        quick: false,
+        filter: None,
+        shard: None,
+        jobs: 1,
+        resume,
+        out: inside(dir, "out").into(),
+    };
+    let finished = plan.execute(&args);
+    assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
+    finished.counters
+}
+
 #[test]
 fn stored_runs_do_nothing() {
     let dir = tempfile::tempdir().unwrap();
     let reference = r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }"#;
     let scene = write(&dir, "block.toml", &format!("{BLOCK}\n{reference}\n"));
     let study = write(&dir, "study.toml", &format!("title = \"One\"\n[[run]]\nscene = '{scene}'\n"));
-    let work = |resume: bool| -> Counters {
-        let plan = Plan::new(scene::load_study(Path::new(&study)).unwrap()).unwrap();
-        let args = VerifyArgs {
-            study: None,
-            quick: false,
-            filter: None,
-            shard: None,
-            jobs: 1,
-            resume,
-            out: inside(&dir, "out").into(),
-        };
-        let finished = plan.execute(&args);
-        assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
-        finished.counters
-    };
     // The method and the reference it is compared with.
-    assert_eq!(work(false).factorisations, 2);
-    assert_eq!(work(true), Counters::default());
-    assert_eq!(work(false).factorisations, 2);
+    assert_eq!(work(&study, &dir, false).factorisations, 2);
+    assert_eq!(work(&study, &dir, true), Counters::default());
+    assert_eq!(work(&study, &dir, false).factorisations, 2);
+}
+
+#[test]
+fn stored_runs_are_kept_until_a_shared_method_of_their_scene_changes() {
+    let dir = tempfile::tempdir().unwrap();
+    let shared = "[[method]]\nid = 'fine'\nfamily = 'fem'\nelement = 'tet4'\nsize = { cells = [4, 4, 2] }\n";
+    let other = "[[method]]\nid = 'hex8'\nfamily = 'fem'\nelement = 'hex8'\n";
+    write(&dir, "methods.toml", shared);
+    let taken = BLOCK.replace("method = [", "reference = { method = 'fine' }\nmethod = [{ use = 'fine' }, ");
+    let scene = write(&dir, "block.toml", &format!("methods_from = 'methods.toml'\n{taken}"));
+    let study = format!("title = 'One'\n[[run]]\nscene = '{scene}'\nmethods = ['tet4']\n");
+    let study = write(&dir, "study.toml", &study);
+    assert_eq!(work(&study, &dir, true).factorisations, 2);
+    assert_eq!(work(&study, &dir, true), Counters::default());
+    // A method that the scene does not take.
+    write(&dir, "methods.toml", &format!("{shared}{other}"));
+    assert_eq!(work(&study, &dir, true), Counters::default());
+    // The reference of the run.
+    write(&dir, "methods.toml", &shared.replace("[4, 4, 2]", "[6, 6, 3]"));
+    assert_eq!(work(&study, &dir, true).factorisations, 2);
 }

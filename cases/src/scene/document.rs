@@ -4,29 +4,43 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use schemars::{JsonSchema, generate::SchemaSettings};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Deserializer};
 
 use super::conform;
 use catalogue::{Problem, clip};
 
 use super::error::{ErrorKind, SceneError};
+use super::sources::{Files, Place, Sources};
 
 /// Line and column of the keys of a file, for messages that come long after reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    file: String,
+    files: Files,
+    text: String,
     places: Places,
 }
 
-/// Of a key: its line and column, and its value as written if that is a scalar.
-type Places = BTreeMap<String, (usize, usize, Option<String>)>;
+/// Of a key: its place, and its value as written if that is a scalar.
+type Places = BTreeMap<String, (Place, Option<String>)>;
 
 impl Origin {
     /// File name as given by the caller.
     pub fn file(&self) -> &str {
-        &self.file
+        self.files.own()
+    }
+
+    /// The text of the file; where methods are taken from another one, what it comes to with them written out.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The file that has the value of `key`.
+    pub(crate) fn file_of(&self, key: &str) -> &str {
+        self.places.get(key).map_or(self.file(), |(place, _)| self.files.name(place.file))
     }
 
     /// Whether the file has `key`.
@@ -47,18 +61,64 @@ impl Origin {
                 None => break None,
             }
         };
-        let (line, column, text) = place.cloned().unwrap_or((1, 1, None));
+        let (place, text) = place.cloned().unwrap_or((Place { file: 0, line: 1, column: 1 }, None));
         let found = problem.found.or(if at == key { text } else { None });
-        SceneError {
-            kind,
-            file: self.file.clone(),
-            line,
-            column,
-            key: key.to_string(),
-            found,
-            problem: problem.problem,
-            help: problem.help,
+        self.files.error(kind, place, key, Problem { found, ..problem })
+    }
+}
+
+/// A file whose syntax is right.
+pub(crate) struct Document<'t> {
+    pub root: Spanned<DeTable<'t>>,
+    pub sources: Sources<'t>,
+    pub files: Files,
+}
+
+impl<'t> Document<'t> {
+    /// The first error of syntax alone: what a parser says after it is mostly its own confusion.
+    pub fn parse(text: &'t str, file: &str) -> Result<Document<'t>, Vec<SceneError>> {
+        let (sources, files) = (Sources::new(text), Files::new(file));
+        match DeTable::parse(text) {
+            Ok(root) => Ok(Document { root, sources, files }),
+            Err(bad) => {
+                let help = "see https://toml.io for the format; text values stand in quotes";
+                let problem = Problem::new(format!("not valid TOML: {}", clip(bad.message()))).help(help);
+                Err(vec![files.error(ErrorKind::Invalid, sources.place(bad.span()), "", problem)])
+            }
         }
+    }
+
+    /// An error at a span.
+    pub fn error(&self, span: Option<Range<usize>>, key: &str, problem: Problem) -> SceneError {
+        self.files.error(ErrorKind::Invalid, self.sources.place(span), key, problem)
+    }
+
+    /// Holds every key against a schema.
+    pub fn check(&self, schema: &Value) -> Result<(), Vec<SceneError>> {
+        let root = DeValue::Table(self.root.get_ref().clone());
+        let findings = conform::check(&root, self.root.span(), schema);
+        let errors: Vec<SceneError> =
+            findings.into_iter().map(|f| self.error(Some(f.span), &f.key, f.problem)).collect();
+        if errors.is_empty() { Ok(()) } else { Err(sorted(errors)) }
+    }
+
+    /// Every key against the schema of `T`, then the values.
+    pub fn read<T: JsonSchema + DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
+        self.check(&schema::<T>())?;
+        let values = || Deserializer::from(self.root.clone());
+        let wrong =
+            |bad: toml::de::Error| vec![self.error(bad.span(), "", Problem::new(clip(bad.message())))];
+        let keys = T::deserialize(values()).map_err(wrong)?;
+        let text = if self.files.are_several() {
+            let mut table = toml::Table::deserialize(values()).map_err(wrong)?;
+            table.remove("methods_from");
+            table.to_string()
+        } else {
+            self.sources.own().to_string()
+        };
+        let mut places = BTreeMap::new();
+        note(&DeValue::Table(self.root.get_ref().clone()), "", &self.sources, &mut places);
+        Ok((keys, Origin { files: self.files, text, places }))
     }
 }
 
@@ -67,40 +127,7 @@ pub(crate) fn read<T: JsonSchema + DeserializeOwned>(
     text: &str,
     file: &str,
 ) -> Result<(T, Origin), Vec<SceneError>> {
-    let lines = Lines::new(text);
-    let here = |span: Option<Range<usize>>, key: &str, problem: Problem| {
-        let (line, column) = lines.place(span.map_or(0, |span| span.start));
-        SceneError {
-            kind: ErrorKind::Invalid,
-            file: file.to_string(),
-            line,
-            column,
-            key: key.to_string(),
-            found: problem.found,
-            problem: problem.problem,
-            help: problem.help,
-        }
-    };
-    // The first error of syntax alone: what a parser says after it is mostly its own confusion.
-    let root = DeTable::parse(text).map_err(|bad| {
-        let help = "see https://toml.io for the format; text values stand in quotes";
-        vec![here(
-            bad.span(),
-            "",
-            Problem::new(format!("not valid TOML: {}", clip(bad.message()))).help(help),
-        )]
-    })?;
-    let root_value = DeValue::Table(root.get_ref().clone());
-    let findings = conform::check(&root_value, root.span(), &schema::<T>());
-    if !findings.is_empty() {
-        return Err(sorted(findings.into_iter().map(|f| here(Some(f.span), &f.key, f.problem)).collect()));
-    }
-    let mut places = BTreeMap::new();
-    note(&root_value, "", &lines, &mut places);
-    match toml::from_str::<T>(text) {
-        Ok(keys) => Ok((keys, Origin { file: file.to_string(), places })),
-        Err(bad) => Err(vec![here(bad.span(), "", Problem::new(clip(bad.message())))]),
-    }
+    Document::parse(text, file)?.read()
 }
 
 /// The schema of a file, without references to definitions.
@@ -109,18 +136,17 @@ pub(crate) fn schema<T: JsonSchema>() -> Value {
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
-/// By line, then column, then key.
+/// By file, then line, then column, then key.
 pub(crate) fn sorted(mut errors: Vec<SceneError>) -> Vec<SceneError> {
-    errors.sort_by(|a, b| (a.line, a.column, &a.key).cmp(&(b.line, b.column, &b.key)));
+    errors.sort_by(|a, b| (&a.file, a.line, a.column, &a.key).cmp(&(&b.file, b.line, b.column, &b.key)));
     errors
 }
 
 /// Places of every key below `path`.
-fn note(value: &DeValue<'_>, path: &str, lines: &Lines<'_>, places: &mut Places) {
+fn note(value: &DeValue<'_>, path: &str, sources: &Sources<'_>, places: &mut Places) {
     let mut add = |path: String, span: Range<usize>, value: &DeValue<'_>| {
-        let (line, column) = lines.place(span.start);
-        note(value, &path, lines, places);
-        places.insert(path, (line, column, written(value)));
+        note(value, &path, sources, places);
+        places.insert(path, (sources.place(Some(span)), written(value)));
     };
     match value {
         DeValue::Table(table) => {
@@ -145,26 +171,5 @@ pub(crate) fn written(value: &DeValue<'_>) -> Option<String> {
         DeValue::Boolean(value) => Some(value.to_string()),
         DeValue::Datetime(value) => Some(value.to_string()),
         DeValue::Array(_) | DeValue::Table(_) => None,
-    }
-}
-
-/// Byte offsets into lines and columns.
-struct Lines<'t> {
-    text: &'t str,
-    starts: Vec<usize>,
-}
-
-impl<'t> Lines<'t> {
-    fn new(text: &'t str) -> Lines<'t> {
-        let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
-        Lines { text, starts: std::iter::once(0).chain(ends).collect() }
-    }
-
-    /// Line and column, from 1, the column in characters.
-    fn place(&self, offset: usize) -> (usize, usize) {
-        let line = self.starts.partition_point(|start| *start <= offset);
-        let start = self.starts[line - 1];
-        let before = self.text.get(start..offset.min(self.text.len())).unwrap_or("");
-        (line, before.chars().count() + 1)
     }
 }

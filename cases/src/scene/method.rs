@@ -193,7 +193,7 @@ pub enum Size {
 /// A file of a mesh or of positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// Path, relative ones taken from the folder of the scene.
+    /// Path, relative ones taken from the folder of the file that names it.
     pub path: PathBuf,
     /// Metres per unit of its numbers.
     pub unit: f64,

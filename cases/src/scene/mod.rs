@@ -2,7 +2,7 @@
 //!
 //! A scene is one TOML file. Its keys are types (`keys`), the schema is generated from them, and a file is checked
 //! against that schema, so that the two can't drift apart. What passes is turned into [`Scene`], in which no text is
-//! left to parse.
+//! left to parse. Methods that several scenes share are in a file of their own (`shared`).
 
 mod available;
 mod conform;
@@ -20,6 +20,8 @@ mod purpose;
 mod region;
 mod report;
 mod resolve;
+mod shared;
+mod sources;
 mod study;
 mod tool;
 mod units;
@@ -51,7 +53,7 @@ pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
 
 /// Reads a scene from text. `file` names it in messages; paths in the scene are relative to the folder of `file`.
 pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
-    let (keys, origin) = document::read::<keys::SceneKeys>(text, file)?;
+    let (keys, origin) = shared::read(text, file)?;
     let mut report = report::Report::new(&origin);
     let scene = resolve::scene(keys, &mut report);
     // Parts that could not be resolved are left out of the scene: what the rest demands of them can't be judged.
@@ -68,7 +70,7 @@ pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
 
 /// The JSON schema of scene files.
 pub fn schema() -> serde_json::Value {
-    document::schema::<keys::SceneKeys>()
+    shared::describe(document::schema::<keys::SceneKeys>())
 }
 
 /// The JSON schema of study files.

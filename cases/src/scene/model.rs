@@ -56,6 +56,12 @@ impl Scene {
         self.origin.file()
     }
 
+    /// The text of the file; where methods are taken from another one, what it comes to with them written out. It has all
+    /// that the scene says, but for the meshes it names.
+    pub fn text(&self) -> &str {
+        self.origin.text()
+    }
+
     /// The method of that id.
     pub fn method(&self, id: &str) -> Option<&Method> {
         self.methods.iter().find(|method| method.id == id)

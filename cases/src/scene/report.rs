@@ -1,6 +1,6 @@
 //! Findings about one file, each at its key.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use catalogue::nearest;
 
@@ -13,20 +13,23 @@ use super::error::{ErrorKind, SceneError};
 pub(crate) struct Report<'o> {
     origin: &'o Origin,
     errors: Vec<SceneError>,
+    /// Their keys in the scene; an error in a shared method has the key of its own file.
+    keys: Vec<String>,
 }
 
 impl<'o> Report<'o> {
     pub fn new(origin: &'o Origin) -> Report<'o> {
-        Report { origin, errors: Vec::new() }
+        Report { origin, errors: Vec::new(), keys: Vec::new() }
     }
 
     pub fn add(&mut self, key: &str, problem: Problem) {
         self.errors.push(self.origin.error(ErrorKind::Invalid, key, problem));
+        self.keys.push(key.to_string());
     }
 
     /// Whether something is noted at `key`.
     pub fn has(&self, key: &str) -> bool {
-        self.errors.iter().any(|error| error.key == key)
+        self.keys.iter().any(|noted| noted == key)
     }
 
     /// Whether nothing is noted.
@@ -42,10 +45,9 @@ impl<'o> Report<'o> {
         self.origin
     }
 
-    /// A path of the file, relative ones taken from its folder.
-    pub fn path(&self, text: &str) -> PathBuf {
-        let folder = Path::new(self.origin.file()).parent().unwrap_or(Path::new(""));
-        folder.join(text)
+    /// The path that is the value of `key`, relative ones taken from the folder of the file it is in.
+    pub fn path(&self, text: &str, key: &str) -> PathBuf {
+        beside(self.origin.file_of(key), text)
     }
 
     pub fn missing(&mut self, key: &str, help: &str) {
@@ -57,6 +59,20 @@ impl<'o> Report<'o> {
             self.add(key, Problem::new(problem).help(help));
         }
     }
+}
+
+/// A path from the folder of a file, without steps back: `studies/../scenes` is `scenes`, unless a link leads elsewhere.
+pub(crate) fn beside(file: &str, path: &str) -> PathBuf {
+    let whole = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
+    let mut short = PathBuf::new();
+    for part in whole.components() {
+        match (part, short.components().next_back()) {
+            (Component::ParentDir, Some(Component::Normal(_))) => drop(short.pop()),
+            _ => short.push(part),
+        }
+    }
+    let real = |path: &Path| path.canonicalize().ok();
+    if real(&short) == real(&whole) { short } else { whole }
 }
 
 /// The nearest of the ids there are, as help.

@@ -134,7 +134,7 @@ pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
 
 fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     let key = format!("run[{index}]");
-    let scene = report.path(&keys.scene);
+    let scene = report.path(&keys.scene, &format!("{key}.scene"));
     if !scene.is_file() {
         let help = format!("no file at {}; scenes are relative to the study's folder", scene.display());
         report.add(&format!("{key}.scene"), Problem::new("can't be found").help(help));

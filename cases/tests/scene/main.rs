@@ -4,6 +4,7 @@ mod bad_scenes;
 mod bad_studies;
 mod fuzz;
 mod good;
+mod shared;
 mod vibrations;
 
 /// A scene that uses every part that runs today, and some that wait.

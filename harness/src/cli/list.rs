@@ -1,6 +1,7 @@
 //! Text for people: lists, plans, the table of a run, verdicts.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use cases::exact::{exact_names, exact_parameters};
 use cases::scene::{Basis, Element, Mass, SupportShape};
@@ -37,16 +38,24 @@ pub fn print() {
     for metric in METRICS {
         println!("  {:24} {}", metric.name, metric.meaning);
     }
-    let mut scenes: Vec<String> = std::fs::read_dir("cases")
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.path().display().to_string())
-        .filter(|path| path.ends_with(".toml") && !path.ends_with("Cargo.toml"))
-        .collect();
-    scenes.sort();
+    let mut scenes = Vec::new();
+    ["cases/scenes", "cases/studies"].iter().for_each(|folder| files(Path::new(folder), &mut scenes));
     if !scenes.is_empty() {
         println!("scenes and studies here\n  {}", scenes.join("\n  "));
+    }
+}
+
+/// The TOML files in a folder and the folders below it, those of a folder in order of their names.
+fn files(folder: &Path, found: &mut Vec<String>) {
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "toml") {
+            found.push(path.display().to_string());
+        }
     }
 }
 

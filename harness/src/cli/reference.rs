@@ -11,7 +11,7 @@ use crate::study::make_reference::make;
 /// Runs every method of a scene and writes what they agree on.
 pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, _) = open(&args.scene, &args.methods)?;
-    let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
+    let text = scene.text().to_string();
     let mesh = geometry::msh::read(&args.points, args.unit)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     let read = |path: &PathBuf| -> Result<Stored, u8> {

@@ -140,7 +140,7 @@ impl Made<'_> {
         }
         let Some(out) = &self.args.out else { return self.code };
         self.set.records.extend(study::reference_records(self.scene));
-        let text = std::fs::read_to_string(&self.args.scene).unwrap_or_default();
+        let text = self.scene.text().to_string();
         self.set.provenance = provenance::provenance(machine, &[(self.case, text)]);
         self.set.provenance.source = folder::source(&self.args.scene);
         match reports::write_run(out, &self.set) {

@@ -8,7 +8,7 @@ use crate::study::{Plan, VerifyArgs, folder};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs) -> u8 {
-    let path = args.study.clone().unwrap_or_else(|| "cases/verify.toml".into());
+    let path = args.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into());
     let study = match scene::load_study(&path) {
         Ok(study) => study,
         Err(errors) => {

@@ -36,7 +36,7 @@ pub fn machine() -> Machine {
     }
 }
 
-/// Of a study or a single run, whose file the caller names; `scenes` are (case name, file text).
+/// Of a study or a single run, whose file the caller names; `scenes` are (case name, [`Scene::text`](cases::scene::Scene::text)).
 pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
     let mut hashes: Vec<SceneHash> =
         scenes.iter().map(|(case, text)| SceneHash { case: case.clone(), blake3: hash(text) }).collect();

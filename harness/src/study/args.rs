@@ -7,7 +7,7 @@ use clap::Args;
 /// Arguments of `verify`.
 #[derive(Args)]
 pub struct VerifyArgs {
-    /// The study file (default: cases/verify.toml)
+    /// The study file (default: cases/studies/verify.toml)
     pub study: Option<PathBuf>,
     /// Only the runs of the quick tier
     #[arg(long)]

@@ -68,7 +68,7 @@ impl Plan {
                         continue;
                     }
                     Ok(scene) => {
-                        let text = std::fs::read_to_string(&run.scene).unwrap_or_default();
+                        let text = scene.text().to_string();
                         let named =
                             |(_, _, other): &&(PathBuf, String, Scene)| case_name(other) == case_name(&scene);
                         if let Some((path, ..)) = scenes.iter().find(named) {

@@ -71,9 +71,17 @@ pub fn assert_fails(done: &Done, code: i32, says: &str) {
     assert!(done.stderr.contains(says), "no '{says}' in: {}", done.stderr);
 }
 
-/// A file of the project's cases.
+/// A scene of the project by the name of its file, whichever folder it is in.
 pub fn cases(name: &str) -> String {
-    format!("{}/../cases/{name}", env!("CARGO_MANIFEST_DIR"))
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/scenes");
+    let folders = std::fs::read_dir(&scenes).unwrap().map(|entry| entry.unwrap().path());
+    let found = folders.chain([scenes.clone()]).map(|folder| folder.join(name)).find(|path| path.is_file());
+    utf8(&found.unwrap_or_else(|| panic!("no scene {name}")))
+}
+
+/// The text of a scene of the project with all its methods written out, to be changed and run from elsewhere.
+pub fn written_out(name: &str) -> String {
+    cases::scene::load(Path::new(&cases(name))).unwrap().text().to_string()
 }
 
 /// Writes a file and returns its path.

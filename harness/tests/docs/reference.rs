@@ -160,7 +160,7 @@ fn below(
             rows.push(row);
             vec![format!("`{choice}`")]
         }
-        None => kinds.to_vec(),
+        None => schema["x-kind"].as_str().map_or(kinds.to_vec(), |kind| vec![format!("`{kind}`")]),
     };
     for (name, property) in properties.iter().filter(|(_, p)| !p["const"].is_string()) {
         walk(&format!("{key}.{name}"), property, is_required(schema, name), &own, rows, top);

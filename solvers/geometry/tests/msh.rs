@@ -15,7 +15,7 @@ fn parse(text: &str) -> Result<Mesh, MshError> {
 
 #[test]
 fn the_kidney_reads_as_described() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/kidney-1331.msh");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/scenes/kidney/kidney-1331.msh");
     let mesh = msh::read(&file, 0.001).unwrap();
     assert_eq!((mesh.points().len(), mesh.cell_count()), (1331, 6190));
     assert_eq!(mesh.uniform_kind(), Some(CellKind::Tet4));

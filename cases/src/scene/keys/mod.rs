@@ -43,6 +43,10 @@ pub(crate) struct SceneKeys {
     #[serde(default)]
     pub tool: Vec<ToolKeys>,
     pub procedure: Option<ProcedureKeys>,
+    /// A file of methods that several scenes share, relative to the folder of the scene: a `[[method]]` takes one of them by
+    /// `use = "id"`
+    #[allow(dead_code)] // read before the keys are, by `shared`
+    pub methods_from: Option<String>,
     #[serde(default)]
     pub method: Vec<MethodKeys>,
     pub output: Option<OutputKeys>,

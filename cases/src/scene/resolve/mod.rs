@@ -83,9 +83,12 @@ pub(super) fn names(names: Names) -> Vec<String> {
 }
 
 pub(super) fn mesh_file(path: &str, unit: f64, key: &str, report: &mut Report) -> MeshFile {
-    let path = report.path(path);
+    let path = report.path(path, key);
     if !path.is_file() {
-        let help = format!("no file at {}; paths are relative to the scene's folder", path.display());
+        let help = format!(
+            "no file at {}; paths are relative to the folder of the file they are in",
+            path.display()
+        );
         report.add(key, Problem::new("can't be found").help(help));
     }
     MeshFile { path, unit }

@@ -88,7 +88,7 @@ pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Refe
     match (keys.exact, keys.method, keys.record) {
         (Some(name), None, None) => exact(name, keys.parameters, report),
         (None, Some(id), None) => (size.is_some() || !given).then_some(Reference::Method { id, size }),
-        (None, None, Some(record)) => Some(Reference::Record(report.path(&record))),
+        (None, None, Some(record)) => Some(Reference::Record(report.path(&record, "reference.record"))),
         _ => {
             let help = "give one of exact = \"...\", method = \"...\" and record = \"...\"";
             report.add("reference", Problem::new("is not one reference").help(help));

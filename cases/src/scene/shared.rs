@@ -1,0 +1,206 @@
+//! Methods that several scenes share: one file of `[[method]]` tables, from which a scene takes some by their ids.
+//!
+//! ```toml
+//! methods_from = "../../methods.toml"
+//!
+//! [[method]]
+//! use = "hex8-mean"
+//! size = { level = 2 }
+//! ```
+//!
+//! A key beside `use` stands in place of the shared table's. What comes of it is read like a method written out; shared
+//! tables take nothing from elsewhere themselves.
+
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde_json::{Value, json};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::document::{Document, Origin, schema, sorted, written};
+use super::error::SceneError;
+use super::keys::{MethodKeys, SceneKeys};
+use super::report::{beside, which};
+use super::sources::Taken;
+use catalogue::Problem;
+
+/// A file of shared methods
+#[derive(JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(dead_code)] // a schema to check the file against; the scene that takes a table reads it
+struct SharedKeys {
+    method: Vec<MethodKeys>,
+}
+
+/// Reads a scene with the shared methods that it takes.
+pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+    let mut document = Document::parse(text, file)?;
+    let Some(from) = document.root.get_ref().get("methods_from") else {
+        unshared(&document)?;
+        return document.read();
+    };
+    let wrong = |problem| vec![document.error(Some(from.span()), "methods_from", problem)];
+    let DeValue::String(path) = from.get_ref() else {
+        return Err(wrong(
+            Problem::new("is no path of a file").help("give it in quotes: methods_from = \"methods.toml\""),
+        ));
+    };
+    let path = beside(file, path);
+    let shared_file = path.display().to_string();
+    let shared_text = std::fs::read_to_string(&path).map_err(|bad| {
+        let help = format!("{shared_file}: {bad}; paths are relative to the folder of the file they are in");
+        wrong(Problem::new("can't be read").found(shared_file.as_str()).help(help))
+    })?;
+    let shared = Document::parse(&shared_text, &shared_file)?;
+    shared.check(&unfinished(schema::<SharedKeys>()))?;
+    unique(&shared)?;
+    take(&mut document, shared)?;
+    document.read()
+}
+
+/// The schema of a scene, in which a method may be a shared one.
+pub(crate) fn describe(mut schema: Value) -> Value {
+    let shared = json!({
+        "type": "object",
+        "description": "A shared method",
+        "x-kind": "shared",
+        "properties": { "use": {
+            "type": "string",
+            "description": "The id of a method in the file `methods_from`. Further keys replace those of the shared method",
+        } },
+        "required": ["use"],
+    });
+    if let Some(forms) = forms(&mut schema) {
+        forms.push(shared);
+    }
+    schema
+}
+
+/// A shared method may leave keys to the scenes, such as its size.
+fn unfinished(mut schema: Value) -> Value {
+    for form in forms(&mut schema).into_iter().flatten() {
+        form["required"] = json!(["id", "family"]);
+    }
+    schema
+}
+
+/// The kinds of methods.
+fn forms(schema: &mut Value) -> Option<&mut Vec<Value>> {
+    schema.pointer_mut("/properties/method/items/oneOf")?.as_array_mut()
+}
+
+/// The tables under `[[method]]`.
+fn tables<'a, 't>(document: &'a Document<'t>) -> &'a [Spanned<DeValue<'t>>] {
+    match document.root.get_ref().get("method").map(Spanned::get_ref) {
+        Some(DeValue::Array(methods)) => methods,
+        _ => &[],
+    }
+}
+
+/// The value of a key of a method.
+fn value<'a, 't>(method: &'a Spanned<DeValue<'t>>, key: &str) -> Option<&'a Spanned<DeValue<'t>>> {
+    method.get_ref().as_table()?.get(key)
+}
+
+/// No method can be taken where no file is named.
+fn unshared(document: &Document<'_>) -> Result<(), Vec<SceneError>> {
+    let errors: Vec<SceneError> = (tables(document).iter().enumerate())
+        .filter_map(|(i, method)| Some((i, value(method, "use")?)))
+        .map(|(i, name)| {
+            let problem = Problem::new("has no file of methods to be taken from");
+            let help = "name it at the top of the scene: methods_from = \"methods.toml\"";
+            let problem = Problem { found: written(name.get_ref()), ..problem.help(help) };
+            document.error(Some(name.span()), &format!("method[{i}].use"), problem)
+        })
+        .collect();
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// Every shared method has an id of its own.
+fn unique(shared: &Document<'_>) -> Result<(), Vec<SceneError>> {
+    let ids: Vec<_> = tables(shared).iter().filter_map(|method| value(method, "id")).collect();
+    let text = |id: &Spanned<DeValue<'_>>| written(id.get_ref());
+    let mut errors = Vec::new();
+    for (i, id) in ids.iter().enumerate() {
+        if ids[..i].iter().any(|other| text(other) == text(id)) {
+            let problem = Problem::new("is the id of another method").help("ids are unique");
+            let problem = Problem { found: text(id), ..problem };
+            errors.push(shared.error(Some(id.span()), &format!("method[{i}].id"), problem));
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// Puts the shared tables where the scene's methods name them.
+fn take<'t>(document: &mut Document<'t>, shared: Document<'t>) -> Result<(), Vec<SceneError>> {
+    let known = tables(&shared);
+    let ids: Vec<String> = known
+        .iter()
+        .map(|m| value(m, "id").and_then(|id| written(id.get_ref())).unwrap_or_default())
+        .collect();
+    let base = document.sources.add(shared.sources.own());
+    let mut taken = Vec::new();
+    let mut errors = Vec::new();
+    let mut merged: Vec<Spanned<DeValue<'t>>> = tables(document).to_vec();
+    for (i, method) in merged.iter_mut().enumerate() {
+        let span = method.span();
+        let Some(name) = value(method, "use").cloned() else { continue };
+        let here = format!("method[{i}]");
+        let found = written(name.get_ref());
+        let at = ids.iter().position(|id| matches!(name.get_ref(), DeValue::String(text) if text == id));
+        let Some(at) = at else {
+            let problem = Problem::new(format!("is not a method of {}", shared.files.own()));
+            let help = which(found.as_deref().unwrap_or_default(), ids.iter().map(String::as_str));
+            let problem = Problem { found, ..problem.help(help) };
+            errors.push(document.error(Some(name.span()), &format!("{here}.use"), problem));
+            continue;
+        };
+        let own = method.get_ref().as_table().cloned().unwrap_or_default();
+        let line = document.sources.place(Some(name.span())).line;
+        *method = Spanned::new(span, DeValue::Table(with(&known[at], base, own, name)));
+        taken.push(Taken { here, there: format!("method[{at}]"), line });
+    }
+    if !errors.is_empty() {
+        return Err(sorted(errors));
+    }
+    if let Some(methods) = document.root.get_mut().get_mut("method") {
+        *methods = Spanned::new(methods.span(), DeValue::Array(merged.into_iter().collect()));
+    }
+    document.files.add(shared.files.own().to_string(), taken);
+    Ok(())
+}
+
+/// A shared table with the scene's keys in place of its own. Its id stands where the scene names it.
+fn with<'t>(
+    shared: &Spanned<DeValue<'t>>,
+    base: usize,
+    own: DeTable<'t>,
+    name: Spanned<DeValue<'t>>,
+) -> DeTable<'t> {
+    let DeValue::Table(mut table) = moved(shared.get_ref(), base) else { return own };
+    if let Some(id) = table.get_mut("id") {
+        *id = name;
+    }
+    for (key, value) in own.into_iter().filter(|(key, _)| key.get_ref() != "use") {
+        // Removed first, so that the key stands where the scene has it.
+        table.remove(key.get_ref().as_ref());
+        table.insert(key, value);
+    }
+    table
+}
+
+/// The same value with all spans moved.
+fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
+    let span = |span: Range<usize>| span.start + base..span.end + base;
+    let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
+    match value {
+        DeValue::Table(table) => DeValue::Table(
+            (table.iter())
+                .map(|(key, value)| (Spanned::new(span(key.span()), key.get_ref().clone()), item(value)))
+                .collect(),
+        ),
+        DeValue::Array(items) => DeValue::Array(items.iter().map(item).collect()),
+        scalar => scalar.clone(),
+    }
+}
