@@ -29,7 +29,7 @@ fn split(reference: &str, points: Option<usize>) -> Vec<Outcome> {
 }
 
 fn value(metrics: &[Metric], name: &str) -> f64 {
-    metrics.iter().find(|m| m.name == name).unwrap_or_else(|| panic!("{name}")).value
+    metrics.iter().find(|m| m.name() == name).unwrap_or_else(|| panic!("{name}")).value
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
 }
 
 fn value(metrics: &[Metric], name: &str) -> f64 {
-    metrics.iter().find(|m| m.name == name).unwrap_or_else(|| panic!("{name}")).value
+    metrics.iter().find(|m| m.name() == name).unwrap_or_else(|| panic!("{name}")).value
 }
 
 #[test]

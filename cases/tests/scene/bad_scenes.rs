@@ -1,10 +1,11 @@
 use cases::scene::{ErrorKind, parse};
 
+use crate::bad_methods::METHODS;
 use crate::{SCENE, edited, marked_line};
 
 /// What is replaced in the sound scene, by what (the line to be blamed ends in `#<`), the key blamed, and what the
 /// message must say.
-type Bad = (&'static str, &'static str, &'static str, &'static [&'static str]);
+pub type Bad = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
 const UNITS: &[Bad] = &[
     (
@@ -304,125 +305,6 @@ const CONDITIONS: &[Bad] = &[
         &["several kinds of load", "one of traction, pressure and body"],
     ),
     ("[[load]]\nbody", "[[load]]\non = \"z-max\" #<\nbody", "load[2].on", &["acts everywhere"]),
-];
-
-const METHODS: &[Bad] = &[
-    ("id = \"efg-83\"", "id = \"tet4\" #<", "method[1].id", &["'tet4' is the id of another method"]),
-    ("id = \"efg-83\"", "id = \"efg 83\" #<", "method[1].id", &["'efg 83' is no id"]),
-    (
-        "[[method]]\nid = \"efg-83\"\nfamily = \"efg\"\nnodes = 83",
-        "[[method]] #<\nid = \"efg-83\"\nfamily = \"efg\"",
-        "method[1].nodes",
-        &["is missing"],
-    ),
-    ("nodes = 83", "nodes = 0 #<", "method[1].nodes", &["'0' is no number of nodes"]),
-    (
-        "nodes = 83",
-        "nodes = 83\ncloud = \"mesh\" #<",
-        "method[1].cloud",
-        &["'mesh' does not go with the keys beside it"],
-    ),
-    (
-        "nodes = 83",
-        "nodes = 83\njitter = { fraction = 0.1, seed = 1 } #<",
-        "method[1].jitter",
-        &["does not belong"],
-    ),
-    ("size = { level = 2 }", "size = { level = 2 }\nseed = 3 #<", "method[2].seed", &["'3' does not belong"]),
-    ("size = { level = 2 }", "size = { level = 0 } #<", "method[2].size.level", &["'0' is no level"]),
-    ("size = { level = 2 }", "size = { level = 2, nodes = 9 } #<", "method[2].size", &["not one size"]),
-    ("size = { level = 2 }", "size = {} #<", "method[2].size", &["not one size"]),
-    (
-        "size = { level = 2 }",
-        "size = { level = 2, unit = \"mm\" } #<",
-        "method[2].size.unit",
-        &["goes with file only"],
-    ),
-    ("size = { level = 2 }", "size = { spacing = \"0 mm\" } #<", "method[2].size.spacing", &["not positive"]),
-    (
-        "size = { level = 2 }",
-        "size = { file = \"no-such.msh\" } #<",
-        "method[2].size.file",
-        &["'no-such.msh' can't be found"],
-    ),
-    ("cells = [4, 4, 2]", "cells = [4000, 4000, 2000] #<\n", "method[0].size.cells", &["20000000 in all"]),
-    ("fraction = 0.2", "fraction = 0.6 #<\n", "method[0].jitter.fraction", &["'0.6' is no share of a cell"]),
-    (
-        "support_scale = 1.6",
-        "support_scale = 0.5 #<",
-        "method[1].support_scale",
-        &["'0.5' is no support scale"],
-    ),
-    (
-        "support_scale = 1.6",
-        "support_scale = 1.6\nneighbours = 15 #<",
-        "method[1].neighbours",
-        &["stands beside support_scale"],
-    ),
-    (
-        "support_scale = 1.6",
-        "support_scale = 1.6\nfactor = 1.2 #<",
-        "method[1].factor",
-        &["goes with neighbours only"],
-    ),
-    ("neighbours = 15", "neighbours = 3 #<", "method[2].neighbours", &["'3' are too few", "4 at the least"]),
-    ("alpha = 0.4", "eps = 0.4 #<\n", "method[1].kernel.eps", &["gaussian takes no eps"]),
-    (
-        "rule = \"gauss\", points = 4",
-        "rule = \"grid\", points = 4 #<\n",
-        "method[1].integration.points",
-        &["'4' is no cube number"],
-    ),
-    (
-        "rule = \"cell-smoothed\"",
-        "rule = \"cell-smoothed\", points = 4 #<\n",
-        "method[2].integration.points",
-        &["1, 3 or 6"],
-    ),
-    (
-        "rule = \"cell-smoothed\"",
-        "rule = \"cell-smoothed\", order = 3 #<\n",
-        "method[2].integration.order",
-        &["'3' is not known", "2 for quadratic"],
-    ),
-    (
-        "rule = \"cell-smoothed\"",
-        "rule = \"cell-smoothed\", order = 2, points = 3 #<\n",
-        "method[2].integration.points",
-        &["'3' is too coarse for order 2", "6 points"],
-    ),
-    (
-        "rule = \"cell-smoothed\"",
-        "rule = \"node-smoothed\", stabilisation = 1 #<\n",
-        "method[2].integration.stabilisation",
-        &["'1' is no share of the weight", "\"cell-smoothed\""],
-    ),
-    (
-        "rule = \"cell-smoothed\"",
-        "rule = \"node-smoothed\", stabilisation = 0, points = 4 #<\n",
-        "method[2].integration.points",
-        &["1, 3 or 6"],
-    ),
-    ("factor = 10", "factor = -10 #<\n", "method[1].essential.factor", &["'-10' is not positive"]),
-    ("poisson = 0.45", "poisson = 0.5 #<", "material.poisson", &["'0.5'", "below 0.5", "0.4999"]),
-    ("poisson = 0.45", "poisson = -1 #<", "material.poisson", &["'-1'", "above -1"]),
-    ("young = \"20 kPa\"", "young = \"-20 kPa\" #<", "material.young", &["'-20 kPa' is not positive"]),
-    ("young = \"20 kPa\"", "young = \"0 Pa\" #<", "material.young", &["'0 Pa' is not positive"]),
-    ("density = \"1000 kg/m^3\"", "density = \"-1 kg/m^3\" #<", "material.density", &["not positive"]),
-    (
-        "young = \"0.04 N/mm^2\", poisson = 0.3",
-        "young = \"4 kPa\", poisson = 0.7 #<\n",
-        "region[0].material.poisson",
-        &["'0.7'"],
-    ),
-    ("max = [", "size = [\"1 mm\", \"1 mm\", \"1 mm\"] #<\nmax = [", "body.size", &["stands beside max"]),
-    (
-        "[body]\nshape = \"box\"\nmin = [\"-20 mm\"",
-        "[body] #<\nshape = \"box\"\nmin = [\"90 mm\"",
-        "body",
-        &["has no volume"],
-    ),
-    ("steps = 10", "steps = 0 #<", "procedure.steps", &["'0' is zero"]),
 ];
 
 const OUTPUT: &[Bad] = &[

@@ -1,9 +1,11 @@
 //! Scene and study files through the public interface: what is read, what is refused and how, and that nothing panics.
 
+mod bad_methods;
 mod bad_scenes;
 mod bad_studies;
 mod fuzz;
 mod good;
+mod project;
 mod shared;
 mod vibrations;
 

@@ -20,7 +20,7 @@ pub struct RunObject<'a> {
     nodes: u64,
     elements: u64,
     dofs: u64,
-    metrics: BTreeMap<&'a str, Number>,
+    metrics: BTreeMap<String, Number>,
     phases: BTreeMap<String, f64>,
     probes: Vec<ProbeObject>,
     /// Rigid tools at the end.
@@ -70,7 +70,7 @@ struct StepObject<'a> {
     probes: Vec<[f64; 3]>,
     /// Time and energies in dynamics.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    metrics: BTreeMap<&'a str, Number>,
+    metrics: BTreeMap<String, Number>,
 }
 
 fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
@@ -89,12 +89,9 @@ struct ProbeObject {
 impl<'a> RunObject<'a> {
     /// A finished run; times are medians over its repeats.
     pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
-        let mut metrics: BTreeMap<&str, Number> = outcome
-            .metrics
-            .iter()
-            .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
-            .collect();
-        metrics.insert("memory", Number { value: outcome.memory as f64, unit: "B" });
+        let mut metrics: BTreeMap<String, Number> =
+            outcome.metrics.iter().map(|m| (m.name(), Number { value: m.value, unit: m.unit() })).collect();
+        metrics.insert("memory".into(), Number { value: outcome.memory as f64, unit: "B" });
         let frames = outcome.latencies.iter().flat_map(|latency| {
             let times = latency.statistics().into_iter().filter(|(_, unit, _)| *unit == "s");
             times.map(|(name, _, seconds)| match name {
@@ -140,7 +137,7 @@ impl<'a> RunObject<'a> {
                     metrics: step
                         .more
                         .iter()
-                        .map(|m| (m.name.as_str(), Number { value: m.value, unit: m.unit }))
+                        .map(|m| (m.name(), Number { value: m.value, unit: m.unit() }))
                         .collect(),
                 })
                 .collect(),

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use cases::scene::ConstraintRows;
+use catalogue::metric::Metric;
 use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3};
 use shape::{DilationGroups, RowSource, Rows, SourceError, VolumeRows};
@@ -126,8 +127,8 @@ pub struct Volume {
     pub groups: Option<DilationGroups>,
     /// Shape values of the pressure field at the points, where the method has one.
     pub pressure: Option<Rows>,
-    /// What was met as the rows were made, by the names of metrics.
-    pub diagnostics: Vec<(&'static str, f64)>,
+    /// What was met as the rows were made.
+    pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 
 impl Discretisation {

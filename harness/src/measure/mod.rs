@@ -11,6 +11,7 @@ mod step_history;
 mod transfer;
 
 use cases::exact::Exact;
+use catalogue::metric;
 use geometry::{Matrix3, Point3, Vector3};
 use material::Law;
 use statics::Body;
@@ -67,34 +68,34 @@ pub(crate) fn measure(
         errors_in_the_volume(metrics, run, &body, exact)?;
     }
     errors_at_targets(metrics, run, &field.values, request);
-    for (axis, name) in ["max-x", "max-y", "max-z"].into_iter().enumerate() {
-        push(metrics, name, field.values.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())), "m");
+    for (axis, entry) in [&metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z].into_iter().enumerate() {
+        push(metrics, entry, field.values.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())));
     }
-    push(metrics, "max", field.values.iter().fold(0.0, |m: f64, u| m.max(u.norm())), "m");
-    push(metrics, "targets-outside", field.outside as f64, "1");
+    push(metrics, &metric::MAX, field.values.iter().fold(0.0, |m: f64, u| m.max(u.norm())));
+    push(metrics, &metric::TARGETS_OUTSIDE, field.outside as f64);
     let energy = match &solution.history {
         Some(history) => history.last.strain_energy,
         None => Some(statics::strain_energy(&body, &solution.u)?),
     };
     if let Some(energy) = energy {
-        push(metrics, "strain-energy", energy, "J");
+        push(metrics, &metric::STRAIN_ENERGY, energy);
     }
     if let Some(residual) = solution.residual {
-        push(metrics, "residual", residual, "1");
+        push(metrics, &metric::RESIDUAL, residual);
     }
     if let Some(info) = &solution.linear {
-        push(metrics, "factor-nonzeros", info.factor_nonzeros as f64, "1");
+        push(metrics, &metric::FACTOR_NONZEROS, info.factor_nonzeros as f64);
         if info.eliminated + info.dropped > 0 {
-            push(metrics, "constraints-eliminated", info.eliminated as f64, "1");
-            push(metrics, "constraints-dropped", info.dropped as f64, "1");
+            push(metrics, &metric::CONSTRAINTS_ELIMINATED, info.eliminated as f64);
+            push(metrics, &metric::CONSTRAINTS_DROPPED, info.dropped as f64);
         }
     }
     if let Essential::Coupling(coupled) = &method.essential {
-        push(metrics, "finite-element-nodes", coupled.vertices.len() as f64, "1");
+        push(metrics, &metric::FINITE_ELEMENT_NODES, coupled.vertices.len() as f64);
     }
     let resultant = prepared.resultant();
-    for (axis, name) in ["load-x", "load-y", "load-z"].into_iter().enumerate() {
-        push(metrics, name, resultant[axis], "N");
+    for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
+        push(metrics, entry, resultant[axis]);
     }
     of_tables(metrics, prepared);
     Ok(())
@@ -114,15 +115,20 @@ fn errors_in_the_volume(
     let (fine, region) = prepared.fine_volume()?;
     if !hooke {
         if let Some(value) = norms::l2(&fine, &solution.u, exact) {
-            push(metrics, "l2", value, "1");
+            push(metrics, &metric::L2, value);
         }
         return Ok(());
     }
     let n = norms(body, &fine, &region, &solution.u, exact)?;
-    for (name, value) in [("l2", n.l2), ("energy", n.energy), ("pressure", n.pressure), ("stress", n.stress)]
-    {
+    let found = [
+        (&metric::L2, n.l2),
+        (&metric::ENERGY, n.energy),
+        (&metric::PRESSURE, n.pressure),
+        (&metric::STRESS, n.stress),
+    ];
+    for (entry, value) in found {
         if let Some(value) = value {
-            push(metrics, name, value, "1");
+            push(metrics, entry, value);
         }
     }
     Ok(())
@@ -137,22 +143,22 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
         (None, None) => None,
     };
     if let Some(integrated) = request.integrated {
-        push_difference(metrics, "integration-rms", field, &integrated.targets);
+        push_difference(metrics, INTEGRATION, field, &integrated.targets);
         if let Some(against) = &against {
-            push_difference(metrics, "discretisation-rms", &integrated.targets, against);
+            push_difference(metrics, DISCRETISATION, &integrated.targets, against);
         }
     }
     if let Some(against) = against {
-        push_difference(metrics, "rms", field, &against);
-        push(metrics, "max-error", difference(field, &against).max, "m");
+        push_difference(metrics, RMS, field, &against);
+        push(metrics, &metric::MAX_ERROR, difference(field, &against).max);
         if let Some(relative) = relative(field, &against) {
-            push(metrics, "relative-rms", relative.rms, "1");
-            push(metrics, "relative-max", relative.max, "1");
-            push(metrics, "peak-error", relative.peak, "1");
+            push(metrics, &metric::RELATIVE_RMS, relative.rms);
+            push(metrics, &metric::RELATIVE_MAX, relative.max);
+            push(metrics, &metric::PEAK_ERROR, relative.peak);
         }
     }
     if let Some(beside) = request.beside {
-        push_difference(metrics, "beside-rms", field, &beside.targets);
+        push_difference(metrics, BESIDE, field, &beside.targets);
     }
 }
 
@@ -161,32 +167,50 @@ pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &
     let Some(first) = probes.first() else { return };
     let e = exact.displacement(&first.x);
     if e.norm() > 0.0 {
-        push(metrics, "tip", first.u.dot(&e) / e.norm_squared(), "1");
+        push(metrics, &metric::TIP, first.u.dot(&e) / e.norm_squared());
     }
     let error = |p: &Probe| {
         let e = exact.displacement(&p.x);
         (e.norm() > 0.0).then(|| (p.u - e).norm() / e.norm())
     };
     if let Some(worst) = probes.iter().filter_map(error).reduce(f64::max) {
-        push(metrics, "probe-error", worst, "1");
+        push(metrics, &metric::PROBE_ERROR, worst);
     }
 }
 
 /// What the rows of a method are like: the volume they integrate, neighbours, conditioning, fallbacks.
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
-    push(metrics, "volume", prepared.volume.rows.weights().iter().sum(), "m^3");
-    for (name, value) in &prepared.volume.diagnostics {
-        push(metrics, name, *value, "1");
+    push(metrics, &metric::VOLUME, prepared.volume.rows.weights().iter().sum());
+    for (entry, value) in &prepared.volume.diagnostics {
+        push(metrics, entry, *value);
     }
 }
 
-/// RMS of a difference per direction (`NAME-x` and so on) and of the magnitude (`NAME`).
-pub(crate) fn push_difference(metrics: &mut Vec<Metric>, name: &str, field: &[Vector3], against: &[Vector3]) {
+/// Metrics of a difference: along x, y and z, and of the magnitude.
+type Difference = [&'static metric::Metric; 4];
+
+const RMS: Difference = [&metric::RMS_X, &metric::RMS_Y, &metric::RMS_Z, &metric::RMS];
+const BESIDE: Difference =
+    [&metric::BESIDE_RMS_X, &metric::BESIDE_RMS_Y, &metric::BESIDE_RMS_Z, &metric::BESIDE_RMS];
+const INTEGRATION: Difference = [
+    &metric::INTEGRATION_RMS_X,
+    &metric::INTEGRATION_RMS_Y,
+    &metric::INTEGRATION_RMS_Z,
+    &metric::INTEGRATION_RMS,
+];
+const DISCRETISATION: Difference = [
+    &metric::DISCRETISATION_RMS_X,
+    &metric::DISCRETISATION_RMS_Y,
+    &metric::DISCRETISATION_RMS_Z,
+    &metric::DISCRETISATION_RMS,
+];
+
+/// RMS of a difference along each axis and of its magnitude.
+fn push_difference(metrics: &mut Vec<Metric>, entries: Difference, field: &[Vector3], against: &[Vector3]) {
     let d = difference(field, against);
-    for (axis, value) in ["x", "y", "z"].into_iter().zip(d.rms) {
-        push(metrics, &format!("{name}-{axis}"), value, "m");
+    for (entry, value) in entries.into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {
+        push(metrics, entry, value);
     }
-    push(metrics, name, d.rms_magnitude, "m");
 }
 
 /// Displacement and stress at the probes.

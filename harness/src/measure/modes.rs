@@ -1,6 +1,7 @@
 //! Modes of free vibration, and how they compare with exact ones.
 
 use cases::exact::Vibrations;
+use catalogue::metric;
 use geometry::{Point3, Vector3};
 
 use super::Solved;
@@ -31,20 +32,20 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
     let omega: Vec<f64> = modes.squared.iter().map(|s| s.max(0.0).sqrt()).collect();
     let count = omega.len().min(*count);
     let mut metrics = Vec::new();
-    push(&mut metrics, "mass", *mass, "kg");
-    push(&mut metrics, "residual", modes.residual, "1");
+    push(&mut metrics, &metric::MASS, *mass);
+    push(&mut metrics, &metric::RESIDUAL, modes.residual);
     let rigid = RIGID * modes.scale.sqrt();
-    push(&mut metrics, "rigid-modes", omega.iter().filter(|&&w| w < rigid).count() as f64, "1");
-    push(&mut metrics, "massless", modes.massless as f64, "1");
+    push(&mut metrics, &metric::RIGID_MODES, omega.iter().filter(|&&w| w < rigid).count() as f64);
+    push(&mut metrics, &metric::MASSLESS, modes.massless as f64);
     if let (Some(fastest), 0) = (omega.last(), modes.massless) {
-        push(&mut metrics, "critical-step", 2.0 / fastest, "s");
+        push(&mut metrics, &metric::CRITICAL_STEP, 2.0 / fastest);
     }
     let exact = setup.exact.as_ref().and_then(|exact| exact.vibrations());
     let lowest = exact.and_then(|exact| exact.lowest(count)).unwrap_or_default();
     if let Some(first) = lowest.first() {
-        push(&mut metrics, "slow-modes", omega.iter().filter(|&&w| w < SLOW * first).count() as f64, "1");
+        push(&mut metrics, &metric::SLOW_MODES, omega.iter().filter(|&&w| w < SLOW * first).count() as f64);
         let errors = omega.iter().zip(&lowest).map(|(w, e)| (w / e - 1.0).abs());
-        push(&mut metrics, "spectrum-error", errors.fold(0.0, f64::max), "1");
+        push(&mut metrics, &metric::SPECTRUM_ERROR, errors.fold(0.0, f64::max));
     }
     if let Some(exact) = exact {
         // Slow ones may be many, and come first.
@@ -57,19 +58,19 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         let least = nearest.iter().map(|&n| shares[n]).fold(f64::INFINITY, f64::min);
         let ratios = nearest.iter().map(|&n| omega[n] / exact.omega());
         if let Some(worst) = ratios.max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs())) {
-            push(&mut metrics, "mode-overlap", least, "1");
+            push(&mut metrics, &metric::MODE_OVERLAP, least);
             if nearest.len() == dimension && least > ALIKE {
-                push(&mut metrics, "frequency-ratio", worst, "1");
-                push(&mut metrics, "frequency-error", (worst - 1.0).abs(), "1");
+                push(&mut metrics, &metric::FREQUENCY_RATIO, worst);
+                push(&mut metrics, &metric::FREQUENCY_ERROR, (worst - 1.0).abs());
             }
         }
     }
     let each = (0..count).map(|n| {
         let mut metrics = Vec::new();
-        push(&mut metrics, "mode", (n + 1) as f64, "1");
-        push(&mut metrics, "omega", omega[n], "rad/s");
+        push(&mut metrics, &metric::MODE, (n + 1) as f64);
+        push(&mut metrics, &metric::OMEGA, omega[n]);
         if let Some(exact) = lowest.get(n) {
-            push(&mut metrics, "omega-ratio", omega[n] / exact, "1");
+            push(&mut metrics, &metric::OMEGA_RATIO, omega[n] / exact);
         }
         metrics
     });

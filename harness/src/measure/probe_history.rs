@@ -1,6 +1,7 @@
 //! Histories of probes in dynamics: errors against an exact motion, and the period of a vibration.
 
 use cases::exact::Exact;
+use catalogue::metric;
 use geometry::{Point3, Vector3};
 
 use crate::outcome::{LoadStep, Metric};
@@ -11,9 +12,9 @@ pub(crate) fn metrics(steps: &[LoadStep], exact: Option<&dyn Exact>, probes: &[P
         steps.iter().filter_map(|step| Some((step.time()?, step.probes.as_slice()))).collect();
     let first: Vec<(f64, Vector3)> =
         states.iter().filter_map(|(time, probes)| Some((*time, *probes.first()?))).collect();
-    [("history-error", error(&states, exact, probes), "1"), ("period", period(&first), "s")]
+    [(&metric::HISTORY_ERROR, error(&states, exact, probes)), (&metric::PERIOD, period(&first))]
         .into_iter()
-        .filter_map(|(name, value, unit)| Some(Metric { name: name.into(), value: value?, unit }))
+        .filter_map(|(entry, value)| Some(Metric::new(entry, value?)))
         .collect()
 }
 

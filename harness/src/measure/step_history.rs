@@ -1,8 +1,10 @@
 //! A procedure in steps: its last state, its steps, and their errors against the reference's.
 
+use catalogue::metric;
+
 use super::{Request, Solved};
 use crate::Failure;
-use crate::outcome::{LoadStep, Metric, of_tool, push};
+use crate::outcome::{LoadStep, Metric, push, push_tool};
 use crate::procedure::StepHistory;
 
 /// Reports the history of a run; returns its steps with their probes and errors.
@@ -14,17 +16,17 @@ pub(crate) fn report(
 ) -> Result<Vec<LoadStep>, Failure> {
     let StepHistory { steps, fields, last, metrics: of_procedure, failure } = history;
     let mut steps = steps.clone();
-    push(metrics, "load-carried", last.load, "1");
-    push(metrics, "smallest-j", last.smallest_j, "1");
-    push(metrics, "load-steps", steps.len() as f64, "1");
-    metrics.extend(of_procedure.iter().cloned());
+    push(metrics, &metric::LOAD_CARRIED, last.load);
+    push(metrics, &metric::SMALLEST_J, last.smallest_j);
+    push(metrics, &metric::LOAD_STEPS, steps.len() as f64);
+    metrics.extend(of_procedure);
     for (index, tool) in last.tools.iter().enumerate() {
-        push(metrics, &of_tool("closure", index), tool.closure, "m");
-        push(metrics, &of_tool("tool-force", index), tool.pushed, "N");
-        push(metrics, &of_tool("contact-points", index), tool.active as f64, "1");
+        push_tool(metrics, &metric::CLOSURE, index, tool.closure);
+        push_tool(metrics, &metric::TOOL_FORCE, index, tool.pushed);
+        push_tool(metrics, &metric::CONTACT_POINTS, index, tool.active as f64);
     }
     if let Some(deepest) = last.tools.iter().map(|t| t.penetration).reduce(f64::max) {
-        push(metrics, "penetration", deepest, "m");
+        push(metrics, &metric::PENETRATION, deepest);
     }
     if !request.probes.is_empty() {
         let (rows, _) = run.prepared.source.at_points(request.probes)?;
@@ -40,7 +42,7 @@ pub(crate) fn report(
             }
         }
         if let (Some(end), None, true) = (steps.last(), failure, reference.finished) {
-            metrics.extend(end.against.iter().cloned());
+            metrics.extend(&end.against);
         }
     }
     Ok(steps)
@@ -52,20 +54,20 @@ fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
         if other.pushed != 0.0 {
-            push(
+            push_tool(
                 &mut metrics,
-                &of_tool("tool-force-error", index),
+                &metric::TOOL_FORCE_ERROR,
+                index,
                 (tool.pushed / other.pushed - 1.0).abs(),
-                "1",
             );
         }
     }
     if let (Some(energy), Some(other)) = (step.strain_energy, reference.strain_energy.filter(|e| *e > 0.0)) {
-        push(&mut metrics, "strain-energy-error", (energy / other - 1.0).abs(), "1");
+        push(&mut metrics, &metric::STRAIN_ENERGY_ERROR, (energy / other - 1.0).abs());
     }
     let distances = step.probes.iter().zip(&reference.probes).map(|(u, v)| (u - v).norm());
     if let Some(largest) = distances.reduce(f64::max) {
-        push(&mut metrics, "probe-difference", largest, "m");
+        push(&mut metrics, &metric::PROBE_DIFFERENCE, largest);
     }
     metrics
 }

@@ -2,17 +2,31 @@
 
 use std::time::Instant;
 
+use catalogue::metric;
 use geometry::{Point3, Vector3};
 use shape::RowBlocks;
 
 use super::norms::difference;
-use super::{Request, Solved, push_difference};
+use super::{BESIDE, Difference, RMS, Request, Solved, push_difference};
 use crate::Failure;
 use crate::outcome::timing::Timings;
 use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, push};
 
 /// Name of the method's own shape functions among the schemes: no transfer at all.
 pub const OWN_ROWS: &str = "own-rows";
+
+const TRANSFER_ONLY: Difference = [
+    &metric::TRANSFER_ONLY_RMS_X,
+    &metric::TRANSFER_ONLY_RMS_Y,
+    &metric::TRANSFER_ONLY_RMS_Z,
+    &metric::TRANSFER_ONLY_RMS,
+];
+const BESIDE_TRANSFER: Difference = [
+    &metric::BESIDE_TRANSFER_RMS_X,
+    &metric::BESIDE_TRANSFER_RMS_Y,
+    &metric::BESIDE_TRANSFER_RMS_Z,
+    &metric::BESIDE_TRANSFER_RMS,
+];
 
 /// Applies of one table that are timed together: one alone (10 us) is at the clock's resolution.
 const APPLIES: usize = 20;
@@ -42,27 +56,27 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             let field = rows.rows().apply(&at_nodes);
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {
-                push_difference(&mut metrics, "rms", &field, &reference.targets);
-                push(&mut metrics, "max-error", difference(&field, &reference.targets).max, "m");
+                push_difference(&mut metrics, RMS, &field, &reference.targets);
+                push(&mut metrics, &metric::MAX_ERROR, difference(&field, &reference.targets).max);
                 if let Some(at) = &reference.at {
                     let moved = rows.rows().apply(&at(nodes)?);
-                    push_difference(&mut metrics, "transfer-only-rms", &moved, &reference.targets);
+                    push_difference(&mut metrics, TRANSFER_ONLY, &moved, &reference.targets);
                 }
             }
             if let Some(beside) = request.beside {
-                push_difference(&mut metrics, "beside-rms", &field, &beside.targets);
+                push_difference(&mut metrics, BESIDE, &field, &beside.targets);
                 // The other method's own field, taken at this cloud's nodes and interpolated back: nothing but the transfer.
                 if let Some(at) = &beside.at {
                     let moved = rows.rows().apply(&at(nodes)?);
-                    push_difference(&mut metrics, "beside-transfer-rms", &moved, &beside.targets);
+                    push_difference(&mut metrics, BESIDE_TRANSFER, &moved, &beside.targets);
                 }
             }
             let change = difference(&field, &own);
-            push(&mut metrics, "transfer-rms", change.rms_magnitude, "m");
+            push(&mut metrics, &metric::TRANSFER_RMS, change.rms_magnitude);
             let error = difference(&rows.rows().apply(&linear(nodes)), &linear(request.targets));
-            push(&mut metrics, "linear-rms", error.rms_magnitude, "m");
-            push(&mut metrics, "outside", info.outside as f64, "1");
-            push(&mut metrics, "fallbacks", info.fallbacks as f64, "1");
+            push(&mut metrics, &metric::LINEAR_RMS, error.rms_magnitude);
+            push(&mut metrics, &metric::OUTSIDE, info.outside as f64);
+            push(&mut metrics, &metric::FALLBACKS, info.fallbacks as f64);
             Ok(transfer(name, *settings, metrics, timing, request))
         })
         .chain(std::iter::once_with(|| {
@@ -70,11 +84,11 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             let (_, timing) = timed(request, build, |(rows, _)| rows.rows(), u)?;
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {
-                push_difference(&mut metrics, "rms", &own, &reference.targets);
-                push(&mut metrics, "max-error", difference(&own, &reference.targets).max, "m");
+                push_difference(&mut metrics, RMS, &own, &reference.targets);
+                push(&mut metrics, &metric::MAX_ERROR, difference(&own, &reference.targets).max);
             }
             if let Some(beside) = request.beside {
-                push_difference(&mut metrics, "beside-rms", &own, &beside.targets);
+                push_difference(&mut metrics, BESIDE, &own, &beside.targets);
             }
             Ok(transfer(OWN_ROWS, SchemeSettings::default(), metrics, timing, request))
         }))

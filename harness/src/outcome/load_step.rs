@@ -1,5 +1,6 @@
 //! The end of a load step or a recorded state of a motion.
 
+use catalogue::metric;
 use contact::{Tool, ToolState};
 use geometry::Vector3;
 
@@ -66,7 +67,7 @@ pub struct LoadStep {
 impl LoadStep {
     /// Time in dynamics, s.
     pub fn time(&self) -> Option<f64> {
-        self.more.iter().find(|m| m.name == "time").map(|m| m.value)
+        self.more.iter().find(|m| *m.entry == metric::TIME).map(|m| m.value)
     }
 
     /// Before anything acts.

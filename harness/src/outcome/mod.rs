@@ -8,10 +8,9 @@ pub mod provenance;
 mod records;
 pub(crate) mod timing;
 
-use catalogue::Values;
+use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};
 use reports::{Record, SurfaceField};
-use serde::Serialize;
 
 use crate::Failure;
 pub use counters::Counters;
@@ -19,7 +18,7 @@ pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
 pub use plan::{Plan, Stage, StageName};
-pub(crate) use records::{of_tool, run_id};
+pub(crate) use records::run_id;
 pub(crate) use timing::Meters;
 use timing::Timed;
 
@@ -69,20 +68,45 @@ pub struct Size {
     pub spacing: f64,
 }
 
-/// One number with its unit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// One number of a run. What is no entry of the catalogue cannot be recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// Name as in records and checks.
-    pub name: String,
+    /// What it is.
+    pub entry: &'static metric::Metric,
+    /// Which tool's, where each has one; 0 otherwise.
+    pub tool: usize,
     /// SI value.
     pub value: f64,
-    /// SI unit; `1` for a pure number.
-    pub unit: &'static str,
+}
+
+impl Metric {
+    pub(crate) fn new(entry: &'static metric::Metric, value: f64) -> Metric {
+        Metric { entry, tool: 0, value }
+    }
+
+    pub(crate) fn of_tool(entry: &'static metric::Metric, tool: usize, value: f64) -> Metric {
+        Metric { entry, tool, value }
+    }
+
+    /// Name as in records and checks.
+    pub fn name(&self) -> String {
+        self.entry.of_tool(self.tool)
+    }
+
+    /// SI unit; `1` for a bare number.
+    pub fn unit(&self) -> &'static str {
+        self.entry.unit()
+    }
 }
 
 /// Adds a number to a list.
-pub(crate) fn push(metrics: &mut Vec<Metric>, name: &str, value: f64, unit: &'static str) {
-    metrics.push(Metric { name: name.into(), value, unit });
+pub(crate) fn push(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, value: f64) {
+    metrics.push(Metric::new(entry, value));
+}
+
+/// Adds a number of one tool to a list.
+pub(crate) fn push_tool(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, tool: usize, value: f64) {
+    metrics.push(Metric::of_tool(entry, tool, value));
 }
 
 /// Displacement and stress at a probe.
@@ -197,6 +221,6 @@ impl Outcome {
 
     /// One metric's value.
     pub fn metric(&self, name: &str) -> Option<f64> {
-        self.metrics.iter().find(|m| m.name == name).map(|m| m.value)
+        self.metrics.iter().find(|m| m.name() == name).map(|m| m.value)
     }
 }

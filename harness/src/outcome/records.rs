@@ -1,9 +1,10 @@
 //! A finished run as rows of the long table, and its plan as rows of the report.
 
+use catalogue::metric;
 use reports::{Family, PlanEntry, Record};
 
 use super::timing::{Summary, Timed};
-use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer};
+use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_tool};
 
 impl Outcome {
     /// The run as rows of the long table.
@@ -12,7 +13,8 @@ impl Outcome {
         let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
         self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
         for latency in &self.latencies {
-            let phase = Record { quantity: "time".into(), phase: latency.phase.into(), ..own.clone() };
+            let phase =
+                Record { quantity: metric::TIME.name.into(), phase: latency.phase.into(), ..own.clone() };
             rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {
                 unit: unit.into(),
                 statistic: statistic.into(),
@@ -20,7 +22,7 @@ impl Outcome {
                 ..phase.clone()
             }));
         }
-        rows.push(number(&own, &metric("memory", self.memory as f64, "B")));
+        rows.push(number(&own, &Metric::new(&metric::MEMORY, self.memory as f64)));
         self.transfers.iter().for_each(|transfer| rows.extend(self.transfer_records(&own, transfer)));
         rows.extend(self.step_records(&own));
         for (index, metrics) in self.modes.iter().enumerate() {
@@ -52,17 +54,17 @@ impl Outcome {
         let start = at(0);
         if !self.steps.is_empty() {
             for index in 0..self.tools.len() {
-                rows.push(number(&start, &metric(&of_tool("closure", index), 0.0, "m")));
-                rows.push(number(&start, &metric(&of_tool("tool-force", index), 0.0, "N")));
+                rows.push(number(&start, &Metric::of_tool(&metric::CLOSURE, index, 0.0)));
+                rows.push(number(&start, &Metric::of_tool(&metric::TOOL_FORCE, index, 0.0)));
             }
         }
         // Dynamics starts from rest and undeformed: no time, no energy.
         if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
             if first.strain_energy.is_some() {
-                rows.push(number(&start, &metric("strain-energy", 0.0, "J")));
+                rows.push(number(&start, &Metric::new(&metric::STRAIN_ENERGY, 0.0)));
             }
-            for known in first.more.iter().filter(|m| m.unit == "s" || m.unit == "J") {
-                rows.push(number(&start, &metric(&known.name, 0.0, known.unit)));
+            for known in first.more.iter().filter(|m| m.unit() == "s" || m.unit() == "J") {
+                rows.push(number(&start, &Metric::new(known.entry, 0.0)));
             }
         }
         for (index, step) in self.steps.iter().enumerate() {
@@ -134,15 +136,11 @@ fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex()[..16].to_string()
 }
 
-fn metric(name: &str, value: f64, unit: &'static str) -> Metric {
-    Metric { name: name.into(), value, unit }
-}
-
 /// A plain value as a row.
 fn number(row: &Record, metric: &Metric) -> Record {
     Record {
-        quantity: metric.name.clone(),
-        unit: metric.unit.into(),
+        quantity: metric.name(),
+        unit: metric.unit().into(),
         statistic: "value".into(),
         value: metric.value,
         ..row.clone()
@@ -173,22 +171,17 @@ fn times(row: &Record, timed: &Timed) -> Vec<Record> {
 
 /// What is recorded of a step.
 fn of_step(step: &LoadStep) -> Vec<Metric> {
-    let mut all = vec![metric("load-carried", step.load, "1")];
-    all.extend(step.strain_energy.map(|energy| metric("strain-energy", energy, "J")));
-    all.push(metric("smallest-j", step.smallest_j, "1"));
+    let mut all = vec![Metric::new(&metric::LOAD_CARRIED, step.load)];
+    all.extend(step.strain_energy.map(|energy| Metric::new(&metric::STRAIN_ENERGY, energy)));
+    push(&mut all, &metric::SMALLEST_J, step.smallest_j);
     if step.iterations > 0 {
-        all.push(metric("newton-iterations", step.iterations as f64, "1"));
+        push(&mut all, &metric::NEWTON_ITERATIONS, step.iterations as f64);
     }
     for (index, tool) in step.tools.iter().enumerate() {
-        all.push(metric(&of_tool("closure", index), tool.closure, "m"));
-        all.push(metric(&of_tool("tool-force", index), tool.pushed, "N"));
-        all.push(metric(&of_tool("contact-points", index), tool.active as f64, "1"));
+        push_tool(&mut all, &metric::CLOSURE, index, tool.closure);
+        push_tool(&mut all, &metric::TOOL_FORCE, index, tool.pushed);
+        push_tool(&mut all, &metric::CONTACT_POINTS, index, tool.active as f64);
     }
-    all.extend(step.more.iter().chain(&step.against).cloned());
+    all.extend(step.more.iter().chain(&step.against));
     all
-}
-
-/// The name of a tool's quantity: the bare one for the first tool, numbered from 2 for the others.
-pub(crate) fn of_tool(quantity: &str, index: usize) -> String {
-    if index == 0 { quantity.into() } else { format!("{quantity}-{}", index + 1) }
 }

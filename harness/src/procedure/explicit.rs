@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cases::scene::Explicit;
+use catalogue::metric;
 use contact::{ContactSurface, Drive};
 use explicit::{
     Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
@@ -148,12 +149,12 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let last = steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(setup.tools.len()));
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
     let mut metrics = Vec::new();
-    push(&mut metrics, "time-steps", counters.time_steps as f64, "1");
-    push(&mut metrics, "time-reached", last.load * asked.ramp.duration, "s");
-    push(&mut metrics, "critical-step", critical, "s");
-    push(&mut metrics, "mass", mass.iter().sum(), "kg");
-    push(&mut metrics, "tool-mass", tool_mass, "kg");
-    push(&mut metrics, "energy-drift", drift, "1");
+    push(&mut metrics, &metric::TIME_STEPS, counters.time_steps as f64);
+    push(&mut metrics, &metric::TIME_REACHED, last.load * asked.ramp.duration);
+    push(&mut metrics, &metric::CRITICAL_STEP, critical);
+    push(&mut metrics, &metric::MASS, mass.iter().sum());
+    push(&mut metrics, &metric::TOOL_MASS, tool_mass);
+    push(&mut metrics, &metric::ENERGY_DRIFT, drift);
     Ok(Solution {
         dofs: 3 * mass.len() - loading.led.len(),
         u: fields.last().cloned().unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
@@ -270,13 +271,13 @@ impl Run<'_, '_> {
         let tools = states.zip(&self.setup.tools).map(|(motion, set)| ToolStep::of(&motion.state, &set.tool));
         let t = &balance.tools;
         let more = [
-            ("time", time, "s"),
-            ("kinetic-energy", balance.kinetic + t.kinetic, "J"),
-            ("external-work", balance.external + balance.support + t.work, "J"),
-            ("contact-energy", t.stored, "J"),
-            ("friction-dissipation", t.friction, "J"),
-            ("damping-dissipation", balance.damping + t.damping, "J"),
-            ("energy-drift", balance.drift, "1"),
+            (&metric::TIME, time),
+            (&metric::KINETIC_ENERGY, balance.kinetic + t.kinetic),
+            (&metric::EXTERNAL_WORK, balance.external + balance.support + t.work),
+            (&metric::CONTACT_ENERGY, t.stored),
+            (&metric::FRICTION_DISSIPATION, t.friction),
+            (&metric::DAMPING_DISSIPATION, balance.damping + t.damping),
+            (&metric::ENERGY_DRIFT, balance.drift),
         ];
         LoadStep {
             load: time / self.asked.ramp.duration,
@@ -286,7 +287,7 @@ impl Run<'_, '_> {
             iterations: 0,
             probes: Vec::new(),
             against: Vec::new(),
-            more: more.map(|(name, value, unit)| Metric { name: name.into(), value, unit }).to_vec(),
+            more: more.map(|(entry, value)| Metric::new(entry, value)).to_vec(),
         }
     }
 }

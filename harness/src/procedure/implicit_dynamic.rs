@@ -2,6 +2,7 @@
 //! left.
 
 use cases::scene::Implicit;
+use catalogue::metric;
 use contact::ContactSurface;
 use geometry::Vector3;
 use statics::{
@@ -123,17 +124,17 @@ fn count(path: &TimePath, counters: &mut Counters) -> u64 {
 /// Numbers of the whole motion.
 fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
     let mut metrics = Vec::new();
-    push(&mut metrics, "time-steps", path.steps.len() as f64, "1");
-    push(&mut metrics, "time-reached", path.time(), "s");
-    push(&mut metrics, "newton-iterations", iterations as f64, "1");
-    push(&mut metrics, "cut-backs", path.cut_back as f64, "1");
+    push(&mut metrics, &metric::TIME_STEPS, path.steps.len() as f64);
+    push(&mut metrics, &metric::TIME_REACHED, path.time());
+    push(&mut metrics, &metric::NEWTON_ITERATIONS, iterations as f64);
+    push(&mut metrics, &metric::CUT_BACKS, path.cut_back as f64);
     if let Some(last) = path.steps.last().and_then(|s| s.step.iterations.last()) {
-        push(&mut metrics, "residual", last.residual, "1");
+        push(&mut metrics, &metric::RESIDUAL, last.residual);
     }
     if inertia {
         let largest = path.steps.iter().map(|s| s.error).fold(0.0, f64::max);
-        push(&mut metrics, "step-error", largest, "m");
-        push(&mut metrics, "energy-drift", drift(&path.steps), "1");
+        push(&mut metrics, &metric::STEP_ERROR, largest);
+        push(&mut metrics, &metric::ENERGY_DRIFT, drift(&path.steps));
     }
     metrics
 }
@@ -156,15 +157,15 @@ fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
     let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
     // What contact springs store and friction takes is outside the body, and so is the tools' own work.
     let mut more = vec![
-        ("time", step.time, "s"),
-        ("kinetic-energy", energy.kinetic, "J"),
-        ("work-on-body", energy.external, "J"),
-        ("damping-dissipation", energy.damped, "J"),
-        ("scheme-dissipation", energy.lost(), "J"),
+        Metric::new(&metric::TIME, step.time),
+        Metric::new(&metric::KINETIC_ENERGY, energy.kinetic),
+        Metric::new(&metric::WORK_ON_BODY, energy.external),
+        Metric::new(&metric::DAMPING_DISSIPATION, energy.damped),
+        Metric::new(&metric::SCHEME_DISSIPATION, energy.lost()),
     ];
     // What relaxing tissue stores of it is not known.
     let strain_energy = if setup.relaxes() {
-        more.push(("internal-work", energy.internal, "J"));
+        push(&mut more, &metric::INTERNAL_WORK, energy.internal);
         None
     } else {
         Some(energy.internal)
@@ -177,6 +178,6 @@ fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
         iterations: solves(step),
         probes: Vec::<Vector3>::new(),
         against: Vec::new(),
-        more: more.into_iter().map(|(name, value, unit)| Metric { name: name.into(), value, unit }).collect(),
+        more,
     }
 }

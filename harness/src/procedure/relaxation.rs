@@ -1,5 +1,6 @@
 //! Beyond a limit point: dynamic relaxation from the last equilibrium to the load steps that are left.
 
+use catalogue::metric;
 use contact::{ContactHistory, ContactSurface, Drive};
 use explicit::{
     ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
@@ -138,7 +139,6 @@ pub(super) fn continue_from(
         };
         done.made += info.steps as u64;
         let states = pressing.as_ref().map_or(&[][..], Pressing::states);
-        let metric = |name: &str, value, unit| Metric { name: name.into(), value, unit };
         done.steps.push(LoadStep {
             load,
             tools: states
@@ -152,9 +152,9 @@ pub(super) fn continue_from(
             probes: Vec::new(),
             against: Vec::new(),
             more: vec![
-                metric("relaxation-steps", info.steps as f64, "1"),
-                metric("relaxation-error", info.error, "1"),
-                metric("relaxation-residual", info.residual, "1"),
+                Metric::new(&metric::RELAXATION_STEPS, info.steps as f64),
+                Metric::new(&metric::RELAXATION_ERROR, info.error),
+                Metric::new(&metric::RELAXATION_RESIDUAL, info.residual),
             ],
         });
         done.fields.push(u.clone());

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use cases::scene::{Newton, OnStall, Static};
+use catalogue::metric;
 use contact::{ContactSurface, DrivenTool};
 use statics::{
     Dilation, NewtonParams, Solid, StaticError, StaticParams, StaticPath, StaticProblem, Step, solve_static,
@@ -12,7 +13,7 @@ use super::relaxation::{self, Relaxed, Start};
 use super::{Problem, Solution, Stages, StepHistory, newton_reason};
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, of_tool, push};
+use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push, push_tool};
 use crate::prepare::Prepared;
 use crate::scenario::setup::Setup;
 
@@ -165,16 +166,16 @@ fn metrics(
 ) -> Vec<Metric> {
     let mut metrics = Vec::new();
     if let Some(limit) = limit {
-        push(&mut metrics, "limit-load", limit.load, "1");
+        push(&mut metrics, &metric::LIMIT_LOAD, limit.load);
         for (index, tool) in limit.tools.iter().enumerate() {
-            push(&mut metrics, &of_tool("limit-closure", index), tool.closure, "m");
-            push(&mut metrics, &of_tool("limit-tool-force", index), tool.pushed, "N");
+            push_tool(&mut metrics, &metric::LIMIT_CLOSURE, index, tool.closure);
+            push_tool(&mut metrics, &metric::LIMIT_TOOL_FORCE, index, tool.pushed);
         }
     }
-    push(&mut metrics, "newton-iterations", iterations as f64, "1");
-    push(&mut metrics, "cut-backs", cut_backs as f64, "1");
+    push(&mut metrics, &metric::NEWTON_ITERATIONS, iterations as f64);
+    push(&mut metrics, &metric::CUT_BACKS, cut_backs as f64);
     if let Some(relaxed) = relaxed {
-        push(&mut metrics, "relaxation-steps", relaxed.made as f64, "1");
+        push(&mut metrics, &metric::RELAXATION_STEPS, relaxed.made as f64);
     }
     metrics
 }

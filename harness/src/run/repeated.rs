@@ -4,6 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use cases::scene::{Procedure, Repeated};
+use catalogue::metric;
 use contact::ContactSurface;
 use geometry::{Point3, Vector3};
 use shape::{Rows, Unity};
@@ -83,7 +84,7 @@ fn linear(
         let largest = direct.iter().map(Vector3::norm).fold(0.0, f64::max);
         let gap = out.iter().zip(&direct).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         if largest > 0.0 {
-            push(metrics, "repeated-error", gap / largest, "1");
+            push(metrics, &metric::REPEATED_ERROR, gap / largest);
         }
         // Every load at a part of its own: not a multiple of one solution.
         let share = ask.cycle / (unit.len() + 1);

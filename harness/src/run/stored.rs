@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use cases::scene::{ErrorKind, Scene};
+use catalogue::metric;
 use geometry::{Point3, Vector3};
 use reports::{Family, Record};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::measure::{Reference, norms};
-use crate::outcome::{LoadStep, ToolStep, of_tool, provenance, run_id};
+use crate::outcome::{LoadStep, ToolStep, provenance, run_id};
 
 /// The file, as JSON. Lengths in m, forces in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -230,12 +231,12 @@ impl Stored {
                 rows.push(Record { quantity, unit, step, statistic, value, ..own.clone() });
             };
             for (index, tool) in step.tools.iter().enumerate() {
-                push(of_tool("closure", index), "m", "value", tool.closure);
+                push(metric::CLOSURE.of_tool(index), metric::CLOSURE.unit(), "value", tool.closure);
                 for (statistic, value) in [("value", tool.force), ("low", tool.low), ("high", tool.high)] {
-                    push(of_tool("tool-force", index), "N", statistic, value);
+                    push(metric::TOOL_FORCE.of_tool(index), metric::TOOL_FORCE.unit(), statistic, value);
                 }
             }
-            push("probe-band".into(), "m", "value", step.probe_band);
+            push(metric::PROBE_BAND.name.into(), metric::PROBE_BAND.unit(), "value", step.probe_band);
         }
         rows
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use catalogue::metric::{self, Metric};
 use geometry::shapes::Shape;
 use geometry::{Cloud, Facet, Mesh};
 use shape::{
@@ -183,7 +184,7 @@ impl RowSource for CloudSource {
             }
         };
         let mut diagnostics = diagnostics(&info);
-        diagnostics.extend(lost.map(|lost| ("volume-error", lost)));
+        diagnostics.extend(lost.map(|lost| (&metric::VOLUME_ERROR, lost)));
         Ok(Quadrature { rows, diagnostics })
     }
 
@@ -262,16 +263,16 @@ impl RowSource for CloudSource {
     }
 }
 
-fn diagnostics(info: &MlsInfo) -> Vec<(&'static str, f64)> {
+fn diagnostics(info: &MlsInfo) -> Vec<(&'static Metric, f64)> {
     vec![
-        ("neighbours-min", info.neighbours_min as f64),
-        ("neighbours-mean", info.neighbours_mean),
-        ("neighbours-max", info.neighbours_max as f64),
-        ("condition-median", info.condition_median),
-        ("condition-max", info.condition_max),
-        ("fallbacks", info.fallbacks() as f64),
-        ("fallbacks-enlarged", info.enlarged as f64),
-        ("fallbacks-regularised", info.regularised as f64),
-        ("fallbacks-reduced", info.reduced as f64),
+        (&metric::NEIGHBOURS_MIN, info.neighbours_min as f64),
+        (&metric::NEIGHBOURS_MEAN, info.neighbours_mean),
+        (&metric::NEIGHBOURS_MAX, info.neighbours_max as f64),
+        (&metric::CONDITION_MEDIAN, info.condition_median),
+        (&metric::CONDITION_MAX, info.condition_max),
+        (&metric::FALLBACKS, info.fallbacks() as f64),
+        (&metric::FALLBACKS_ENLARGED, info.enlarged as f64),
+        (&metric::FALLBACKS_REGULARISED, info.regularised as f64),
+        (&metric::FALLBACKS_REDUCED, info.reduced as f64),
     ]
 }

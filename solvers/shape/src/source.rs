@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use catalogue::metric::Metric;
 use geometry::{Facet, Mesh};
 
 use crate::{
@@ -16,8 +17,8 @@ pub type SourceError = Box<dyn Error + Send + Sync>;
 pub struct Quadrature {
     /// Values, gradients and weights.
     pub rows: VolumeRows,
-    /// Numbers about the rows, each by the name of a metric: neighbours, conditioning, lost volume.
-    pub diagnostics: Vec<(&'static str, f64)>,
+    /// Numbers about the rows: neighbours, conditioning, lost volume.
+    pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 
 impl From<VolumeRows> for Quadrature {
