@@ -8,6 +8,26 @@
 //! [`scenario::setup::Setup`] and a [`discretise::Discretisation`], these the tables of [`prepare::prepare`]. A procedure
 //! solves them, `measure` compares the solution, and [`run::run`] makes an [`outcome::Outcome`] of records. Nothing here
 //! draws; nothing in `reports` solves.
+//!
+//! ```
+//! use cases::scene;
+//! use harness::run::{Group, Repeats, RunOptions};
+//! // A cube that is pressed between frictionless walls: at nu = 0 its top goes down by p h / E.
+//! let text = r#"
+//! title = "A cube between walls"
+//! body = { shape = "box", size = ["10 mm", "10 mm", "10 mm"] }
+//! material = { law = "linear", young = "20 kPa", poisson = 0.0 }
+//! support = [{ on = "z-min", fix = "z" }, { on = ["x-min", "x-max"], fix = "x" }, { on = ["y-min", "y-max"], fix = "y" }]
+//! load = [{ on = "z-max", pressure = "1 kPa" }]
+//! method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [2, 2, 2] } }]
+//! "#;
+//! let scene = scene::parse(text, "cube.toml").expect("sound");
+//! let group = Group::new(&scene, None, Repeats::ONCE)?;
+//! let outcome = group.run(&group.scenario(scene.methods[0].clone(), 0), RunOptions::default()).expect("runs");
+//! let down = outcome.metric("max-z").expect("recorded");
+//! assert!((down - 1e3 / 20e3 * 0.01).abs() < 1e-12);
+//! # Ok::<(), harness::Failure>(())
+//! ```
 
 pub mod cli;
 mod discretise;

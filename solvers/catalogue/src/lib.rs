@@ -6,6 +6,27 @@
 //! their schema, messages, lists and property tests all walk the same slices of entries.
 //!
 //! The [metrics](metric) are here themselves, because solvers record them and reports draw them.
+//!
+//! ```
+//! use catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
+//! // A spring that a scene could name: `{ spring = "linear", stiffness = ... }`.
+//! type Spring = Entry<fn(&Values) -> Result<f64, Problem>>;
+//! static SPRINGS: [Spring; 1] = [Entry {
+//!     name: "linear",
+//!     meaning: "force in proportion to the length",
+//!     source: "Hooke (1678)",
+//!     parameters: &[Parameter::required("stiffness", Dimension::None, "force per length")],
+//!     build: |values: &Values| -> Result<_, Problem> { values.number("stiffness") },
+//! }];
+//! let spring = find(&SPRINGS, "linear")?;
+//! let mut values = Values::new(spring.parameters);
+//! values.give("stiffness", Value::Number(2.5))?;
+//! assert_eq!((spring.build)(&values)?, 2.5);
+//! // A mistyped name gets the nearest one, and every number has a unit and a meaning.
+//! assert!(find(&SPRINGS, "linaer").unwrap_err().to_string().contains("linear"));
+//! assert_eq!(metric::TOOL_FORCE.unit(), "N");
+//! # Ok::<(), Problem>(())
+//! ```
 
 mod dimension;
 mod entry;

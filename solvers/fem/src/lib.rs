@@ -3,6 +3,22 @@
 //! tet4, tet10, hex8 and hex20 cells, in any mixture, curved or straight. A table is built once and knows nothing
 //! of what it is used for: stiffness, loads, boundary terms, probes and transfer all read the same rows.
 //! Everything is in the reference configuration, in metres.
+//!
+//! ```
+//! use geometry::{CellKind, generate::box_mesh};
+//! use shape::{Point3, Vector3};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let max = Point3::new(0.02, 0.01, 0.01);
+//! let mesh = box_mesh(CellKind::Tet10, Point3::origin(), max, [2, 1, 1], [1.0; 3], None)?;
+//! let volume = fem::volume_rows(&mesh, &fem::VolumeRule::STANDARD)?;
+//! assert!((volume.weights().iter().sum::<f64>() - 2e-6).abs() < 1e-18);
+//! // The gradients of a linear field are reproduced at every point: u = (3 y, 0, 0).
+//! let u: Vec<Vector3> = mesh.points().iter().map(|x| Vector3::new(3.0 * x.y, 0.0, 0.0)).collect();
+//! let gradients = volume.at().displacement_gradients(&u);
+//! assert!(gradients.iter().all(|h| (h[(0, 1)] - 3.0).abs() < 1e-12 && h[(0, 0)].abs() < 1e-12));
+//! # Ok(())
+//! # }
+//! ```
 
 mod bounds;
 mod closest;

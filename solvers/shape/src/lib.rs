@@ -5,6 +5,22 @@
 //! and never asks who filled them, which is what makes a comparison fair.
 //!
 //! Compressed rows in flat arrays; positions and gradients in the reference configuration; SI units.
+//!
+//! ```
+//! use shape::{PointRows, Point3, RowBlocks, Rows, Unity, Vector3};
+//! // Two points on the line between two nodes, at a quarter and at the end of it.
+//! let rows = Rows::new(2, vec![0, 2, 3], vec![0, 1, 1], vec![0.75, 0.25, 1.0], Unity::Within(1e-12))?;
+//! let points = vec![Point3::new(0.25, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0)];
+//! let table = PointRows::new(points, rows)?;
+//! let u = [Vector3::zeros(), Vector3::new(8.0, 0.0, 0.0)];
+//! let at_points = table.rows().apply(&u);
+//! assert_eq!((at_points[0].x, at_points[1].x), (2.0, 8.0));
+//! // Packed by eight rows for repeated use, with the same bits.
+//! let mut out = vec![Vector3::zeros(); 2];
+//! RowBlocks::new(table.rows()).apply_into(&u, &mut out);
+//! assert_eq!(out, at_points);
+//! # Ok::<(), shape::ShapeError>(())
+//! ```
 
 mod blocks;
 mod dilation;
