@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use cases::exact::{exact_names, exact_parameters};
 use cases::scene::{Basis, Element, Mass, SupportShape};
-use catalogue::{metric::METRICS, names};
+use catalogue::{Parameter, metric::METRICS, names};
+use material::LAWS;
 use reports::{Check, Status};
 
 use crate::outcome::{Outcome, Stage};
@@ -24,6 +25,10 @@ pub fn print() {
     println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
     println!("essential   nitsche, penalty, multipliers, elimination, coupling");
     println!("transfer    {}, own", names(interp::SCHEMES).join(", "));
+    println!("laws, with their constants");
+    for law in LAWS {
+        println!("  {:24} {}", law.name, parameters(law.parameters));
+    }
     println!("exact solutions, with their parameters");
     for name in exact_names() {
         let parameters = exact_parameters(name).unwrap_or_default();
@@ -48,6 +53,15 @@ pub fn print() {
     if !scenes.is_empty() {
         println!("scenes and studies here\n  {}", scenes.join("\n  "));
     }
+}
+
+/// Names with units; in brackets those that may be left out.
+fn parameters(parameters: &[Parameter]) -> String {
+    let one = |p: &Parameter| {
+        let name = if p.required { p.name.to_string() } else { format!("({})", p.name) };
+        if p.dimension.is_plain() { name } else { format!("{name} [{}]", p.dimension.si_unit()) }
+    };
+    parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// The plan of one method.

@@ -1,7 +1,7 @@
 //! What a finished run is told in: errors, maxima, energies, counts, probes.
 
 use geometry::{Matrix3, Point3, Vector3};
-use material::Law;
+use material::{Law, Material as _};
 use statics::Body;
 
 use crate::Failure;

@@ -2,6 +2,7 @@
 
 use cases::scene::ConstraintRows;
 use explicit::KernelInfo;
+use material::Material as _;
 
 use crate::discretise::{Dilation, Discretisation, Efg, Essential, Functions, Integration};
 use crate::in_time::InTimeParams;

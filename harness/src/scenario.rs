@@ -36,11 +36,10 @@ pub struct Scenario<'a> {
 impl Scenario<'_> {
     /// The laws by region, and their limits at small strain.
     fn laws(&self) -> Result<(Vec<Law>, Vec<LinearElastic>), Failure> {
-        let regions = self.scene.regions.iter().enumerate();
-        let regions = regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, None));
-        let all =
-            std::iter::once(("material".to_string(), &self.scene.material, self.poisson)).chain(regions);
-        all.map(|(key, material, poisson)| {
+        // A study varies the ratio of the body, not of its regions.
+        let ratios = std::iter::once(self.poisson).chain(std::iter::repeat(None));
+        let all = self.scene.materials().zip(ratios);
+        all.map(|((key, material), poisson)| {
             let law = law::law(material, poisson, &key)?;
             let linear = law::small_strain(&law, &key)?;
             Ok((law, linear))

@@ -18,7 +18,7 @@ fn soft(poisson: f64) -> Law {
 }
 
 fn linear() -> Law {
-    Law::Linear(LinearElastic::new(20e3, 0.3).unwrap())
+    Law::LinearElastic(LinearElastic::new(20e3, 0.3).unwrap())
 }
 
 /// 4 x 3 x 2 cm.

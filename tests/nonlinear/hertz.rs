@@ -47,7 +47,7 @@ fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
     let shape = ToolShape::Sphere { radius: RADIUS };
     let sphere = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
     let tools = [DrivenTool { tool: &sphere, drive: Drive::Closure(depth) }];
-    let law = Law::Linear(LinearElastic::new(YOUNG, POISSON).unwrap());
+    let law = Law::LinearElastic(LinearElastic::new(YOUNG, POISSON).unwrap());
     let problem =
         StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };
     let path = solve("hertz", &problem, &steps(1));

@@ -91,12 +91,7 @@ impl Scene {
             }
         }
         if explicit {
-            let prony = std::iter::once(("material".to_string(), &self.prony));
-            let regions = self.regions.iter().enumerate();
-            for (key, _) in prony
-                .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.prony)))
-                .filter(|(_, prony)| !prony.is_empty())
-            {
+            for (key, _) in self.materials().filter(|(_, material)| !material.prony.is_empty()) {
                 add(&format!("{key}.prony"), "relaxation in explicit dynamics".into(), "leave it out");
             }
         }

@@ -12,6 +12,7 @@ mod error;
 mod expression;
 mod field;
 mod keys;
+mod material;
 mod method;
 mod model;
 mod output;
@@ -36,7 +37,8 @@ pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
     Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
-pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
+pub use material::{Material, Relaxation};
+pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
 pub use purpose::{Publication, Purpose};

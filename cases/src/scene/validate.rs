@@ -58,8 +58,9 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             known_methods(std::slice::from_ref(id), scene, "reference.method", report);
         }
         Some(Reference::Exact { name, parameters }) => {
-            if let Some(e) = scene.material.elastic() {
-                let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
+            let moduli = ["young", "poisson"].map(|name| scene.material.constant(name));
+            if let [Some(young), Some(poisson)] = moduli {
+                let params = Params { young, poisson, values: parameters.clone() };
                 match exact_by_name(name, &params) {
                     Err(bad) => report.add("reference", Problem::new(format!("can't be built: {bad}"))),
                     Ok(exact) if scene.procedure.kind == ProcedureKind::Modes => {

@@ -149,6 +149,60 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
     }
 }
 
+/// Makes what an entry is of; what its constructor refuses is noted at the parameter below `key` that it names, or `at`.
+pub(crate) fn build<T>(
+    entry: &Entry<fn(&Values) -> Result<T, Problem>>,
+    values: &Values,
+    (key, at): (&str, &str),
+    report: &mut Report,
+) -> Option<T> {
+    let noted = |bad: Problem| match bad.parameter {
+        Some(parameter) => report.add(&format!("{key}.{parameter}"), bad),
+        None => report.add(at, bad),
+    };
+    (entry.build)(values).map_err(noted).ok()
+}
+
+/// The schema of a table that names an entry by the key `tag`, has its settings and the keys `K` of every entry of its kind:
+/// one form for each entry, so that a setting of another is no key of this one.
+pub(crate) fn tagged<V: Vocabulary, K: JsonSchema>(
+    tag: &str,
+    meaning: &str,
+    generator: &mut SchemaGenerator,
+) -> Schema {
+    let beside = K::json_schema(generator).to_value();
+    let form = |entry: &Entry<V::Build>| {
+        let mut properties = beside["properties"].as_object().cloned().unwrap_or_default();
+        let mut required = beside["required"].as_array().cloned().unwrap_or_default();
+        properties.insert(tag.into(), json!({ "type": "string", "const": entry.name }));
+        required.push(tag.into());
+        for parameter in entry.parameters {
+            properties.insert(parameter.name.into(), property(parameter));
+            if parameter.required {
+                required.push(parameter.name.into());
+            }
+        }
+        json!({
+            "type": "object",
+            "description": entry.meaning,
+            "properties": properties,
+            "required": required,
+            "additionalProperties": false,
+        })
+    };
+    let forms: Vec<_> = V::ENTRIES.iter().map(form).collect();
+    json_schema!({ "description": meaning, "oneOf": forms })
+}
+
+/// Laws of materials.
+pub(crate) enum Laws {}
+
+impl Vocabulary for Laws {
+    type Build = fn(&Values) -> Result<material::Law, Problem>;
+    const NOUN: &'static str = "law";
+    const ENTRIES: &'static [Entry<Self::Build>] = material::LAWS;
+}
+
 /// Kernels of clouds.
 pub(crate) enum Kernels {}
 

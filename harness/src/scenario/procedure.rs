@@ -31,8 +31,6 @@ impl Scenario<'_> {
         let procedure = self.scene.procedure;
         let asked = procedure.explicit;
         let duration = procedure.duration.filter(|_| procedure.kind == ProcedureKind::Explicit)?;
-        let materials =
-            std::iter::once(&self.scene.material).chain(self.scene.regions.iter().map(|r| &r.material));
         Some(ExplicitParams {
             duration,
             ramp: procedure.over.unwrap_or(duration),
@@ -41,7 +39,7 @@ impl Scenario<'_> {
             safety: asked.safety,
             step: asked.step,
             tool_mass: asked.tool_mass,
-            density: materials.map(|m| m.density().unwrap_or(f64::NAN)).collect(),
+            density: self.density(),
             over: self.scene.tools.iter().map(|t| t.over.unwrap_or(duration)).collect(),
         })
     }
@@ -49,10 +47,12 @@ impl Scenario<'_> {
     pub(super) fn modes(&self) -> Option<ModesParams> {
         let procedure = self.scene.procedure;
         let mass = self.method.mass.filter(|_| procedure.kind == ProcedureKind::Modes)?;
-        let materials =
-            std::iter::once(&self.scene.material).chain(self.scene.regions.iter().map(|r| &r.material));
-        let density = materials.map(|m| m.density().unwrap_or(f64::NAN)).collect();
-        Some(ModesParams { mass, count: procedure.modes, density })
+        Some(ModesParams { mass, count: procedure.modes, density: self.density() })
+    }
+
+    /// Densities by region; a scene whose procedure needs one it lacks is refused before.
+    fn density(&self) -> Vec<f64> {
+        self.scene.materials().map(|(_, material)| material.density.unwrap_or(f64::NAN)).collect()
     }
 
     pub(super) fn in_time(&self) -> Result<Option<InTimeParams>, Failure> {
@@ -62,12 +62,8 @@ impl Scenario<'_> {
         else {
             return Ok(None);
         };
-        let regions = &self.scene.regions;
-        let materials = std::iter::once(&self.scene.material).chain(regions.iter().map(|r| &r.material));
-        let series = std::iter::once(("material".to_string(), &self.scene.prony))
-            .chain(regions.iter().enumerate().map(|(i, r)| (format!("region[{i}].material"), &r.prony)));
-        let relaxation = series.map(|(key, terms)| {
-            let terms: Vec<(f64, f64)> = terms.iter().map(|t| (t.g, t.tau)).collect();
+        let relaxation = self.scene.materials().map(|(key, material)| {
+            let terms: Vec<(f64, f64)> = material.prony.iter().map(|t| (t.g, t.tau)).collect();
             let wrong = |bad: material::MaterialError| {
                 Failure::input(Key::Scene(format!("{key}.prony")), bad.to_string(), "")
             };
@@ -88,7 +84,7 @@ impl Scenario<'_> {
                 },
                 augmentations: procedure.newton.augmentations,
             },
-            density: asked.inertia.then(|| materials.map(|m| m.density().unwrap_or(f64::NAN)).collect()),
+            density: asked.inertia.then(|| self.density()),
             damping: procedure.damping,
             ramp: procedure.over.unwrap_or(end),
             over: self.scene.tools.first().and_then(|t| t.over).unwrap_or(end),

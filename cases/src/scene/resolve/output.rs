@@ -6,7 +6,7 @@ use crate::exact::{exact_names, exact_parameters};
 use crate::scene::keys::*;
 use crate::scene::output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 use crate::scene::report::Report;
-use crate::scene::vocabulary::settings;
+use crate::scene::vocabulary::{build, settings};
 use catalogue::Dimension;
 use catalogue::Problem;
 use catalogue::metric;
@@ -66,7 +66,7 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Option<Transf
         SchemeKeys::Own(OwnWord::Own) => None,
         SchemeKeys::Scheme(word) => {
             let values = settings(&word, keys.settings, key, report)?;
-            let made = (word.0.build)(&values).map_err(|bad| report.add(&at("scheme"), bad)).ok()?;
+            let made = build(word.0, &values, (key, &at("scheme")), report)?;
             Some((made, values))
         }
     };

@@ -27,7 +27,7 @@ fn equal_stretch_in_all_directions() {
             for law in laws(poisson) {
                 let (mu, lambda, bulk) = (law.mu(), law.lambda(), law.bulk());
                 let exact = match law {
-                    Law::Linear(_) => 3.0 * bulk * (s - 1.0),
+                    Law::LinearElastic(_) => 3.0 * bulk * (s - 1.0),
                     Law::SaintVenantKirchhoff(_) => 1.5 * bulk * s * (s * s - 1.0),
                     Law::NeoHookean(_) => mu * (s - 1.0 / s) + 3.0 * lambda * s.ln() / s,
                     Law::Hencky(_) => 3.0 * bulk * s.ln() / s,
@@ -52,7 +52,7 @@ fn uniaxial_strain() {
                 let (mu, lambda, bulk) = (law.mu(), law.lambda(), law.bulk());
                 let volume = bulk * (l - 1.0);
                 let exact = match law {
-                    Law::Linear(_) => (lambda + 2.0 * mu) * (l - 1.0),
+                    Law::LinearElastic(_) => (lambda + 2.0 * mu) * (l - 1.0),
                     Law::SaintVenantKirchhoff(_) => (lambda + 2.0 * mu) * l * (l * l - 1.0) / 2.0,
                     Law::NeoHookean(_) => mu * (l - 1.0 / l) + lambda * l.ln() / l,
                     Law::Hencky(_) => (lambda + 2.0 * mu) * l.ln() / l,
@@ -93,7 +93,7 @@ fn simple_shear() {
                 let square = gamma * gamma;
                 // Shear stress and first normal stress difference.
                 let (shear, normal) = match law {
-                    Law::Linear(_) => {
+                    Law::LinearElastic(_) => {
                         near(P[(0, 1)], mu * gamma, &law);
                         continue;
                     }
