@@ -16,7 +16,8 @@ fn laws() -> [Law; 2] {
 
 /// Every other law, twice each, as [`laws`].
 fn other_laws() -> Vec<[Law; 2]> {
-    let [soft, stiff] = [(20e3, 0.495), (35e3, 0.3)].map(|(young, poisson)| Law::all(young, poisson).unwrap());
+    let [soft, stiff] =
+        [(20e3, 0.495), (35e3, 0.3)].map(|(young, poisson)| Law::all(young, poisson).unwrap());
     let pairs = soft.into_iter().zip(stiff).map(|(soft, stiff)| [soft, stiff]);
     pairs.filter(|[law, _]| !matches!(law, Law::NeoHookean(_))).collect()
 }

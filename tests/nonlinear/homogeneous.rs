@@ -33,7 +33,8 @@ fn pairs() -> Vec<(Law, Hyperelastic)> {
         Law::Ogden(law) => Some(Hyperelastic::Ogden { terms: law.terms().to_vec(), bulk }),
         _ => None,
     };
-    let pairs: Vec<_> = laws(YOUNG, POISSON).into_iter().filter_map(|law| exact(&law).map(|e| (law, e))).collect();
+    let pairs: Vec<_> =
+        laws(YOUNG, POISSON).into_iter().filter_map(|law| exact(&law).map(|e| (law, e))).collect();
     assert_eq!(pairs.len(), 6);
     pairs
 }

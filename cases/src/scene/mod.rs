@@ -33,11 +33,11 @@ pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
+pub use material::{Material, Relaxation};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
     Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
-pub use material::{Material, Relaxation};
 pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind};
