@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use cases::exact::{exact_names, exact_parameters};
 use cases::scene::{Basis, Element, Mass, SupportShape};
 use catalogue::{Parameter, metric::METRICS, names};
+use contact::TOOL_SHAPES;
 use material::LAWS;
 use reports::{Check, Status};
 
@@ -28,6 +29,10 @@ pub fn print() {
     println!("laws, with their constants");
     for law in LAWS {
         println!("  {:24} {}", law.name, parameters(law.parameters));
+    }
+    println!("tools, with their lengths");
+    for shape in TOOL_SHAPES {
+        println!("  {:24} {}", shape.name, parameters(shape.parameters));
     }
     println!("exact solutions, with their parameters");
     for name in exact_names() {

@@ -12,7 +12,7 @@
 //! ```
 
 use cases::exact::{Elastic, Hertz};
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;
 use geometry::generate::box_mesh;
@@ -44,7 +44,7 @@ fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
     // A hundredth of the depth under the peak pressure.
     let touch = ContactLaw::frictionless(300.0 * hertz.peak_pressure() / depth).unwrap();
     let at = Point3::new(0.0, 0.0, RADIUS);
-    let shape = ToolShape::Sphere { radius: RADIUS };
+    let shape = ToolShape::Sphere(Sphere { radius: RADIUS });
     let sphere = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
     let tools = [DrivenTool { tool: &sphere, drive: Drive::Closure(depth) }];
     let law = Law::LinearElastic(LinearElastic::new(YOUNG, POISSON).unwrap());

@@ -10,7 +10,7 @@
 //! ```
 
 use cases::exact::{Elastic, Homogeneous, Hyperelastic};
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
 use fem::SurfaceRule;
 use integration::model::*;
 use material::Law;
@@ -52,7 +52,7 @@ fn compress(walls: &[(&str, u8)], state: impl Fn(&Hyperelastic) -> Homogeneous) 
         let down = -Vector3::z();
         let law = ContactLaw::frictionless(PENALTY).unwrap();
         let at = Point3::new(0.0, 0.0, SIZE.z);
-        let plate = Tool::new(ToolShape::Plate, at, Tool::turned_to(&down), down, law).unwrap();
+        let plate = Tool::new(ToolShape::Plate(Plate), at, Tool::turned_to(&down), down, law).unwrap();
         for (law, exact) in pairs() {
             let name = format!("{method:?} {}", law.name());
             let state = state(&exact);

@@ -6,7 +6,6 @@ use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::model::Scene;
 use super::procedure::ProcedureKind;
-use super::tool::ToolShape;
 
 /// What holds a cloud in every procedure.
 pub(super) const HELD: &str = "essential = \"penalty\" and \"coupling\" are";
@@ -34,12 +33,6 @@ impl Scene {
             let problem = Problem::new(format!("{what} is not available yet")).help(help);
             errors.push(self.origin.error(ErrorKind::NotAvailable, key, problem));
         };
-        for (i, tool) in self.tools.iter().enumerate() {
-            if let ToolShape::File(_) = tool.shape {
-                let help = "plate, rounded-box, sphere, cylinder and capsule are";
-                add(&format!("tool[{i}].shape"), "the distance to a mesh".into(), help);
-            }
-        }
         let kind = self.procedure.kind;
         let explicit = kind == ProcedureKind::Explicit;
         let implicit = kind == ProcedureKind::ImplicitDynamic;

@@ -166,7 +166,7 @@ fn tools(scene: &Scene, report: &mut Report) {
             let help = format!("a {} procedure has no time axis: leave it out", scene.procedure.kind.name());
             report.add(&at("drive.over"), Problem::new("is the time of a ramp").help(help));
         }
-        if matches!(tool.drive, Drive::Pressure(_)) && tool.face_area().is_none() {
+        if matches!(tool.drive, Drive::Pressure(_)) && tool.shape.face_area(&tool.along.into()).is_none() {
             let help =
                 "only a rounded-box that closes along x, y or z has a face of a known area; give force";
             report.add(&at("drive.pressure"), Problem::new("has no face to act on").help(help));

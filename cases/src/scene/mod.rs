@@ -44,7 +44,7 @@ pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKin
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};
-pub use tool::{Drive, Friction, Tool, ToolShape};
+pub use tool::{Drive, Friction, Tool};
 
 /// Reads the scene in a file. The name in messages is `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {

@@ -203,6 +203,15 @@ impl Vocabulary for Laws {
     const ENTRIES: &'static [Entry<Self::Build>] = material::LAWS;
 }
 
+/// Shapes of tools.
+pub(crate) enum ToolShapes {}
+
+impl Vocabulary for ToolShapes {
+    type Build = fn(&Values) -> Result<contact::ToolShape, Problem>;
+    const NOUN: &'static str = "shape";
+    const ENTRIES: &'static [Entry<Self::Build>] = contact::TOOL_SHAPES;
+}
+
 /// Kernels of clouds.
 pub(crate) enum Kernels {}
 

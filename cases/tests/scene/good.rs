@@ -264,18 +264,6 @@ fn what_waits_for_later_is_read_and_then_named() {
             "method[2].dilation",
             "dilation = \"mixed\" for clouds is not available yet",
         ),
-        (
-            static_and(
-                "[procedure]\n",
-                &format!(
-                    "{}[procedure]\n",
-                    JAW.replace("rounded-box", "file").replace("radius", "path = \"Cargo.toml\"\nradius")
-                ),
-            ),
-            "\"file\"",
-            "tool[0].shape",
-            "the distance to a mesh is not available yet",
-        ),
     ] {
         let scene = parse(&text, &format!("{}/s.toml", env!("CARGO_MANIFEST_DIR")))
             .unwrap_or_else(|e| panic!("{}", e[0]));
@@ -309,9 +297,10 @@ fn a_static_scene_runs_with_everything_it_knows() {
     assert_eq!((tool.along, tool.axis, tool.drive), ([0.0, 0.0, -1.0], None, Drive::Closure(0.007)));
     assert_eq!(tool.penalty, 5e8);
     assert_eq!(tool.friction, Some(Friction { coefficient: 0.15, stick: 1e11 }));
-    assert!((tool.face_area().unwrap() - 2e-4).abs() < 1e-18);
+    assert!((tool.shape.face_area(&tool.along.into()).unwrap() - 2e-4).abs() < 1e-18);
     let slanted = text.replace("[0, 0, -2]", "[0, 1, -2]");
-    assert_eq!(parse(&slanted, "s.toml").expect("sound").tools[0].face_area(), None);
+    let tool = &parse(&slanted, "s.toml").expect("sound").tools[0];
+    assert_eq!(tool.shape.face_area(&tool.along.into()), None);
     // A plate looks where it goes, a roller lies along z, unless the file says otherwise.
     let plate = |more: &str| {
         let jaw = format!(
@@ -365,7 +354,7 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "friction = 0.15",
             "friction = 0.15\naxis = [0, 0, 1]",
             "tool[0].axis",
-            "does not belong to this shape",
+            "does not belong to shape = \"rounded-box\"; leave it out; it goes with plate, cylinder, capsule",
         ),
         ("[0, 0, -2]", "[0, 0, 0]", "tool[0].along", "has no direction"),
         ("closure = \"7 mm\" }", "force = \"-1 N\" }", "tool[0].drive.force", "is not positive"),
@@ -428,7 +417,12 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "material.law",
             "has not the constants it needs",
         ),
-        ("poisson = 0.45\n", "poisson = 0.45\nc10 = \"1 kPa\"\n", "material.c10", "is not a known key"),
+        (
+            "poisson = 0.45\n",
+            "poisson = 0.45\nc10 = \"1 kPa\"\n",
+            "material.c10",
+            "it goes with mooney-rivlin",
+        ),
     ] {
         assert!(with_jaw.contains(from), "{from}");
         let text = with_jaw.replacen(from, to, 1);
