@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cases::exact::{exact_names, exact_parameters};
+use cases::exact::SOLUTIONS;
 use cases::scene::{Basis, Element, Mass, SupportShape};
 use catalogue::{Parameter, metric::METRICS, names};
 use contact::TOOL_SHAPES;
@@ -35,13 +35,8 @@ pub fn print() {
         println!("  {:24} {}", shape.name, parameters(shape.parameters));
     }
     println!("exact solutions, with their parameters");
-    for name in exact_names() {
-        let parameters = exact_parameters(name).unwrap_or_default();
-        let list: Vec<String> = parameters
-            .iter()
-            .map(|p| if p.unit.is_empty() { p.name.to_string() } else { format!("{} [{}]", p.name, p.unit) })
-            .collect();
-        println!("  {name:24} {}", list.join(", "));
+    for solution in SOLUTIONS {
+        println!("  {:24} {}", solution.name, parameters(solution.parameters));
     }
     println!("metrics");
     for metric in METRICS {

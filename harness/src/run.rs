@@ -16,7 +16,7 @@ use crate::measure::{measure, of_tables, probes, push};
 use crate::memory::Baseline;
 use crate::modes::{self, Told};
 use crate::motion::Motion;
-use crate::outcome::{Identity, LoadStep, Outcome, Probe, SchemeSettings, Size, Stage};
+use crate::outcome::{Identity, LoadStep, Outcome, Probe, SchemeSettings, Size, Stage, of_tool};
 use crate::picture::{State, picture};
 use crate::plan;
 use crate::prepare::{Prepared, prepare};
@@ -204,6 +204,10 @@ fn on_pool(
         }
         (None, None) => (None, Vec::new(), None),
     };
+    if let (Some(contact), Some(last), None) = (setup.contact, &last, &stalled) {
+        let pushed = last.tools.first().map_or(0.0, |tool| tool.pushed);
+        push(&mut metrics, &of_tool("tool-force-error", 0), (pushed / contact.force - 1.0).abs(), "1");
+    }
     let status = match (&stalled, &relaxed_from) {
         (Some(failure), _) => failure.early_status(),
         (None, Some(_)) => "relaxed",

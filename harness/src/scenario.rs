@@ -6,7 +6,7 @@ mod procedure;
 
 pub(crate) use identity::{purpose, rule};
 
-use cases::exact::{Exact, Params, exact_by_name};
+use cases::exact::{Exact, Medium};
 use cases::scene::{self, LoadKind, OnStall, Prescribed, ProcedureKind, Reference, Scene, VectorField};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic};
@@ -54,7 +54,8 @@ impl Scenario<'_> {
 
     fn acting(&self) -> Result<Setup, Failure> {
         let (laws, materials) = self.laws()?;
-        let e = materials[0];
+        let medium = self.medium(&laws[0], materials[0])?;
+        let e = &medium;
         let exact = self.exact(e)?;
         let held = self
             .scene
@@ -127,17 +128,22 @@ impl Scenario<'_> {
             relax,
             explicit,
             in_time,
-            exact,
+            contact: exact.as_ref().and_then(|exact| exact.contact()),
+            exact: exact.filter(|exact| exact.contact().is_none()),
         })
+    }
+
+    /// The body's material as exact solutions take it.
+    fn medium(&self, law: &Law, limit: LinearElastic) -> Result<Medium, Failure> {
+        scene::medium(law, limit.young(), limit.poisson())
+            .map_err(|bad| Failure::input(Key::Scene("material".into()), bad.to_string(), ""))
     }
 
     /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene
     /// names none.
-    fn exact(&self, e: LinearElastic) -> Result<Option<Box<dyn Exact>>, Failure> {
-        let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
-        let values = parameters.clone();
-        let params = Params { young: e.young(), poisson: e.poisson(), values };
-        let exact = exact_by_name(name, &params)
+    fn exact(&self, medium: &Medium) -> Result<Option<Box<dyn Exact>>, Failure> {
+        let Some(Reference::Exact { entry, values }) = &self.scene.reference else { return Ok(None) };
+        let exact = (entry.build)(medium, values)
             .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))?;
         Ok(Some(self.scene.procedure.duration.and_then(|end| exact.at(end)).unwrap_or(exact)))
     }

@@ -32,7 +32,7 @@ fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
     let (low, high) = (Point3::new(0.0, 0.0, -side), Point3::new(side, side, 0.0));
     let mesh = box_mesh(kind, low, high, [cells; 3], [40.0, 40.0, 1.0 / 40.0], None).unwrap();
     let model = Model::new(mesh, Projection::Standard);
-    let mut fixed = model.hold(&["x-max", "y-max", "z-min"], &[0, 1, 2], |x| hertz.far_displacement(x));
+    let mut fixed = model.hold(&["x-max", "y-max", "z-min"], &[0, 1, 2], |x| hertz.displacement(x));
     for (side, axis) in [("x-min", 0), ("y-min", 1)] {
         let far: Vec<u32> = fixed.iter().filter(|f| f.axis == axis).map(|f| f.node).collect();
         let wall = model.hold(&[side], &[axis], |_| Vector3::zeros());

@@ -14,6 +14,7 @@
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
 use fem::SurfaceRule;
 use integration::model::*;
+use material::Material as _;
 use shape::{Point3, Vector3};
 use statics::{Load, NewtonParams, StaticParams, StaticPath, StaticProblem};
 

@@ -1,8 +1,8 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
-use super::field::{Prescribed, ScalarField, VectorField};
+use super::field::{Prescribed, ScalarField};
 use super::method::{Cloud, Dilation, Efg, Element, Family};
-use super::model::{LoadKind, Scene};
+use super::model::Scene;
 use super::output::Reference;
 use super::procedure::ProcedureKind;
 use super::report::Report;
@@ -137,15 +137,6 @@ fn laws(scene: &Scene, report: &mut Report) {
                 format!("relaxes over time, which a {} procedure has not", scene.procedure.kind.name());
             let help = "leave it out: young and poisson are then the moduli of the load's own duration";
             report.add(&format!("{key}.prony"), Problem::new(problem).help(help));
-        }
-    }
-    let Some((_, large)) = scene.materials().find(|m| !m.1.law().is_small_strain()) else { return };
-    let Some(Reference::Exact { name, .. }) = &scene.reference else { return };
-    for (i, load) in scene.loads.iter().enumerate() {
-        if let LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact) = load.kind {
-            let problem =
-                format!("takes the load of {name}, a solution at small strain, for the {} law", large.name());
-            report.add(&format!("load[{i}]"), Problem::new(problem).help("take law = \"linear\""));
         }
     }
 }

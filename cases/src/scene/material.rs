@@ -1,7 +1,9 @@
 //! Materials of a scene.
 
 use catalogue::{Problem, Value, Values};
-use material::{Law, LawEntry};
+use material::{Law, LawEntry, Material as _};
+
+use crate::exact::{Elastic, ExactError, Hyperelastic, Medium};
 
 /// A law with the constants that the scene gives, and what goes with any law.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +52,26 @@ impl Material {
         }
         (self.entry.build)(&values)
     }
+}
+
+/// A law as the exact solutions take it, of these moduli at small strain: their energies are written out apart from the
+/// solvers', and share the constants alone. A law that is not among them has solutions at small strain only.
+pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError> {
+    let elastic = Elastic::new(young, poisson)?;
+    let law = match law {
+        Law::SaintVenantKirchhoff(_) => Some(Hyperelastic::SaintVenantKirchhoff(elastic)),
+        Law::NeoHookean(_) => Some(Hyperelastic::NeoHookean(elastic)),
+        Law::Hencky(_) => Some(Hyperelastic::Hencky(elastic)),
+        Law::NeoHookeanIsochoric(law) => {
+            Some(Hyperelastic::MooneyRivlin { c10: law.c10(), c01: 0.0, bulk: law.bulk() })
+        }
+        Law::MooneyRivlin(law) => {
+            Some(Hyperelastic::MooneyRivlin { c10: law.c10(), c01: law.c01(), bulk: law.bulk() })
+        }
+        Law::Ogden(law) => Some(Hyperelastic::Ogden { terms: law.terms().to_vec(), bulk: law.bulk() }),
+        _ => None,
+    };
+    Ok(Medium { elastic, law })
 }
 
 /// A term of a Prony series: a share of the shear response that relaxes exponentially.

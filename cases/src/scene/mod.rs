@@ -33,7 +33,7 @@ pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
-pub use material::{Material, Relaxation};
+pub use material::{Material, Relaxation, medium};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
     Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,

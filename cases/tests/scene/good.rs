@@ -36,8 +36,8 @@ fn a_scene_arrives_in_si() {
     assert_eq!(scene.checks[0].methods, ["tet4", "efg-83"]);
     let Bound::KnownBand { low, high, reason } = &scene.checks[1].bound else { panic!("a band") };
     assert_eq!((*low, *high, reason.as_str()), (1e-4, 1e-2, "inconsistent integration"));
-    let Some(Reference::Exact { name, parameters }) = &scene.reference else { panic!("exact") };
-    assert_eq!((name.as_str(), parameters["curvature"]), ("pure-bending", 0.5));
+    let Some(Reference::Exact { entry, values }) = &scene.reference else { panic!("exact") };
+    assert_eq!((entry.name, values.get("curvature")), ("pure-bending", Some(0.5)));
     assert!(scene.unavailable().is_empty());
 }
 

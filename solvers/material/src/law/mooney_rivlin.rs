@@ -89,6 +89,16 @@ impl MooneyRivlin {
         Ok(MooneyRivlin { c10: half * (1.0 - share), c01: half * share, bulk: hooke.bulk() })
     }
 
+    /// `C10`, Pa.
+    pub fn c10(&self) -> f64 {
+        self.c10
+    }
+
+    /// `C01`, Pa.
+    pub fn c01(&self) -> f64 {
+        self.c01
+    }
+
     fn moduli(&self, k: &Kinematics) -> Moduli {
         let a = (-2.0 / 3.0 * k.ln_j()).exp();
         Moduli { J: 1.0 + k.j, first: 2.0 * self.c10 * a, second: 2.0 * self.c01 * a * a }
