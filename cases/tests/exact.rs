@@ -144,7 +144,7 @@ fn the_list_holds_every_solution() {
 }
 
 /// The gradient is that of the displacement, `Div P = 0` with `P` from tractions of the undeformed planes, and Cauchy's stress
-/// is `P F^T / J`. The radius of a bent block is a chain of cubics: its slopes are good to 1e-6.
+/// is `P F^T / J`. The radius of a bent block is a chain of cubics: its first slopes are good to 1e-6, its second to 1e-4.
 #[test]
 fn solutions_at_large_strain_solve_their_equations() {
     let elastic = Elastic::new(YOUNG, 0.3).unwrap();
@@ -163,7 +163,7 @@ fn solutions_at_large_strain_solve_their_equations() {
                 };
                 let divergence: Vector3 = (0..3).map(|j| slope(piola, &x, j).column(j).into_owned()).sum();
                 let size = piola(&x).norm();
-                assert!(divergence.norm() < 1e-5 * size, "{name}: out of balance by {divergence} of {size}");
+                assert!(divergence.norm() < 1e-4 * size, "{name}: out of balance by {divergence} of {size}");
                 let deformation = Matrix3::identity() + gradient;
                 let cauchy = piola(&x) * deformation.transpose() / deformation.determinant();
                 assert!((cauchy - exact.stress(&x)).norm() < 1e-12 * size, "{name}: stress at {x}");

@@ -1,6 +1,8 @@
 //! Laws by principal stretches and homogeneous states: what holds for every isotropic law.
 
-use cases::exact::{Elastic, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3};
+use cases::exact::{
+    Elastic, Exact as _, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3,
+};
 
 const YOUNG: f64 = 20e3;
 

@@ -11,7 +11,7 @@
 //!             falls by 2^1.5.
 //! ```
 
-use cases::exact::{Elastic, Hertz};
+use cases::exact::{Elastic, Exact as _, Hertz};
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;

@@ -33,9 +33,8 @@ pub enum ExactError {
 impl From<ExactError> for Problem {
     fn from(bad: ExactError) -> Problem {
         match bad {
-            ExactError::BadParameter { solution, name, value, need } => {
+            ExactError::BadParameter { solution, name, need, .. } => {
                 Problem::new(format!("does not go with {solution}"))
-                    .found(format!("{name} = {value}"))
                     .help(format!("it must be {need}"))
                     .of(name)
             }

@@ -133,18 +133,23 @@ pub struct Contact {
 pub fn exact_by_name(name: &str, medium: &Medium, given: &[(&str, f64)]) -> Result<Box<dyn Exact>, Problem> {
     let entry = find(SOLUTIONS, name)?;
     let mut values = Values::new(entry.parameters);
+    // A file has the text of what it gives; here there is none.
+    let with_value = |bad: Problem, name: &str| match given.iter().find(|(given, _)| *given == name) {
+        Some((name, value)) if bad.found.is_none() => bad.found(format!("{name} = {value}")),
+        _ => bad,
+    };
     for (name, value) in given {
-        values.give(name, Value::Number(*value)).map_err(|bad| match bad.found {
-            Some(_) => bad,
-            None => bad.found(format!("{name} = {value}")),
-        })?;
+        values.give(name, Value::Number(*value)).map_err(|bad| with_value(bad, name))?;
     }
     match values.missing() {
         Some(p) => {
             let needs = format!("needs {}: {} [{}]", p.name, p.meaning, p.dimension.si_unit());
             Err(Problem::new(needs).found(entry.name))
         }
-        None => (entry.build)(medium, &values),
+        None => (entry.build)(medium, &values).map_err(|bad| {
+            let name = bad.parameter.unwrap_or_default();
+            with_value(bad, name)
+        }),
     }
 }
 

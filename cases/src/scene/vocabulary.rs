@@ -151,7 +151,7 @@ pub(crate) fn settings<V: Vocabulary>(
 /// What is right in place of a setting that an entry has not.
 fn of_entry<B>(entry: &Entry<B>, name: &str) -> String {
     match nearest(name, entry.parameters.iter().map(|parameter| parameter.name)) {
-        Some(near) => format!("{} takes {near}", entry.name),
+        Some(near) => format!("did you mean '{near}'?"),
         None => format!("{} takes no {name}: leave it out", entry.name),
     }
 }

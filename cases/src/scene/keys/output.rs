@@ -90,6 +90,8 @@ pub(crate) struct MeshFileKeys {
 
 /// What results are compared with; further keys are parameters of the exact solution
 #[derive(Deserialize, JsonSchema)]
+// Which of them are known hangs on the solution, so that its own are named where one is mistyped.
+#[schemars(extend("additionalProperties" = {}))]
 pub(crate) struct ReferenceKeys {
     /// An exact solution by name
     pub exact: Option<Word<Solutions>>,
