@@ -144,7 +144,7 @@ fn the_list_holds_every_solution() {
 }
 
 /// The gradient is that of the displacement, `Div P = 0` with `P` from tractions of the undeformed planes, and Cauchy's stress
-/// is `P F^T / J`. The radius of a bent block is a chain of cubics: its first slopes are good to 1e-6, its second to 1e-4.
+/// is `P F^T / J`. The radius of a bent block is a chain of a hundred cubics, whose second derivative is best at (3 - sqrt(3)) / 6 of each.
 #[test]
 fn solutions_at_large_strain_solve_their_equations() {
     let elastic = Elastic::new(YOUNG, 0.3).unwrap();
@@ -153,7 +153,7 @@ fn solutions_at_large_strain_solve_their_equations() {
         for (name, given) in LARGE {
             let exact = exact_by_name(name, &medium, given).unwrap();
             assert!(exact.is_large_strain());
-            for x in [Point3::new(0.31, 0.4, -0.2), Point3::new(-0.43, 0.9, 0.3)] {
+            for x in [Point3::new(0.312_113_25, 0.4, -0.2), Point3::new(-0.427_886_75, 0.9, 0.3)] {
                 let gradient = exact.gradient(&x);
                 let differences =
                     Matrix3::from_columns(&[0, 1, 2].map(|j| slope(|p| exact.displacement(p), &x, j)));
@@ -163,7 +163,7 @@ fn solutions_at_large_strain_solve_their_equations() {
                 };
                 let divergence: Vector3 = (0..3).map(|j| slope(piola, &x, j).column(j).into_owned()).sum();
                 let size = piola(&x).norm();
-                assert!(divergence.norm() < 1e-4 * size, "{name}: out of balance by {divergence} of {size}");
+                assert!(divergence.norm() < 1e-5 * size, "{name}: out of balance by {divergence} of {size}");
                 let deformation = Matrix3::identity() + gradient;
                 let cauchy = piola(&x) * deformation.transpose() / deformation.determinant();
                 assert!((cauchy - exact.stress(&x)).norm() < 1e-12 * size, "{name}: stress at {x}");
