@@ -50,7 +50,7 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
         (_, [form]) => one(value, span, path, form, findings),
         (DeValue::Table(table), several) => match tagged(table, span.clone(), path, several) {
             Ok(form) => keys(table, span, path, form, several, findings),
-            Err(finding) => findings.push(finding),
+            Err(finding) => findings.push(*finding),
         },
         (_, several) => {
             let words: Vec<&str> = several.iter().flat_map(|form| words(form)).collect();
@@ -190,21 +190,22 @@ fn tagged<'s>(
     span: Range<usize>,
     path: &str,
     forms: &[&'s Map<String, Value>],
-) -> Result<&'s Map<String, Value>, Finding> {
+) -> Result<&'s Map<String, Value>, Box<Finding>> {
     let variants: Vec<(&str, &str, &'s Map<String, Value>)> =
         forms.iter().filter_map(|form| tag(form).map(|(tag, word)| (tag, word, *form))).collect();
     let tag = variants.first().map_or("", |variant| variant.0);
     let words: Vec<&str> = variants.iter().map(|variant| variant.1).collect();
     let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref().as_ref() == tag) else {
         let help = format!("add {tag} = \"...\", one of: {}", words.join(", "));
-        return Err(Finding { key: join(path, tag), span, problem: Problem::new("is missing").help(help) });
+        let problem = Problem::new("is missing").help(help);
+        return Err(Box::new(Finding { key: join(path, tag), span, problem }));
     };
     let word = written(value.get_ref()).unwrap_or_default();
     match variants.iter().find(|variant| variant.1 == word) {
         Some(variant) => Ok(variant.2),
         None => {
             let problem = not_one_of(value.get_ref(), &words);
-            Err(Finding { key: join(path, tag), span: value.span(), problem })
+            Err(Box::new(Finding { key: join(path, tag), span: value.span(), problem }))
         }
     }
 }

@@ -170,9 +170,12 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
     }
 }
 
+/// An entry whose values are all that it is made of.
+pub(crate) type Makes<T> = Entry<fn(&Values) -> Result<T, Problem>>;
+
 /// Makes what an entry is of; what its constructor refuses is noted at the parameter below `key` that it names, or `at`.
 pub(crate) fn build<T>(
-    entry: &Entry<fn(&Values) -> Result<T, Problem>>,
+    entry: &Makes<T>,
     values: &Values,
     (key, at): (&str, &str),
     report: &mut Report,

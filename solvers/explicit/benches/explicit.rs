@@ -44,9 +44,7 @@ use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use lanes::LanePath;
-use material::{
-    Hencky, Law, LinearElastic, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, SaintVenantKirchhoff,
-};
+use material::{Law, NeoHookean};
 use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
 use shape::{Point3, Vector3};
 
@@ -80,46 +78,6 @@ fn every_law(
     items: usize,
 ) {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let mut f = vec![Vector3::zeros(); u.len()];
-    group.throughput(Throughput::Elements(items as u64));
-    let mut plain = InternalForce::plain(body).unwrap();
-    let mut lanes: Vec<_> =
-        LanePath::available().into_iter().map(|path| InternalForce::new(body, path).unwrap()).collect();
-    let kernel = lanes[0].info().kernel.name();
-    group.bench_function(format!("{kernel}, {items}, plain loop"), |b| {
-        one.install(|| b.iter(|| plain.evaluate(u, &mut f).unwrap()))
-    });
-    for force in &mut lanes {
-        let name = format!("{kernel}, {items}, {}, 1 thread", force.path().name());
-        group.bench_function(name, |b| one.install(|| b.iter(|| force.evaluate(u, &mut f).unwrap())));
-    }
-    let best = lanes.last_mut().unwrap();
-    let name = format!("{kernel}, {items}, {}, 2 threads", best.path().name());
-    group.bench_function(name, |b| two.install(|| b.iter(|| best.evaluate(u, &mut f).unwrap())));
-}
-
-/// All laws on one table in turn, for their time over the neo-Hookean's: `laws` of the benchmark.
-fn every_law(
-    group: &mut BenchmarkGroup<WallTime>,
-    name: &str,
-    body: ExplicitBody,
-    u: &[Vector3],
-    items: usize,
-) {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let (young, poisson) = (20e3, 0.495);
-    let hooke = LinearElastic::new(young, poisson).unwrap();
-    let mu = hooke.mu();
-    let terms = [(0.9 * mu, 1.3), (0.06 * mu, 5.0), (-0.265 * mu, -2.0)];
-    let laws = [
-        Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()),
-        Law::LinearElastic(hooke),
-        Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(young, poisson).unwrap()),
-        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(young, poisson).unwrap()),
-        Law::MooneyRivlin(MooneyRivlin::from_young(young, poisson, 0.3).unwrap()),
-        Law::Hencky(Hencky::new(young, poisson).unwrap()),
-        Law::Ogden(Ogden::new(&terms, hooke.bulk()).unwrap()),
-    ];
     let mut f = vec![Vector3::zeros(); u.len()];
     group.throughput(Throughput::Elements(items as u64));
     for law in Law::all(20e3, 0.495).unwrap() {
