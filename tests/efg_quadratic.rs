@@ -3,9 +3,7 @@
 
 mod common;
 
-use std::collections::BTreeMap;
-
-use cases::exact::{Params, exact_by_name};
+use cases::exact::{Elastic, exact_by_name};
 use common::*;
 use efg::{Approximation, Basis, CubicSpline, Kernel, Smoothing, Support};
 use geometry::generate::{Jitter, box_mesh};
@@ -16,8 +14,7 @@ use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
 /// Relative errors of displacement and stress over the integration points.
 fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f64) -> [f64; 2] {
-    let exact =
-        exact_by_name("quadratic-patch", &Params { young: 20e3, poisson, values: BTreeMap::new() }).unwrap();
+    let exact = exact_by_name("quadratic-patch", &Elastic::new(20e3, poisson).unwrap().into(), &[]).unwrap();
     let jitter = Some(Jitter { fraction: 0.2, seed: 1 });
     let high = Point3::new(0.05, 0.05, 0.05);
     let mesh = box_mesh(CellKind::Tet4, Point3::origin(), high, [3; 3], [1.0; 3], jitter).unwrap();

@@ -10,16 +10,16 @@ pub struct Torsion {
 }
 
 impl Exact for Torsion {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         self.twist * Vector3::new(-x.y * x.z, x.x * x.z, 0.0)
     }
 
     fn gradient(&self, x: &Point3) -> Matrix3 {
         self.twist * Matrix3::new(0.0, -x.z, -x.y, x.z, 0.0, x.x, 0.0, 0.0, 0.0)
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
 }
 // ANCHOR_END: solution

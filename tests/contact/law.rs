@@ -1,6 +1,8 @@
 //! The pointwise law: a friction block of one point, consistent tangents, rigid motions, refusals.
 
-use contact::{ContactError, ContactLaw, Slip, Tool, ToolShape};
+use contact::{
+    Capsule, ContactError, ContactLaw, Cylinder, Plate, RoundedBox, Slip, Sphere, Tool, ToolShape,
+};
 use integration::tools::{SHAPES, differences, kink, rotation, vector};
 use proptest::prelude::*;
 use shape::{Matrix3, Point3, Vector3};
@@ -20,7 +22,7 @@ fn tool(shape: ToolShape, law: ContactLaw) -> Tool {
 /// A point 0.1 mm deep in a plate, dragged along x and back: stick slope, slip at mu p, dissipation.
 #[test]
 fn friction_block_of_one_point() {
-    let plate = tool(ToolShape::Plate, coulomb());
+    let plate = tool(ToolShape::Plate(Plate), coulomb());
     let depth = 1e-4;
     let p = PENALTY * depth;
     let limit = FRICTION * p;
@@ -64,7 +66,7 @@ fn friction_block_of_one_point() {
 /// The reference of stick moves with the tool.
 #[test]
 fn a_moving_tool_drags() {
-    let plate = tool(ToolShape::Plate, coulomb());
+    let plate = tool(ToolShape::Plate(Plate), coulomb());
     let x = Point3::new(1e-3, 2e-3, -1e-4);
     let history = plate.contact(0.0, &x, &Slip::NONE, 0.0).slip;
     let c = plate.contact(1e-5, &x, &history, 0.0);
@@ -76,7 +78,7 @@ fn a_moving_tool_drags() {
 
 #[test]
 fn a_point_that_leaves_forgets() {
-    let plate = tool(ToolShape::Plate, coulomb());
+    let plate = tool(ToolShape::Plate(Plate), coulomb());
     let touch = |x: f64, z: f64, history: &Slip| plate.contact(0.0, &Point3::new(x, 0.0, z), history, 0.0);
     let stuck = touch(1e-5, -1e-4, &touch(0.0, -1e-4, &Slip::NONE).slip);
     assert!(stuck.slip.stretch().x > 0.9e-5);
@@ -101,7 +103,7 @@ fn without_friction_nothing_is_remembered() {
 /// A multiplier shifts the pressure; the point holds on until it is used up.
 #[test]
 fn multipliers_add_to_the_pressure() {
-    let plate = tool(ToolShape::Plate, ContactLaw::frictionless(PENALTY).unwrap());
+    let plate = tool(ToolShape::Plate(Plate), ContactLaw::frictionless(PENALTY).unwrap());
     let pressure = |z| plate.contact(0.0, &Point3::new(0.0, 0.0, z), &Slip::NONE, 1e4).pressure;
     assert!((pressure(-1e-5) - 1.5e4).abs() < 1e-8);
     assert!((pressure(1e-5) - 5e3).abs() < 1e-8);
@@ -255,31 +257,31 @@ fn bad_tools_are_refused_with_their_numbers() {
     let shape = |shape| make(shape, 0.0, id, Vector3::x()).unwrap_err();
     for bad in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         assert!(matches!(
-            shape(ToolShape::Sphere { radius: bad }),
+            shape(ToolShape::Sphere(Sphere { radius: bad })),
             ContactError::Size { what: "the radius", .. }
         ));
         for end in [
-            ToolShape::Cylinder { radius: 1.0, half_length: bad },
-            ToolShape::Capsule { radius: 1.0, half_length: bad },
+            ToolShape::Cylinder(Cylinder { radius: 1.0, half_length: bad }),
+            ToolShape::Capsule(Capsule { radius: 1.0, half_length: bad }),
         ] {
             assert!(matches!(shape(end), ContactError::Size { what: "the half length", .. }));
         }
         assert!(matches!(
-            shape(ToolShape::RoundedBox { half: [1.0, bad, 1.0], radius: 0.0 }),
+            shape(ToolShape::RoundedBox(RoundedBox { half: [1.0, bad, 1.0], radius: 0.0 })),
             ContactError::Size { what: "a half extent", .. }
         ));
     }
-    let rounded = shape(ToolShape::RoundedBox { half: [3e-3, 2e-3, 1e-3], radius: 1.5e-3 });
+    let rounded = shape(ToolShape::RoundedBox(RoundedBox { half: [3e-3, 2e-3, 1e-3], radius: 1.5e-3 }));
     assert_eq!(rounded, ContactError::Rounding { radius: 1.5e-3, half: 1e-3 });
     assert_eq!(
         rounded.to_string(),
         "the box's edges are rounded by 0.0015 m; it must be between 0 and the least half extent, 0.001 m"
     );
     assert!(matches!(
-        shape(ToolShape::RoundedBox { half: [1.0; 3], radius: f64::NAN }),
+        shape(ToolShape::RoundedBox(RoundedBox { half: [1.0; 3], radius: f64::NAN })),
         ContactError::Rounding { .. }
     ));
-    let ball = ToolShape::Sphere { radius: 1.0 };
+    let ball = ToolShape::Sphere(Sphere { radius: 1.0 });
     assert!(matches!(make(ball, f64::NAN, id, Vector3::x()), Err(ContactError::Place { .. })));
     assert!(matches!(make(ball, 0.0, id * 2.0, Vector3::x()), Err(ContactError::Rotation { .. })));
     assert!(matches!(make(ball, 0.0, -id, Vector3::x()), Err(ContactError::Rotation { .. })), "a mirror");

@@ -1,6 +1,6 @@
 //! Every tool shape: a distance with its derivatives, inside and out, and nothing broken on the medial axis.
 
-use contact::{Distance, ToolShape};
+use contact::{Capsule, Cylinder, Distance, Plate, RoundedBox, Sphere, TOOL_SHAPES, ToolShape};
 use integration::tools::{SHAPES, differences, kink, vector};
 use proptest::prelude::*;
 use shape::Vector3;
@@ -9,15 +9,15 @@ use shape::Vector3;
 fn inside(shape: &ToolShape, p: &Vector3) -> bool {
     let rho = p.x.hypot(p.y);
     match *shape {
-        ToolShape::Plate => p.z < 0.0,
+        ToolShape::Plate(Plate) => p.z < 0.0,
         // Within the rounding radius of the core box; without rounding within the box itself.
-        ToolShape::RoundedBox { half, radius } => {
+        ToolShape::RoundedBox(RoundedBox { half, radius }) => {
             let core = Vector3::from_fn(|a, _| p[a].clamp(radius - half[a], half[a] - radius));
             if radius > 0.0 { (p - core).norm() < radius } else { (0..3).all(|a| p[a].abs() < half[a]) }
         }
-        ToolShape::Sphere { radius } => p.norm() < radius,
-        ToolShape::Cylinder { radius, half_length } => rho < radius && p.z.abs() < half_length,
-        ToolShape::Capsule { radius, half_length } => {
+        ToolShape::Sphere(Sphere { radius }) => p.norm() < radius,
+        ToolShape::Cylinder(Cylinder { radius, half_length }) => rho < radius && p.z.abs() < half_length,
+        ToolShape::Capsule(Capsule { radius, half_length }) => {
             let nearest = Vector3::new(0.0, 0.0, p.z.clamp(-half_length, half_length));
             (p - nearest).norm() < radius
         }
@@ -62,6 +62,13 @@ proptest! {
             let slopes = differences(h, |step| shape.distance(&(p + step)).gradient);
             prop_assert!((slopes - hessian).norm() < 1e-6 * hessian.norm() + 1e-6, "{shape:?} {slopes} {hessian}");
         }
+    }
+}
+
+#[test]
+fn every_shape_that_a_scene_can_name_is_in_the_list() {
+    for entry in TOOL_SHAPES {
+        assert!(SHAPES.iter().any(|shape| shape.name() == entry.name), "{}", entry.name);
     }
 }
 

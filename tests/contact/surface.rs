@@ -1,8 +1,8 @@
 //! Contact over a surface: against point-by-point evaluation, balance of force and moment, skips, threads, multipliers.
 
 use contact::{
-    ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Contacts, PointContact, Slip,
-    Tool, ToolShape,
+    ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Contacts, Plate, PointContact,
+    Slip, Sphere, Tool, ToolShape,
 };
 use geometry::CellKind;
 use integration::block::{Block, SIDES};
@@ -70,8 +70,11 @@ fn the_same_as_point_by_point_and_in_balance() {
         let u = wave(&block, 1e-4);
         for shape in SHAPES {
             // The plate faces down; the others stand with their z axis upright.
-            let turn =
-                if shape == ToolShape::Plate { Tool::turned_to(&-Vector3::z()) } else { Matrix3::identity() };
+            let turn = if shape == ToolShape::Plate(Plate) {
+                Tool::turned_to(&-Vector3::z())
+            } else {
+                Matrix3::identity()
+            };
             let tool = on_top(shape, turn);
             let mut history = ContactHistory::new(&tool, rows.points().len());
             let mut counts = ContactCounts::default();
@@ -171,7 +174,7 @@ fn the_same_bits_at_any_number_of_threads() {
     let rows = block.surface(&SIDES);
     let surface = ContactSurface::new(&rows);
     let u = wave(&block, 1e-4);
-    let tool = on_top(ToolShape::Plate, Tool::turned_to(&-Vector3::z()));
+    let tool = on_top(ToolShape::Plate(Plate), Tool::turned_to(&-Vector3::z()));
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -203,7 +206,8 @@ fn augmentation_closes_the_gap_geometrically() {
     let surface = ContactSurface::new(&rows);
     let law = ContactLaw::frictionless(k).unwrap();
     let down = -Vector3::z();
-    let plate = Tool::new(ToolShape::Plate, Point3::origin(), Tool::turned_to(&down), down, law).unwrap();
+    let plate =
+        Tool::new(ToolShape::Plate(Plate), Point3::origin(), Tool::turned_to(&down), down, law).unwrap();
     let mut history = ContactHistory::new(&plate, 1);
     let closure = 1e-3;
     let mut u = [Vector3::zeros()];
@@ -280,7 +284,7 @@ fn a_tool_that_pushes_from_within_is_named_however_the_body_is_turned() {
             let moved = |p: &Point3| turn * p.coords - p.coords;
             let u: Vec<Vector3> = block.mesh.points().iter().map(moved).collect();
             let side = |from_top: f64| {
-                let ball = ToolShape::Sphere { radius: 5e-3 };
+                let ball = ToolShape::Sphere(Sphere { radius: 5e-3 });
                 let at = Point3::from(turn * Vector3::new(0.02, 0.015, 0.02 + from_top));
                 let tool = Tool::new(ball, at, Matrix3::identity(), -turn.column(2), coulomb()).unwrap();
                 let history = ContactHistory::new(&tool, rows.points().len());
@@ -321,7 +325,8 @@ fn boxes_hold_points_that_outrun_their_nodes() {
         let rows = SurfaceRows::new(at, vec![1e-6], vec![Vector3::z()]).unwrap();
         let down = -Vector3::z();
         let face = Point3::new(0.0, 0.0, 1.99e-3);
-        let plate = Tool::new(ToolShape::Plate, face, Tool::turned_to(&down), down, coulomb()).unwrap();
+        let plate =
+            Tool::new(ToolShape::Plate(Plate), face, Tool::turned_to(&down), down, coulomb()).unwrap();
         let history = ContactHistory::new(&plate, 1);
         let u = u.map(|z| Vector3::z() * z);
         let mut counts = ContactCounts::default();

@@ -1,6 +1,6 @@
 //! Tools in explicit dynamics: momentum, energy, forces carried, steps that change, and what cannot go on.
 
-use contact::{ContactError, ContactLaw, ContactSurface, Drive, Tool, ToolShape};
+use contact::{ContactError, ContactLaw, ContactSurface, Drive, RoundedBox, Sphere, Tool, ToolShape};
 use explicit::{
     Dynamics, DynamicsParams, ExplicitBody, ExplicitError, InternalForce, LanczosParams, Lumping, MovingTool,
     Prescribed, Springs, Tools, critical_step, critical_step_touching, lumped_mass,
@@ -66,7 +66,7 @@ fn jaw(along: Vector3, friction: f64) -> Tool {
     } else {
         ContactLaw::frictionless(1e8).unwrap()
     };
-    let shape = ToolShape::RoundedBox { half: [6e-3, 8e-3, 4e-3], radius: 2e-3 };
+    let shape = ToolShape::RoundedBox(RoundedBox { half: [6e-3, 8e-3, 4e-3], radius: 2e-3 });
     Tool::new(shape, Point3::new(0.02, 0.015, 0.029), Matrix3::identity(), along.normalize(), law).unwrap()
 }
 
@@ -224,7 +224,7 @@ fn bits_do_not_depend_on_threads_and_far_tools_cost_nothing() {
     let surface = ContactSurface::new(&pressed.surface);
     let dt = pressed.step(0.8);
     let near = jaw(Vector3::new(0.3, 0.0, -1.0), 0.2);
-    let shape = ToolShape::Sphere { radius: 5e-3 };
+    let shape = ToolShape::Sphere(Sphere { radius: 5e-3 });
     let law = ContactLaw::frictionless(1e8).unwrap();
     let far = Tool::new(shape, Point3::new(0.2, 0.0, 0.0), Matrix3::identity(), Vector3::x(), law).unwrap();
     let run = |threads: usize| {

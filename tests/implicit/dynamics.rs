@@ -1,6 +1,6 @@
 //! Implicit dynamics: what is conserved, what is exact, and contact.
 
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;
 use integration::cuboid::{Cuboid, distance, largest, moving, params};
@@ -18,7 +18,7 @@ fn soft(poisson: f64) -> Law {
 }
 
 fn linear() -> Law {
-    Law::Linear(LinearElastic::new(20e3, 0.3).unwrap())
+    Law::LinearElastic(LinearElastic::new(20e3, 0.3).unwrap())
 }
 
 /// 4 x 3 x 2 cm.
@@ -178,7 +178,8 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let law = ContactLaw::coulomb(1e8, 0.2, 2e7).unwrap();
     let at = Point3::new(0.02, 0.015, 0.0305);
     let tool =
-        Tool::new(ToolShape::Sphere { radius: 0.01 }, at, Matrix3::identity(), -Vector3::z(), law).unwrap();
+        Tool::new(ToolShape::Sphere(Sphere { radius: 0.01 }), at, Matrix3::identity(), -Vector3::z(), law)
+            .unwrap();
     let tools = [DrivenTool { tool: &tool, drive: Drive::Closure(4e-3) }];
     let body = StaticProblem { contact: Some(&contact), tools: &tools, ..block.body(&laws, &fixed) };
     let newton = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true };

@@ -10,7 +10,7 @@ use statics::{Inertia, Ramp, Ramps, TimeProblem, solve_in_time};
 const DENSITY: f64 = 1000.0;
 
 fn linear(young: f64, poisson: f64) -> [Law; 1] {
-    [Law::Linear(LinearElastic::new(young, poisson).unwrap())]
+    [Law::LinearElastic(LinearElastic::new(young, poisson).unwrap())]
 }
 
 /// One hex8 of side 1 cm on a rigid floor, moved along z only: `omega^2 = E A / L / (rho A L / 2)`. Displacements of
@@ -93,7 +93,7 @@ fn a_bar_vibrates_in_its_discrete_mode() {
     let (n, length) = (8, 0.1);
     let bar = Cuboid::new(CellKind::Hex8, [length, 0.01, 0.01], [n, 1, 1]);
     let laws = linear(20e3, 0.3);
-    let Law::Linear(law) = &laws[0] else { unreachable!() };
+    let Law::LinearElastic(law) = &laws[0] else { unreachable!() };
     let wave = (law.lambda() + 2.0 * law.mu()) / DENSITY;
     let h = length / n as f64;
     let k = 0.5 * std::f64::consts::PI / length;

@@ -68,7 +68,7 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
     let small = [0.02, -0.01, -0.01];
     let thin = 1.2f64.powf(-0.5) - 1.0;
     let cases = [
-        (Law::Linear(LinearElastic::new(YOUNG, 0.3).unwrap()), small),
+        (Law::LinearElastic(LinearElastic::new(YOUNG, 0.3).unwrap()), small),
         (Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(YOUNG, 0.45).unwrap()), [0.2, thin, thin]),
     ];
     for (law, by) in cases {
@@ -122,7 +122,7 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
 #[test]
 fn a_loaded_bar_creeps_with_order_two() {
     let prony = [Some(Prony::new(&[(0.6, 0.4)]).unwrap())];
-    let laws = [Law::Linear(LinearElastic::new(YOUNG, 0.4).unwrap())];
+    let laws = [Law::LinearElastic(LinearElastic::new(YOUNG, 0.4).unwrap())];
     let block = cube(CellKind::Hex8);
     let fixed = symmetric(&block, None);
     let face = block.mesh.group("x-max").unwrap();
@@ -216,7 +216,7 @@ fn laws_without_a_split_converge() {
 fn a_relaxing_oscillator_is_damped_with_order_two() {
     let (g, tau) = (0.5, 0.01);
     let prony = [Some(Prony::new(&[(g, tau)]).unwrap())];
-    let laws = [Law::Linear(LinearElastic::new(YOUNG, 0.2).unwrap())];
+    let laws = [Law::LinearElastic(LinearElastic::new(YOUNG, 0.2).unwrap())];
     let block = Cuboid::new(CellKind::Hex8, [SIDE; 3], [1; 3]);
     let fixed = block.held(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
     let body = block.body(&laws, &fixed);

@@ -8,7 +8,7 @@
 //!             3 for quadratic elements, within 0.4 in the maximum norm) and is below 2 % (linear) and 0.02 % (quadratic).
 //! ```
 
-use cases::exact::{Elastic, FiniteBending, Hyperelastic};
+use cases::exact::{Elastic, Exact as _, FiniteBending, Hyperelastic};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use integration::model::*;

@@ -12,7 +12,7 @@
 //! ```
 
 use contact::{
-    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape,
+    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape,
 };
 use fem::SurfaceRule;
 use geometry::CellKind;
@@ -32,7 +32,7 @@ fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath
         .map(|(z, sign)| {
             let along = Vector3::z() * sign;
             let at = Point3::new(0.5 * SIZE.x, 0.5 * SIZE.y, z);
-            Tool::new(ToolShape::Plate, at, Tool::turned_to(&along), along, touch).unwrap()
+            Tool::new(ToolShape::Plate(Plate), at, Tool::turned_to(&along), along, touch).unwrap()
         })
         .into();
     let tools: Vec<DrivenTool> = (plates.iter().zip([1e-3, 3e-3]))

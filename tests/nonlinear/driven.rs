@@ -9,7 +9,7 @@
 //!             between their ends, so closures agree to 1 %, of the single step to 5 %.
 //! ```
 
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;
 use integration::model::*;
@@ -35,7 +35,8 @@ fn force_and_closure_agree() {
             let (radius, down) = (0.03, -Vector3::z());
             let at = Point3::new(0.022, 0.014, SIZE.z + radius);
             let sphere =
-                Tool::new(ToolShape::Sphere { radius }, at, Matrix3::identity(), down, touch).unwrap();
+                Tool::new(ToolShape::Sphere(Sphere { radius }), at, Matrix3::identity(), down, touch)
+                    .unwrap();
             let run = |drive: Drive| {
                 let tools = [DrivenTool { tool: &sphere, drive }];
                 let problem = StaticProblem {
@@ -80,7 +81,7 @@ fn first_contact_in_one_step() {
         let (radius, off) = (0.012, 2e-3);
         let ball = |z: f64, along: Vector3| {
             Tool::new(
-                ToolShape::Sphere { radius },
+                ToolShape::Sphere(Sphere { radius }),
                 Point3::new(0.03, 0.014, z),
                 Matrix3::identity(),
                 along,
@@ -128,9 +129,14 @@ fn frames_follow_the_path_both_ways() {
         let contact = ContactSurface::new(&surface);
         let touch = ContactLaw::frictionless(1e7).unwrap();
         let at = Point3::new(0.022, 0.014, SIZE.z + 0.03);
-        let ball =
-            Tool::new(ToolShape::Sphere { radius: 0.03 }, at, Matrix3::identity(), -Vector3::z(), touch)
-                .unwrap();
+        let ball = Tool::new(
+            ToolShape::Sphere(Sphere { radius: 0.03 }),
+            at,
+            Matrix3::identity(),
+            -Vector3::z(),
+            touch,
+        )
+        .unwrap();
         let tools = [DrivenTool { tool: &ball, drive: Drive::Closure(4e-3) }];
         let problem =
             StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };

@@ -9,7 +9,7 @@
 //!             above by 0.1 %: slip, T / N = mu to 1e-9; far above: still mu, against the motion.
 //! ```
 
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;
 use integration::model::*;
@@ -32,7 +32,8 @@ fn drag(projection: (CellKind, Projection), factor: f64, sideways: Vector3) -> V
     let along = (Vector3::z() + sideways * slope).normalize();
     let touch = ContactLaw::coulomb(NORMAL, COEFFICIENT, STICK).unwrap();
     let plate =
-        Tool::new(ToolShape::Plate, Point3::new(0.0, 0.0, -2e-5), Matrix3::identity(), along, touch).unwrap();
+        Tool::new(ToolShape::Plate(Plate), Point3::new(0.0, 0.0, -2e-5), Matrix3::identity(), along, touch)
+            .unwrap();
     let tools = [DrivenTool { tool: &plate, drive: Drive::Closure(1e-4) }];
     let problem =
         StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };

@@ -11,8 +11,8 @@
 //!             falls by 2^1.5.
 //! ```
 
-use cases::exact::{Elastic, Hertz};
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use cases::exact::{Elastic, Exact as _, Hertz};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
 use geometry::CellKind;
 use geometry::generate::box_mesh;
@@ -32,7 +32,7 @@ fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
     let (low, high) = (Point3::new(0.0, 0.0, -side), Point3::new(side, side, 0.0));
     let mesh = box_mesh(kind, low, high, [cells; 3], [40.0, 40.0, 1.0 / 40.0], None).unwrap();
     let model = Model::new(mesh, Projection::Standard);
-    let mut fixed = model.hold(&["x-max", "y-max", "z-min"], &[0, 1, 2], |x| hertz.far_displacement(x));
+    let mut fixed = model.hold(&["x-max", "y-max", "z-min"], &[0, 1, 2], |x| hertz.displacement(x));
     for (side, axis) in [("x-min", 0), ("y-min", 1)] {
         let far: Vec<u32> = fixed.iter().filter(|f| f.axis == axis).map(|f| f.node).collect();
         let wall = model.hold(&[side], &[axis], |_| Vector3::zeros());
@@ -44,10 +44,10 @@ fn ratio(kind: CellKind, cells: usize, depth: f64) -> f64 {
     // A hundredth of the depth under the peak pressure.
     let touch = ContactLaw::frictionless(300.0 * hertz.peak_pressure() / depth).unwrap();
     let at = Point3::new(0.0, 0.0, RADIUS);
-    let shape = ToolShape::Sphere { radius: RADIUS };
+    let shape = ToolShape::Sphere(Sphere { radius: RADIUS });
     let sphere = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
     let tools = [DrivenTool { tool: &sphere, drive: Drive::Closure(depth) }];
-    let law = Law::Linear(LinearElastic::new(YOUNG, POISSON).unwrap());
+    let law = Law::LinearElastic(LinearElastic::new(YOUNG, POISSON).unwrap());
     let problem =
         StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(&law) };
     let path = solve("hertz", &problem, &steps(1));

@@ -37,7 +37,7 @@ fn sphere((kind, projection): (CellKind, Projection), n: usize) -> f64 {
     let values = vec![1e3; inner.weights().len()];
     let loads = [Load::Pressure { surface: &inner, values }];
     let fixed = model.walls();
-    let law = Law::Linear(LinearElastic::new(YOUNG, POISSON).unwrap());
+    let law = Law::LinearElastic(LinearElastic::new(YOUNG, POISSON).unwrap());
     let problem = StaticProblem { fixed: &fixed, loads: &loads, ..model.problem(&law) };
     let path = solve("sphere", &problem, &params(1));
     let u = inner.rows().apply(&path.u);
@@ -56,7 +56,7 @@ fn bending((kind, projection): (CellKind, Projection), n: usize, poisson: f64) -
     let end = fem::surface_rows(&model.mesh, model.mesh.group("x-max").unwrap(), &SurfaceRule::FINE).unwrap();
     let values = end.points().iter().zip(end.normals()).map(|(x, n)| exact.traction(x, n)).collect();
     let loads = [Load::Traction { surface: &end, values }];
-    let law = Law::Linear(LinearElastic::new(YOUNG, poisson).unwrap());
+    let law = Law::LinearElastic(LinearElastic::new(YOUNG, poisson).unwrap());
     let problem = StaticProblem { fixed: &fixed, loads: &loads, ..model.problem(&law) };
     let path = solve("bending", &problem, &params(1));
     let u = end.rows().apply(&path.u);

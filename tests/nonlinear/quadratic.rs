@@ -11,9 +11,10 @@
 //!             direction of the error: three residuals of one solution would not do). A linear law ends after one iteration.
 //! ```
 
-use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Tool, ToolShape};
+use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
 use fem::SurfaceRule;
 use integration::model::*;
+use material::Material as _;
 use shape::{Point3, Vector3};
 use statics::{Load, NewtonParams, StaticParams, StaticPath, StaticProblem};
 
@@ -88,7 +89,7 @@ fn under_a_plate() {
                 let along = Vector3::new(0.6, 0.0, -0.8);
                 let turn = Tool::turned_to(&-Vector3::z());
                 let at = Point3::new(0.0, 0.0, SIZE.z);
-                let plate = Tool::new(ToolShape::Plate, at, turn, along, touch).unwrap();
+                let plate = Tool::new(ToolShape::Plate(Plate), at, turn, along, touch).unwrap();
                 let tools = [DrivenTool { tool: &plate, drive: Drive::Closure(5e-3) }];
                 let problem = StaticProblem {
                     fixed: &fixed,

@@ -3,9 +3,7 @@
 use fem::VolumeRule;
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Facet, Mesh};
-use material::{
-    Hencky, Law, LinearElastic, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, SaintVenantKirchhoff,
-};
+use material::Law;
 use shape::{DilationGroups, Rows, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
 use statics::{Dilation, NewtonParams, Solid, StaticParams, StaticPath, StaticProblem, solve_static};
@@ -133,21 +131,7 @@ pub const YOUNG: f64 = 20e3;
 
 /// Every law, of one small-strain limit.
 pub fn laws(young: f64, poisson: f64) -> Vec<Law> {
-    let (mu, bulk) = (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson)));
-    vec![
-        Law::Linear(LinearElastic::new(young, poisson).unwrap()),
-        Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(young, poisson).unwrap()),
-        Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()),
-        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(young, poisson).unwrap()),
-        Law::Hencky(Hencky::new(young, poisson).unwrap()),
-        Law::MooneyRivlin(MooneyRivlin::new(0.3 * mu, 0.2 * mu, bulk).unwrap()),
-        Law::Ogden(Ogden::new(&ogden(mu), bulk).unwrap()),
-    ]
-}
-
-/// Two terms whose initial shear modulus is `mu`: `sum mu_p alpha_p = 2 mu`.
-pub fn ogden(mu: f64) -> [(f64, f64); 2] {
-    [(1.2 * mu / 3.0, 3.0), (-0.8 * mu / 2.0, -2.0)]
+    Law::all(young, poisson).unwrap()
 }
 
 /// Equal steps to a relative residual of 1e-11.

@@ -1,17 +1,17 @@
 //! Tools of every shape, and where their distances have kinks.
 
-use contact::ToolShape;
+use contact::{Capsule, Cylinder, Plate, RoundedBox, Sphere, ToolShape};
 use proptest::prelude::*;
 use shape::{Matrix3, Vector3};
 
 /// One tool of each shape, and a box without rounding; millimetres in size.
 pub const SHAPES: [ToolShape; 6] = [
-    ToolShape::Plate,
-    ToolShape::RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 },
-    ToolShape::RoundedBox { half: [3e-3, 2e-3, 4e-3], radius: 0.0 },
-    ToolShape::Sphere { radius: 5e-3 },
-    ToolShape::Cylinder { radius: 4e-3, half_length: 6e-3 },
-    ToolShape::Capsule { radius: 3e-3, half_length: 5e-3 },
+    ToolShape::Plate(Plate),
+    ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 }),
+    ToolShape::RoundedBox(RoundedBox { half: [3e-3, 2e-3, 4e-3], radius: 0.0 }),
+    ToolShape::Sphere(Sphere { radius: 5e-3 }),
+    ToolShape::Cylinder(Cylinder { radius: 4e-3, half_length: 6e-3 }),
+    ToolShape::Capsule(Capsule { radius: 3e-3, half_length: 5e-3 }),
 ];
 
 /// Distance (m) from `p` to where the gradient or the Hessian jumps, or less.
@@ -19,22 +19,22 @@ pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
     let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |m, v| m.min(v.abs()));
     let rho = p.x.hypot(p.y);
     match *shape {
-        ToolShape::Plate => f64::INFINITY,
-        ToolShape::RoundedBox { half, radius } => {
+        ToolShape::Plate(Plate) => f64::INFINITY,
+        ToolShape::RoundedBox(RoundedBox { half, radius }) => {
             // Deepest axis last: inside the core its face changes at a tie, beyond it the others count from q = 0 on.
             let mut q = [0, 1, 2].map(|a| (p[a].abs() - half[a] + radius, p[a]));
             q.sort_by(|a, b| a.0.total_cmp(&b.0));
             let [(low, _), (next, _), (top, along)] = q;
             if top < 0.0 { least(&[(top - next) / 2.0, along]) } else { least(&[low, next, along]) }
         }
-        ToolShape::Sphere { .. } => p.norm(),
-        ToolShape::Cylinder { radius, half_length } => {
+        ToolShape::Sphere(Sphere { .. }) => p.norm(),
+        ToolShape::Cylinder(Cylinder { radius, half_length }) => {
             let (side, flat) = (rho - radius, p.z.abs() - half_length);
             let along = if side > flat { rho } else { p.z };
             let inside = side.max(flat) < 0.0;
             least(&[if inside { (side - flat) / 2.0 } else { side.min(flat) }, along])
         }
-        ToolShape::Capsule { half_length, .. } => {
+        ToolShape::Capsule(Capsule { half_length, .. }) => {
             let beyond = p.z.abs() - half_length;
             least(&[beyond, if beyond > 0.0 { rho.hypot(beyond) } else { rho }])
         }

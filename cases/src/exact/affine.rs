@@ -12,7 +12,7 @@
 //! Must hold   every consistent method returns the field to rounding, at any Poisson's ratio.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers};
 
 /// `u = H x + t` with constant stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +37,6 @@ impl Affine {
 }
 
 impl Exact for Affine {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         self.gradient * x.coords + self.shift
     }
@@ -48,27 +44,41 @@ impl Exact for Affine {
     fn gradient(&self, _x: &Point3) -> Matrix3 {
         self.gradient
     }
-}
 
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::optional("hxx", "", "du_x/dx; with no component given, a generic field is taken", 0.0),
-    Parameter::optional("hxy", "", "du_x/dy", 0.0),
-    Parameter::optional("hxz", "", "du_x/dz", 0.0),
-    Parameter::optional("hyx", "", "du_y/dx", 0.0),
-    Parameter::optional("hyy", "", "du_y/dy", 0.0),
-    Parameter::optional("hyz", "", "du_y/dz", 0.0),
-    Parameter::optional("hzx", "", "du_z/dx", 0.0),
-    Parameter::optional("hzy", "", "du_z/dy", 0.0),
-    Parameter::optional("hzz", "", "du_z/dz", 0.0),
-    Parameter::optional("tx", "m", "shift along x", 0.0),
-    Parameter::optional("ty", "m", "shift along y", 0.0),
-    Parameter::optional("tz", "m", "shift along z", 0.0),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    if !values.any_given() {
-        return Ok(Box::new(Affine::generic(elastic)));
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
-    let gradient = Matrix3::from_fn(|i, j| values.at(3 * i + j));
-    Ok(Box::new(Affine::new(elastic, gradient, Vector3::new(values.at(9), values.at(10), values.at(11)))))
 }
+
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "affine",
+    meaning: "u = H x + t, or a generic field of that kind",
+    source: "",
+    parameters: &[
+        Parameter::default(
+            "hxx",
+            Dimension::None,
+            0.0,
+            "du_x/dx; with no component given, a generic field is taken",
+        ),
+        Parameter::default("hxy", Dimension::None, 0.0, "du_x/dy"),
+        Parameter::default("hxz", Dimension::None, 0.0, "du_x/dz"),
+        Parameter::default("hyx", Dimension::None, 0.0, "du_y/dx"),
+        Parameter::default("hyy", Dimension::None, 0.0, "du_y/dy"),
+        Parameter::default("hyz", Dimension::None, 0.0, "du_y/dz"),
+        Parameter::default("hzx", Dimension::None, 0.0, "du_z/dx"),
+        Parameter::default("hzy", Dimension::None, 0.0, "du_z/dy"),
+        Parameter::default("hzz", Dimension::None, 0.0, "du_z/dz"),
+        Parameter::default("tx", Dimension::Length, 0.0, "shift along x"),
+        Parameter::default("ty", Dimension::Length, 0.0, "shift along y"),
+        Parameter::default("tz", Dimension::Length, 0.0, "shift along z"),
+    ],
+    build: |medium, values| {
+        if values.given().next().is_none() {
+            return Ok(Box::new(Affine::generic(medium.elastic)));
+        }
+        let gradient = numbers(values, ["hxx", "hxy", "hxz", "hyx", "hyy", "hyz", "hzx", "hzy", "hzz"])?;
+        let shift = Vector3::from(numbers(values, ["tx", "ty", "tz"])?);
+        Ok(Box::new(Affine::new(medium.elastic, Matrix3::from_row_slice(&gradient), shift)))
+    },
+};

@@ -16,7 +16,9 @@
 //!             p0 L / M and back, in periods of 4 L / c.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
+};
 
 /// Longitudinal waves in a bar without lateral motion, from its end at `x = L`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,12 +50,12 @@ impl BarWave {
         for (name, value) in [("length", length), ("density", density)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
         if !(over >= 0.0) {
             let need = "zero or above".into();
-            return Err(ExactError::BadParameter { solution: NAME, name: "over", value: over, need });
+            return Err(ExactError::BadParameter { solution: ENTRY.name, name: "over", value: over, need });
         }
         Ok(BarWave { elastic, pull, length, density, over, time: 0.0 })
     }
@@ -96,10 +98,6 @@ impl BarWave {
 }
 
 impl Exact for BarWave {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         Vector3::new(self.speed() / self.modulus() * self.waves(Of::Integral, p.x, -1.0), 0.0, 0.0)
     }
@@ -108,6 +106,10 @@ impl Exact for BarWave {
         let mut h = Matrix3::zeros();
         h[(0, 0)] = self.waves(Of::Value, p.x, 1.0) / self.modulus();
         h
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
 
     fn body_force(&self, p: &Point3) -> Vector3 {
@@ -119,16 +121,22 @@ impl Exact for BarWave {
     }
 }
 
-const NAME: &str = "bar-wave";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("pull", "Pa", "traction along x on the end, as large as it becomes"),
-    Parameter::required("length", "m", "length along x, from 0"),
-    Parameter::required("density", "kg/m^3", "mass per volume"),
-    Parameter::optional("over", "s", "time over which the pull grows", 0.0),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let [pull, length, density, over] = [0, 1, 2, 3].map(|k| values.at(k));
-    Ok(Box::new(BarWave::new(elastic, pull, [length, density], over)?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "bar-wave",
+    meaning: "waves in a bar that is pulled at its end x = L",
+    source: "d'Alembert; Graff, Wave Motion in Elastic Solids (1975), ch. 2",
+    parameters: &[
+        Parameter::required(
+            "pull",
+            Dimension::Pressure,
+            "traction along x on the end, as large as it becomes",
+        ),
+        Parameter::required("length", Dimension::Length, "length along x, from 0"),
+        Parameter::required("density", Dimension::Density, "mass per volume"),
+        Parameter::default("over", Dimension::Time, 0.0, "time over which the pull grows"),
+    ],
+    build: |medium, values| {
+        let [pull, length, density, over] = numbers(values, ["pull", "length", "density", "over"])?;
+        Ok(Box::new(BarWave::new(medium.elastic, pull, [length, density], over)?))
+    },
+};

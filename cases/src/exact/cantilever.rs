@@ -18,7 +18,9 @@
 //!             displacement is not zero but that of the formula: clamping it instead adds a singular corner.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
+};
 
 /// Timoshenko's cantilever, bending in the x-y plane, plane strain in z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +37,7 @@ impl CantileverPlaneStrain {
         for (name, value) in [("length", length), ("depth", depth)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
         Ok(CantileverPlaneStrain { elastic, load, length, depth })
@@ -55,10 +57,6 @@ impl CantileverPlaneStrain {
 }
 
 impl Exact for CantileverPlaneStrain {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         let (x, y, l, quarter) = (p.x, p.y, self.length, 0.25 * self.depth * self.depth);
         let (scale, nu) = self.plane_strain();
@@ -88,14 +86,17 @@ impl Exact for CantileverPlaneStrain {
     }
 }
 
-const NAME: &str = "cantilever-plane-strain";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("load", "N/m", "end load along y per metre of width"),
-    Parameter::required("length", "m", "length along x, from 0"),
-    Parameter::required("depth", "m", "depth along y, centred on 0"),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    Ok(Box::new(CantileverPlaneStrain::new(elastic, values.at(0), values.at(1), values.at(2))?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "cantilever-plane-strain",
+    meaning: "a cantilever under an end load along y, in plane strain",
+    source: "Timoshenko and Goodier, Theory of Elasticity, article 21",
+    parameters: &[
+        Parameter::required("load", Dimension::LineForce, "end load along y per metre of width"),
+        Parameter::required("length", Dimension::Length, "length along x, from 0"),
+        Parameter::required("depth", Dimension::Length, "depth along y, centred on 0"),
+    ],
+    build: |medium, values| {
+        let [load, length, depth] = numbers(values, ["load", "length", "depth"])?;
+        Ok(Box::new(CantileverPlaneStrain::new(medium.elastic, load, length, depth)?))
+    },
+};

@@ -16,7 +16,10 @@
 //! Must hold   displacements converge; the fibre of stretch 1 is not the middle one.
 //! ```
 
-use super::{ExactError, Hyperelastic, Point3, Vector3};
+use super::{
+    Dimension, Entry, Exact, ExactError, Hyperelastic, Matrix3, Parameter, Point3, SolutionEntry, Vector3,
+    numbers,
+};
 
 /// Intervals across the thickness: fourth-order Runge-Kutta is below 1e-10 of the radius.
 const INTERVALS: usize = 100;
@@ -24,6 +27,7 @@ const INTERVALS: usize = 100;
 /// A block of one thickness bent to one curvature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiniteBending {
+    law: Hyperelastic,
     curvature: f64,
     thickness: f64,
     /// `r` (m) and `r'` at the ends of the intervals.
@@ -37,7 +41,7 @@ impl FiniteBending {
         if !(thickness > 0.0 && thickness.is_finite() && bend > 0.0 && bend <= 1.0) {
             let need = format!("above zero and at most {} 1/m, one over the thickness", 1.0 / thickness);
             return Err(ExactError::BadParameter {
-                solution: "finite-bending",
+                solution: ENTRY.name,
                 name: "curvature",
                 value: curvature,
                 need,
@@ -50,25 +54,78 @@ impl FiniteBending {
             let middle = 0.5 * (low + high);
             if shoot(middle).1 < 0.0 { low = middle } else { high = middle }
         }
-        Ok(FiniteBending { curvature, thickness, radius: shoot(0.5 * (low + high)).0 })
+        Ok(FiniteBending { law: law.clone(), curvature, thickness, radius: shoot(0.5 * (low + high)).0 })
     }
 
-    /// Deformed radius of the fibre at `X`, m: the cubic through both ends of its interval.
+    /// Deformed radius of the fibre at `X`, m.
     pub fn radius(&self, x: f64) -> f64 {
+        self.fibre(x).0
+    }
+
+    /// The radius (m) and its slope: the cubic through both ends of the interval.
+    fn fibre(&self, x: f64) -> (f64, f64) {
         let step = self.thickness / INTERVALS as f64;
         let at = (x / self.thickness + 0.5) * INTERVALS as f64;
         let k = (at.max(0.0) as usize).min(INTERVALS - 1);
         let ((a, da), (b, db), t) = (self.radius[k], self.radius[k + 1], at - k as f64);
         let s = 1.0 - t;
-        s * s * ((1.0 + 2.0 * t) * a + t * step * da) + t * t * ((1.0 + 2.0 * s) * b - s * step * db)
+        let value =
+            s * s * ((1.0 + 2.0 * t) * a + t * step * da) + t * t * ((1.0 + 2.0 * s) * b - s * step * db);
+        let slope = 6.0 * s * t * (b - a) / step + s * (1.0 - 3.0 * t) * da + t * (1.0 - 3.0 * s) * db;
+        (value, slope)
     }
 
-    /// Displacement, m; `X` within the thickness.
-    pub fn displacement(&self, x: &Point3) -> Vector3 {
+    /// Stretches along the radius, the circumference and z, and the unit vectors of the first two.
+    fn state(&self, x: &Point3) -> ([f64; 3], Vector3, Vector3) {
+        let ((r, slope), (sin, cos)) = (self.fibre(x.x), (self.curvature * x.y).sin_cos());
+        ([slope, self.curvature * r, 1.0], Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0))
+    }
+}
+
+impl Exact for FiniteBending {
+    /// `X` within the thickness.
+    fn displacement(&self, x: &Point3) -> Vector3 {
         let (r, angle) = (self.radius(x.x), self.curvature * x.y);
         Vector3::new(r * angle.cos() - self.radius(0.0) - x.x, r * angle.sin() - x.y, 0.0)
     }
+
+    fn gradient(&self, x: &Point3) -> Matrix3 {
+        let ([radial, hoop, axial], out, along) = self.state(x);
+        Matrix3::from_columns(&[out * radial, along * hoop, Vector3::z() * axial]) - Matrix3::identity()
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        let (stretch, out, along) = self.state(x);
+        let volume = stretch[0] * stretch[1] * stretch[2];
+        let principal = self.law.principal_stress(stretch);
+        let directions = [out, along, Vector3::z()];
+        (0..3).map(|a| directions[a] * directions[a].transpose() * (principal[a] * stretch[a] / volume)).sum()
+    }
+
+    fn traction(&self, x: &Point3, normal: &Vector3) -> Vector3 {
+        let (stretch, out, along) = self.state(x);
+        let [radial, hoop, axial] = self.law.principal_stress(stretch);
+        out * (radial * normal.x) + along * (hoop * normal.y) + Vector3::z() * (axial * normal.z)
+    }
+
+    fn is_large_strain(&self) -> bool {
+        true
+    }
 }
+
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "finite-bending",
+    meaning: "a block bent about z into a sector of a cylinder at large strain, in plane strain",
+    source: "Rivlin (1949); Ogden, Non-linear Elastic Deformations (1984), ch. 5.2",
+    parameters: &[
+        Parameter::required("thickness", Dimension::Length, "thickness along x, centred on 0"),
+        Parameter::required("curvature", Dimension::Curvature, "angle per undeformed length along y"),
+    ],
+    build: |medium, values| {
+        let [thickness, curvature] = numbers(values, ["thickness", "curvature"])?;
+        Ok(Box::new(FiniteBending::new(medium.hyperelastic()?, thickness, curvature)?))
+    },
+};
 
 /// From the inner face with `r = start` and `P_r = 0`: `(r, r')` across and `P_r` at the outer face, Pa.
 fn shoot(law: &Hyperelastic, thickness: f64, curvature: f64, start: f64) -> (Vec<(f64, f64)>, f64) {

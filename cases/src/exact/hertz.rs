@@ -16,7 +16,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Elastic, ExactError, Point3, Vector3};
+use super::{
+    Contact, Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, Range, SolutionEntry,
+    Vector3, numbers,
+};
 
 /// A rigid sphere at depth `d` in the half space `z <= 0`, touching first at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +27,7 @@ pub struct Hertz {
     elastic: Elastic,
     radius: f64,
     depth: f64,
+    share: f64,
 }
 
 impl Hertz {
@@ -32,10 +36,15 @@ impl Hertz {
         for (name, value) in [("radius", radius), ("depth", depth)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: "hertz", name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
-        Ok(Hertz { elastic, radius, depth })
+        Ok(Hertz { elastic, radius, depth, share: 1.0 })
+    }
+
+    /// Of a body that is a part of the half space only, the rest left out for its symmetry: 0.25 for a quarter.
+    pub fn of_share(self, share: f64) -> Hertz {
+        Hertz { share, ..self }
     }
 
     /// `E* = E / (1 - nu^2)`, Pa.
@@ -58,16 +67,71 @@ impl Hertz {
         2.0 * self.modulus() * self.contact_radius() / (PI * self.radius)
     }
 
-    /// Displacement (m) far from the contact, `z <= 0`: that of the whole force in one point.
-    ///
-    /// ```text
-    /// u_r = F / (4 pi mu |x|) (r s / |x|^2 - (1 - 2 nu) r / (|x| + s)),   s = -z
-    /// u_z = -F / (4 pi mu |x|) (2 (1 - nu) + s^2 / |x|^2)
-    /// ```
-    pub fn far_displacement(&self, x: &Point3) -> Vector3 {
+    /// `F / (4 pi mu)`, m^2.
+    fn scale(&self) -> f64 {
+        self.force() / (4.0 * PI * self.elastic.mu())
+    }
+}
+
+/// Far from the contact, `z <= 0`: the field of the whole force in one point.
+///
+/// ```text
+/// u_r = F / (4 pi mu |x|) (r s / |x|^2 - (1 - 2 nu) r / (|x| + s)),   s = -z
+/// u_z = -F / (4 pi mu |x|) (2 (1 - nu) + s^2 / |x|^2)
+/// ```
+impl Exact for Hertz {
+    fn displacement(&self, x: &Point3) -> Vector3 {
         let (nu, distance, s) = (self.elastic.poisson(), x.coords.norm(), -x.z);
-        let scale = self.force() / (4.0 * PI * self.elastic.mu() * distance);
+        let scale = self.scale() / distance;
         let radial = s / distance.powi(2) - (1.0 - 2.0 * nu) / (distance + s);
         scale * Vector3::new(radial * x.x, radial * x.y, -2.0 * (1.0 - nu) - (s / distance).powi(2))
     }
+
+    fn gradient(&self, x: &Point3) -> Matrix3 {
+        let (nu, d, s) = (self.elastic.poisson(), x.coords.norm(), -x.z);
+        let part = (1.0 - 2.0 * nu) / (d * (d + s)).powi(2);
+        // u_r = c r A, u_z = -c B; by r (over r) and by z.
+        let a = s / d.powi(3) - (1.0 - 2.0 * nu) / (d * (d + s));
+        let a_r = -3.0 * s / d.powi(5) + part * (2.0 * d + s) / d;
+        let a_z = -(1.0 / d.powi(3) - 3.0 * s * s / d.powi(5) + part * (s * (2.0 * d + s) / d + d));
+        let b_r = -2.0 * (1.0 - nu) / d.powi(3) - 3.0 * s * s / d.powi(5);
+        let b_z = -(2.0 * nu * s / d.powi(3) - 3.0 * s.powi(3) / d.powi(5));
+        let (x, y) = (x.x, x.y);
+        #[rustfmt::skip]
+        let h = Matrix3::new(
+            a + x * x * a_r, x * y * a_r,     x * a_z,
+            x * y * a_r,     a + y * y * a_r, y * a_z,
+            -x * b_r,        -y * b_r,        -b_z,
+        );
+        h * self.scale()
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
+    }
+
+    fn contact(&self) -> Option<Contact> {
+        Some(Contact { force: self.share * self.force(), radius: self.contact_radius() })
+    }
 }
+
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "hertz",
+    meaning: "a rigid sphere pressed without friction into the half space z <= 0, which it touches at the origin",
+    source: "Hertz (1882); Johnson, Contact Mechanics (1985), ch. 3 and 4",
+    parameters: &[
+        Parameter::required("radius", Dimension::Length, "radius of the sphere"),
+        Parameter::required("depth", Dimension::Length, "how far it is pressed in"),
+        Parameter::default(
+            "share",
+            Dimension::None,
+            1.0,
+            "part of the half space that the body is, the rest left out for its symmetry",
+        )
+        .within(Range::Within(0.25, 1.0)),
+    ],
+    build: |medium, values| {
+        let [radius, depth, share] = numbers(values, ["radius", "depth", "share"])?;
+        Ok(Box::new(Hertz::new(medium.elastic, radius, depth)?.of_share(share)))
+    },
+};

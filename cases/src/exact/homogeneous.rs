@@ -17,7 +17,9 @@
 //!             undeformed area.
 //! ```
 
-use super::{Hyperelastic, Matrix3, Vector3};
+use super::{
+    Dimension, Entry, Exact, Hyperelastic, Matrix3, Parameter, Point3, Problem, Range, SolutionEntry, Vector3,
+};
 
 /// One deformation gradient everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,3 +69,63 @@ impl Homogeneous {
         Homogeneous { deformation, stress: law.stress(&deformation) }
     }
 }
+
+impl Exact for Homogeneous {
+    fn displacement(&self, x: &Point3) -> Vector3 {
+        self.gradient(x) * x.coords
+    }
+
+    fn gradient(&self, _x: &Point3) -> Matrix3 {
+        self.deformation - Matrix3::identity()
+    }
+
+    /// `P F^T / J`.
+    fn stress(&self, _x: &Point3) -> Matrix3 {
+        self.stress * self.deformation.transpose() / self.deformation.determinant()
+    }
+
+    fn traction(&self, _x: &Point3, normal: &Vector3) -> Vector3 {
+        self.stress * normal
+    }
+
+    fn is_large_strain(&self) -> bool {
+        true
+    }
+}
+
+const STRETCH: Parameter =
+    Parameter::required("stretch", Dimension::None, "length over undeformed length along z")
+        .within(Range::Within(0.1, 10.0));
+
+pub(super) const FREE_SLIP: SolutionEntry = Entry {
+    name: "free-slip-stretch",
+    meaning: "a prism pressed or drawn along z at large strain, its sides free",
+    source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
+    parameters: &[STRETCH],
+    build: |medium, values| {
+        let state = Homogeneous::free_slip(medium.hyperelastic()?, values.number("stretch")?);
+        let none = || Problem::new("leaves the bar of this law without width").of("stretch");
+        Ok(Box::new(state.ok_or_else(none)?))
+    },
+};
+
+pub(super) const CONFINED: SolutionEntry = Entry {
+    name: "confined-stretch",
+    meaning: "a prism pressed or drawn along z at large strain between walls that hold x and y",
+    source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
+    parameters: &[STRETCH],
+    build: |medium, values| {
+        Ok(Box::new(Homogeneous::confined(medium.hyperelastic()?, values.number("stretch")?)))
+    },
+};
+
+pub(super) const SIMPLE_SHEAR: SolutionEntry = Entry {
+    name: "simple-shear",
+    meaning: "planes of constant y sheared along x at large strain",
+    source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
+    parameters: &[Parameter::required("shear", Dimension::None, "displacement along x per length along y")
+        .within(Range::Within(-10.0, 10.0))],
+    build: |medium, values| {
+        Ok(Box::new(Homogeneous::simple_shear(medium.hyperelastic()?, values.number("shear")?)))
+    },
+};

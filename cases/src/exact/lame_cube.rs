@@ -20,7 +20,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3, Vibrations};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3,
+    Vibrations, numbers,
+};
 
 /// Lame's mode about z; as a field it stands still at its largest until [`Exact::at`] gives it a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +41,7 @@ impl LameCube {
         for (name, value) in [("side", side), ("density", density)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
         Ok(LameCube { elastic, side, density, amplitude, time: 0.0 })
@@ -59,10 +62,6 @@ impl LameCube {
 }
 
 impl Exact for LameCube {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         self.about(2, p) * self.now()
     }
@@ -72,6 +71,10 @@ impl Exact for LameCube {
         let [(sin_x, cos_x), (sin_y, cos_y)] = [p.x, p.y].map(|x| (k * x).sin_cos());
         let (normal, shear) = (sin_x * sin_y, cos_x * cos_y);
         Matrix3::new(-normal, shear, 0.0, -shear, normal, 0.0, 0.0, 0.0, 0.0) * (k * self.now())
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
 
     fn body_force(&self, p: &Point3) -> Vector3 {
@@ -101,15 +104,17 @@ impl Vibrations for LameCube {
     }
 }
 
-const NAME: &str = "lame-cube";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("side", "m", "side of the cube, one corner at the origin"),
-    Parameter::required("density", "kg/m^3", "mass per volume"),
-    Parameter::optional("amplitude", "m", "largest displacement", 1e-3),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let [side, density, amplitude] = [0, 1, 2].map(|k| values.at(k));
-    Ok(Box::new(LameCube::new(elastic, side, density, amplitude)?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "lame-cube",
+    meaning: "Lame's vibration of a free cube",
+    source: "Lame (1852)",
+    parameters: &[
+        Parameter::required("side", Dimension::Length, "side of the cube, one corner at the origin"),
+        Parameter::required("density", Dimension::Density, "mass per volume"),
+        Parameter::default("amplitude", Dimension::Length, 1e-3, "largest displacement"),
+    ],
+    build: |medium, values| {
+        let [side, density, amplitude] = numbers(values, ["side", "density", "amplitude"])?;
+        Ok(Box::new(LameCube::new(medium.elastic, side, density, amplitude)?))
+    },
+};

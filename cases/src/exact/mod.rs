@@ -1,57 +1,61 @@
-//! Exact solutions of linear elasticity, each a closed form in three dimensions: what the solvers are judged by.
+//! Exact solutions, each a closed form in three dimensions: what the solvers are judged by.
 //!
-//! Every solution gives displacement, displacement gradient, stress and body force at a point, and is built either
-//! by its own constructor or by name with a list of parameters ([`exact_by_name`]). Stresses follow from the
-//! gradients by Hooke's law written out here, so that a solver's material never judges itself.
+//! Every solution is a file with a card, a field (displacement, displacement gradient, stress and body force at a point) and
+//! the [`SolutionEntry`] by which scenes name it, and a line of the list below. Stresses follow from laws written out here
+//! ([`Elastic`], [`Hyperelastic`]), so that a solver's material never judges itself.
 //!
-//! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax ([`RelaxingCompression`]): it is a field at one time and gives that at any other.
-//!
-//! Beside them stand large strains ([`Homogeneous`], [`FiniteBending`], of the laws in [`Hyperelastic`]), contact
-//! ([`Hertz`]) and a period ([`VibratingCantilever`]).
+//! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax ([`RelaxingCompression`]): it is a field
+//! at one time and gives that at any other. It may be at large strain ([`Homogeneous`], [`FiniteBending`]), or know a contact
+//! alone ([`Hertz`]). [`VibratingCantilever`] is a period, no field.
 
-mod affine;
-mod bar_wave;
-mod cantilever;
 mod elastic;
-mod finite_bending;
-mod hertz;
-mod homogeneous;
+mod error;
 mod hyperelastic;
-mod lame_cube;
-mod params;
+mod medium;
 mod polylog;
-mod pure_bending;
-mod quadratic_patch;
-mod relaxing_compression;
-mod rigid;
-mod roller_box;
-mod saint_venant;
-mod thick_sphere;
-mod uniaxial_compression;
 mod vibrating_cantilever;
 
-pub use affine::Affine;
-pub use bar_wave::BarWave;
-pub use cantilever::CantileverPlaneStrain;
 pub use elastic::Elastic;
-pub use finite_bending::FiniteBending;
-pub use hertz::Hertz;
-pub use homogeneous::Homogeneous;
+pub use error::ExactError;
 pub use hyperelastic::Hyperelastic;
-pub use lame_cube::LameCube;
-pub use params::{ExactError, Parameter, Params};
-pub use pure_bending::PureBending;
-pub use quadratic_patch::QuadraticPatch;
-pub use relaxing_compression::RelaxingCompression;
-pub use rigid::Rigid;
-pub use roller_box::RollerBox;
-pub use saint_venant::SaintVenantFlexure;
-pub use thick_sphere::ThickSphere;
-pub use uniaxial_compression::UniaxialCompression;
+pub use medium::Medium;
 pub use vibrating_cantilever::VibratingCantilever;
 
-use catalogue::nearest;
-use params::Values;
+use catalogue::{Dimension, Entry, Parameter, Problem, Range, Value, Values, find};
+
+/// A solution that scene files can name.
+pub type SolutionEntry = Entry<fn(&Medium, &Values) -> Result<Box<dyn Exact>, Problem>>;
+
+/// Declares the files of the solutions, and the slice of their entries.
+macro_rules! solutions {
+    ($($file:ident::$solution:ident [$($entry:ident),*],)*) => {
+        $(
+            mod $file;
+            pub use $file::$solution;
+        )*
+
+        /// Every solution, in the order tables list them.
+        pub static SOLUTIONS: &[SolutionEntry] = &[$($($file::$entry),*),*];
+    };
+}
+
+solutions! {
+    affine::Affine [ENTRY],
+    quadratic_patch::QuadraticPatch [ENTRY],
+    pure_bending::PureBending [ENTRY],
+    cantilever::CantileverPlaneStrain [ENTRY],
+    saint_venant::SaintVenantFlexure [ENTRY],
+    uniaxial_compression::UniaxialCompression [ENTRY],
+    thick_sphere::ThickSphere [ENTRY],
+    rigid::Rigid [ENTRY],
+    bar_wave::BarWave [ENTRY],
+    relaxing_compression::RelaxingCompression [ENTRY],
+    lame_cube::LameCube [ENTRY],
+    roller_box::RollerBox [ENTRY],
+    homogeneous::Homogeneous [FREE_SLIP, CONFINED, SIMPLE_SHEAR],
+    finite_bending::FiniteBending [ENTRY],
+    hertz::Hertz [ENTRY],
+}
 
 /// A position in the reference configuration, in metres.
 pub type Point3 = nalgebra::Point3<f64>;
@@ -60,30 +64,36 @@ pub type Vector3 = nalgebra::Vector3<f64>;
 /// A displacement gradient (-) or a stress (Pa).
 pub type Matrix3 = nalgebra::Matrix3<f64>;
 
-/// A displacement field that solves the equations of linear elasticity exactly.
+/// A displacement field that solves the equations of its material exactly.
 pub trait Exact: Send + Sync {
-    /// The material the field solves for.
-    fn elastic(&self) -> Elastic;
-
     /// Displacement `u`, m.
     fn displacement(&self, x: &Point3) -> Vector3;
 
-    /// Displacement gradient `H_ij = du_i / dx_j`, (3, 3), dimensionless.
+    /// Displacement gradient `H_ij = du_i / dX_j`, (3, 3), dimensionless.
     fn gradient(&self, x: &Point3) -> Matrix3;
 
-    /// Cauchy stress, (3, 3), Pa; by Hooke's law from the gradient unless a solution knows better.
-    fn stress(&self, x: &Point3) -> Matrix3 {
-        self.elastic().stress(&self.gradient(x))
-    }
+    /// Cauchy stress at the material point, (3, 3), Pa.
+    fn stress(&self, x: &Point3) -> Matrix3;
 
-    /// Body force `b = -div sigma`, N/m^3; none unless a solution needs one. Of a motion it is that of inertia, `-rho u''`.
+    /// Body force per reference volume, `b = -Div P`, N/m^3; none unless a solution needs one. Of a motion it is that of
+    /// inertia, `-rho u''`.
     fn body_force(&self, _x: &Point3) -> Vector3 {
         Vector3::zeros()
     }
 
-    /// Traction `sigma n` on a surface of outward unit normal `n`, Pa.
+    /// Traction on a surface of outward unit normal `n`, Pa: `P N` per reference area, which at small strain is `sigma n`.
     fn traction(&self, x: &Point3, normal: &Vector3) -> Vector3 {
         self.stress(x) * normal
+    }
+
+    /// Whether the field is of large strain, of the body's own law; else it is of Hooke's, and the limit of every law.
+    fn is_large_strain(&self) -> bool {
+        false
+    }
+
+    /// What is known of a contact, where that is all: the field is then that far from it, and no error is taken of it.
+    fn contact(&self) -> Option<Contact> {
+        None
     }
 
     /// The field at another time (s) since its start, for a solution that moves or relaxes; one made by name is at time 0.
@@ -110,48 +120,44 @@ pub trait Vibrations {
     fn lowest(&self, count: usize) -> Option<Vec<f64>>;
 }
 
-type Build = fn(Elastic, &Values) -> Result<Box<dyn Exact>, ExactError>;
+/// A tool pressed into a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Force on the tool against its motion, N.
+    pub force: f64,
+    /// Radius of the contact, m.
+    pub radius: f64,
+}
 
-/// Name, parameters and constructor of every solution.
-const SOLUTIONS: [(&str, &[Parameter], Build); 12] = [
-    ("affine", affine::PARAMETERS, affine::build),
-    ("quadratic-patch", quadratic_patch::PARAMETERS, quadratic_patch::build),
-    ("pure-bending", pure_bending::PARAMETERS, pure_bending::build),
-    ("cantilever-plane-strain", cantilever::PARAMETERS, cantilever::build),
-    ("saint-venant-flexure", saint_venant::PARAMETERS, saint_venant::build),
-    ("uniaxial-compression", uniaxial_compression::PARAMETERS, uniaxial_compression::build),
-    ("thick-sphere", thick_sphere::PARAMETERS, thick_sphere::build),
-    ("rigid", rigid::PARAMETERS, rigid::build),
-    ("bar-wave", bar_wave::PARAMETERS, bar_wave::build),
-    ("relaxing-compression", relaxing_compression::PARAMETERS, relaxing_compression::build),
-    ("lame-cube", lame_cube::PARAMETERS, lame_cube::build),
-    ("roller-box", roller_box::PARAMETERS, roller_box::build),
-];
-
-fn entry(name: &str) -> Result<&'static (&'static str, &'static [Parameter], Build), ExactError> {
-    SOLUTIONS.iter().find(|(known, ..)| *known == name).ok_or_else(|| {
-        let known: Vec<&'static str> = exact_names().collect();
-        ExactError::UnknownSolution {
-            name: name.into(),
-            nearest: nearest(name, known.iter().copied()),
-            known: known.join(", "),
+/// The solution of that name for a material, with the parameters given in SI.
+pub fn exact_by_name(name: &str, medium: &Medium, given: &[(&str, f64)]) -> Result<Box<dyn Exact>, Problem> {
+    let entry = find(SOLUTIONS, name)?;
+    let mut values = Values::new(entry.parameters);
+    // A file has the text of what it gives; here there is none.
+    let with_value = |bad: Problem, name: &str| match given.iter().find(|(given, _)| *given == name) {
+        Some((name, value)) if bad.found.is_none() => bad.found(format!("{name} = {value}")),
+        _ => bad,
+    };
+    for (name, value) in given {
+        values.give(name, Value::Number(*value)).map_err(|bad| with_value(bad, name))?;
+    }
+    match values.missing() {
+        Some(p) => {
+            let needs = format!("needs {}: {} [{}]", p.name, p.meaning, p.dimension.si_unit());
+            Err(Problem::new(needs).found(entry.name))
         }
-    })
+        None => (entry.build)(medium, &values).map_err(|bad| {
+            let name = bad.parameter.unwrap_or_default();
+            with_value(bad, name)
+        }),
+    }
 }
 
-/// Names of all solutions, in the order tables list them.
-pub fn exact_names() -> impl Iterator<Item = &'static str> {
-    SOLUTIONS.iter().map(|(name, ..)| *name)
-}
-
-/// The parameters a solution takes beside Young's modulus and Poisson's ratio.
-pub fn exact_parameters(name: &str) -> Result<&'static [Parameter], ExactError> {
-    entry(name).map(|(_, parameters, _)| *parameters)
-}
-
-/// The solution of that name for a material and its own parameters.
-pub fn exact_by_name(name: &str, params: &Params) -> Result<Box<dyn Exact>, ExactError> {
-    let (name, parameters, build) = entry(name)?;
-    let elastic = Elastic::new(params.young, params.poisson)?;
-    build(elastic, &Values::resolve(name, parameters, params)?)
+/// Numbers of these names.
+fn numbers<const N: usize>(values: &Values, names: [&'static str; N]) -> Result<[f64; N], Problem> {
+    let mut numbers = [0.0; N];
+    for (number, name) in numbers.iter_mut().zip(names) {
+        *number = values.number(name)?;
+    }
+    Ok(numbers)
 }

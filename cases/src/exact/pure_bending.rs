@@ -14,7 +14,7 @@
 //!             E k y / 3 whatever nu is, so the pressure error is well defined.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
 
 /// Bending about the z axis with constant curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,10 +31,6 @@ impl PureBending {
 }
 
 impl Exact for PureBending {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         let (x, y, z, nu) = (p.x, p.y, p.z, self.elastic.poisson());
         self.curvature * Vector3::new(x * y, -0.5 * (x * x + nu * (y * y - z * z)), -nu * y * z)
@@ -57,9 +53,14 @@ impl Exact for PureBending {
     }
 }
 
-pub(super) const PARAMETERS: &[Parameter] =
-    &[Parameter::required("curvature", "1/m", "curvature of the axis, bending about z")];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    Ok(Box::new(PureBending::new(elastic, values.at(0))))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "pure-bending",
+    meaning: "pure bending of a prism about z",
+    source: "Timoshenko and Goodier, Theory of Elasticity, pure bending of prismatical bars",
+    parameters: &[Parameter::required(
+        "curvature",
+        Dimension::Curvature,
+        "curvature of the axis, bending about z",
+    )],
+    build: |medium, values| Ok(Box::new(PureBending::new(medium.elastic, values.number("curvature")?))),
+};

@@ -13,7 +13,7 @@
 //!             ones converge at order 2 (displacement) and 1 (energy). The body force grows with lambda near nu = 0.5.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
 
 /// `u_i = x . C_i x / 2` with the constant body force that balances it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +50,6 @@ impl QuadraticPatch {
 }
 
 impl Exact for QuadraticPatch {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         Vector3::from_fn(|i, _| 0.5 * x.coords.dot(&(self.second[i] * x.coords)))
     }
@@ -63,14 +59,26 @@ impl Exact for QuadraticPatch {
         Matrix3::from_rows(&rows)
     }
 
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
+    }
+
     fn body_force(&self, _x: &Point3) -> Vector3 {
         self.force
     }
 }
 
-pub(super) const PARAMETERS: &[Parameter] =
-    &[Parameter::optional("amplitude", "1/m", "scale of the second derivatives of the displacement", 1.0)];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    Ok(Box::new(QuadraticPatch::generic(elastic, values.at(0))))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "quadratic-patch",
+    meaning: "a quadratic displacement with the body force that balances it",
+    source: "",
+    parameters: &[Parameter::default(
+        "amplitude",
+        Dimension::Curvature,
+        1.0,
+        "scale of the second derivatives of the displacement",
+    )],
+    build: |medium, values| {
+        Ok(Box::new(QuadraticPatch::generic(medium.elastic, values.number("amplitude")?)))
+    },
+};

@@ -18,7 +18,9 @@
 //! Must hold   homogeneous: exact to what the steps in time leave, of order 2. While held the sides move out to keep free.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
+};
 
 /// Homogeneous uniaxial stress along z in a linear material whose shear modulus relaxes by one term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +48,12 @@ impl RelaxingCompression {
             ("tau", tau, tau > 0.0, "above zero"),
         ] {
             if !sound {
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need: need.into() });
+                return Err(ExactError::BadParameter {
+                    solution: ENTRY.name,
+                    name,
+                    value,
+                    need: need.into(),
+                });
             }
         }
         Ok(RelaxingCompression { elastic, strain, over, share, tau, time: 0.0 })
@@ -69,10 +76,6 @@ impl RelaxingCompression {
 }
 
 impl Exact for RelaxingCompression {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         self.gradient(x) * x.coords
     }
@@ -93,16 +96,22 @@ impl Exact for RelaxingCompression {
     }
 }
 
-const NAME: &str = "relaxing-compression";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("strain", "", "shortening per unit height along z, positive in compression"),
-    Parameter::required("share", "", "share of the shear modulus that relaxes"),
-    Parameter::required("tau", "s", "relaxation time"),
-    Parameter::optional("over", "s", "time over which the shortening grows", 0.0),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let [strain, share, tau, over] = [0, 1, 2, 3].map(|k| values.at(k));
-    Ok(Box::new(RelaxingCompression::new(elastic, strain, over, [share, tau])?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "relaxing-compression",
+    meaning: "a prism of relaxing tissue shortened along z between frictionless plates, then held",
+    source: "Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989)",
+    parameters: &[
+        Parameter::required(
+            "strain",
+            Dimension::None,
+            "shortening per unit height along z, positive in compression",
+        ),
+        Parameter::required("share", Dimension::None, "share of the shear modulus that relaxes"),
+        Parameter::required("tau", Dimension::Time, "relaxation time"),
+        Parameter::default("over", Dimension::Time, 0.0, "time over which the shortening grows"),
+    ],
+    build: |medium, values| {
+        let [strain, share, tau, over] = numbers(values, ["strain", "share", "tau", "over"])?;
+        Ok(Box::new(RelaxingCompression::new(medium.elastic, strain, over, [share, tau])?))
+    },
+};

@@ -11,7 +11,7 @@
 //! Must hold   the body follows to rounding; stress, energy and reactions vanish; the stiffness has exactly six such modes.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers};
 
 /// `u = t + w x x`: a shift and an infinitesimal rotation about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,10 +38,6 @@ impl Rigid {
 }
 
 impl Exact for Rigid {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         self.shift + self.rotation.cross(&x.coords)
     }
@@ -49,21 +45,34 @@ impl Exact for Rigid {
     fn gradient(&self, _x: &Point3) -> Matrix3 {
         self.rotation.cross_matrix()
     }
-}
 
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::optional("tx", "m", "shift along x; with no component given, a generic motion is taken", 0.0),
-    Parameter::optional("ty", "m", "shift along y", 0.0),
-    Parameter::optional("tz", "m", "shift along z", 0.0),
-    Parameter::optional("rx", "rad", "small rotation about x", 0.0),
-    Parameter::optional("ry", "rad", "small rotation about y", 0.0),
-    Parameter::optional("rz", "rad", "small rotation about z", 0.0),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    if !values.any_given() {
-        return Ok(Box::new(Rigid::generic(elastic)));
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
-    let triple = |first| Vector3::new(values.at(first), values.at(first + 1), values.at(first + 2));
-    Ok(Box::new(Rigid::new(elastic, triple(0), triple(3))))
 }
+
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "rigid",
+    meaning: "a shift and a small rotation, or a generic motion of that kind",
+    source: "",
+    parameters: &[
+        Parameter::default(
+            "tx",
+            Dimension::Length,
+            0.0,
+            "shift along x; with no component given, a generic motion is taken",
+        ),
+        Parameter::default("ty", Dimension::Length, 0.0, "shift along y"),
+        Parameter::default("tz", Dimension::Length, 0.0, "shift along z"),
+        Parameter::default("rx", Dimension::Angle, 0.0, "small rotation about x"),
+        Parameter::default("ry", Dimension::Angle, 0.0, "small rotation about y"),
+        Parameter::default("rz", Dimension::Angle, 0.0, "small rotation about z"),
+    ],
+    build: |medium, values| {
+        if values.given().next().is_none() {
+            return Ok(Box::new(Rigid::generic(medium.elastic)));
+        }
+        let [shift, rotation] = [["tx", "ty", "tz"], ["rx", "ry", "rz"]].map(|names| numbers(values, names));
+        Ok(Box::new(Rigid::new(medium.elastic, shift?.into(), rotation?.into())))
+    },
+};

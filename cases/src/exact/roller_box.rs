@@ -20,7 +20,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3, Vibrations};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3,
+    Vibrations, numbers,
+};
 
 /// The lowest mode; as a field it stands still at its largest until [`Exact::at`] gives it a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +57,7 @@ impl RollerBox {
         for (name, value) in [("length", x), ("depth", y), ("width", z), ("density", density)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
         Ok(RollerBox { elastic, size, density, amplitude, time: 0.0 })
@@ -118,16 +121,16 @@ impl Mode {
 }
 
 impl Exact for RollerBox {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         self.first().value(p) * self.now()
     }
 
     fn gradient(&self, p: &Point3) -> Matrix3 {
         self.first().slope(p) * self.now()
+    }
+
+    fn stress(&self, x: &Point3) -> Matrix3 {
+        self.elastic.stress(&self.gradient(x))
     }
 
     fn body_force(&self, p: &Point3) -> Vector3 {
@@ -181,17 +184,20 @@ impl Vibrations for RollerBox {
     }
 }
 
-const NAME: &str = "roller-box";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("length", "m", "side along x, from 0"),
-    Parameter::required("depth", "m", "side along y, from 0"),
-    Parameter::required("width", "m", "side along z, from 0"),
-    Parameter::required("density", "kg/m^3", "mass per volume"),
-    Parameter::optional("amplitude", "m", "largest displacement, nearly", 1e-3),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let [length, depth, width, density, amplitude] = [0, 1, 2, 3, 4].map(|k| values.at(k));
-    Ok(Box::new(RollerBox::new(elastic, [length, depth, width], density, amplitude)?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "roller-box",
+    meaning: "vibrations of a box on rollers all around",
+    source: "Graff, Wave Motion in Elastic Solids (1975), ch. 5",
+    parameters: &[
+        Parameter::required("length", Dimension::Length, "side along x, from 0"),
+        Parameter::required("depth", Dimension::Length, "side along y, from 0"),
+        Parameter::required("width", Dimension::Length, "side along z, from 0"),
+        Parameter::required("density", Dimension::Density, "mass per volume"),
+        Parameter::default("amplitude", Dimension::Length, 1e-3, "largest displacement, nearly"),
+    ],
+    build: |medium, values| {
+        let [length, depth, width] = numbers(values, ["length", "depth", "width"])?;
+        let [density, amplitude] = numbers(values, ["density", "amplitude"])?;
+        Ok(Box::new(RollerBox::new(medium.elastic, [length, depth, width], density, amplitude)?))
+    },
+};

@@ -33,7 +33,9 @@
 use std::f64::consts::PI;
 
 use super::polylog::{Complex, alternating_2, alternating_3};
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
+};
 
 /// Smallest depth to width ratio: the number of images grows as `6 width / depth`, so that 1/50 costs some 300.
 const FLATTEST: f64 = 0.02;
@@ -61,12 +63,12 @@ impl SaintVenantFlexure {
         for (name, value) in [("length", length), ("depth", depth), ("width", width)] {
             if !(value > 0.0 && value.is_finite()) {
                 let need = "above zero".into();
-                return Err(ExactError::BadParameter { solution: NAME, name, value, need });
+                return Err(ExactError::BadParameter { solution: ENTRY.name, name, value, need });
             }
         }
         if depth < FLATTEST * width {
             let need = format!("at least {FLATTEST} of the width of {width} m");
-            return Err(ExactError::BadParameter { solution: NAME, name: "depth", value: depth, need });
+            return Err(ExactError::BadParameter { solution: ENTRY.name, name: "depth", value: depth, need });
         }
         let inertia = width * depth.powi(3) / 12.0;
         let images = (38.0 * width / (2.0 * PI * depth)).ceil() as u32;
@@ -106,10 +108,6 @@ impl SaintVenantFlexure {
 }
 
 impl Exact for SaintVenantFlexure {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, p: &Point3) -> Vector3 {
         let (x, y, z, nu, l) = (p.x, p.y, p.z, self.elastic.poisson(), self.length);
         let ux = -y * x * (l - 0.5 * x) + self.warping(y, z);
@@ -141,16 +139,18 @@ impl Exact for SaintVenantFlexure {
     }
 }
 
-const NAME: &str = "saint-venant-flexure";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("load", "N", "end load along y"),
-    Parameter::required("length", "m", "length along x, from 0"),
-    Parameter::required("depth", "m", "depth of the section along y, centred on 0"),
-    Parameter::required("width", "m", "width of the section along z, centred on 0"),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let section = [values.at(2), values.at(3)];
-    Ok(Box::new(SaintVenantFlexure::new(elastic, values.at(0), values.at(1), section)?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "saint-venant-flexure",
+    meaning: "a bar of rectangular section under an end load along y",
+    source: "Timoshenko and Goodier, Theory of Elasticity, bending of bars: rectangular section",
+    parameters: &[
+        Parameter::required("load", Dimension::Force, "end load along y"),
+        Parameter::required("length", Dimension::Length, "length along x, from 0"),
+        Parameter::required("depth", Dimension::Length, "depth of the section along y, centred on 0"),
+        Parameter::required("width", Dimension::Length, "width of the section along z, centred on 0"),
+    ],
+    build: |medium, values| {
+        let [load, length, depth, width] = numbers(values, ["load", "length", "depth", "width"])?;
+        Ok(Box::new(SaintVenantFlexure::new(medium.elastic, load, length, [depth, width])?))
+    },
+};

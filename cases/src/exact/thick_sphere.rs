@@ -15,7 +15,9 @@
 //!             nu is, so locking shows at once in the pressure. Defined for r > 0.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{
+    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
+};
 
 /// Lame's sphere centred on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,11 +37,11 @@ impl ThickSphere {
     ) -> Result<ThickSphere, ExactError> {
         if !(inner > 0.0 && inner.is_finite()) {
             let need = "above zero".into();
-            return Err(ExactError::BadParameter { solution: NAME, name: "inner", value: inner, need });
+            return Err(ExactError::BadParameter { solution: ENTRY.name, name: "inner", value: inner, need });
         }
         if !(outer > inner && outer.is_finite()) {
             let need = format!("above the inner radius of {inner} m");
-            return Err(ExactError::BadParameter { solution: NAME, name: "outer", value: outer, need });
+            return Err(ExactError::BadParameter { solution: ENTRY.name, name: "outer", value: outer, need });
         }
         let (a, b) = (inner.powi(3), outer.powi(3));
         let mean_stress = (inner_pressure * a - outer_pressure * b) / (b - a);
@@ -60,10 +62,6 @@ fn quadrupole(x: &Point3, r: f64) -> Matrix3 {
 }
 
 impl Exact for ThickSphere {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         let (a, b) = self.terms(x.coords.norm());
         (a + b) * x.coords
@@ -82,16 +80,19 @@ impl Exact for ThickSphere {
     }
 }
 
-const NAME: &str = "thick-sphere";
-
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::required("inner", "m", "inner radius"),
-    Parameter::required("outer", "m", "outer radius"),
-    Parameter::optional("inner-pressure", "Pa", "pressure on the inner wall", 0.0),
-    Parameter::optional("outer-pressure", "Pa", "pressure on the outer wall", 0.0),
-];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    let radii = [values.at(0), values.at(1)];
-    Ok(Box::new(ThickSphere::new(elastic, radii, [values.at(2), values.at(3)])?))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "thick-sphere",
+    meaning: "a hollow sphere about the origin under pressure from within and without",
+    source: "Lame (1852)",
+    parameters: &[
+        Parameter::required("inner", Dimension::Length, "inner radius"),
+        Parameter::required("outer", Dimension::Length, "outer radius"),
+        Parameter::default("inner-pressure", Dimension::Pressure, 0.0, "pressure on the inner wall"),
+        Parameter::default("outer-pressure", Dimension::Pressure, 0.0, "pressure on the outer wall"),
+    ],
+    build: |medium, values| {
+        let radii = numbers(values, ["inner", "outer"])?;
+        let pressures = numbers(values, ["inner-pressure", "outer-pressure"])?;
+        Ok(Box::new(ThickSphere::new(medium.elastic, radii, pressures)?))
+    },
+};

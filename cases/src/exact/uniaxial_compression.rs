@@ -14,7 +14,7 @@
 //! Must hold   every consistent method returns it to rounding at every nu; the plate force is E e times the area.
 //! ```
 
-use super::{Elastic, Exact, ExactError, Matrix3, Parameter, Point3, Values, Vector3};
+use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
 
 /// Homogeneous uniaxial stress along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +36,6 @@ impl UniaxialCompression {
 }
 
 impl Exact for UniaxialCompression {
-    fn elastic(&self) -> Elastic {
-        self.elastic
-    }
-
     fn displacement(&self, x: &Point3) -> Vector3 {
         self.stretches().component_mul(&x.coords)
     }
@@ -54,9 +50,14 @@ impl Exact for UniaxialCompression {
     }
 }
 
-pub(super) const PARAMETERS: &[Parameter] =
-    &[Parameter::required("strain", "", "shortening per unit height along z, positive in compression")];
-
-pub(super) fn build(elastic: Elastic, values: &Values) -> Result<Box<dyn Exact>, ExactError> {
-    Ok(Box::new(UniaxialCompression::new(elastic, values.at(0))))
-}
+pub(super) const ENTRY: SolutionEntry = Entry {
+    name: "uniaxial-compression",
+    meaning: "a prism shortened along z between frictionless plates",
+    source: "any textbook",
+    parameters: &[Parameter::required(
+        "strain",
+        Dimension::None,
+        "shortening per unit height along z, positive in compression",
+    )],
+    build: |medium, values| Ok(Box::new(UniaxialCompression::new(medium.elastic, values.number("strain")?))),
+};

@@ -6,7 +6,6 @@ use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::model::Scene;
 use super::procedure::{Procedure, ProcedureKind};
-use super::tool::ToolShape;
 
 /// What holds a cloud in every procedure.
 pub(super) const HELD: &str = "essential = \"penalty\" and \"coupling\" are";
@@ -34,12 +33,6 @@ impl Scene {
             let problem = Problem::new(format!("{what} is not available yet")).help(help);
             errors.push(self.origin.error(ErrorKind::NotAvailable, key, problem));
         };
-        for (i, tool) in self.tools.iter().enumerate() {
-            if let ToolShape::File(_) = tool.shape {
-                let help = "plate, rounded-box, sphere, cylinder and capsule are";
-                add(&format!("tool[{i}].shape"), "the distance to a mesh".into(), help);
-            }
-        }
         let kind = self.procedure.kind();
         let explicit = kind == ProcedureKind::Explicit;
         let implicit = kind == ProcedureKind::ImplicitDynamic;
@@ -95,12 +88,7 @@ impl Scene {
             }
         }
         if explicit {
-            let prony = std::iter::once(("material".to_string(), &self.prony));
-            let regions = self.regions.iter().enumerate();
-            for (key, _) in prony
-                .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.prony)))
-                .filter(|(_, prony)| !prony.is_empty())
-            {
+            for (key, _) in self.materials().filter(|(_, material)| !material.prony.is_empty()) {
                 add(&format!("{key}.prony"), "relaxation in explicit dynamics".into(), "leave it out");
             }
         }

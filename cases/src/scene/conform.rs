@@ -49,8 +49,8 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
         (_, []) => add(wrong_type(value, &forms)),
         (_, [form]) => one(value, span, path, form, findings),
         (DeValue::Table(table), several) => match tagged(table, span.clone(), path, several) {
-            Ok(form) => one(value, span, path, form, findings),
-            Err(finding) => findings.push(finding),
+            Ok(form) => keys(table, span, path, form, several, findings),
+            Err(finding) => findings.push(*finding),
         },
         (_, several) => {
             let words: Vec<&str> = several.iter().flat_map(|form| words(form)).collect();
@@ -190,28 +190,22 @@ fn tagged<'s>(
     span: Range<usize>,
     path: &str,
     forms: &[&'s Map<String, Value>],
-) -> Result<&'s Map<String, Value>, Finding> {
-    let variants: Vec<(&str, &str, &'s Map<String, Value>)> = forms
-        .iter()
-        .filter_map(|form| {
-            let keys = form.get("properties")?.as_object()?;
-            let (tag, word) =
-                keys.iter().find_map(|(key, s)| Some((key.as_str(), s.get("const")?.as_str()?)))?;
-            Some((tag, word, *form))
-        })
-        .collect();
+) -> Result<&'s Map<String, Value>, Box<Finding>> {
+    let variants: Vec<(&str, &str, &'s Map<String, Value>)> =
+        forms.iter().filter_map(|form| tag(form).map(|(tag, word)| (tag, word, *form))).collect();
     let tag = variants.first().map_or("", |variant| variant.0);
     let words: Vec<&str> = variants.iter().map(|variant| variant.1).collect();
     let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref().as_ref() == tag) else {
         let help = format!("add {tag} = \"...\", one of: {}", words.join(", "));
-        return Err(Finding { key: join(path, tag), span, problem: Problem::new("is missing").help(help) });
+        let problem = Problem::new("is missing").help(help);
+        return Err(Box::new(Finding { key: join(path, tag), span, problem }));
     };
     let word = written(value.get_ref()).unwrap_or_default();
     match variants.iter().find(|variant| variant.1 == word) {
         Some(variant) => Ok(variant.2),
         None => {
             let problem = not_one_of(value.get_ref(), &words);
-            Err(Finding { key: join(path, tag), span: value.span(), problem })
+            Err(Box::new(Finding { key: join(path, tag), span: value.span(), problem }))
         }
     }
 }
@@ -224,7 +218,7 @@ fn one(
     findings: &mut Vec<Finding>,
 ) {
     let result = match value {
-        DeValue::Table(table) => return keys(table, span, path, form, findings),
+        DeValue::Table(table) => return keys(table, span, path, form, &[], findings),
         DeValue::Array(array) => return items(array, span, path, form, findings),
         DeValue::String(text) => string(text, form),
         DeValue::Integer(_) | DeValue::Float(_) => number(value, form),
@@ -306,11 +300,30 @@ fn items(
     }
 }
 
+/// The key that tells a form from others, and its word.
+fn tag(form: &Map<String, Value>) -> Option<(&str, &str)> {
+    let keys = form.get("properties")?.as_object()?;
+    keys.iter().find_map(|(key, schema)| Some((key.as_str(), schema.get("const")?.as_str()?)))
+}
+
+/// A key that other forms have.
+fn of_another(name: &str, form: &Map<String, Value>, others: &[&Map<String, Value>]) -> Option<Problem> {
+    let (key, word) = tag(form)?;
+    let has = |other: &&&Map<String, Value>| {
+        other.get("properties").and_then(Value::as_object).is_some_and(|keys| keys.contains_key(name))
+    };
+    let words: Vec<&str> = others.iter().filter(has).filter_map(|other| Some(tag(other)?.1)).collect();
+    let problem = Problem::new(format!("does not belong to {key} = \"{word}\""));
+    (!words.is_empty()).then(|| problem.help(format!("leave it out; it goes with {}", words.join(", "))))
+}
+
+/// `others` are the forms that the table might have had, told apart by a word as [`tagged`] does.
 fn keys(
     table: &DeTable<'_>,
     span: Range<usize>,
     path: &str,
     form: &Map<String, Value>,
+    others: &[&Map<String, Value>],
     findings: &mut Vec<Finding>,
 ) {
     let empty = Map::new();
@@ -325,7 +338,8 @@ fn keys(
             let now = RENAMED.iter().find(|(old, new)| *old == name && known.contains_key(*new));
             let problem = match now {
                 Some((_, new)) => Problem::new("is an old name").help(format!("write {new}")),
-                None => Problem::new("is not a known key").help(suggest(name, &names)),
+                None => of_another(name, form, others)
+                    .unwrap_or_else(|| Problem::new("is not a known key").help(suggest(name, &names))),
             };
             findings.push(Finding { key: join(path, name), span: key.span(), problem });
         }

@@ -1,13 +1,14 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
-use super::field::{Prescribed, ScalarField, VectorField};
+use super::field::{Prescribed, ScalarField};
 use super::method::{Cloud, Dilation, Efg, Element, Family};
-use super::model::{LoadKind, Material, Relaxation, Scene};
+use super::model::Scene;
 use super::output::Reference;
 use super::procedure::{Procedure, ProcedureKind};
 use super::report::Report;
 use super::tool::Drive;
 use catalogue::Problem;
+use material::Material as _;
 
 /// Notes every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {
@@ -29,8 +30,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     }
     if let Some(ramp) = scene.procedure.ramp() {
         let massless = matches!(&scene.procedure, Procedure::ImplicitDynamic(implicit) if !implicit.inertia);
-        let lacking = |(_, material, _): &&(String, &Material, &[Relaxation])| material.density().is_none();
-        for (key, material, _) in materials(scene).iter().filter(|m| !massless && lacking(m)) {
+        for (key, material) in scene.materials().filter(|m| !massless && m.1.density.is_none()) {
             let help =
                 format!("the {} law needs its mass in dynamics: density = \"1000 kg/m^3\"", material.name());
             report.missing(&format!("{key}.density"), &help);
@@ -90,7 +90,7 @@ fn vibrating(scene: &Scene, report: &mut Report) {
     if !vibrates {
         return;
     }
-    for (key, ..) in materials(scene).iter().filter(|m| m.1.density().is_none()) {
+    for (key, _) in scene.materials().filter(|m| m.1.density.is_none()) {
         report.missing(&format!("{key}.density"), "vibrations need a mass: density = \"1000 kg/m^3\"");
     }
     let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
@@ -112,38 +112,19 @@ fn vibrating(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Every material with its key.
-fn materials(scene: &Scene) -> Vec<(String, &Material, &[Relaxation])> {
-    let regions = scene.regions.iter().enumerate();
-    std::iter::once(("material".to_string(), &scene.material, scene.prony.as_slice()))
-        .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, r.prony.as_slice())))
-        .collect()
-}
-
 fn laws(scene: &Scene, report: &mut Report) {
-    let materials = materials(scene);
-    let linear = |material: &Material| matches!(material, Material::Linear(_));
-    for (key, material, prony) in &materials {
+    for (key, material) in scene.materials() {
         let small = matches!(scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes);
-        if small && !linear(material) {
+        if small && !material.law().is_small_strain() {
             let problem = Problem::new("is a law of large strain, but the procedure is linear");
             let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";
             report.add(&format!("{key}.law"), problem.found(material.name()).help(help));
         }
-        if !prony.is_empty() && scene.procedure.ramp().is_none() {
+        if !material.prony.is_empty() && scene.procedure.ramp().is_none() {
             let problem =
                 format!("relaxes over time, which a {} procedure has not", scene.procedure.kind().name());
             let help = "leave it out: young and poisson are then the moduli of the load's own duration";
             report.add(&format!("{key}.prony"), Problem::new(problem).help(help));
-        }
-    }
-    let Some((_, large, _)) = materials.iter().find(|m| !linear(m.1)) else { return };
-    let Some(Reference::Exact { name, .. }) = &scene.reference else { return };
-    for (i, load) in scene.loads.iter().enumerate() {
-        if let LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact) = load.kind {
-            let problem =
-                format!("takes the load of {name}, a solution at small strain, for the {} law", large.name());
-            report.add(&format!("load[{i}]"), Problem::new(problem).help("take law = \"linear\""));
         }
     }
 }
@@ -165,7 +146,7 @@ fn tools(scene: &Scene, report: &mut Report) {
                 format!("a {} procedure has no time axis: leave it out", scene.procedure.kind().name());
             report.add(&at("drive.over"), Problem::new("is the time of a ramp").help(help));
         }
-        if matches!(tool.drive, Drive::Pressure(_)) && tool.face_area().is_none() {
+        if matches!(tool.drive, Drive::Pressure(_)) && tool.shape.face_area(&tool.along.into()).is_none() {
             let help =
                 "only a rounded-box that closes along x, y or z has a face of a known area; give force";
             report.add(&at("drive.pressure"), Problem::new("has no face to act on").help(help));

@@ -12,6 +12,7 @@ mod error;
 mod expression;
 mod field;
 mod keys;
+mod material;
 mod method;
 mod model;
 mod output;
@@ -34,17 +35,18 @@ pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{Prescribed, ScalarField, VectorField};
+pub use material::{Material, Relaxation, medium};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
     Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
-pub use model::{Body, Elastic, Load, LoadKind, Material, MaterialRegion, Place, Relaxation, Scene, Support};
+pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static};
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};
-pub use tool::{Drive, Friction, Tool, ToolShape};
+pub use tool::{Drive, Friction, Tool};
 
 /// Reads the scene in a file. The name in messages is `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {

@@ -5,6 +5,7 @@ use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
 use super::field::{Prescribed, ScalarField, VectorField};
+use super::material::Material;
 use super::method::{MeshFile, Method};
 use super::output::{Check, Output, Reference};
 use super::procedure::Procedure;
@@ -27,8 +28,6 @@ pub struct Scene {
     pub body: Body,
     /// The material wherever no region has its own.
     pub material: Material,
-    /// Its relaxation over time; nothing relaxes where empty.
-    pub prony: Vec<Relaxation>,
     /// Parts of the body with a material of their own; later ones win.
     pub regions: Vec<MaterialRegion>,
     /// Prescribed displacements.
@@ -62,6 +61,13 @@ impl Scene {
         self.origin.text()
     }
 
+    /// Every material with its key: that of the body, then those of the regions in their order.
+    pub fn materials(&self) -> impl Iterator<Item = (String, &Material)> {
+        let regions = self.regions.iter().enumerate();
+        std::iter::once(("material".to_string(), &self.material))
+            .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material)))
+    }
+
     /// The method of that id.
     pub fn method(&self, id: &str) -> Option<&Method> {
         self.methods.iter().find(|method| method.id == id)
@@ -75,8 +81,9 @@ impl Scene {
     /// An error about `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from 0), found
     /// only while running: an empty region, an inverted element. It names file, line and value.
     pub fn error(&self, kind: ErrorKind, key: &str, problem: &str, help: Option<&str>) -> SceneError {
-        let problem = Problem { found: None, problem: problem.to_string(), help: help.map(str::to_string) };
-        self.origin.error(kind, key, problem)
+        let mut bad = Problem::new(problem);
+        bad.help = help.map(str::to_string);
+        self.origin.error(kind, key, bad)
     }
 }
 
@@ -149,87 +156,6 @@ impl Body {
     }
 }
 
-/// Young's modulus (Pa), Poisson's ratio and density (kg/m3).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elastic {
-    /// Young's modulus in pascals, positive.
-    pub young: f64,
-    /// Poisson's ratio, above -1 and below 0.5.
-    pub poisson: f64,
-    /// Density in kilograms per cubic metre.
-    pub density: Option<f64>,
-}
-
-/// Material laws.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Material {
-    /// Linear elasticity at small strain.
-    Linear(Elastic),
-    /// St. Venant-Kirchhoff.
-    SaintVenantKirchhoff(Elastic),
-    /// Neo-Hookean.
-    NeoHookean(Elastic),
-    /// Neo-Hookean in the isochoric invariant, as Abaqus and CalculiX have it.
-    NeoHookeanIsochoric(Elastic),
-    /// Hencky, in logarithmic strain.
-    Hencky(Elastic),
-    /// Mooney-Rivlin; pascals, kilograms per cubic metre.
-    MooneyRivlin {
-        /// Constant of the first invariant.
-        c10: f64,
-        /// Constant of the second invariant.
-        c01: f64,
-        /// Bulk modulus.
-        bulk: f64,
-        /// Density.
-        density: Option<f64>,
-    },
-    /// Ogden; pascals, kilograms per cubic metre.
-    Ogden {
-        /// Shear constant and exponent of each term.
-        terms: Vec<(f64, f64)>,
-        /// Bulk modulus.
-        bulk: f64,
-        /// Density.
-        density: Option<f64>,
-    },
-}
-
-impl Material {
-    /// The name of the law in files and tables.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Material::Linear(_) => "linear",
-            Material::SaintVenantKirchhoff(_) => "saint-venant-kirchhoff",
-            Material::NeoHookean(_) => "neo-hookean",
-            Material::NeoHookeanIsochoric(_) => "neo-hookean-isochoric",
-            Material::Hencky(_) => "hencky",
-            Material::MooneyRivlin { .. } => "mooney-rivlin",
-            Material::Ogden { .. } => "ogden",
-        }
-    }
-
-    /// Density in kilograms per cubic metre, where one is given.
-    pub fn density(&self) -> Option<f64> {
-        match self {
-            Material::MooneyRivlin { density, .. } | Material::Ogden { density, .. } => *density,
-            _ => self.elastic().and_then(|e| e.density),
-        }
-    }
-
-    /// Young's modulus, Poisson's ratio and density, for the laws that have them.
-    pub fn elastic(&self) -> Option<&Elastic> {
-        match self {
-            Material::Linear(e)
-            | Material::SaintVenantKirchhoff(e)
-            | Material::NeoHookean(e)
-            | Material::NeoHookeanIsochoric(e)
-            | Material::Hencky(e) => Some(e),
-            Material::MooneyRivlin { .. } | Material::Ogden { .. } => None,
-        }
-    }
-}
-
 /// A part of the body with a material of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialRegion {
@@ -239,17 +165,6 @@ pub struct MaterialRegion {
     pub place: Place,
     /// Its material.
     pub material: Material,
-    /// Its relaxation over time; nothing relaxes where empty.
-    pub prony: Vec<Relaxation>,
-}
-
-/// A term of a Prony series: a share of the shear response that relaxes exponentially.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relaxation {
-    /// The share, between 0 and 1.
-    pub g: f64,
-    /// Its time in seconds, positive.
-    pub tau: f64,
 }
 
 /// Where something acts.

@@ -1,9 +1,9 @@
 //! What a scene reports, what it compares with, and what must hold.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::method::{MeshFile, Size};
+use crate::exact::SolutionEntry;
 use catalogue::Values;
 use catalogue::metric::Metric;
 
@@ -58,10 +58,10 @@ pub enum Target {
 pub enum Reference {
     /// An exact solution.
     Exact {
-        /// Its name.
-        name: String,
-        /// Its parameters in SI, their names and dimensions those that the solution takes.
-        parameters: BTreeMap<String, f64>,
+        /// Which one.
+        entry: &'static SolutionEntry,
+        /// Its parameters.
+        values: Values,
     },
     /// A method of this scene.
     Method {

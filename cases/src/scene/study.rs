@@ -229,7 +229,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     let seeded = scene.methods.iter().filter(chosen).all(|m| m.seeded(1).is_some());
     let help = "a cloud that is uniform, graded or jittered has one: name such methods in methods";
     report.require(run.seeds == 0 || seeded, &format!("{key}.seeds"), "are not of every method", help);
-    let elastic = scene.material.elastic().is_some();
+    let elastic = scene.material.constant("poisson").is_some();
     let help = format!("the {} law has none", scene.material.name());
     report.require(
         run.poisson.is_empty() || elastic,

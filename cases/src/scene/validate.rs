@@ -1,9 +1,11 @@
 //! What a scene's parts demand of each other.
 
-use crate::exact::{Params, exact_by_name};
-use catalogue::suggest;
+use crate::exact::{Exact, SolutionEntry};
+use catalogue::{Values, suggest};
+use material::Material as _;
 
 use super::field::{Prescribed, VectorField};
+use super::material::medium;
 use super::model::{LoadKind, Place, Scene};
 use super::output::{Check, Reference, Target};
 use super::procedure::ProcedureKind;
@@ -57,35 +59,59 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
         Some(Reference::Method { id, .. }) => {
             known_methods(std::slice::from_ref(id), scene, "reference.method", report);
         }
-        Some(Reference::Exact { name, parameters }) => {
-            if let Some(e) = scene.material.elastic() {
-                let params = Params { young: e.young, poisson: e.poisson, values: parameters.clone() };
-                match exact_by_name(name, &params) {
-                    Err(bad) => report.add("reference", Problem::new(format!("can't be built: {bad}"))),
-                    Ok(exact) if scene.procedure.kind() == ProcedureKind::Modes => {
-                        let problem = Problem::new("knows no vibrations").found(name);
-                        let help = "take \"lame-cube\" or \"roller-box\", or leave the reference out";
-                        if exact.vibrations().is_none() {
-                            report.add("reference.exact", problem.help(help));
-                        }
-                    }
-                    Ok(exact) if exact.at(0.0).is_some() && scene.procedure.ramp().is_none() => {
-                        let problem = format!(
-                            "moves in time, which a {} procedure has not",
-                            scene.procedure.kind().name()
-                        );
-                        let help = "take kind = \"explicit\" or \"implicit-dynamic\", or a solution at rest";
-                        report.add("reference.exact", Problem::new(problem).found(name).help(help));
-                    }
-                    Ok(_) => {}
-                }
+        Some(Reference::Exact { entry, values }) => match exact(scene, entry, values) {
+            Err(bad) => {
+                let key = bad.parameter.map_or("reference".to_string(), |p| format!("reference.{p}"));
+                report.add(&key, bad);
             }
-        }
+            Ok(exact) => exact_fits(scene, entry.name, exact.as_ref(), report),
+        },
         _ => {}
     }
     exact_words(scene, report);
     surfaces(scene, report);
     targets(scene, report);
+}
+
+/// The exact solution for the scene's own material.
+fn exact(scene: &Scene, entry: &SolutionEntry, values: &Values) -> Result<Box<dyn Exact>, Problem> {
+    let law = scene.material.law();
+    let (lambda, mu) = (law.lambda(), law.mu());
+    let own = |name: &str, limit: f64| scene.material.constant(name).unwrap_or(limit);
+    let young = own("young", mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu));
+    let poisson = own("poisson", 0.5 * lambda / (lambda + mu));
+    (entry.build)(&medium(law, young, poisson)?, values)
+}
+
+/// What an exact solution demands of the scene.
+fn exact_fits(scene: &Scene, name: &str, exact: &dyn Exact, report: &mut Report) {
+    let kind = scene.procedure.kind();
+    let mut add = |problem: String, help: &str| {
+        report.add("reference.exact", Problem::new(problem).found(name).help(help));
+    };
+    if kind == ProcedureKind::Modes {
+        if exact.vibrations().is_none() {
+            let help = "take \"lame-cube\" or \"roller-box\", or leave the reference out";
+            add("knows no vibrations".into(), help);
+        }
+    } else if exact.at(0.0).is_some() && scene.procedure.ramp().is_none() {
+        let help = "take kind = \"explicit\" or \"implicit-dynamic\", or a solution at rest";
+        add(format!("moves in time, which a {} procedure has not", kind.name()), help);
+    }
+    if exact.contact().is_some() && scene.tools.len() != 1 {
+        add("is of one tool that presses".into(), "add a [[tool]], the only one");
+    }
+    let Some((_, large)) = scene.materials().find(|m| !m.1.law().is_small_strain()) else { return };
+    if exact.is_large_strain() {
+        return;
+    }
+    for (i, load) in scene.loads.iter().enumerate() {
+        if let LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact) = load.kind {
+            let problem =
+                format!("takes the load of {name}, a solution at small strain, for the {} law", large.name());
+            report.add(&format!("load[{i}]"), Problem::new(problem).help("take law = \"linear\""));
+        }
+    }
 }
 
 /// Transfers go to points that there are.
@@ -113,6 +139,12 @@ fn moves(scene: &Scene) -> bool {
     scene.procedure.ramp().is_some()
         && !scene.output.probes.is_empty()
         && matches!(scene.reference, Some(Reference::Exact { .. }))
+}
+
+/// Whether the exact solution is that of a contact.
+fn presses(scene: &Scene) -> bool {
+    let Some(Reference::Exact { entry, values }) = &scene.reference else { return false };
+    exact(scene, entry, values).is_ok_and(|exact| exact.contact().is_some())
 }
 
 /// Whether the reference is a solution, run or stored.
@@ -157,8 +189,8 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
             "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene"
         }
         Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
-        Needs::ToolReference if scene.tools.is_empty() || !solved => {
-            "needs a [[tool]] and [reference] method or record in the scene"
+        Needs::ToolReference if scene.tools.is_empty() || !(solved || presses(scene)) => {
+            "needs a [[tool]] and [reference] method or record, or exact = \"hertz\", in the scene"
         }
         Needs::ProbesReference if scene.output.probes.is_empty() || !solved => {
             "needs output.probes and [reference] method or record in the scene"

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Value, Values, find};
+use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Value, Values, find, nearest};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 use serde_json::{Map, json};
 
 use super::report::Report;
+use crate::exact::{Exact, Medium};
 
 /// A kind of entries that files name.
 pub(crate) trait Vocabulary: 'static {
@@ -61,6 +62,13 @@ enum Setting {
     List(Vec<Setting>),
 }
 
+impl<V> Given<V> {
+    /// The names that are given.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+}
+
 impl<'de, V> Deserialize<'de> for Given<V> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given<V>, D::Error> {
         Ok(Given(BTreeMap::deserialize(deserializer)?, PhantomData))
@@ -75,7 +83,11 @@ impl<V: Vocabulary> JsonSchema for Given<V> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut properties = Map::new();
         for parameter in V::ENTRIES.iter().flat_map(|entry| entry.parameters) {
-            properties.entry(parameter.name).or_insert_with(|| property(parameter));
+            let known = properties.entry(parameter.name).or_insert_with(|| property(parameter));
+            // Of several dimensions: which one it is of hangs on the entry, and is seen when that is known.
+            if known["x-quantity"] != property(parameter)["x-quantity"] {
+                *known = json!({ "type": "string", "description": parameter.meaning });
+            }
         }
         json_schema!({ "type": "object", "properties": properties })
     }
@@ -115,8 +127,9 @@ pub(crate) fn settings<V: Vocabulary>(
     for (name, setting) in given.0 {
         let at = format!("{key}.{name}");
         let read = match entry.parameter(&name) {
-            None => Err(Problem::new(format!("does not belong to this {}", V::NOUN))
-                .help(format!("{} takes no {name}: leave it out", entry.name))),
+            None => {
+                Err(Problem::new(format!("does not belong to this {}", V::NOUN)).help(of_entry(entry, &name)))
+            }
             Some(parameter) => read(setting, parameter.dimension).and_then(|value| values.give(&name, value)),
         };
         if let Err(problem) = read {
@@ -135,6 +148,14 @@ pub(crate) fn settings<V: Vocabulary>(
     sound.then_some(values)
 }
 
+/// What is right in place of a setting that an entry has not.
+fn of_entry<B>(entry: &Entry<B>, name: &str) -> String {
+    match nearest(name, entry.parameters.iter().map(|parameter| parameter.name)) {
+        Some(near) => format!("did you mean '{near}'?"),
+        None => format!("{} takes no {name}: leave it out", entry.name),
+    }
+}
+
 fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
     let number = |setting| match setting {
         Setting::Number(number) if dimension.is_plain() => Ok(number),
@@ -147,6 +168,81 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
         Setting::List(list) => list.into_iter().map(number).collect::<Result<_, _>>().map(Value::List),
         one => number(one).map(Value::Number),
     }
+}
+
+/// An entry whose values are all that it is made of.
+pub(crate) type Makes<T> = Entry<fn(&Values) -> Result<T, Problem>>;
+
+/// Makes what an entry is of; what its constructor refuses is noted at the parameter below `key` that it names, or `at`.
+pub(crate) fn build<T>(
+    entry: &Makes<T>,
+    values: &Values,
+    (key, at): (&str, &str),
+    report: &mut Report,
+) -> Option<T> {
+    let noted = |bad: Problem| match bad.parameter {
+        Some(parameter) => report.add(&format!("{key}.{parameter}"), bad),
+        None => report.add(at, bad),
+    };
+    (entry.build)(values).map_err(noted).ok()
+}
+
+/// The schema of a table that names an entry by the key `tag`, has its settings and the keys `K` of every entry of its kind:
+/// one form for each entry, so that a setting of another is no key of this one.
+pub(crate) fn tagged<V: Vocabulary, K: JsonSchema>(
+    tag: &str,
+    meaning: &str,
+    generator: &mut SchemaGenerator,
+) -> Schema {
+    let beside = K::json_schema(generator).to_value();
+    let form = |entry: &Entry<V::Build>| {
+        let mut properties = beside["properties"].as_object().cloned().unwrap_or_default();
+        let mut required = beside["required"].as_array().cloned().unwrap_or_default();
+        properties.insert(tag.into(), json!({ "type": "string", "const": entry.name }));
+        required.push(tag.into());
+        for parameter in entry.parameters {
+            properties.insert(parameter.name.into(), property(parameter));
+            if parameter.required {
+                required.push(parameter.name.into());
+            }
+        }
+        json!({
+            "type": "object",
+            "description": entry.meaning,
+            "properties": properties,
+            "required": required,
+            "additionalProperties": false,
+        })
+    };
+    let forms: Vec<_> = V::ENTRIES.iter().map(form).collect();
+    json_schema!({ "description": meaning, "oneOf": forms })
+}
+
+/// Laws of materials.
+pub(crate) enum Laws {}
+
+impl Vocabulary for Laws {
+    type Build = fn(&Values) -> Result<material::Law, Problem>;
+    const NOUN: &'static str = "law";
+    const ENTRIES: &'static [Entry<Self::Build>] = material::LAWS;
+}
+
+/// Shapes of tools.
+pub(crate) enum ToolShapes {}
+
+impl Vocabulary for ToolShapes {
+    type Build = fn(&Values) -> Result<contact::ToolShape, Problem>;
+    const NOUN: &'static str = "shape";
+    const ENTRIES: &'static [Entry<Self::Build>] = contact::TOOL_SHAPES;
+}
+
+/// Exact solutions.
+pub(crate) enum Solutions {}
+
+impl Vocabulary for Solutions {
+    type Build = fn(&Medium, &Values) -> Result<Box<dyn Exact>, Problem>;
+    const NOUN: &'static str = "exact solution";
+    const ENTRIES: &'static [Entry<Self::Build>] = crate::exact::SOLUTIONS;
 }
 
 /// Kernels of clouds.

@@ -344,7 +344,7 @@ const OUTPUT: &[Bad] = &[
         "\"pure-bending\"",
         "\"pure-bendng\" #<",
         "reference.exact",
-        &["'pure-bendng' is not an exact solution", "did you mean 'pure-bending'?"],
+        &["'pure-bendng' is not known", "did you mean 'pure-bending'?"],
     ),
     (
         "curvature = \"0.5 /m\"",

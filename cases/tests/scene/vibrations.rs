@@ -66,7 +66,12 @@ fn what_has_no_part_in_vibrations_names_its_key() {
             "reference.exact",
             "'rigid' knows no vibrations; take \"lame-cube\" or \"roller-box\"",
         ),
-        ("depth = \"30 mm\"", "depth = \"0 mm\"", "reference", "'depth' is 0; it must be above zero"),
+        (
+            "depth = \"30 mm\"",
+            "depth = \"0 mm\"",
+            "reference.depth",
+            "'0 mm' does not go with roller-box; it must be above zero",
+        ),
     ] {
         assert!(SCENE.contains(from), "{from}");
         let errors = parse(&SCENE.replacen(from, to, 1), "s.toml").expect_err(to);

@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use cases::exact::{exact_names, exact_parameters};
+use cases::exact::SOLUTIONS;
 use cases::scene::{Basis, Element, Mass, SupportShape};
-use catalogue::{metric::METRICS, names};
+use catalogue::{Parameter, metric::METRICS, names};
+use contact::TOOL_SHAPES;
+use material::LAWS;
 use reports::{Check, Status};
 
 use crate::outcome::timing::PHASES;
@@ -25,14 +27,17 @@ pub fn print() {
     println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
     println!("essential   nitsche, penalty, multipliers, elimination, coupling");
     println!("transfer    {}, own", names(interp::SCHEMES).join(", "));
+    println!("laws, with their constants");
+    for law in LAWS {
+        println!("  {:24} {}", law.name, parameters(law.parameters));
+    }
+    println!("tools, with their lengths");
+    for shape in TOOL_SHAPES {
+        println!("  {:24} {}", shape.name, parameters(shape.parameters));
+    }
     println!("exact solutions, with their parameters");
-    for name in exact_names() {
-        let parameters = exact_parameters(name).unwrap_or_default();
-        let list: Vec<String> = parameters
-            .iter()
-            .map(|p| if p.unit.is_empty() { p.name.to_string() } else { format!("{} [{}]", p.name, p.unit) })
-            .collect();
-        println!("  {name:24} {}", list.join(", "));
+    for solution in SOLUTIONS {
+        println!("  {:24} {}", solution.name, parameters(solution.parameters));
     }
     println!("metrics");
     for metric in METRICS {
@@ -57,6 +62,15 @@ fn files(folder: &Path, found: &mut Vec<String>) {
             found.push(path.display().to_string());
         }
     }
+}
+
+/// Names with units; in brackets those that may be left out.
+fn parameters(parameters: &[Parameter]) -> String {
+    let one = |p: &Parameter| {
+        let name = if p.required { p.name.to_string() } else { format!("({})", p.name) };
+        if p.dimension.is_plain() { name } else { format!("{name} [{}]", p.dimension.si_unit()) }
+    };
+    parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// The plan of one method.

@@ -1,10 +1,11 @@
 //! Errors against an exact solution.
 
 use cases::exact::Exact;
-use material::LinearElastic;
+use material::{Law, LinearElastic, Material as _};
 use shape::{Matrix3, Point3, Vector3, VolumeRows};
 use statics::Body;
 
+use super::mean_pressure::cauchy;
 use crate::Failure;
 
 /// Relative errors over the body. A norm whose exact value vanishes (the pressure of a traceless stress, the energy
@@ -49,6 +50,26 @@ pub fn l2(fine: &VolumeRows, u: &[Vector3], exact: &dyn Exact) -> Option<f64> {
         l2.add(*w, (u - u_exact).norm_squared(), u_exact.norm_squared());
     }
     l2.root(l2.exact)
+}
+
+/// `|s_h - s| / |s|` in L2 over the undeformed body, s the Cauchy stress of a solution at large strain. `fine` as in [`norms`].
+pub fn stress(
+    laws: &[Law],
+    fine: &VolumeRows,
+    fine_region: &[u16],
+    u: &[Vector3],
+    exact: &dyn Exact,
+) -> Option<f64> {
+    let mut all = Ratio::default();
+    let mut scale = 0.0;
+    let gradients = fine.at().displacement_gradients(u);
+    for (q, (x, w)) in fine.points().iter().zip(fine.weights()).enumerate() {
+        let law = &laws[fine_region.get(q).copied().unwrap_or(0) as usize];
+        let s = exact.stress(x);
+        all.add(*w, (cauchy(law, &gradients[q]) - s).norm_squared(), s.norm_squared());
+        scale += w * law.mu().powi(2) * exact.gradient(x).norm_squared();
+    }
+    all.root(scale)
 }
 
 /// Errors of the parameters `u`. `fine` (with the region of each point) is a quadrature of higher order than the

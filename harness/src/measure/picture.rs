@@ -1,7 +1,6 @@
 //! What a run leaves for the pictures: the deformed surface, the tools where they stand, and a section between them with its
 //! pressure.
 
-use contact::ToolShape;
 use geometry::{Mesh, Point3, Vector3};
 use reports::{Section, SectionCell, SurfaceField, ToolHull};
 
@@ -67,68 +66,11 @@ fn extent(mesh: &Mesh) -> Vector3 {
 
 /// Points whose convex hull is the tool at a closure (m); of a plate a slab as wide as the body.
 fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
-    let mut points: Vec<Vector3> = Vec::new();
-    match *set.tool.shape() {
-        ToolShape::Plate => {
-            let half = 0.5 * extent(mesh).max();
-            points.push(Vector3::new(half, half, 0.0));
-            points.push(Vector3::new(half, half, -0.1 * half));
-            mirrored(&mut points, [true, true, false]);
-        }
-        ToolShape::RoundedBox { half, radius } => {
-            points.extend(octant().iter().map(|d| Vector3::from(half).add_scalar(-radius) + d * radius));
-            mirrored(&mut points, [true; 3]);
-        }
-        ToolShape::Sphere { radius } => {
-            points.extend(octant().iter().map(|d| d * radius));
-            mirrored(&mut points, [true; 3]);
-        }
-        ToolShape::Capsule { radius, half_length } => {
-            points.extend(octant().iter().map(|d| Vector3::z() * half_length + d * radius));
-            mirrored(&mut points, [true; 3]);
-        }
-        ToolShape::Cylinder { radius, half_length } => {
-            let rim = octant().into_iter().filter(|d| d.z == 0.0);
-            points.extend(rim.map(|d| d * radius + Vector3::z() * half_length));
-            mirrored(&mut points, [true; 3]);
-        }
-    }
+    let points = set.tool.shape().outline(extent(mesh).max());
     let place = set.tool.place(closure).coords;
     ToolHull {
         name: set.name.clone(),
         points: points.iter().map(|p| (place + set.turned * p).into()).collect(),
-    }
-}
-
-/// Unit vectors of the octant of positive coordinates, every 15 degrees: a silhouette of a rounding of radius r is r / 100 too
-/// small at most.
-fn octant() -> Vec<Vector3> {
-    let sine = |k: i32| {
-        if k == 0 {
-            0.0
-        } else if k == 6 {
-            1.0
-        } else {
-            (f64::from(k) * 15.0).to_radians().sin()
-        }
-    };
-    let mut out = vec![Vector3::z()];
-    for up in 0..6 {
-        out.extend(
-            (0..=6)
-                .map(|turn| Vector3::new(sine(6 - up) * sine(6 - turn), sine(6 - up) * sine(turn), sine(up))),
-        );
-    }
-    out
-}
-
-/// Adds the mirror images at the planes of the axes named.
-fn mirrored(points: &mut Vec<Vector3>, axes: [bool; 3]) {
-    for axis in (0..3).filter(|&a| axes[a]) {
-        for mut image in points.clone() {
-            image[axis] = -image[axis];
-            points.push(image);
-        }
     }
 }
 

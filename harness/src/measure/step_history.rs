@@ -45,6 +45,10 @@ pub(crate) fn report(
             metrics.extend(&end.against);
         }
     }
+    if let (Some(contact), None) = (run.setup.contact, failure) {
+        let pushed = last.tools.first().map_or(0.0, |tool| tool.pushed);
+        push_tool(metrics, &metric::TOOL_FORCE_ERROR, 0, (pushed / contact.force - 1.0).abs());
+    }
     Ok(steps)
 }
 

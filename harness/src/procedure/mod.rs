@@ -11,6 +11,7 @@ mod solution;
 mod statics;
 
 use cases::scene::Procedure;
+use material::Material as _;
 
 use crate::Failure;
 use crate::discretise::Discretisation;

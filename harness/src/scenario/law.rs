@@ -1,42 +1,23 @@
-//! From a scene's material to the law that the solvers take, and to its limit at small strain.
+//! The law of a scene's material as a study has it, and its limit at small strain.
 
 use cases::scene::{ErrorKind, Material};
-use material::{
-    Hencky, Law, LinearElastic, Material as _, MaterialError, MooneyRivlin, NeoHookean, NeoHookeanIsochoric,
-    Ogden, SaintVenantKirchhoff,
-};
+use material::{Law, LinearElastic, Material as _};
 
 use crate::Failure;
 use crate::error::Key;
 
 /// The law of the material at `key` of the scene, with another Poisson's ratio if one is given and the law takes one.
 pub fn law(material: &Material, poisson: Option<f64>, key: &str) -> Result<Law, Failure> {
-    build(material, poisson)
-        .map_err(|bad| Failure::at(ErrorKind::Invalid, Key::Scene(key.into()), bad.to_string(), ""))
-}
-
-fn build(material: &Material, poisson: Option<f64>) -> Result<Law, MaterialError> {
-    let nu = |own: f64| poisson.unwrap_or(own);
-    Ok(match material {
-        Material::Linear(e) => Law::Linear(LinearElastic::new(e.young, nu(e.poisson))?),
-        Material::SaintVenantKirchhoff(e) => {
-            Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(e.young, nu(e.poisson))?)
-        }
-        Material::NeoHookean(e) => Law::NeoHookean(NeoHookean::new(e.young, nu(e.poisson))?),
-        Material::NeoHookeanIsochoric(e) => {
-            Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(e.young, nu(e.poisson))?)
-        }
-        Material::Hencky(e) => Law::Hencky(Hencky::new(e.young, nu(e.poisson))?),
-        Material::MooneyRivlin { c10, c01, bulk, .. } => {
-            Law::MooneyRivlin(MooneyRivlin::new(*c10, *c01, *bulk)?)
-        }
-        Material::Ogden { terms, bulk, .. } => Law::Ogden(Ogden::new(terms, *bulk)?),
+    let Some(poisson) = poisson else { return Ok(material.law().clone()) };
+    material.at_poisson(poisson).map_err(|bad| {
+        let key = bad.parameter.map_or(key.to_string(), |parameter| format!("{key}.{parameter}"));
+        Failure::at(ErrorKind::Invalid, Key::Scene(key), bad.problem, &bad.help.unwrap_or_default())
     })
 }
 
 /// What the law is at small strain: `E = mu (3 lambda + 2 mu) / (lambda + mu)`, `nu = lambda / (2 (lambda + mu))`.
 pub fn small_strain(law: &Law, key: &str) -> Result<LinearElastic, Failure> {
-    if let Law::Linear(linear) = law {
+    if let Law::LinearElastic(linear) = law {
         return Ok(*linear);
     }
     let (lambda, mu) = (law.lambda(), law.mu());
@@ -47,14 +28,15 @@ pub fn small_strain(law: &Law, key: &str) -> Result<LinearElastic, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use material::MooneyRivlin;
+
     use super::*;
 
     #[test]
-    fn constants_and_moduli_of_mooney_rivlin_are_one_law() {
+    fn the_limit_of_mooney_rivlin_is_that_of_its_constants() {
         // E = 20 kPa, nu = 0.45: mu = 2 (c10 + c01), kappa = E / (3 - 6 nu).
         let (mu, bulk) = (20e3 / 2.9, 20e3 / 0.3);
-        let material = Material::MooneyRivlin { c10: 0.35 * mu, c01: 0.15 * mu, bulk, density: None };
-        let law = law(&material, None, "material").unwrap();
+        let law = MooneyRivlin::new(0.35 * mu, 0.15 * mu, bulk).unwrap().into();
         let linear = small_strain(&law, "material").unwrap();
         assert!((linear.young() / 20e3 - 1.0).abs() < 1e-12, "{}", linear.young());
         assert!((linear.poisson() - 0.45).abs() < 1e-12, "{}", linear.poisson());

@@ -15,7 +15,7 @@ pub(crate) use body::point;
 pub(crate) use identity::{purpose, rule};
 pub(crate) use tools::PlacedTool;
 
-use cases::exact::{Exact, Params, exact_by_name};
+use cases::exact::{Exact, Medium};
 use cases::scene::{self, LoadKind, Prescribed, Reference, Scene, VectorField};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
@@ -45,15 +45,15 @@ pub struct Scenario<'a> {
 impl Scenario<'_> {
     /// The laws by region, and their limits at small strain.
     fn laws(&self) -> Result<(Vec<Law>, Vec<LinearElastic>), Failure> {
-        self.materials()
-            .enumerate()
-            .map(|(region, (key, material, _))| {
-                // A study's other ratio is that of the scene's own material.
-                let law = law::law(material, self.poisson.filter(|_| region == 0), &key)?;
-                let linear = law::small_strain(&law, &key)?;
-                Ok((law, linear))
-            })
-            .collect()
+        // A study varies the ratio of the body, not of its regions.
+        let ratios = std::iter::once(self.poisson).chain(std::iter::repeat(None));
+        let all = self.scene.materials().zip(ratios);
+        all.map(|((key, material), poisson)| {
+            let law = law::law(material, poisson, &key)?;
+            let linear = law::small_strain(&law, &key)?;
+            Ok((law, linear))
+        })
+        .collect()
     }
 
     /// Materials, supports, loads and the exact solution.
@@ -63,7 +63,8 @@ impl Scenario<'_> {
 
     fn acting(&self) -> Result<Setup, Failure> {
         let (laws, materials) = self.laws()?;
-        let e = materials[0];
+        let medium = self.medium(&laws[0], materials[0])?;
+        let e = &medium;
         let exact = self.exact(e)?;
         let supports = self
             .scene
@@ -122,27 +123,21 @@ impl Scenario<'_> {
         Ok(Setup {
             laws,
             materials,
-            densities: self.materials().map(|(_, material, _)| material.density()).collect(),
+            densities: self.scene.materials().map(|(_, material)| material.density).collect(),
             relaxation: self.relaxation()?,
             supports,
             loads,
             tools: tools(self.scene)?,
             procedure: self.scene.procedure,
             mass: self.method.mass,
-            exact,
+            contact: exact.as_ref().and_then(|exact| exact.contact()),
+            exact: exact.filter(|exact| exact.contact().is_none()),
         })
     }
 
-    /// Every material with its key and its relaxation: the scene's own, then those of its regions.
-    fn materials(&self) -> impl Iterator<Item = (String, &scene::Material, &[scene::Relaxation])> {
-        let regions = self.scene.regions.iter().enumerate();
-        std::iter::once(("material".to_string(), &self.scene.material, self.scene.prony.as_slice()))
-            .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material, r.prony.as_slice())))
-    }
-
     fn relaxation(&self) -> Result<Vec<Option<Prony>>, Failure> {
-        let series = self.materials().map(|(key, _, terms)| {
-            let terms: Vec<(f64, f64)> = terms.iter().map(|t| (t.g, t.tau)).collect();
+        let series = self.scene.materials().map(|(key, material)| {
+            let terms: Vec<(f64, f64)> = material.prony.iter().map(|t| (t.g, t.tau)).collect();
             let wrong = |bad: material::MaterialError| {
                 Failure::input(Key::Scene(format!("{key}.prony")), bad.to_string(), "")
             };
@@ -151,13 +146,17 @@ impl Scenario<'_> {
         series.collect()
     }
 
+    /// The body's material as exact solutions take it.
+    fn medium(&self, law: &Law, limit: LinearElastic) -> Result<Medium, Failure> {
+        scene::medium(law, limit.young(), limit.poisson())
+            .map_err(|bad| Failure::input(Key::Scene("material".into()), bad.to_string(), ""))
+    }
+
     /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene
     /// names none.
-    fn exact(&self, e: LinearElastic) -> Result<Option<Box<dyn Exact>>, Failure> {
-        let Some(Reference::Exact { name, parameters }) = &self.scene.reference else { return Ok(None) };
-        let values = parameters.clone();
-        let params = Params { young: e.young(), poisson: e.poisson(), values };
-        let exact = exact_by_name(name, &params)
+    fn exact(&self, medium: &Medium) -> Result<Option<Box<dyn Exact>>, Failure> {
+        let Some(Reference::Exact { entry, values }) = &self.scene.reference else { return Ok(None) };
+        let exact = (entry.build)(medium, values)
             .map_err(|bad| Failure::input(Key::Scene("reference".into()), bad.to_string(), ""))?;
         Ok(Some(self.scene.procedure.duration().and_then(|end| exact.at(end)).unwrap_or(exact)))
     }

@@ -1,6 +1,6 @@
 //! What acts on a body: materials, supports and loads, with their fields as functions of position. Method-free.
 
-use cases::exact::Exact;
+use cases::exact::{Contact, Exact};
 use cases::scene::{Mass, Procedure};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
@@ -69,7 +69,9 @@ pub struct Setup {
     pub procedure: Procedure,
     /// The mass of vibrations, which is the method's own.
     pub mass: Option<Mass>,
-    /// The exact solution, if the scene names one.
+    /// What is known of a contact, if the scene names a solution of one.
+    pub contact: Option<Contact>,
+    /// The exact field, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
 }
 

@@ -1,7 +1,7 @@
 //! From a scene's tools to those of the solver.
 
 use cases::scene::{self, ErrorKind};
-use contact::{ContactError, ContactLaw, Drive, Tool, ToolShape};
+use contact::{ContactError, ContactLaw, Drive, Tool};
 use geometry::{Point3, Vector3};
 use shape::Matrix3;
 
@@ -33,45 +33,19 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         scene::Drive::Closure(closure) => Drive::Closure(closure),
         scene::Drive::Force(force) => Drive::Force(force),
         scene::Drive::Pressure(pressure) => {
-            let area = tool.face_area().ok_or_else(|| {
+            let area = tool.shape.face_area(&tool.along.into()).ok_or_else(|| {
                 Failure::input(at(".drive.pressure"), "has no face to act on", "give force")
             })?;
             Drive::Force(pressure * area)
         }
     };
-    let solver = solver_tool(tool).map_err(|bad| match bad {
-        Some(bad) => Failure::at(ErrorKind::Invalid, at(""), format!("is no tool: {bad}"), ""),
-        None => {
-            Failure::unavailable(at(".shape"), "is the distance to a mesh, which is not available yet", "")
-        }
-    })?;
-    Ok(PlacedTool { name: tool.name.clone(), tool: solver, turned: turned(tool), drive, over: tool.over })
-}
-
-/// `None` for a shape that is ahead of the solver.
-fn solver_tool(tool: &scene::Tool) -> Result<Tool, Option<ContactError>> {
+    let wrong = |bad: ContactError| Failure::at(ErrorKind::Invalid, at(""), format!("is no tool: {bad}"), "");
     let law = match tool.friction {
         Some(f) => ContactLaw::coulomb(tool.penalty, f.coefficient, f.stick),
         None => ContactLaw::frictionless(tool.penalty),
     };
-    let shape = match tool.shape {
-        scene::ToolShape::Plate => ToolShape::Plate,
-        scene::ToolShape::RoundedBox { half, radius } => ToolShape::RoundedBox { half, radius },
-        scene::ToolShape::Sphere { radius } => ToolShape::Sphere { radius },
-        scene::ToolShape::Cylinder { radius, length } => {
-            ToolShape::Cylinder { radius, half_length: 0.5 * length }
-        }
-        scene::ToolShape::Capsule { radius, length } => {
-            ToolShape::Capsule { radius, half_length: 0.5 * length }
-        }
-        scene::ToolShape::File(_) => return Err(None),
-    };
-    let along = Vector3::from(tool.along);
-    let law = law.map_err(Some)?;
-    Tool::new(shape, Point3::from(tool.at), turned(tool), along, law).map_err(Some)
-}
-
-/// Takes the axes of the tool's frame to the world's (3, 3).
-fn turned(tool: &scene::Tool) -> Matrix3 {
-    tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)))
+    let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
+    let (along, law) = (Vector3::from(tool.along), law.map_err(wrong)?);
+    let solver = Tool::new(tool.shape, Point3::from(tool.at), turned, along, law).map_err(wrong)?;
+    Ok(PlacedTool { name: tool.name.clone(), tool: solver, turned, drive, over: tool.over })
 }

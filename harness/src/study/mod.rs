@@ -329,7 +329,7 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
         case: case_name(scene),
         purpose: purpose(scene.purpose),
         published: scene.published.map_or("", |p| p.name()).into(),
-        poisson: scene.material.elastic().map_or(0.0, |e| e.poisson),
+        poisson: scene.material.constant("poisson").unwrap_or(0.0),
         ..Record::default()
     };
     Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()

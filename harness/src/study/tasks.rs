@@ -30,7 +30,7 @@ pub(super) fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::
         && run.essentials.is_empty();
     let picture = organ && plain && run.seeds == 0;
     // The scene's own ratio, named or not, makes one run.
-    let own = scene.material.elastic().map(|e| e.poisson);
+    let own = scene.material.constant("poisson");
     let own_ratio = |poisson: Option<f64>| poisson.or(own);
     for &poisson in &ratios {
         for method in &scene.methods {

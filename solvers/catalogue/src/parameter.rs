@@ -78,6 +78,11 @@ impl Parameter {
         Parameter { required: false, ..Parameter::required(name, dimension, meaning) }
     }
 
+    /// The same where it may be absent, as one of several ways to give something.
+    pub const fn may_be_absent(self) -> Parameter {
+        Parameter { required: false, ..self }
+    }
+
     /// With another kind of value.
     pub const fn of(self, kind: Kind) -> Parameter {
         Parameter { kind, ..self }
@@ -101,9 +106,22 @@ impl Parameter {
             if self.kind == Kind::Count && number.fract() != 0.0 {
                 return Err(Problem::new("is not a whole number").found(number));
             }
-            self.range.check(number)?;
+            self.range.check(number).map_err(|bad| self.explained(bad, number))?;
         }
         Ok(())
+    }
+
+    /// Of a number out of range: what the parameter is, and of a list which number it is.
+    fn explained(&self, bad: Problem, number: f64) -> Problem {
+        let help = match (&bad.help, self.meaning) {
+            (Some(help), meaning) if !meaning.is_empty() => Some(format!("{help}: {meaning}")),
+            (help, _) => help.clone(),
+        };
+        let found = match self.kind {
+            Kind::List | Kind::Vector => Some(number.to_string()),
+            Kind::Number | Kind::Count | Kind::Flag => bad.found.clone(),
+        };
+        Problem { help, found, ..bad }
     }
 }
 

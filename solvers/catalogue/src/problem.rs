@@ -11,17 +11,25 @@ pub struct Problem {
     pub problem: String,
     /// What would be right.
     pub help: Option<String>,
+    /// The parameter of an entry that it is about, where a constructor found it.
+    pub parameter: Option<&'static str>,
 }
 
 impl Problem {
     /// Without a value and without help.
     pub fn new(problem: impl Into<String>) -> Problem {
-        Problem { found: None, problem: problem.into(), help: None }
+        Problem { found: None, problem: problem.into(), help: None, parameter: None }
     }
 
     /// With the value, one line of at most 80 characters.
     pub fn found(mut self, found: impl fmt::Display) -> Problem {
         self.found = Some(clip(&found.to_string()));
+        self
+    }
+
+    /// About a parameter of an entry.
+    pub fn of(mut self, parameter: &'static str) -> Problem {
+        self.parameter = Some(parameter);
         self
     }
 

@@ -2,7 +2,9 @@
 
 use std::hint::black_box;
 
-use contact::{ContactCounts, ContactHistory, ContactLaw, ContactSurface, Slip, Tool, ToolShape};
+use contact::{
+    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Plate, RoundedBox, Slip, Tool, ToolShape,
+};
 use criterion::{Criterion, criterion_group, criterion_main};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
@@ -18,9 +20,9 @@ fn benches(c: &mut Criterion) {
     let u = vec![Vector3::new(1e-5, 2e-5, 0.0); mesh.points().len()];
     let law = ContactLaw::coulomb(5e8, 0.15, 1e8).unwrap();
     let down = -Vector3::z();
-    let jaw = ToolShape::RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 };
+    let jaw = ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 });
     let tool = |shape, turn| Tool::new(shape, Point3::new(0.02, 0.015, 0.024), turn, down, law).unwrap();
-    let plate = tool(ToolShape::Plate, Tool::turned_to(&down));
+    let plate = tool(ToolShape::Plate(Plate), Tool::turned_to(&down));
     let jaw = tool(jaw, Matrix3::identity());
 
     let mut group = c.benchmark_group("contact");

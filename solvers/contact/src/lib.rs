@@ -7,11 +7,11 @@
 //! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers.
 //!
 //! ```
-//! use contact::{ContactLaw, Slip, Tool, ToolShape};
+//! use contact::{ContactLaw, Slip, Sphere, Tool};
 //! use shape::{Matrix3, Point3, Vector3};
 //! # fn main() -> Result<(), contact::ContactError> {
 //! // A ball of 5 mm that comes down along -z, without friction; penalty 5e8 Pa/m.
-//! let (ball, law) = (ToolShape::Sphere { radius: 5e-3 }, ContactLaw::frictionless(5e8)?);
+//! let (ball, law) = (Sphere { radius: 5e-3 }.into(), ContactLaw::frictionless(5e8)?);
 //! let tool = Tool::new(ball, Point3::new(0.0, 0.0, 5e-3), Matrix3::identity(), -Vector3::z(), law)?;
 //! let top = Point3::origin();
 //! let apart = tool.contact(-1e-3, &top, &Slip::NONE, 0.0);
@@ -38,4 +38,4 @@ pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
 pub use surface::ContactSurface;
 pub use tool::{PointContact, Tool};
-pub use tool_shape::{Distance, ToolShape};
+pub use tool_shape::*;

@@ -98,7 +98,7 @@ impl Tool {
     pub fn bounds(&self, closure: f64) -> (Point3, Point3) {
         let place = self.place(closure);
         let (_, corner) = self.shape.bounds();
-        let half = if self.shape == ToolShape::Plate {
+        let half = if self.shape.is_endless() {
             Vector3::repeat(f64::INFINITY)
         } else {
             self.rotation.abs() * corner.coords

@@ -44,9 +44,7 @@ use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use lanes::LanePath;
-use material::{
-    Hencky, Law, LinearElastic, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, SaintVenantKirchhoff,
-};
+use material::{Law, NeoHookean};
 use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
 use shape::{Point3, Vector3};
 
@@ -80,22 +78,9 @@ fn every_law(
     items: usize,
 ) {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let (young, poisson) = (20e3, 0.495);
-    let hooke = LinearElastic::new(young, poisson).unwrap();
-    let mu = hooke.mu();
-    let terms = [(0.9 * mu, 1.3), (0.06 * mu, 5.0), (-0.265 * mu, -2.0)];
-    let laws = [
-        Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()),
-        Law::Linear(hooke),
-        Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(young, poisson).unwrap()),
-        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(young, poisson).unwrap()),
-        Law::MooneyRivlin(MooneyRivlin::from_young(young, poisson, 0.3).unwrap()),
-        Law::Hencky(Hencky::new(young, poisson).unwrap()),
-        Law::Ogden(Ogden::new(&terms, hooke.bulk()).unwrap()),
-    ];
     let mut f = vec![Vector3::zeros(); u.len()];
     group.throughput(Throughput::Elements(items as u64));
-    for law in laws {
+    for law in Law::all(20e3, 0.495).unwrap() {
         let laws = [law];
         let mut force = InternalForce::new(ExplicitBody { laws: &laws, ..body }, LanePath::best()).unwrap();
         if force.info().kernel.is_parallel() {

@@ -1,5 +1,7 @@
 //! What makes the constants of a law unusable.
 
+use catalogue::Problem;
+
 /// Constants that a law refuses.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MaterialError {
@@ -65,4 +67,26 @@ pub enum MaterialError {
         /// The step given, s.
         dt: f64,
     },
+}
+
+/// At the parameter that a scene gives, where there is one.
+impl From<MaterialError> for Problem {
+    fn from(bad: MaterialError) -> Problem {
+        let parameter = match bad {
+            MaterialError::Young { .. } => Some("young"),
+            MaterialError::Poisson { .. } => Some("poisson"),
+            MaterialError::Bulk { .. } => Some("bulk"),
+            MaterialError::Share { .. } => Some("share"),
+            MaterialError::OgdenTerm { .. } => Some("alpha"),
+            MaterialError::Shear { .. }
+            | MaterialError::PronyTerm { .. }
+            | MaterialError::PronySum { .. }
+            | MaterialError::TimeStep { .. } => None,
+        };
+        let problem = Problem::new(format!("can't be used: {bad}"));
+        match parameter {
+            Some(parameter) => problem.of(parameter),
+            None => problem,
+        }
+    }
 }

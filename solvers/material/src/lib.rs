@@ -23,34 +23,22 @@
 #![allow(non_snake_case)]
 
 mod error;
-mod hencky;
 mod kinematics;
 pub mod lane;
 mod law;
-mod linear;
-mod mooney_rivlin;
-mod neo_hookean;
-mod neo_hookean_isochoric;
-mod ogden;
 mod principal;
 mod prony;
-mod saint_venant_kirchhoff;
+mod separated;
 mod spectral;
 #[cfg(test)]
 mod tests;
 mod viscoelastic;
 
 pub use error::MaterialError;
-pub use hencky::Hencky;
 pub use kinematics::{less_ln_1p, volume_change};
-pub use law::Law;
-pub use linear::LinearElastic;
-pub use mooney_rivlin::MooneyRivlin;
-pub use neo_hookean::NeoHookean;
-pub use neo_hookean_isochoric::NeoHookeanIsochoric;
-pub use ogden::Ogden;
+pub use law::*;
 pub use prony::{Prony, PronyStep};
-pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use separated::Separated;
 pub use viscoelastic::{deviator, relaxed_stress_and_tangent};
 
 use lane::{LaneStrain, Lanes};
@@ -64,6 +52,11 @@ pub type Tangent = nalgebra::SMatrix<f64, 9, 9>;
 /// Where `det F <= 0` the laws with a logarithm or a power of `J` (all but the linear and the
 /// St. Venant-Kirchhoff one) return values that are not finite: callers look at `J` first.
 pub trait Material {
+    /// Whether the law holds for small displacement gradients only, rotations included.
+    fn is_small_strain(&self) -> bool {
+        false
+    }
+
     /// Energy per undeformed volume `W(H)`, J/m^3.
     fn energy(&self, H: &Matrix3) -> f64;
 
@@ -105,6 +98,12 @@ pub trait Material {
     where
         Self: Sized,
     {
+        None
+    }
+
+    /// How the energy depends on a volume change `theta` in place of `J`, at `theta - 1`, where that is apart from the change
+    /// of shape; `None` for a law that does not part, which costs time alone.
+    fn separated(&self, _theta_minus_1: f64) -> Option<Separated> {
         None
     }
 }

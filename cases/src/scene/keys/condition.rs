@@ -1,13 +1,15 @@
 //! Keys of supports, loads and tools.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
 use super::Names;
 use crate::scene::expression::Expression;
 use crate::scene::region::Region;
-use crate::scene::tool::ToolShapeName;
 use crate::scene::units::{BodyForce, ContactSlope, Dim, Force, Length, Pressure, Q, Time, Unit};
+use crate::scene::vocabulary::{Given, ToolShapes, Word, tagged};
 
 /// The word "exact": values from the solution that `[reference]` names
 #[derive(Deserialize, JsonSchema)]
@@ -101,22 +103,22 @@ pub(crate) struct LoadKeys {
 }
 
 /// A rigid tool
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Deserialize)]
 pub(crate) struct ToolKeys {
+    pub shape: Word<ToolShapes>,
+    #[serde(flatten)]
+    pub beside: BesideShape,
+    #[serde(flatten)]
+    pub settings: Given<ToolShapes>,
+}
+
+/// What a tool has whatever its shape is
+#[derive(Deserialize, JsonSchema)]
+pub(crate) struct BesideShape {
     pub name: String,
-    pub shape: ToolShapeName,
-    /// Half extents
-    pub half: Option<[Q<Length>; 3]>,
-    pub radius: Option<Q<Length>>,
-    pub length: Option<Q<Length>>,
-    pub path: Option<String>,
-    pub unit: Option<Unit<Length>>,
     pub at: [Q<Length>; 3],
     /// Direction of motion
     pub along: [f64; 3],
-    /// Axis of a cylinder or capsule (along z unless given); outward normal of a plate's face (its direction of motion unless given)
-    pub axis: Option<[f64; 3]>,
     pub drive: DriveKeys,
     /// Normal pressure per penetration
     pub penalty: Q<ContactSlope>,
@@ -124,6 +126,16 @@ pub(crate) struct ToolKeys {
     pub friction: Option<f64>,
     /// Tangential traction per elastic slip, with friction
     pub stick: Option<Q<ContactSlope>>,
+}
+
+impl JsonSchema for ToolKeys {
+    fn schema_name() -> Cow<'static, str> {
+        "tool".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        tagged::<ToolShapes, BesideShape>("shape", "A rigid tool", generator)
+    }
 }
 
 /// How a tool is driven: one of closure, force along its way, and mean pressure on its face

@@ -5,7 +5,9 @@ mod condition;
 mod method;
 mod output;
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
 pub(crate) use condition::*;
@@ -15,7 +17,8 @@ pub(crate) use output::*;
 use super::procedure::ProcedureKeys;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
-use super::units::{Density, Length, Pressure, Q, Time, Unit};
+use super::units::{Density, Length, Q, Time, Unit};
+use super::vocabulary::{Given, Laws, Word, tagged};
 
 /// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
 #[derive(Deserialize, JsonSchema)]
@@ -82,55 +85,31 @@ pub(crate) enum BodyKeys {
 }
 
 /// A material law and its constants
-#[derive(Deserialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "kebab-case")]
-pub(crate) enum MaterialKeys {
-    /// Isotropic linear elasticity at small strain
-    Linear(ElasticKeys),
-    SaintVenantKirchhoff(ElasticKeys),
-    NeoHookean(ElasticKeys),
-    /// As Abaqus and CalculiX have it: C10 (I1bar - 3) + (J - 1)^2 / D1
-    NeoHookeanIsochoric(ElasticKeys),
-    Hencky(ElasticKeys),
-    MooneyRivlin(MooneyRivlinKeys),
-    Ogden(OgdenKeys),
+#[derive(Deserialize)]
+pub(crate) struct MaterialKeys {
+    pub law: Word<Laws>,
+    #[serde(flatten)]
+    pub beside: BesideLaw,
+    #[serde(flatten)]
+    pub settings: Given<Laws>,
 }
 
+/// What a material has whatever its law is
 #[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ElasticKeys {
-    pub young: Q<Pressure>,
-    pub poisson: f64,
+pub(crate) struct BesideLaw {
     pub density: Option<Q<Density>>,
     #[serde(default)]
     pub prony: Vec<PronyKeys>,
 }
 
-/// Constants c10, c01 and bulk, or young, poisson and share
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct MooneyRivlinKeys {
-    pub c10: Option<Q<Pressure>>,
-    pub c01: Option<Q<Pressure>>,
-    pub bulk: Option<Q<Pressure>>,
-    pub young: Option<Q<Pressure>>,
-    pub poisson: Option<f64>,
-    /// Of the second constant: c01 / (c10 + c01)
-    pub share: Option<f64>,
-    pub density: Option<Q<Density>>,
-    #[serde(default)]
-    pub prony: Vec<PronyKeys>,
-}
+impl JsonSchema for MaterialKeys {
+    fn schema_name() -> Cow<'static, str> {
+        "material".into()
+    }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct OgdenKeys {
-    pub mu: Vec<Q<Pressure>>,
-    pub alpha: Vec<f64>,
-    pub bulk: Q<Pressure>,
-    pub density: Option<Q<Density>>,
-    #[serde(default)]
-    pub prony: Vec<PronyKeys>,
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        tagged::<Laws, BesideLaw>("law", "A material law and its constants", generator)
+    }
 }
 
 /// A share of the shear response that relaxes, and its time

@@ -1,13 +1,11 @@
 //! Keys of output, reference and checks.
 
-use std::collections::BTreeMap;
-
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Names, SizeKeys};
 use crate::scene::units::{Length, Q, Time, Unit};
-use crate::scene::vocabulary::{Given, Schemes, Word};
+use crate::scene::vocabulary::{Given, Schemes, Solutions, Word};
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -92,16 +90,18 @@ pub(crate) struct MeshFileKeys {
 
 /// What results are compared with; further keys are parameters of the exact solution
 #[derive(Deserialize, JsonSchema)]
+// Which of them are known hangs on the solution, so that its own are named where one is mistyped.
+#[schemars(extend("additionalProperties" = {}))]
 pub(crate) struct ReferenceKeys {
     /// An exact solution by name
-    pub exact: Option<String>,
+    pub exact: Option<Word<Solutions>>,
     /// A stored record
     pub record: Option<String>,
     /// A method of this scene, run at another size if one is given
     pub method: Option<String>,
     pub size: Option<SizeKeys>,
     #[serde(flatten)]
-    pub parameters: BTreeMap<String, NumberKeys>,
+    pub settings: Given<Solutions>,
 }
 
 /// A bare number, or a quantity in quotes

@@ -4,7 +4,7 @@ use crate::scene::keys::*;
 use crate::scene::method::*;
 use crate::scene::region::Region;
 use crate::scene::report::Report;
-use crate::scene::vocabulary::settings;
+use crate::scene::vocabulary::{build, settings};
 use catalogue::{Problem, Values};
 
 use super::{MILLIMETRE, mesh_file, positive};
@@ -311,7 +311,7 @@ fn kernel(keys: KernelKeys, key: &str, report: &mut Report) -> Option<efg::Kerne
             (keys.name, values)
         }
     };
-    (word.0.build)(&values).map_err(|bad| report.add(key, bad)).ok()
+    build(word.0, &values, (key, key), report)
 }
 
 pub(crate) fn integration(keys: IntegrationKeys, key: &str, report: &mut Report) -> Integration {

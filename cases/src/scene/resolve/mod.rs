@@ -27,14 +27,14 @@ const MILLIMETRE: f64 = 1e-3;
 /// `None` only together with findings.
 pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let body = body(keys.body, report);
-    let (material, prony) = material(keys.material, "material", report);
+    let material = material(keys.material, "material", report);
     let regions = keys.region.into_iter().enumerate().map(|(i, r)| {
         let key = format!("region[{i}]");
         let place = place(r.on, r.place, &key, report, true);
-        let (material, prony) = self::material(r.material, &format!("{key}.material"), report);
-        MaterialRegion { name: r.name, place, material, prony }
+        let material = self::material(r.material, &format!("{key}.material"), report);
+        Some(MaterialRegion { name: r.name, place, material: material? })
     });
-    let regions = regions.collect();
+    let regions: Vec<Option<MaterialRegion>> = regions.collect();
     let supports = keys.support.into_iter().enumerate().map(|(i, s)| support(s, i, report)).collect();
     let loads = keys.load.into_iter().enumerate().filter_map(|(i, l)| load(l, i, report)).collect();
     let procedure = procedure(keys.procedure, !keys.tool.is_empty(), report);
@@ -51,9 +51,8 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
         purpose: keys.purpose,
         published: keys.published,
         body: body?,
-        material,
-        prony,
-        regions,
+        material: material?,
+        regions: regions.into_iter().collect::<Option<_>>()?,
         supports,
         loads,
         tools,

@@ -1,12 +1,9 @@
 //! What a scene reports, compares with and checks.
 
-use std::collections::BTreeMap;
-
-use crate::exact::{exact_names, exact_parameters};
 use crate::scene::keys::*;
 use crate::scene::output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 use crate::scene::report::Report;
-use crate::scene::vocabulary::settings;
+use crate::scene::vocabulary::{build, settings};
 use catalogue::Dimension;
 use catalogue::Problem;
 use catalogue::metric;
@@ -66,7 +63,7 @@ fn transfer(keys: TransferKeys, key: &str, report: &mut Report) -> Option<Transf
         SchemeKeys::Own(OwnWord::Own) => None,
         SchemeKeys::Scheme(word) => {
             let values = settings(&word, keys.settings, key, report)?;
-            let made = (word.0.build)(&values).map_err(|bad| report.add(&at("scheme"), bad)).ok()?;
+            let made = build(word.0, &values, (key, &at("scheme")), report)?;
             Some((made, values))
         }
     };
@@ -80,13 +77,16 @@ pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Refe
         report.require(!given, "reference.size", "goes with method only", "leave it out");
     }
     if keys.exact.is_none() {
-        for name in keys.parameters.keys() {
+        for name in keys.settings.names() {
             let help = suggest(name, &["exact", "method", "record", "size"]);
             report.add(&format!("reference.{name}"), Problem::new("is not a known key").help(help));
         }
     }
     match (keys.exact, keys.method, keys.record) {
-        (Some(name), None, None) => exact(name, keys.parameters, report),
+        (Some(word), None, None) => {
+            let values = settings(&word, keys.settings, "reference", report)?;
+            Some(Reference::Exact { entry: word.0, values })
+        }
         (None, Some(id), None) => (size.is_some() || !given).then_some(Reference::Method { id, size }),
         (None, None, Some(record)) => Some(Reference::Record(report.path(&record, "reference.record"))),
         _ => {
@@ -95,37 +95,6 @@ pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Refe
             None
         }
     }
-}
-
-/// An exact solution with its parameters in SI, each of the dimension that the solution says.
-fn exact(name: String, given: BTreeMap<String, NumberKeys>, report: &mut Report) -> Option<Reference> {
-    let Ok(taken) = exact_parameters(&name) else {
-        let known: Vec<&str> = exact_names().collect();
-        let problem = Problem::new("is not an exact solution").found(&name).help(suggest(&name, &known));
-        report.add("reference.exact", problem);
-        return None;
-    };
-    let names: Vec<&str> = taken.iter().map(|p| p.name).collect();
-    let mut parameters = BTreeMap::new();
-    for (key, value) in given {
-        let Some(parameter) = taken.iter().find(|p| p.name == key) else {
-            let problem = Problem::new(format!("is not a parameter of {name}")).help(suggest(&key, &names));
-            report.add(&format!("reference.{key}"), problem);
-            continue;
-        };
-        let dimension = Dimension::of_unit(parameter.unit).unwrap_or(Dimension::None);
-        match limit(value, dimension) {
-            Ok(value) => drop(parameters.insert(key, value)),
-            Err(bad) => report.add(&format!("reference.{key}"), bad),
-        }
-    }
-    for p in taken.iter().filter(|p| p.default.is_none() && !parameters.contains_key(p.name)) {
-        let key = format!("reference.{}", p.name);
-        if !report.has(&key) {
-            report.missing(&key, &format!("{name} needs it: {} [{}]", p.meaning, p.unit));
-        }
-    }
-    Some(Reference::Exact { name, parameters })
 }
 
 /// Checks of a scene or of a run of a study; `key` is the path of their list.

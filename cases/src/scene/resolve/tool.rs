@@ -2,52 +2,20 @@
 
 use crate::scene::keys::ToolKeys;
 use crate::scene::report::Report;
-use crate::scene::tool::{Drive, Friction, Tool, ToolShape, ToolShapeName};
+use crate::scene::tool::{Drive, Friction, Tool};
+use crate::scene::vocabulary::{build, settings};
 use catalogue::Problem;
 
-use super::{MILLIMETRE, mesh_file, positive, raw};
+use super::{positive, raw};
 
 pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<Tool> {
     let key = format!("tool[{index}]");
-    let need = |value: Option<f64>, name: &str, report: &mut Report| {
-        if value.is_none() {
-            report.missing(&format!("{key}.{name}"), "this shape needs it");
-        }
-        value
-    };
     let positive =
         |value: f64, name: &str, report: &mut Report| positive(value, &format!("{key}.{name}"), report);
-    let radius = keys.radius.map(|q| positive(q.0, "radius", report));
-    let length = keys.length.map(|q| positive(q.0, "length", report));
-    let shape = match keys.shape {
-        ToolShapeName::Plate => ToolShape::Plate,
-        ToolShapeName::RoundedBox => match keys.half {
-            Some(half) => ToolShape::RoundedBox { half: raw(half), radius: need(radius, "radius", report)? },
-            None => {
-                report.missing(&format!("{key}.half"), "a rounded-box needs its half extents");
-                return None;
-            }
-        },
-        ToolShapeName::Sphere => ToolShape::Sphere { radius: need(radius, "radius", report)? },
-        ToolShapeName::Cylinder => ToolShape::Cylinder {
-            radius: need(radius, "radius", report)?,
-            length: need(length, "length", report)?,
-        },
-        ToolShapeName::Capsule => ToolShape::Capsule {
-            radius: need(radius, "radius", report)?,
-            length: need(length, "length", report)?,
-        },
-        ToolShapeName::File => match keys.path {
-            Some(path) => {
-                let unit = keys.unit.map_or(MILLIMETRE, |u| u.0);
-                ToolShape::File(mesh_file(&path, unit, &format!("{key}.path"), report))
-            }
-            None => {
-                report.missing(&format!("{key}.path"), "name the mesh file");
-                return None;
-            }
-        },
-    };
+    let (word, keys, given) = (keys.shape, keys.beside, keys.settings);
+    let values = settings(&word, given, &key, report);
+    let at = format!("{key}.shape");
+    let shape = values.as_ref().and_then(|values| build(word.0, values, (&key, &at), report));
     let drive = match (keys.drive.closure, keys.drive.force, keys.drive.pressure) {
         (Some(q), None, None) => Drive::Closure(q.0),
         (None, Some(q), None) => Drive::Force(positive(q.0, "drive.force", report)),
@@ -59,15 +27,10 @@ pub(super) fn tool(keys: ToolKeys, index: usize, report: &mut Report) -> Option<
         }
     };
     let along = unit(keys.along, &format!("{key}.along"), report)?;
-    let given = keys.axis.map(|axis| unit(axis, &format!("{key}.axis"), report));
-    let axis = match keys.shape {
-        ToolShapeName::Plate => Some(given.unwrap_or(Some(along))?),
-        ToolShapeName::Cylinder | ToolShapeName::Capsule => Some(given.unwrap_or(Some([0.0, 0.0, 1.0]))?),
-        ToolShapeName::RoundedBox | ToolShapeName::Sphere | ToolShapeName::File => {
-            let help = "a box stands along the axes of the scene; leave it out";
-            report.require(given.is_none(), &format!("{key}.axis"), "does not belong to this shape", help);
-            None
-        }
+    let (shape, values) = (shape?, values?);
+    let axis = match values.list("axis") {
+        Some(&[x, y, z]) => Some(unit([x, y, z], &format!("{key}.axis"), report)?),
+        _ => shape.axis(along.into()).map(Into::into),
     };
     let penalty = self::positive(keys.penalty.0, &format!("{key}.penalty"), report);
     let friction = friction(keys.friction, keys.stick.map(|q| q.0), &key, report);

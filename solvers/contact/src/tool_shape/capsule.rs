@@ -3,17 +3,72 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::{MEDIAL, cylinder, sphere};
+use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, cylinder, outline, size, sphere};
+use crate::ContactError;
+
+/// The points within `radius` of a segment of the z axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    /// Radius, m.
+    pub radius: f64,
+    /// Half the length of the segment, m: the whole capsule reaches `half_length + radius`.
+    pub half_length: f64,
+}
+
+pub(super) const ENTRY: ToolShapeEntry = Entry {
+    name: "capsule",
+    meaning: "a cylinder with half spheres at its ends; its length is that between their centres",
+    source: "",
+    parameters: &[RADIUS, LENGTH, AXIS],
+    build: |values| {
+        let (radius, half_length) = (values.number("radius")?, 0.5 * values.number("length")?);
+        Ok(Capsule { radius, half_length }.into())
+    },
+};
+
+impl Shape for Capsule {
+    #[inline]
+    fn foot(&self, p: &Vector3) -> (f64, Vector3) {
+        foot(self.radius, self.half_length, p)
+    }
+
+    #[inline]
+    fn hessian(&self, p: &Vector3) -> Matrix3 {
+        hessian(self.radius, self.half_length, p)
+    }
+
+    fn half_extents(&self) -> Vector3 {
+        Vector3::new(self.radius, self.radius, self.half_length + self.radius)
+    }
+
+    fn inradius(&self) -> f64 {
+        self.radius
+    }
+
+    fn outline(&self, _body: f64) -> Vec<Vector3> {
+        let end = |d: &Vector3| Vector3::z() * self.half_length + d * self.radius;
+        outline::mirrored(outline::octant().iter().map(end).collect(), [true; 3])
+    }
+
+    fn axis(&self, _along: Vector3) -> Option<Vector3> {
+        Some(Vector3::z())
+    }
+
+    fn check(&self) -> Result<(), ContactError> {
+        size("the radius", self.radius)?;
+        size("the half length", self.half_length)
+    }
+}
 
 #[inline]
-pub(super) fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
+fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
     let beyond = p.z - p.z.clamp(-half_length, half_length);
     let to = Vector3::new(p.x, p.y, beyond);
     if to.norm() > MEDIAL * radius { sphere::foot(radius, &to) } else { (to.norm() - radius, Vector3::x()) }
 }
 
 #[inline]
-pub(super) fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
+fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
     let beyond = p.z - p.z.clamp(-half_length, half_length);
     if beyond == 0.0 {
         cylinder::side_hessian(radius, p)

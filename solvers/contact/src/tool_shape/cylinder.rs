@@ -6,7 +6,63 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::MEDIAL;
+use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
+use crate::ContactError;
+
+/// A cylinder about the z axis with flat ends and sharp rims. A `half_length` far beyond the body makes a roller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Radius, m.
+    pub radius: f64,
+    /// Half its length, m.
+    pub half_length: f64,
+}
+
+pub(super) const ENTRY: ToolShapeEntry = Entry {
+    name: "cylinder",
+    meaning: "a cylinder with flat ends and sharp rims; longer than the body it is a roller",
+    source: "",
+    parameters: &[RADIUS, LENGTH, AXIS],
+    build: |values| {
+        let (radius, half_length) = (values.number("radius")?, 0.5 * values.number("length")?);
+        Ok(Cylinder { radius, half_length }.into())
+    },
+};
+
+impl Shape for Cylinder {
+    #[inline]
+    fn foot(&self, p: &Vector3) -> (f64, Vector3) {
+        foot(self.radius, self.half_length, p)
+    }
+
+    #[inline]
+    fn hessian(&self, p: &Vector3) -> Matrix3 {
+        hessian(self.radius, self.half_length, p)
+    }
+
+    fn half_extents(&self) -> Vector3 {
+        Vector3::new(self.radius, self.radius, self.half_length)
+    }
+
+    fn inradius(&self) -> f64 {
+        self.radius.min(self.half_length)
+    }
+
+    fn outline(&self, _body: f64) -> Vec<Vector3> {
+        let rim = outline::octant().into_iter().filter(|d| d.z == 0.0);
+        let rim = rim.map(|d| d * self.radius + Vector3::z() * self.half_length);
+        outline::mirrored(rim.collect(), [true; 3])
+    }
+
+    fn axis(&self, _along: Vector3) -> Option<Vector3> {
+        Some(Vector3::z())
+    }
+
+    fn check(&self) -> Result<(), ContactError> {
+        size("the radius", self.radius)?;
+        size("the half length", self.half_length)
+    }
+}
 
 /// `rho` and the unit vector away from the axis; +x on the axis.
 #[inline]
@@ -20,7 +76,7 @@ fn end(p: &Vector3) -> Vector3 {
 }
 
 #[inline]
-pub(super) fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
+fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
     let (rho, outward) = radial(radius, p);
     let (side, flat) = (rho - radius, p.z.abs() - half_length);
     if side > 0.0 && flat > 0.0 {
@@ -45,7 +101,7 @@ pub(super) fn side_hessian(radius: f64, p: &Vector3) -> Matrix3 {
 }
 
 #[inline]
-pub(super) fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
+fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
     let (rho, outward) = radial(radius, p);
     let (side, flat) = (rho - radius, p.z.abs() - half_length);
     if side > 0.0 && flat > 0.0 {

@@ -1,53 +1,123 @@
 //! Rigid tools as signed distances, each in its own frame: negative inside, gradient a unit vector pointing out.
 //!
-//! Outside and near the surface the distances are exact. On the medial axis, where the nearest point is not unique,
-//! one of them is taken (the files say which) and the Hessian's infinite part is left out: no NaN anywhere.
+//! Each shape is a file with its distance and its [`ToolShapeEntry`], and a line of the list below. Outside and near the
+//! surface the distances are exact. On the medial axis, where the nearest point is not unique, one of them is taken (the
+//! files say which) and the Hessian's infinite part is left out: no NaN anywhere.
 
-mod capsule;
-mod cylinder;
-mod plate;
-mod rounded_box;
-mod sphere;
+mod outline;
 
+use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Values};
 use shape::{Matrix3, Point3, Vector3};
 
 use crate::ContactError;
 
+/// A shape of tools that scene files can name.
+pub type ToolShapeEntry = Entry<fn(&Values) -> Result<ToolShape, Problem>>;
+
 /// A centre, axis or core is met within this part of the tool's size: there the direction to it is noise.
 const MEDIAL: f64 = 1e-12;
 
-/// A rigid tool in its own frame. Lengths in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ToolShape {
-    /// The half space `z <= 0`: a plate without end or thickness, its face looking along +z.
-    Plate,
-    /// A box about the origin, all edges and corners rounded.
-    RoundedBox {
-        /// Half extents, rounding included.
-        half: [f64; 3],
-        /// Rounding radius, from 0 to the least half extent.
-        radius: f64,
-    },
-    /// A ball about the origin.
-    Sphere {
-        /// Radius.
-        radius: f64,
-    },
-    /// A cylinder about the z axis with flat ends and sharp rims. A `half_length` far beyond the body makes a roller.
-    Cylinder {
-        /// Radius.
-        radius: f64,
-        /// Half its length.
-        half_length: f64,
-    },
-    /// The points within `radius` of a segment of the z axis.
-    Capsule {
-        /// Radius.
-        radius: f64,
-        /// Half the length of the segment: the whole capsule reaches `half_length + radius`.
-        half_length: f64,
-    },
+/// What a shape is, in its own frame. Lengths in metres.
+trait Shape {
+    /// Signed distance and its gradient.
+    fn foot(&self, p: &Vector3) -> (f64, Vector3);
+
+    /// Hessian of the distance (3, 3), 1/m.
+    fn hessian(&self, p: &Vector3) -> Matrix3;
+
+    /// Half of a box about the origin that holds the shape; infinite where it has no end.
+    fn half_extents(&self) -> Vector3;
+
+    /// Radius of the largest ball inside.
+    fn inradius(&self) -> f64;
+
+    /// Points whose convex hull is the shape, for pictures beside a body of that extent.
+    fn outline(&self, body: f64) -> Vec<Vector3>;
+
+    /// Where the z axis of the frame points unless a scene says, of a tool that closes along a direction; `None` for a shape
+    /// that stands along the axes of the scene.
+    fn axis(&self, _along: Vector3) -> Option<Vector3> {
+        None
+    }
+
+    /// Area of the face that presses where the tool closes along a direction, m^2; `None` without a face of its own.
+    fn face_area(&self, _along: &Vector3) -> Option<f64> {
+        None
+    }
+
+    /// Refuses lengths that make no shape.
+    fn check(&self) -> Result<(), ContactError>;
 }
+
+/// Declares the files of the shapes, the closed enum that tells them apart without a call through a pointer, and the slice of
+/// their entries.
+macro_rules! tool_shapes {
+    ($($file:ident::$shape:ident,)*) => {
+        $(
+            mod $file;
+            pub use $file::$shape;
+            impl From<$shape> for ToolShape {
+                fn from(shape: $shape) -> ToolShape {
+                    ToolShape::$shape(shape)
+                }
+            }
+        )*
+
+        /// A rigid tool in its own frame.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs)] // each is its type
+        pub enum ToolShape {
+            $($shape($shape),)*
+        }
+
+        /// Every shape, in the order tables list them.
+        pub static TOOL_SHAPES: &[ToolShapeEntry] = &[$($file::ENTRY),*];
+
+        impl ToolShape {
+            /// The name used in scene files and tables.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(ToolShape::$shape(_) => $file::ENTRY.name,)*
+                }
+            }
+
+            /// Signed distance and gradient only.
+            #[inline]
+            pub fn foot(&self, p: &Vector3) -> (f64, Vector3) {
+                match self {
+                    $(ToolShape::$shape(shape) => shape.foot(p),)*
+                }
+            }
+
+            /// Hessian only (3, 3), 1/m.
+            #[inline]
+            pub fn hessian(&self, p: &Vector3) -> Matrix3 {
+                match self {
+                    $(ToolShape::$shape(shape) => shape.hessian(p),)*
+                }
+            }
+
+            fn shape(&self) -> &dyn Shape {
+                match self {
+                    $(ToolShape::$shape(shape) => shape,)*
+                }
+            }
+        }
+    };
+}
+
+tool_shapes! {
+    plate::Plate,
+    rounded_box::RoundedBox,
+    sphere::Sphere,
+    cylinder::Cylinder,
+    capsule::Capsule,
+}
+
+const RADIUS: Parameter = Parameter::required("radius", Dimension::Length, "radius").within(Range::Positive);
+const LENGTH: Parameter = Parameter::required("length", Dimension::Length, "length").within(Range::Positive);
+const AXIS: Parameter =
+    Parameter::optional("axis", Dimension::None, "axis; along z unless given").of(Kind::Vector);
 
 /// Signed distance with its derivatives, at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,76 +137,45 @@ impl ToolShape {
         Distance { value, gradient, hessian: self.hessian(p) }
     }
 
-    /// Signed distance and gradient only.
-    #[inline]
-    pub fn foot(&self, p: &Vector3) -> (f64, Vector3) {
-        match *self {
-            ToolShape::Plate => plate::foot(p),
-            ToolShape::RoundedBox { half, radius } => rounded_box::foot(half, radius, p),
-            ToolShape::Sphere { radius } => sphere::foot(radius, p),
-            ToolShape::Cylinder { radius, half_length } => cylinder::foot(radius, half_length, p),
-            ToolShape::Capsule { radius, half_length } => capsule::foot(radius, half_length, p),
-        }
-    }
-
-    /// Hessian only (3, 3), 1/m.
-    #[inline]
-    pub fn hessian(&self, p: &Vector3) -> Matrix3 {
-        match *self {
-            ToolShape::Plate => plate::hessian(),
-            ToolShape::RoundedBox { half, radius } => rounded_box::hessian(half, radius, p),
-            ToolShape::Sphere { radius } => sphere::hessian(radius, p),
-            ToolShape::Cylinder { radius, half_length } => cylinder::hessian(radius, half_length, p),
-            ToolShape::Capsule { radius, half_length } => capsule::hessian(radius, half_length, p),
-        }
-    }
-
-    /// Lowest and highest corner of a box (tool's frame) that holds the tool; infinite for a plate, but for its face.
+    /// Lowest and highest corner of a box (tool's frame) that holds the tool; infinite for a half space, but for its face.
     pub fn bounds(&self) -> (Point3, Point3) {
-        let half = match *self {
-            ToolShape::Plate => {
-                let far = f64::INFINITY;
-                return (Point3::new(-far, -far, -far), Point3::new(far, far, 0.0));
-            }
-            ToolShape::RoundedBox { half, .. } => Vector3::from(half),
-            ToolShape::Sphere { radius } => Vector3::repeat(radius),
-            ToolShape::Cylinder { radius, half_length } => Vector3::new(radius, radius, half_length),
-            ToolShape::Capsule { radius, half_length } => Vector3::new(radius, radius, half_length + radius),
-        };
-        (Point3::from(-half), Point3::from(half))
+        let half = self.shape().half_extents();
+        let low = if self.is_endless() { Vector3::repeat(f64::NEG_INFINITY) } else { -half };
+        (Point3::from(low), Point3::from(half))
+    }
+
+    /// Whether the shape has no end.
+    pub fn is_endless(&self) -> bool {
+        self.shape().half_extents().iter().any(|half| half.is_infinite())
     }
 
     /// Radius of the largest ball inside, m: nothing is deeper than that. Infinite for a plate.
     pub fn inradius(&self) -> f64 {
-        match *self {
-            ToolShape::Plate => f64::INFINITY,
-            ToolShape::RoundedBox { half, .. } => half[0].min(half[1]).min(half[2]),
-            ToolShape::Cylinder { radius, half_length } => radius.min(half_length),
-            ToolShape::Sphere { radius } | ToolShape::Capsule { radius, .. } => radius,
-        }
+        self.shape().inradius()
+    }
+
+    /// Points whose convex hull is the tool, for pictures beside a body of that extent (m).
+    pub fn outline(&self, body: f64) -> Vec<Vector3> {
+        self.shape().outline(body)
+    }
+
+    /// Where the z axis of the frame points unless a scene says, of a tool that closes along a unit vector; `None` for a shape
+    /// that stands along the axes of the scene.
+    pub fn axis(&self, along: Vector3) -> Option<Vector3> {
+        self.shape().axis(along)
+    }
+
+    /// Area of the face that presses where the tool closes along a unit vector, m^2; `None` without a face of its own.
+    pub fn face_area(&self, along: &Vector3) -> Option<f64> {
+        self.shape().face_area(along)
     }
 
     pub(super) fn check(&self) -> Result<(), ContactError> {
-        let size = |what, value: f64| {
-            // Written so that a NaN fails.
-            if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Size { what, value }) }
-        };
-        match *self {
-            ToolShape::Plate => Ok(()),
-            ToolShape::RoundedBox { half, radius } => {
-                half.iter().try_for_each(|&h| size("a half extent", h))?;
-                let half = self.inradius();
-                if radius >= 0.0 && radius <= half {
-                    Ok(())
-                } else {
-                    Err(ContactError::Rounding { radius, half })
-                }
-            }
-            ToolShape::Sphere { radius } => size("the radius", radius),
-            ToolShape::Cylinder { radius, half_length } | ToolShape::Capsule { radius, half_length } => {
-                size("the radius", radius)?;
-                size("the half length", half_length)
-            }
-        }
+        self.shape().check()
     }
+}
+
+/// Refuses a length that is none; written so that a NaN fails.
+fn size(what: &'static str, value: f64) -> Result<(), ContactError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Size { what, value }) }
 }

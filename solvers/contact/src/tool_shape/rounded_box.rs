@@ -5,7 +5,76 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::MEDIAL;
+use super::{
+    Dimension, Entry, Kind, MEDIAL, Parameter, Problem, RADIUS, Range, Shape, ToolShapeEntry, outline, size,
+};
+use crate::ContactError;
+
+/// A box about the origin, all edges and corners rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundedBox {
+    /// Half extents, rounding included, m.
+    pub half: [f64; 3],
+    /// Rounding radius, from 0 to the least half extent, m.
+    pub radius: f64,
+}
+
+const HALF: Parameter = Parameter::required("half", Dimension::Length, "half extents, rounding included")
+    .of(Kind::Vector)
+    .within(Range::Positive);
+
+pub(super) const ENTRY: ToolShapeEntry = Entry {
+    name: "rounded-box",
+    meaning: "a box along the axes of the scene with rounded edges and corners",
+    source: "",
+    parameters: &[HALF, RADIUS],
+    build: |values| {
+        let &[x, y, z] = values.list("half").unwrap_or_default() else {
+            return Err(Problem::new("has not three half extents").of("half"));
+        };
+        let shape = RoundedBox { half: [x, y, z], radius: values.number("radius")? };
+        shape.check().map_err(|bad| Problem::new(bad.to_string()).of("radius"))?;
+        Ok(shape.into())
+    },
+};
+
+impl Shape for RoundedBox {
+    #[inline]
+    fn foot(&self, p: &Vector3) -> (f64, Vector3) {
+        foot(self.half, self.radius, p)
+    }
+
+    #[inline]
+    fn hessian(&self, p: &Vector3) -> Matrix3 {
+        hessian(self.half, self.radius, p)
+    }
+
+    fn half_extents(&self) -> Vector3 {
+        Vector3::from(self.half)
+    }
+
+    fn inradius(&self) -> f64 {
+        self.half[0].min(self.half[1]).min(self.half[2])
+    }
+
+    fn outline(&self, _body: f64) -> Vec<Vector3> {
+        let core = Vector3::from(self.half).add_scalar(-self.radius);
+        outline::mirrored(outline::octant().iter().map(|d| core + d * self.radius).collect(), [true; 3])
+    }
+
+    /// Of a box that closes along one of its axes, roundings included.
+    fn face_area(&self, along: &Vector3) -> Option<f64> {
+        let closes = (0..3).find(|&a| along[a].abs() > 1.0 - 1e-9)?;
+        Some((0..3).filter(|&a| a != closes).map(|a| 2.0 * self.half[a]).product())
+    }
+
+    fn check(&self) -> Result<(), ContactError> {
+        self.half.iter().try_for_each(|&h| size("a half extent", h))?;
+        let (radius, half) = (self.radius, self.inradius());
+        // Written so that a NaN fails.
+        if radius >= 0.0 && radius <= half { Ok(()) } else { Err(ContactError::Rounding { radius, half }) }
+    }
+}
 
 /// `q`, and the length of `max(q, 0)`: none in the core.
 #[inline]
@@ -21,7 +90,7 @@ fn sign(x: f64) -> f64 {
 }
 
 #[inline]
-pub(super) fn foot(half: [f64; 3], radius: f64, p: &Vector3) -> (f64, Vector3) {
+fn foot(half: [f64; 3], radius: f64, p: &Vector3) -> (f64, Vector3) {
     let (q, length) = beyond_core(half, radius, p);
     if let Some(length) = length {
         (length - radius, q.zip_map(p, |q, p| q.max(0.0) * sign(p) / length))
@@ -41,7 +110,7 @@ pub(super) fn foot(half: [f64; 3], radius: f64, p: &Vector3) -> (f64, Vector3) {
 
 /// `(D - n n^T) / |max(q, 0)|` with `D` the axes along which `q > 0`; zero in the core.
 #[inline]
-pub(super) fn hessian(half: [f64; 3], radius: f64, p: &Vector3) -> Matrix3 {
+fn hessian(half: [f64; 3], radius: f64, p: &Vector3) -> Matrix3 {
     let (q, length) = beyond_core(half, radius, p);
     let Some(length) = length else { return Matrix3::zeros() };
     let n = q.zip_map(p, |q, p| q.max(0.0) * sign(p) / length);

@@ -2,7 +2,51 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::MEDIAL;
+use super::{Entry, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
+use crate::ContactError;
+
+/// A ball about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Radius, m.
+    pub radius: f64,
+}
+
+pub(super) const ENTRY: ToolShapeEntry = Entry {
+    name: "sphere",
+    meaning: "a ball",
+    source: "",
+    parameters: &[RADIUS],
+    build: |values| Ok(Sphere { radius: values.number("radius")? }.into()),
+};
+
+impl Shape for Sphere {
+    #[inline]
+    fn foot(&self, p: &Vector3) -> (f64, Vector3) {
+        foot(self.radius, p)
+    }
+
+    #[inline]
+    fn hessian(&self, p: &Vector3) -> Matrix3 {
+        hessian(self.radius, p)
+    }
+
+    fn half_extents(&self) -> Vector3 {
+        Vector3::repeat(self.radius)
+    }
+
+    fn inradius(&self) -> f64 {
+        self.radius
+    }
+
+    fn outline(&self, _body: f64) -> Vec<Vector3> {
+        outline::mirrored(outline::octant().iter().map(|d| d * self.radius).collect(), [true; 3])
+    }
+
+    fn check(&self) -> Result<(), ContactError> {
+        size("the radius", self.radius)
+    }
+}
 
 #[inline]
 pub(super) fn foot(radius: f64, p: &Vector3) -> (f64, Vector3) {

@@ -58,7 +58,7 @@ pub fn all() -> Vec<(String, Mesh)> {
 /// Middle of a facet's corners and of its cell's corners.
 pub fn middles(mesh: &Mesh, facet: Facet) -> (Point3, Point3) {
     let mean = |nodes: Vec<u32>| {
-        let sum = nodes.iter().fold(nalgebra::Vector3::zeros(), |s, &n| s + mesh.points()[n as usize].coords);
+        let sum = nodes.iter().fold(shape::Vector3::zeros(), |s, &n| s + mesh.points()[n as usize].coords);
         Point3::from(sum / nodes.len() as f64)
     };
     let kind = mesh.kind(facet.cell as usize);

@@ -2,6 +2,7 @@
 //! Volume changes that points share: which point has which share in which group, and means over groups.
 
 use algebra::Connectivity;
+use material::Material as _;
 use rayon::prelude::*;
 use shape::{DilationGroups, Rows};
 

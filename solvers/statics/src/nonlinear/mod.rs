@@ -7,7 +7,6 @@ mod in_time;
 mod lanes;
 mod newton;
 mod relaxing;
-mod separated;
 mod shared;
 mod solid;
 mod sorted;

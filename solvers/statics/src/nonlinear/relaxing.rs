@@ -5,7 +5,7 @@
 //! which is `F S_dev`; the sum over the dilation groups of a point is linear in it, so that one history per point does.
 //! Source: Simo and Hughes, Computational Inelasticity, section 10.3.
 
-use material::{Law, Prony, PronyStep, Tangent};
+use material::{Law, Material as _, Prony, PronyStep, Tangent};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 

@@ -1,10 +1,10 @@
 #![allow(non_snake_case)] // F, H, J, P as in the formulas
 //! Stresses and tangents of points that share their volume change: the energy `sum over (a, q) of share w psi(F_q, J_a)`.
 //!
-//! By point where the law parts into shape and volume ([`Volumetric`]), else by every pair of group and point.
+//! By point where the law parts into shape and volume ([`Separated`]), else by every pair of group and point.
 
 use lanes::LanePath;
-use material::Tangent;
+use material::{Material, Separated, Tangent};
 use rayon::prelude::*;
 use shape::DilationGroups;
 use shape::{Matrix3, Vector3};
@@ -12,7 +12,6 @@ use shape::{Matrix3, Vector3};
 use super::Inverted;
 use super::groups::Pairs;
 use super::lanes::{GroupRow, Lanes, add_row};
-use super::separated::Volumetric;
 use super::solid::{Kinematics, Solid};
 use super::split::{Split, add_dilation_hessian, cofactor};
 
@@ -38,7 +37,7 @@ pub(super) struct Shared<'a> {
     /// `J_a - 1` of each group.
     theta: Vec<f64>,
     /// Of each group, where the one law of the body parts.
-    parts: Option<Vec<Volumetric>>,
+    parts: Option<Vec<Separated>>,
 }
 
 /// What the tangent of one point leaves for its groups.
@@ -57,7 +56,7 @@ impl<'a> Shared<'a> {
     ) -> Result<Shared<'a>, Inverted> {
         let theta = solid.group_dilations(groups, &kinematics.J1)?;
         let parts = match solid.laws {
-            [law] => theta.iter().map(|&theta| Volumetric::new(law, theta)).collect(),
+            [law] => theta.iter().map(|&theta| law.separated(theta)).collect(),
             _ => None,
         };
         Ok(Shared { solid, groups, pairs, kinematics, theta, parts })
@@ -105,7 +104,7 @@ impl<'a> Shared<'a> {
         (0..self.kinematics.H.len()).into_par_iter().with_min_len(64).map(value).collect()
     }
 
-    fn stress_by_point(&self, parts: &[Volumetric]) -> (Vec<Matrix3>, Vec<f64>) {
+    fn stress_by_point(&self, parts: &[Separated]) -> (Vec<Matrix3>, Vec<f64>) {
         let weights = self.solid.volume.weights();
         let shape: Vec<(Matrix3, f64)> = self.points(|q| {
             let (law, split) = (self.solid.law(q), self.split(q, 0.0));
@@ -149,7 +148,7 @@ impl<'a> Shared<'a> {
         .unzip()
     }
 
-    fn hessian_by_point(&self, parts: &[Volumetric]) -> (Vec<Tangent>, Vec<GroupHessian>) {
+    fn hessian_by_point(&self, parts: &[Separated]) -> (Vec<Tangent>, Vec<GroupHessian>) {
         let (shape, point): (Vec<(f64, Matrix3)>, Vec<Tangent>) = (0..self.kinematics.H.len())
             .into_par_iter()
             .with_min_len(64)

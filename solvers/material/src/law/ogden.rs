@@ -1,11 +1,13 @@
 //! Ogden's law in isochoric principal stretches.
 
-use super::kinematics::exp_m1_less;
-use super::lane::series::{self, BOUNDS};
-use super::lane::stretch::{Stretch, add_quadratic};
-use super::lane::{LaneStrain, Lanes, one_by_one};
-use super::principal::{Principal, Slopes};
-use super::{Material, MaterialError, Tangent, Volumetric};
+use super::{BULK, Dimension, Entry, Kind, LawEntry, Parameter, Problem};
+use crate::kinematics::exp_m1_less;
+use crate::lane::series::{self, BOUNDS};
+use crate::lane::stretch::{Stretch, add_quadratic};
+use crate::lane::{LaneStrain, Lanes, one_by_one};
+use crate::principal::{Principal, Slopes};
+use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
+use catalogue::Values;
 use shape::Matrix3;
 
 /// `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1`, isochoric stretches
@@ -21,6 +23,35 @@ pub struct Ogden {
     terms: Vec<(f64, f64)>,
     bulk: f64,
     series: Series,
+}
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "ogden",
+    meaning: "sum_p mu_p/alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1, l_a isochoric stretches",
+    source: "Ogden, Proc. R. Soc. A 326 (1972) 565-584",
+    parameters: &[
+        Parameter::required("mu", Dimension::Pressure, "constant of each term").of(Kind::List),
+        Parameter::required("alpha", Dimension::None, "exponent of each term, none of them 0").of(Kind::List),
+        BULK,
+    ],
+    build,
+};
+
+fn build(values: &Values) -> Result<super::Law, Problem> {
+    let [mu, alpha] = ["mu", "alpha"].map(|name| values.list(name).unwrap_or_default());
+    if mu.len() != alpha.len() || mu.is_empty() {
+        return Err(Problem::new("does not match mu").help("give one alpha for each mu").of("alpha"));
+    }
+    let terms: Vec<(f64, f64)> = mu.iter().copied().zip(alpha.iter().copied()).collect();
+    Ogden::new(&terms, values.number("bulk")?).map(Into::into).map_err(|bad| match bad {
+        MaterialError::Shear { .. } => Problem::new("gives no shear modulus above zero")
+            .help("the sum of mu times alpha must be positive: twice the shear modulus")
+            .of("mu"),
+        MaterialError::OgdenTerm { .. } => {
+            Problem::new("holds a zero").help("give exponents other than 0").of("alpha")
+        }
+        bad => bad.into(),
+    })
 }
 
 /// `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` as a power series in `e = dev ln C`, for lanes.
@@ -163,6 +194,10 @@ impl Material for Ogden {
     fn split(&self) -> Option<(Ogden, Volumetric)> {
         let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
         Some((Ogden { bulk: 0.0, ..self.clone() }, volume))
+    }
+
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

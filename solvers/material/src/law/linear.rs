@@ -2,9 +2,10 @@
 
 use shape::Matrix3;
 
-use super::kinematics::tangent_of;
-use super::lane::{LANES, LaneStrain, Lanes};
-use super::{Material, MaterialError, Tangent};
+use super::{Entry, LawEntry, MODULI, moduli};
+use crate::kinematics::tangent_of;
+use crate::lane::{LANES, LaneStrain, Lanes};
+use crate::{Material, MaterialError, Separated, Tangent};
 
 /// Hooke's law `sigma = lambda tr(eps) I + 2 mu eps`, `eps = sym grad u`; moduli in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,17 @@ pub struct LinearElastic {
     young: f64,
     poisson: f64,
 }
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "linear",
+    meaning: "lambda/2 (tr eps)^2 + mu eps : eps, eps = sym grad u: for small strain and rotation",
+    source: "Hooke",
+    parameters: MODULI,
+    build: |values| {
+        let (young, poisson) = moduli(values)?;
+        Ok(LinearElastic::new(young, poisson)?.into())
+    },
+};
 
 impl LinearElastic {
     /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
@@ -63,8 +75,12 @@ impl LinearElastic {
     }
 }
 
-/// The energy is quadratic and the tangent constant; a rotation is taken for a strain (see `Law::is_small_strain`).
+/// The energy is quadratic and the tangent constant; a rotation is taken for a strain (see [`Material::is_small_strain`]).
 impl Material for LinearElastic {
+    fn is_small_strain(&self) -> bool {
+        true
+    }
+
     fn energy(&self, H: &Matrix3) -> f64 {
         self.energy_density(H)
     }
@@ -94,6 +110,10 @@ impl Material for LinearElastic {
             (p[3][l], p[4][l], p[5][l]) = (xy, shear(1, 1) + volume, yz);
             (p[6][l], p[7][l], p[8][l]) = (xz, yz, shear(2, 2) + volume);
         }
+    }
+
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

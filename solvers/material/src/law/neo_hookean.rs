@@ -2,10 +2,11 @@
 
 use shape::Matrix3;
 
-use super::kinematics::{Kinematics, less_ln_1p, tangent_of};
-use super::lane::invariants::piola;
-use super::lane::{LANES, LaneStrain, Lanes};
-use super::{LinearElastic, Material, MaterialError, Tangent};
+use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use crate::kinematics::{Kinematics, less_ln_1p, tangent_of};
+use crate::lane::invariants::piola;
+use crate::lane::{LANES, LaneStrain, Lanes};
+use crate::{Material, MaterialError, Separated, Tangent};
 
 /// `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2`, `I1 = tr(F^T F)`; moduli in Pa.
 ///
@@ -18,6 +19,17 @@ pub struct NeoHookean {
     mu: f64,
     lambda: f64,
 }
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "neo-hookean",
+    meaning: "mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2",
+    source: "Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., section 6.4.3",
+    parameters: MODULI,
+    build: |values| {
+        let (young, poisson) = moduli(values)?;
+        Ok(NeoHookean::new(young, poisson)?.into())
+    },
+};
 
 impl NeoHookean {
     /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
@@ -76,6 +88,24 @@ impl Material for NeoHookean {
                 p[k][l] = stress[k];
             }
         }
+    }
+
+    /// `mu/2 theta^(2/3) I1_bar`, and `3 mu/2 (theta^(2/3) - 1) - mu ln theta + lambda/2 (ln theta)^2` beyond
+    /// `psi(F, 1)`.
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        let (mu, lambda, theta) = (self.mu, self.lambda, 1.0 + theta_minus_1);
+        let log = theta_minus_1.ln_1p();
+        let grown = (2.0 / 3.0 * log).exp_m1();
+        let A = 1.0 + grown;
+        let slope = mu * grown + lambda * log;
+        Some(Separated {
+            A: [A, 2.0 / 3.0 * A / theta, -2.0 / 9.0 * A / (theta * theta)],
+            U: [
+                1.5 * mu * less_ln_1p(grown) + 0.5 * lambda * log * log,
+                slope / theta,
+                (2.0 / 3.0 * mu * A + lambda - slope) / (theta * theta),
+            ],
+        })
     }
 
     fn mu(&self) -> f64 {

@@ -2,9 +2,10 @@
 
 use shape::Matrix3;
 
-use super::kinematics::{add_left, add_right, green_lagrange, tangent_of};
-use super::lane::{LANES, LaneStrain, Lanes, math::madd};
-use super::{LinearElastic, Material, MaterialError, Tangent};
+use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use crate::kinematics::{add_left, add_right, green_lagrange, tangent_of};
+use crate::lane::{LANES, LaneStrain, Lanes, math::madd};
+use crate::{Material, MaterialError, Tangent};
 
 /// `W = lambda/2 (tr E)^2 + mu E : E`, `E = (H + H^T + H^T H) / 2`; moduli in Pa.
 ///
@@ -16,6 +17,17 @@ pub struct SaintVenantKirchhoff {
     mu: f64,
     lambda: f64,
 }
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "saint-venant-kirchhoff",
+    meaning: "lambda/2 (tr E)^2 + mu E : E, E Green-Lagrange strain: for large rotation at small strain",
+    source: "Saint-Venant (1844), Kirchhoff (1852)",
+    parameters: MODULI,
+    build: |values| {
+        let (young, poisson) = moduli(values)?;
+        Ok(SaintVenantKirchhoff::new(young, poisson)?.into())
+    },
+};
 
 impl SaintVenantKirchhoff {
     /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).

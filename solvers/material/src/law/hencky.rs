@@ -1,9 +1,10 @@
 //! Hencky's law: Hooke's law between logarithmic strain and Kirchhoff stress.
 
-use super::lane::stretch::{Stretch, add_logarithmic};
-use super::lane::{LaneStrain, Lanes, one_by_one, series};
-use super::principal::{Principal, Slopes};
-use super::{LinearElastic, Material, MaterialError, Tangent, Volumetric};
+use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use crate::lane::stretch::{Stretch, add_logarithmic};
+use crate::lane::{LaneStrain, Lanes, one_by_one, series};
+use crate::principal::{Principal, Slopes};
+use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use shape::Matrix3;
 
 /// `W = mu e : e + lambda/2 (tr e)^2`, `e = ln V` (`V^2 = F F^T`); `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
@@ -18,6 +19,17 @@ pub struct Hencky {
     mu: f64,
     lambda: f64,
 }
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "hencky",
+    meaning: "mu e : e + lambda/2 (tr e)^2, e = ln V: logarithmic strain",
+    source: "Hencky (1928); Xiao and Chen, Acta Mechanica 157 (2002)",
+    parameters: MODULI,
+    build: |values| {
+        let (young, poisson) = moduli(values)?;
+        Ok(Hencky::new(young, poisson)?.into())
+    },
+};
 
 impl Hencky {
     /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
@@ -80,6 +92,10 @@ impl Material for Hencky {
     fn split(&self) -> Option<(Hencky, Volumetric)> {
         let volume = Volumetric { quadratic: 0.0, logarithmic: self.bulk() };
         Some((Hencky { lambda: -2.0 / 3.0 * self.mu, ..*self }, volume))
+    }
+
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        Some(Separated::logarithmic(self.bulk(), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -1,9 +1,10 @@
 //! Neo-Hookean law split into shape and volume, as in Abaqus and CalculiX.
 
-use super::kinematics::{Kinematics, tangent_of};
-use super::lane::invariants::{piola, pressed};
-use super::lane::{LANES, LaneStrain, Lanes};
-use super::{LinearElastic, Material, MaterialError, Tangent, Volumetric};
+use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use crate::kinematics::{Kinematics, tangent_of};
+use crate::lane::invariants::{piola, pressed};
+use crate::lane::{LANES, LaneStrain, Lanes};
+use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use shape::Matrix3;
 
 /// `W = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1`, `C10 = mu / 2`, `D1 = 2 / kappa`; moduli in Pa.
@@ -17,6 +18,17 @@ pub struct NeoHookeanIsochoric {
     mu: f64,
     bulk: f64,
 }
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "neo-hookean-isochoric",
+    meaning: "C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, as Abaqus and CalculiX have it",
+    source: "Abaqus Theory Guide, Hyperelastic material behavior",
+    parameters: MODULI,
+    build: |values| {
+        let (young, poisson) = moduli(values)?;
+        Ok(NeoHookeanIsochoric::new(young, poisson)?.into())
+    },
+};
 
 impl NeoHookeanIsochoric {
     /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
@@ -102,6 +114,10 @@ impl Material for NeoHookeanIsochoric {
     fn split(&self) -> Option<(NeoHookeanIsochoric, Volumetric)> {
         let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
         Some((NeoHookeanIsochoric { bulk: 0.0, ..*self }, volume))
+    }
+
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

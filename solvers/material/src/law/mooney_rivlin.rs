@@ -1,10 +1,12 @@
 //! Mooney-Rivlin law split into shape and volume.
 
-use super::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrange, tangent_of};
-use super::lane::invariants::piola;
-use super::lane::math::{inverse_cbrt_less_1, madd};
-use super::lane::{LANES, LaneStrain, Lanes};
-use super::{LinearElastic, Material, MaterialError, Tangent, Volumetric};
+use super::{BULK, Dimension, Entry, LawEntry, LinearElastic, POISSON, Parameter, Problem, Range, YOUNG};
+use crate::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrange, tangent_of};
+use crate::lane::invariants::piola;
+use crate::lane::math::{inverse_cbrt_less_1, madd};
+use crate::lane::{LANES, LaneStrain, Lanes};
+use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
+use catalogue::Values;
 use shape::Matrix3;
 
 /// `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1`, `2 (C10 + C01) = mu`, `D1 = 2 / kappa`; in Pa.
@@ -16,6 +18,45 @@ pub struct MooneyRivlin {
     c10: f64,
     c01: f64,
     bulk: f64,
+}
+
+const SHARE: Parameter =
+    Parameter::optional("share", Dimension::None, "of the second constant: c01 / (c10 + c01), from 0 to 1")
+        .within(Range::Within(0.0, 1.0));
+
+pub(super) const ENTRY: LawEntry = Entry {
+    name: "mooney-rivlin",
+    meaning: "C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1: takes c10, c01 and bulk, or young, poisson and share",
+    source: "Mooney (1940), Rivlin (1948); Abaqus Theory Guide, Hyperelastic material behavior",
+    parameters: &[
+        Parameter::optional("c10", Dimension::Pressure, "constant of the first invariant"),
+        Parameter::optional("c01", Dimension::Pressure, "constant of the second invariant"),
+        BULK.may_be_absent(),
+        YOUNG.may_be_absent(),
+        POISSON.may_be_absent(),
+        SHARE,
+    ],
+    build,
+};
+
+fn build(values: &Values) -> Result<super::Law, Problem> {
+    let [c10, c01, bulk] = ["c10", "c01", "bulk"].map(|name| values.get(name));
+    let law = match ((c10, c01, bulk), ["young", "poisson", "share"].map(|name| values.get(name))) {
+        ((Some(c10), Some(c01), Some(bulk)), [None, None, None]) => MooneyRivlin::new(c10, c01, bulk),
+        ((None, None, None), [Some(young), Some(poisson), Some(share)]) => {
+            MooneyRivlin::from_young(young, poisson, share)
+        }
+        _ => {
+            let help = "give c10, c01 and bulk, or young, poisson and share; nothing else";
+            return Err(Problem::new("has not the constants it needs").help(help));
+        }
+    };
+    law.map(Into::into).map_err(|bad| match bad {
+        MaterialError::Shear { .. } => Problem::new("gives no shear modulus above zero")
+            .help("c10 + c01 is half the shear modulus")
+            .of("c10"),
+        bad => bad.into(),
+    })
 }
 
 /// `J` and the two shape moduli `2 C10 J^(-2/3)`, `2 C01 J^(-4/3)`, by the logarithm: NaN where `J < 0`.
@@ -46,6 +87,16 @@ impl MooneyRivlin {
         }
         let half = 0.5 * hooke.mu();
         Ok(MooneyRivlin { c10: half * (1.0 - share), c01: half * share, bulk: hooke.bulk() })
+    }
+
+    /// `C10`, Pa.
+    pub fn c10(&self) -> f64 {
+        self.c10
+    }
+
+    /// `C01`, Pa.
+    pub fn c01(&self) -> f64 {
+        self.c01
     }
 
     fn moduli(&self, k: &Kinematics) -> Moduli {
@@ -165,6 +216,10 @@ impl Material for MooneyRivlin {
     fn split(&self) -> Option<(MooneyRivlin, Volumetric)> {
         let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
         Some((MooneyRivlin { bulk: 0.0, ..*self }, volume))
+    }
+
+    fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
+        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {
