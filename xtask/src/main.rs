@@ -103,13 +103,20 @@ fn ci() -> Result<u8> {
 fn verify(full: bool, args: &[String]) -> Result<u8> {
     let quick = "--quick".to_string();
     let whole = full || args.contains(&quick) || args.iter().any(|a| a.ends_with(".toml"));
+    if full {
+        eprintln!("xtask: all runs of the study, about a quarter of an hour after the build");
+    } else if !whole || args.contains(&quick) {
+        eprintln!("xtask: the quick tier of the study, 1 to 2 minutes after the build");
+    }
     let args = if whole { args.to_vec() } else { [&[quick], args].concat() };
     tissuebench("verify", &args)
 }
 
 /// Runs the release binary, building it first if needed.
 fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
-    eprintln!("xtask: building tissuebench (about 7 minutes the first time), then: tissuebench {command}");
+    eprintln!(
+        "xtask: building tissuebench (4 to 8 minutes on two cores the first time), then: tissuebench {command}"
+    );
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
     let code = cargo(&build, &[])?;
     if code != 0 {

@@ -3,6 +3,7 @@
 mod bad_methods;
 mod bad_scenes;
 mod bad_studies;
+mod expressions;
 mod fuzz;
 mod good;
 mod project;
