@@ -31,6 +31,7 @@ mod history;
 mod order;
 mod provenance;
 mod published;
+mod quantity;
 mod record;
 mod render;
 mod run_set;

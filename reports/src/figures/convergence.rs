@@ -4,8 +4,9 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, chosen, continued, error_label, paged};
+use super::{Figure, PAGE, chosen, continued, paged};
 use crate::order::ROUNDING;
+use crate::quantity::label;
 use crate::record::Family;
 use crate::select::{Run, Series, labels, series};
 
@@ -52,7 +53,7 @@ fn figure(quantity: &str, page: usize, panels: &[(String, Vec<Line>)]) -> Figure
         .enumerate()
         .map(|(i, (title, lines))| {
             let points = || lines.iter().flat_map(|l| l.2.iter());
-            let y = Axis::log(error_label(quantity), points().map(|p| p.1));
+            let y = Axis::log(&label(quantity), points().map(|p| p.1));
             let styles = &styles;
             Content {
                 title: title.clone(),
@@ -74,7 +75,7 @@ fn figure(quantity: &str, page: usize, panels: &[(String, Vec<Line>)]) -> Figure
     Figure {
         name: paged(&format!("convergence-{quantity}"), page),
         title: continued(
-            &format!("Convergence of the {}", error_label(quantity).trim_end_matches(" [1]")),
+            &format!("Convergence of the {}", label(quantity).trim_end_matches(" [1]")),
             page,
         ),
         caption: "Error against node spacing on logarithmic axes; the grey fan has the slopes theory promises for the methods in the panel".into(),

@@ -4,8 +4,9 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Canvas, GREY};
 use super::grid::{Content, scattered};
 use super::style::{Style, find, styles};
-use super::{Figure, PAGE, chosen, continued, error_label, paged};
+use super::{Figure, PAGE, chosen, continued, paged};
 use crate::fronts::{Clock, DEADLINES, FLOOR, QUESTIONS, Question, pareto, point};
+use crate::quantity::label;
 use crate::record::Family;
 use crate::select::{Run, Series, kernels, labels, series};
 use crate::text::list;
@@ -95,7 +96,7 @@ fn content<'a>((title, error, clusters): &'a Paned, clock: Clock, styles: &'a [S
     Content {
         title: title.clone(),
         x,
-        y: Axis::log(error_label(error), decade(points().map(|p| p.1).collect()).into_iter()),
+        y: Axis::log(&label(error), decade(points().map(|p| p.1).collect()).into_iter()),
         plot: Box::new(move |canvas, panel| {
             let at = |p: &(f64, f64)| panel.at(scale * p.0, p.1);
             let best = pareto(clusters.iter().flat_map(|c| c.2.iter().copied()), |p| *p);

@@ -5,8 +5,9 @@ use super::canvas::GREY;
 
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, continued, error_label, paged};
+use super::{Figure, PAGE, continued, paged};
 use crate::fronts::FLOOR;
+use crate::quantity::label;
 use crate::record::Family;
 use crate::select::{Run, competing, labels};
 
@@ -103,7 +104,7 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
                     true => {
                         Axis::linear("tip deflection / exact [1]", values().map(|p| p.1).chain([1.0]), true)
                     }
-                    false => Axis::log(error_label(quantity), values().map(|p| p.1)),
+                    false => Axis::log(&label(quantity), values().map(|p| p.1)),
                 },
                 plot: Box::new(move |canvas, panel| {
                     if tip {

@@ -87,19 +87,6 @@ fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
         .unwrap_or(case)
 }
 
-/// An error's name with its unit.
-fn error_label(quantity: &str) -> &'static str {
-    match quantity {
-        "l2" => "relative L2 error [1]",
-        "energy" => "relative energy error [1]",
-        "pressure" => "relative pressure error [1]",
-        "relative-rms" => "relative RMS error [1]",
-        "tool-force-error" => "relative force error [1]",
-        "peak-error" => "relative peak error [1]",
-        _ => "RMS error [mm]",
-    }
-}
-
 /// Titles of further pages say so.
 fn continued(title: &str, page: usize) -> String {
     if page == 0 { title.into() } else { format!("{title}, page {}", page + 1) }

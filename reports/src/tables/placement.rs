@@ -1,21 +1,14 @@
 //! Results over many clouds of the same nodes in number, placed by different seeds.
 
 use crate::clouds::{Clouds, Spread};
+use crate::quantity::Shown;
 use crate::record::Family;
 use crate::select::groups;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// What is told where it is there, with what its unit is multiplied by to be shown.
-const QUANTITIES: [(&str, &str, f64); 7] = [
-    ("rms", "RMS |u| [mm]", 1e3),
-    ("l2", "relative L2 [1]", 1.0),
-    ("energy", "relative energy [1]", 1.0),
-    ("pressure", "relative pressure [1]", 1.0),
-    ("max", "max |u| [mm]", 1e3),
-    ("tool-force", "tool force [N]", 1.0),
-    ("smallest-j", "smallest J [1]", 1.0),
-];
+/// What is reported where it is recorded.
+const QUANTITIES: [&str; 7] = ["rms", "l2", "energy", "pressure", "max", "tool-force", "smallest-j"];
 
 /// Quartiles of every quantity over the clouds of a method.
 pub(super) fn placement(clouds: &[Clouds]) -> Table {
@@ -40,17 +33,18 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
     );
     for case in groups(clouds, |g| (g[0].is.case.clone(), g[0].is.poisson.to_bits())) {
         for group in case.iter().filter(|g| g[0].is.family != Family::Interp) {
-            for (quantity, name, scale) in QUANTITIES {
+            for (quantity, shown) in QUANTITIES.into_iter().filter_map(|q| Some((q, Shown::of(q)?))) {
                 let Some(Spread { count, quantiles }) = Spread::of(group, quantity) else { continue };
+                let name = shown.with_unit();
                 let mut row = vec![
                     Cell::Text(&group[0].is.case),
                     Cell::Text(group[0].name()),
                     Cell::Count(group[0].is.nodes),
                     Cell::Count(group.len() as u64),
-                    Cell::Text(name),
+                    Cell::Text(&name),
                     Cell::Count(count as u64),
                 ];
-                row.extend(quantiles.map(|q| Cell::Digits(Some(q * scale), 3)));
+                row.extend(quantiles.map(|q| Cell::Digits(Some(q * shown.scale()), 3)));
                 table.row(&row);
             }
         }
