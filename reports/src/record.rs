@@ -36,6 +36,8 @@ pub enum Family {
     Fem,
     /// Element-free Galerkin.
     Efg,
+    /// Another family of methods over a mesh.
+    OverMesh,
     /// A transfer scheme.
     Interp,
     /// A stored or published reference.

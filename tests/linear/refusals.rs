@@ -340,8 +340,13 @@ proptest! {
         let loads = [Load::Body { values: vec![Vector3::new(1.0, 2.0, 3.0); block.volume.weights().len()] }];
         match attempt(block.body(&material), &loads, &fixed, &[], &[]) {
             Ok(s) => {
-                prop_assert!(s.info.residual < 1e-9);
                 prop_assert!(s.u.iter().all(|u| u.iter().all(|c| c.is_finite())));
+                // A factor solves to rounding of |K| |u| (Higham 2002, theorem 10.3). Holds at long levers leave motions that are
+                // 10^6 times those of a sound support, and that is then more than rounding of the load.
+                let largest = s.u.iter().map(Vector3::norm).fold(0.0, f64::max);
+                let force = Vector3::new(1.0, 2.0, 3.0).norm() * block.volume.weights().iter().sum::<f64>();
+                let reactions = material[0].young() * 0.04 * largest / force;
+                prop_assert!(s.info.residual < 1e-9 + 1e-14 * reactions, "{:e}, {reactions:e}", s.info.residual);
             }
             Err(SolveError::RigidMotion { modes, .. }) => prop_assert!((1..=6).contains(&modes.len())),
             Err(other) => prop_assert!(false, "{}", other),

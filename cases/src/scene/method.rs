@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::family::OverMesh;
 use super::region::Region;
 
 /// A way to solve the scene.
@@ -53,6 +54,8 @@ pub enum Family {
     Fem(Fem),
     /// Element-free Galerkin.
     Efg(Efg),
+    /// Another family over a mesh.
+    OverMesh(OverMesh),
 }
 
 /// Settings of a finite element method.

@@ -10,6 +10,7 @@ mod demands;
 mod document;
 mod error;
 mod expression;
+mod family;
 mod field;
 mod keys;
 mod material;
@@ -34,6 +35,7 @@ use std::path::Path;
 pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
+pub use family::{FAMILIES, OverMesh};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use material::{Material, Relaxation, medium};
 pub use method::{

@@ -181,5 +181,9 @@ fn no_cells() -> Failure {
 
 fn no_pressure() -> Failure {
     let help = "\"element-mean\" and \"nodal-mean\" are";
-    Failure::unavailable(Key::Method("dilation"), "is not available for clouds", help)
+    Failure::unavailable(
+        Key::Method("dilation"),
+        "wants a pressure field, which this family has none of",
+        help,
+    )
 }

@@ -118,7 +118,7 @@ impl<'a> Group<'a> {
     ) -> Result<(measure::Reference, Option<Failure>), Failure> {
         let mut method = self.scene.method(id).expect("validated").clone();
         if let Some(size) = size {
-            resize(&mut method, size);
+            method.resize(size);
         }
         let mut scenario = self.scenario(method, 0);
         scenario.size_key = size.map(|_| "reference.size".into());
@@ -187,7 +187,7 @@ impl<'a> Group<'a> {
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
         let plan = plan(&discretisation, &setup, self.wanted());
-        let integrated = match options.split.filter(|_| matches!(scenario.method.family, Family::Efg(_))) {
+        let integrated = match options.split.filter(|_| scenario.method.is_cloud()) {
             Some(rule) => {
                 let fail = |failure| Unfinished { failure, plan: plan.clone(), size };
                 Some(self.integrated(scenario, rule).map_err(fail)?)
@@ -236,23 +236,6 @@ impl<'a> Group<'a> {
 
     fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
         if method.interpolates { &[] } else { &self.schemes }
-    }
-}
-
-/// Gives a method another size; a cloud of an exact count becomes the nodes of a mesh of that size.
-pub fn resize(method: &mut scene::Method, size: &Size) {
-    match &mut method.family {
-        Family::Fem(fem) => fem.size = size.clone(),
-        Family::Efg(efg) => match (&mut efg.cloud, size) {
-            (
-                scene::Cloud::Uniform { nodes, .. }
-                | scene::Cloud::Graded { nodes, .. }
-                | scene::Cloud::Refined { nodes, .. },
-                Size::Nodes(n),
-            ) => *nodes = *n,
-            (scene::Cloud::Mesh { size: old, .. }, _) => *old = size.clone(),
-            (cloud, _) => *cloud = scene::Cloud::Mesh { size: size.clone(), jitter: None },
-        },
     }
 }
 

@@ -25,7 +25,6 @@ use memory::Baseline;
 use repeated::repeated;
 
 pub use crate::measure::Repeats;
-pub(crate) use group::resize;
 pub use group::{Group, RunOptions, case_name};
 
 /// A finished run with its nodal parameters.

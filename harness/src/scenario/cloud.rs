@@ -21,7 +21,7 @@ const NITSCHE_SMOOTHED: f64 = 4.0;
 /// support scale 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
 const NITSCHE: f64 = 100.0;
 /// Penalty where the scene gives none: times E / h.
-const PENALTY: f64 = 1e4;
+pub(super) const PENALTY: f64 = 1e4;
 
 /// A body in closed form, which clouds of an exact count and grids need.
 type Body = Arc<dyn Shape + Send + Sync>;

@@ -27,6 +27,13 @@ impl Scenario<'_> {
         match &self.method.family {
             Family::Fem(fem) => of_elements(fem, identity),
             Family::Efg(efg) => of_cloud(efg, identity),
+            Family::OverMesh(over) => Identity {
+                family: reports::Family::OverMesh,
+                variant: over.entry.name.into(),
+                dilation: Some(over.dilation.name().into()),
+                seed: over.jitter.map_or(0, |j| j.seed),
+                ..identity
+            },
         }
     }
 }

@@ -57,7 +57,7 @@ impl Scenario<'_> {
                 }
                 Functions::MaximumEntropy { .. } => Key::Method("basis"),
             },
-            Family::Fem(_) => Key::Method(""),
+            Family::Fem(_) | Family::OverMesh(_) => Key::Method(""),
         };
         let (kind, key, help) = match error {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
@@ -142,7 +142,7 @@ impl Scenario<'_> {
     }
 
     fn of_solve(&self, error: &SolveError) -> Finding {
-        let cloud = matches!(self.method.family, Family::Efg(_));
+        let cloud = self.method.is_cloud();
         let essential = Key::Method("essential");
         let text = error.to_string();
         match error {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cases::scene::{self, Check, ErrorKind, Scene, Size, Study};
+use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
 use crate::Failure;
@@ -355,26 +355,9 @@ fn label(task: &Task, records: &[Record], seeded: bool) -> String {
 
 /// Mesh files that a scene names: a changed mesh is a changed run.
 fn files(scene: &Scene) -> Vec<PathBuf> {
-    let of_size = |size: &Size| match size {
-        Size::File(file) => Some(file.path.clone()),
-        _ => None,
-    };
-    let mut found = Vec::new();
+    let mut found: Vec<PathBuf> = scene.methods.iter().flat_map(scene::Method::files).collect();
     if let scene::Body::File(file) = &scene.body {
         found.push(file.path.clone());
-    }
-    for method in &scene.methods {
-        match &method.family {
-            scene::Family::Fem(fem) => found.extend(of_size(&fem.size)),
-            scene::Family::Efg(efg) => {
-                found.extend(efg.background.as_ref().and_then(of_size));
-                match &efg.cloud {
-                    scene::Cloud::Mesh { size, .. } => found.extend(of_size(size)),
-                    scene::Cloud::File { file, .. } => found.push(file.path.clone()),
-                    _ => {}
-                }
-            }
-        }
     }
     for transfer in &scene.output.transfers {
         if let scene::Target::File(file) = &transfer.to {
@@ -382,7 +365,7 @@ fn files(scene: &Scene) -> Vec<PathBuf> {
         }
     }
     if let Some(scene::Reference::Method { size: Some(size), .. }) = &scene.reference {
-        found.extend(of_size(size));
+        found.extend(size.file());
     }
     if let Some(scene::Reference::Record(path)) = &scene.reference {
         found.push(path.clone());

@@ -2,8 +2,6 @@
 
 use cases::scene::{self, Scene, Size};
 
-use crate::run::resize;
-
 /// One run of a study.
 pub(super) struct Task {
     /// Indices of the study's run tables that ask for it, which may be several: it is run once.
@@ -74,32 +72,23 @@ pub(super) fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::
 fn sizes(run: &scene::Run, method: &scene::Method) -> Vec<(u32, scene::Method)> {
     let sized = |size: Size| {
         let mut method = method.clone();
-        resize(&mut method, &size);
+        method.resize(&size);
         method
     };
     if !run.levels.is_empty() {
         return run.levels.iter().map(|&level| (level, sized(Size::Level(level)))).collect();
     }
-    if let (scene::Family::Efg(_), false) = (&method.family, run.nodes.is_empty()) {
+    if method.is_cloud() && !run.nodes.is_empty() {
         return run.nodes.iter().map(|&nodes| (0, sized(Size::Nodes(nodes)))).collect();
     }
     vec![(own_level(method), method.clone())]
 }
 
 fn own_level(method: &scene::Method) -> u32 {
-    let size = match &method.family {
-        scene::Family::Fem(fem) => &fem.size,
-        scene::Family::Efg(efg) => match &efg.cloud {
-            scene::Cloud::Mesh { size, .. } => size,
-            scene::Cloud::Uniform { .. }
-            | scene::Cloud::Graded { .. }
-            | scene::Cloud::Refined { .. }
-            | scene::Cloud::File { .. } => {
-                return 0;
-            }
-        },
-    };
-    if let Size::Level(level) = size { *level } else { 0 }
+    match method.size() {
+        Some(Size::Level(level)) => *level,
+        _ => 0,
+    }
 }
 
 /// The method with each kernel that the run table names.
@@ -116,7 +105,7 @@ fn support_scales(run: &scene::Run, method: scene::Method) -> Vec<scene::Method>
 
 /// The method held in each of the ways that the run table names.
 fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
-    if run.essentials.is_empty() || !matches!(method.family, scene::Family::Efg(_)) {
+    if run.essentials.is_empty() || !method.is_cloud() {
         return vec![method];
     }
     let held = |&essential: &scene::Essential| {

@@ -24,6 +24,7 @@
 
 mod blocks;
 mod dilation;
+mod family;
 mod fixed;
 mod order;
 mod rows;
@@ -33,6 +34,7 @@ mod trace;
 
 pub use blocks::RowBlocks;
 pub use dilation::DilationGroups;
+pub use family::{FamilyEntry, MeshFamily, OverMesh};
 pub use fixed::FixedDof;
 pub use order::locality_order;
 pub use rows::{Rows, ShapeError, Unity};

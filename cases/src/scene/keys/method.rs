@@ -1,8 +1,12 @@
 //! Keys of methods and their sizes.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
+use std::borrow::Cow;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::scene::family::OverMeshKeys;
 use crate::scene::method::{ConstraintRows, Dilation, Element, Mass, SupportShape};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
@@ -34,13 +38,41 @@ pub(crate) struct JitterKeys {
 }
 
 /// A way to solve the scene
-#[derive(Deserialize, JsonSchema)]
+#[derive(Deserialize)]
 #[serde(tag = "family", rename_all = "kebab-case")]
 pub(crate) enum MethodKeys {
+    Fem(FemKeys),
+    Efg(Box<EfgKeys>),
+    #[serde(untagged)]
+    OverMesh(OverMeshKeys),
+}
+
+/// A way to solve the scene
+#[derive(JsonSchema)]
+#[serde(tag = "family", rename_all = "kebab-case")]
+#[allow(dead_code)] // the schema of the families whose keys are types
+enum TypedKeys {
     /// Finite elements
     Fem(FemKeys),
     /// Element-free Galerkin
-    Efg(Box<EfgKeys>),
+    Efg(EfgKeys),
+}
+
+impl JsonSchema for MethodKeys {
+    fn schema_name() -> Cow<'static, str> {
+        "method".into()
+    }
+
+    /// One form for each family.
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = TypedKeys::json_schema(generator);
+        let others = OverMeshKeys::json_schema(generator).to_value();
+        let others = others["oneOf"].as_array().cloned().unwrap_or_default();
+        if let Some(forms) = schema.get_mut("oneOf").and_then(Value::as_array_mut) {
+            forms.extend(others);
+        }
+        schema
+    }
 }
 
 #[derive(Deserialize, JsonSchema)]

@@ -1,5 +1,6 @@
 //! Methods and their sizes.
 
+use crate::scene::family::over_mesh;
 use crate::scene::keys::*;
 use crate::scene::method::*;
 use crate::scene::region::Region;
@@ -28,6 +29,7 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
             })
         }
         MethodKeys::Efg(efg) => efg_method(*efg, &key, report),
+        MethodKeys::OverMesh(keys) => over_mesh(keys, &key, report),
     }
 }
 
@@ -396,7 +398,7 @@ pub(crate) fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> 
     }
 }
 
-pub(super) fn size(keys: SizeKeys, key: &str, report: &mut Report) -> Option<Size> {
+pub(crate) fn size(keys: SizeKeys, key: &str, report: &mut Report) -> Option<Size> {
     let at = |name: &str| format!("{key}.{name}");
     let (grading, unit, file) = (keys.grading, keys.unit, keys.file.is_some());
     report.require(
@@ -444,7 +446,7 @@ fn count(n: u32, key: &str, report: &mut Report) -> usize {
     n as usize
 }
 
-fn jitter(keys: Option<JitterKeys>, key: &str, report: &mut Report) -> Option<Jitter> {
+pub(crate) fn jitter(keys: Option<JitterKeys>, key: &str, report: &mut Report) -> Option<Jitter> {
     let keys = keys?;
     let sound = (0.0..0.5).contains(&keys.fraction);
     report.require(sound, &format!("{key}.jitter.fraction"), "is no share of a cell", "give 0 to below 0.5");

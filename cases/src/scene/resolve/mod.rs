@@ -16,7 +16,7 @@ use catalogue::Problem;
 use condition::{load, place, support};
 use material::material;
 use method::method;
-pub(crate) use method::{essential, integration};
+pub(crate) use method::{essential, integration, jitter, size};
 pub(crate) use output::checks;
 use output::{output, reference};
 use tool::tool;
