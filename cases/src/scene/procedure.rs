@@ -7,49 +7,35 @@ use serde::Deserialize;
 use super::report::Report;
 use super::resolve::positive;
 use super::units::{Length, Q, Rate, Time};
+use super::words::words;
 
-/// Kinds of procedures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ProcedureKind {
-    /// Shape functions and integration rows only: what a method costs before anything is solved.
-    Prepare,
-    /// One linear solve.
-    Linear,
-    /// Small free vibrations: the lowest modes and every frequency.
-    Modes,
-    /// Quasi-static load steps, each by Newton's method; tools touch and large-strain laws act.
-    Static,
-    /// Explicit dynamics.
-    Explicit,
-    /// Implicit dynamics.
-    ImplicitDynamic,
-}
-
-impl ProcedureKind {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            ProcedureKind::Prepare => "prepare",
-            ProcedureKind::Linear => "linear",
-            ProcedureKind::Modes => "modes",
-            ProcedureKind::Static => "static",
-            ProcedureKind::Explicit => "explicit",
-            ProcedureKind::ImplicitDynamic => "implicit-dynamic",
-        }
+words! {
+    /// Kinds of procedures.
+    pub enum ProcedureKind {
+        /// Shape functions and integration rows only: what a method costs before anything is solved.
+        Prepare = "prepare",
+        /// One linear solve; used unless given.
+        Linear = "linear",
+        /// Small free vibrations: the lowest modes and every frequency.
+        Modes = "modes",
+        /// Quasi-static load steps, each by Newton's method; large-strain laws and tools.
+        Static = "static",
+        /// Explicit dynamics: central differences.
+        Explicit = "explicit",
+        /// Implicit dynamics: generalised-alpha.
+        ImplicitDynamic = "implicit-dynamic",
     }
 }
 
-/// What follows where a static path finds no equilibrium.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum OnStall {
-    /// The path ends there.
-    #[default]
-    Stop,
-    /// Dynamic relaxation to the ends of the load steps that are left: from a limit point tissue slips or snaps to where it
-    /// rests again.
-    Relax,
+words! {
+    /// What follows if a static path finds no equilibrium.
+    pub enum OnStall {
+        /// The path ends there; used unless given.
+        Stop = "stop",
+        /// Dynamic relaxation to the ends of the remaining load steps: from a limit point tissue slips or snaps to its next
+        /// rest. Finite elements without a pressure field only; a cloud stops.
+        Relax = "relax",
+    }
 }
 
 /// How the scene is solved: one procedure, with what it alone takes. In a static procedure loads, prescribed displacements and
@@ -298,7 +284,12 @@ fn load_steps(keys: &ProcedureKeys, steps: usize, report: &mut Report) -> Static
     let sound = limit_within.is_none_or(|part| (1e-4..=1.0).contains(&part));
     let help = "give 1e-4 to 1; 0.02 is usual";
     report.require(sound, "procedure.limit-within", "is no part of the load", help);
-    Static { steps, newton: newton(keys, report), limit_within, on_stall: keys.on_stall.unwrap_or_default() }
+    Static {
+        steps,
+        newton: newton(keys, report),
+        limit_within,
+        on_stall: keys.on_stall.unwrap_or(OnStall::Stop),
+    }
 }
 
 fn steps(keys: &ProcedureKeys, report: &mut Report) -> usize {

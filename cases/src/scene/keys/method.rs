@@ -3,10 +3,13 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::scene::method::{ConstraintRows, Dilation, Element, Mass, SupportShape};
+use crate::scene::method::{
+    Basis, ConstraintRows, Dilation, Element, Entropy, EssentialKind, Mass, SupportShape,
+};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 use crate::scene::vocabulary::{Given, Kernels, Word};
+use crate::scene::words::words;
 
 /// How fine: one of nodes, spacing, level, cells and file
 #[derive(Deserialize, JsonSchema)]
@@ -86,7 +89,7 @@ pub(crate) struct EfgKeys {
     pub factor: Option<f64>,
     /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
     pub neighbourhood: Option<SupportShape>,
-    pub basis: BasisName,
+    pub basis: BasisKeys,
     /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
     pub gamma: Option<f64>,
     pub integration: IntegrationKeys,
@@ -127,28 +130,32 @@ pub(crate) struct RefineKeys {
     pub ratio: Option<f64>,
 }
 
-/// What is taken for the error
-#[derive(Clone, Copy, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Indicator {
-    /// Displacement gradients against recovered ones
-    GradientError,
+words! {
+    /// Estimate of the error that a cloud is refined by.
+    pub(crate) enum Indicator {
+        /// Displacement gradients against recovered ones.
+        GradientError = "gradient-error",
+    }
 }
 
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum BasisName {
-    Linear,
-    Quadratic,
-    MaximumEntropy,
+/// Basis of the shape functions
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum BasisKeys {
+    Polynomial(Basis),
+    Entropy(Entropy),
 }
 
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum CloudName {
-    Mesh,
-    Uniform,
-    Graded,
+words! {
+    /// Clouds by name.
+    pub(crate) enum CloudName {
+        /// The nodes of a mesh of this size.
+        Mesh = "mesh",
+        /// Quasi-uniform, with this number of nodes.
+        Uniform = "uniform",
+        /// Denser towards the region `graded_towards`, with this number of nodes.
+        Graded = "graded",
+    }
 }
 
 /// A kernel by name, or a table with its parameters
@@ -185,27 +192,16 @@ pub(crate) enum IntegrationKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum EssentialKeys {
-    Name(EssentialName),
+    Name(EssentialKind),
     Table(EssentialTable),
-}
-
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum EssentialName {
-    Nitsche,
-    Penalty,
-    Multipliers,
-    Elimination,
-    Coupling,
 }
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EssentialTable {
-    pub method: EssentialName,
-    /// Stabilisation or penalty factor
+    pub method: EssentialKind,
+    /// Stabilisation factor of Nitsche's method, or penalty factor; with these two only
     pub factor: Option<f64>,
-    /// What eliminated rows say, one for each node of the held surface: the mean displacement over its share (unless given)
-    /// or that at its point
+    /// What the eliminated rows prescribe; with elimination only
     pub rows: Option<ConstraintRows>,
 }

@@ -28,10 +28,8 @@ pub(crate) struct SceneKeys {
     pub title: String,
     /// Where the case and its reference come from
     pub source: Option<String>,
-    /// What the scene is for: "patch" (exact in every method), "smooth" (the default: errors fall with the order of theory), "rough"
-    /// (no order is promised) or "published" (compared with the numbers of `published`)
-    #[serde(default)]
-    pub purpose: Purpose,
+    /// What the scene is for; "smooth" unless given
+    pub purpose: Option<Purpose>,
     /// A published comparison of methods: its claim on run times and errors is tested by the results
     pub published: Option<Publication>,
     pub body: BodyKeys,

@@ -10,6 +10,7 @@ use super::keys::{BodyKeys, Names, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
 use super::procedure::procedure;
+use super::purpose::Purpose;
 use super::report::Report;
 use super::units::{Dim, Q};
 use catalogue::Problem;
@@ -48,7 +49,7 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     Some(Scene {
         title: keys.title,
         source: keys.source,
-        purpose: keys.purpose,
+        purpose: keys.purpose.unwrap_or(Purpose::Smooth),
         published: keys.published,
         body: body?,
         material: material?,
