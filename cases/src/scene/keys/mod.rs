@@ -4,6 +4,7 @@
 mod condition;
 mod method;
 mod output;
+mod procedure;
 
 use std::borrow::Cow;
 
@@ -13,8 +14,8 @@ use serde::Deserialize;
 pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
+pub(crate) use procedure::*;
 
-use super::procedure::ProcedureKeys;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::units::{Density, Length, Q, Time, Unit};
