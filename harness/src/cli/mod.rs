@@ -9,6 +9,7 @@ mod mesh_files;
 mod plan;
 mod reference;
 mod run;
+mod text;
 mod verify;
 
 use std::path::Path;
@@ -17,6 +18,7 @@ use cases::scene::{self, ErrorKind, Scene, SceneError};
 
 use crate::Failure;
 use baseline::baseline;
+use list::list;
 use plan::plan;
 use reference::reference;
 use run::run;
@@ -48,12 +50,10 @@ pub fn main(cli: Cli) -> u8 {
             Ok(()) => 0,
             Err(code) => code,
         },
-        Command::List => {
-            list::print();
-            0
-        }
-        Command::Schema => {
-            println!("{}", serde_json::to_string_pretty(&scene::schema()).expect("a JSON value"));
+        Command::List { what } => list(what.as_deref()),
+        Command::Schema { study } => {
+            let schema = if study { scene::study_schema() } else { scene::schema() };
+            println!("{schema:#}");
             0
         }
         Command::Mesh { action } => match mesh_files::act(&action) {

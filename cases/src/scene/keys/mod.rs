@@ -8,6 +8,7 @@ mod procedure;
 
 use std::borrow::Cow;
 
+use geometry::generate::surfaces;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
@@ -16,6 +17,7 @@ pub(crate) use method::*;
 pub(crate) use output::*;
 pub(crate) use procedure::*;
 
+use super::model::with_all;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::units::{Density, Length, Q, Time, Unit};
@@ -61,26 +63,57 @@ pub(crate) struct SceneKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum BodyKeys {
-    /// From corner to corner, or of a size with one corner at the origin
-    Box { min: Option<[Q<Length>; 3]>, max: Option<[Q<Length>; 3]>, size: Option<[Q<Length>; 3]> },
-    /// About the z axis, the base at z = 0
-    Cylinder { radius: Q<Length>, height: Q<Length> },
-    /// About the origin
-    Ball { radius: Q<Length> },
-    /// About the origin; the octant x, y, z >= 0 alone if wanted
+    /// An axis-parallel box: give two corners (min, max), or a size with one corner at the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BOX)))]
+    Box {
+        /// Lower corner; the origin with size
+        min: Option<[Q<Length>; 3]>,
+        /// Upper corner
+        max: Option<[Q<Length>; 3]>,
+        /// Edge lengths
+        size: Option<[Q<Length>; 3]>,
+    },
+    /// An upright cylinder about the z axis with its base at z = 0
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::CYLINDER)))]
+    Cylinder {
+        /// Radius
+        radius: Q<Length>,
+        /// Height
+        height: Q<Length>,
+    },
+    /// A ball about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
+    Ball {
+        /// Radius
+        radius: Q<Length>,
+    },
+    /// A thick sphere about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::SHELL)))]
     SphereShell {
+        /// Inner radius
         inner: Q<Length>,
+        /// Outer radius
         outer: Q<Length>,
+        /// Only the octant x, y, z >= 0
         #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::OCTANT))]
         octant: bool,
     },
-    /// The bean of 40 x 75 x 30 mm, by its map from the ball; the half z >= 0 alone if wanted
+    /// The kidney, a bean of 40 x 75 x 30 mm
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
     Kidney {
+        /// Only the half z >= 0
         #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::HALF))]
         half: bool,
     },
-    /// The mesh in a Gmsh file whose numbers are in `unit`
-    File { path: String, unit: Unit<Length> },
+    /// The mesh of a Gmsh file, which names its surfaces itself
+    File {
+        /// The file, relative to the folder of the scene
+        path: String,
+        /// Unit of the numbers in the file
+        unit: Unit<Length>,
+    },
 }
 
 /// A material law and its constants
