@@ -21,7 +21,7 @@ pub struct Method {
 words! {
     /// How mass is distributed among the nodes.
     pub enum Mass {
-        /// Consistent: `M_IJ`, the integral of density and both shape functions.
+        /// The integral of density and both shape functions, `M_IJ`.
         Consistent = "consistent",
         /// Diagonal, on the nodal parameters: row sums; for quadratic elements the scaled diagonal.
         Lumped = "lumped",

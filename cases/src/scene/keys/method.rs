@@ -73,7 +73,7 @@ pub(crate) struct EfgKeys {
     pub nodes: Option<u32>,
     /// Size of the mesh whose nodes form the cloud; or nodes
     pub size: Option<SizeKeys>,
-    /// By name, or a table of a file or of an error
+    /// Nodes of the cloud; mesh with size, uniform with nodes unless given
     pub cloud: Option<CloudKeys>,
     /// Regions that a graded cloud is denser in
     pub graded_towards: Option<Region>,
@@ -109,6 +109,7 @@ pub(crate) enum CloudKeys {
     Table(CloudTable),
 }
 
+/// The nodes of a file, or a cloud refined by an estimate of its error
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CloudTable {
@@ -116,7 +117,7 @@ pub(crate) struct CloudTable {
     pub file: Option<String>,
     /// Unit of the numbers in the file
     pub unit: Option<Unit<Length>>,
-    /// Denser where an error is
+    /// Makes the cloud denser where its error is larger
     pub refine: Option<RefineKeys>,
 }
 
@@ -124,7 +125,7 @@ pub(crate) struct CloudTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct RefineKeys {
     pub by: Indicator,
-    /// How often the cloud is made anew; 2 unless given
+    /// How often the cloud is regenerated; 2 unless given
     pub steps: Option<u32>,
     /// Coarsest over finest spacing at most; 3 unless given
     pub ratio: Option<f64>,
@@ -177,15 +178,32 @@ pub(crate) struct KernelTable {
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum IntegrationKeys {
     /// Gauss points in the tetrahedra or hexahedra of the background mesh
-    Gauss { points: u32 },
+    Gauss {
+        /// Points per cell; in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known
+        points: u32,
+    },
     /// Gauss points in the cells of a grid, those outside the body left out
-    Grid { points: u32, spacing: Option<Q<Length>> },
-    /// Conforming smoothing over tetrahedra, with points per face; order 2 (6 points) is variationally consistent integration to
-    /// second order, and what the quadratic basis wants
-    CellSmoothed { points: Option<u32>, order: Option<u32> },
-    /// Smoothing over the quarters of tetrahedra around each vertex, with points per face; stabilisation is the share of the
-    /// weight that the tetrahedra keep, 0 for none
-    NodeSmoothed { stabilisation: f64, points: Option<u32> },
+    Grid {
+        /// Points per cell, a cube number
+        points: u32,
+        /// Edge of a cell; the mean node spacing unless given
+        spacing: Option<Q<Length>>,
+    },
+    /// Conforming strain smoothing over the tetrahedra of the background mesh
+    CellSmoothed {
+        /// Points per face: 1, 3 or 6; 1 unless given, and 6 with order 2
+        points: Option<u32>,
+        /// 1 (unless given) is exact for linear displacements, 2 for quadratic ones (variationally consistent integration of
+        /// second order), as the quadratic basis needs
+        order: Option<u32>,
+    },
+    /// Strain smoothing over the quarters of the tetrahedra around each vertex of the background mesh
+    NodeSmoothed {
+        /// Part of the weight that the tetrahedra keep, from 0 to below 1; 0.05 is usual
+        stabilisation: f64,
+        /// Points per face: 1, 3 or 6; 1 unless given
+        points: Option<u32>,
+    },
 }
 
 /// How prescribed displacements are imposed
@@ -196,6 +214,7 @@ pub(crate) enum EssentialKeys {
     Table(EssentialTable),
 }
 
+/// One of these with settings
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EssentialTable {

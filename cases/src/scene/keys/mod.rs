@@ -66,7 +66,7 @@ pub(crate) enum BodyKeys {
     /// An axis-parallel box: give two corners (min, max), or a size with one corner at the origin
     #[schemars(extend("x-surfaces" = with_all(&surfaces::BOX)))]
     Box {
-        /// Lower corner; the origin with size
+        /// Lower corner; the origin unless given
         min: Option<[Q<Length>; 3]>,
         /// Upper corner
         max: Option<[Q<Length>; 3]>,

@@ -54,9 +54,9 @@ pub(crate) struct StaticKeys {
 pub(crate) struct NewtonKeys {
     /// Relative residual of a step by Newton's method; 1e-8 unless given
     pub tolerance: Option<f64>,
-    /// Most iterations of such a step; 25 unless given
+    /// Most iterations of Newton's method in a step; 25 unless given
     pub iterations: Option<u32>,
-    /// Uzawa iterations of contact per such step; 0 (a plain penalty) unless given
+    /// Uzawa iterations of contact in a step; 0 (a plain penalty) unless given
     pub augmentations: Option<u32>,
 }
 

@@ -1,6 +1,6 @@
 //! One thing that a scene can name, and how it is printed.
 
-use catalogue::{Entry, Kind, Parameter, Range};
+use catalogue::{Entry, Kind, Parameter, Range, short};
 
 /// Longest line.
 const WIDTH: usize = 110;
@@ -17,7 +17,7 @@ pub struct Item {
 impl Item {
     pub fn new(name: &str, value: &str, meaning: &str) -> Item {
         // Meanings are sentences where they are comments of the source, and clauses in the catalogue.
-        let meaning = meaning.split_whitespace().collect::<Vec<_>>().join(" ");
+        let meaning = meaning.replace('`', "").split_whitespace().collect::<Vec<_>>().join(" ");
         let meaning = meaning.strip_suffix('.').unwrap_or(&meaning).to_string();
         Item { name: name.into(), value: value.into(), meaning, settings: Vec::new() }
     }
@@ -47,7 +47,8 @@ impl Item {
         }
         if let (Some(default), false) = (parameter.default, parameter.kind == Kind::Flag) {
             let unit = if parameter.dimension.is_plain() { "" } else { parameter.dimension.si_unit() };
-            meaning += &format!("; {} unless given", format!("{default} {unit}").trim());
+            let value = format!("{} {}", short(default), unit.trim_start_matches('1'));
+            meaning += &format!("; {} unless given", value.trim_end());
         }
         Item::new(&optional(parameter.name, parameter.required), &value, &meaning)
     }

@@ -37,8 +37,8 @@ const PARTS: [Part; 20] = [
     part("neighbourhoods", "method.neighbourhood", || forms("method.efg.neighbourhood")),
     part("integration", "method.integration.rule", || forms("method.efg.integration")),
     part("dilations", "method.dilation", || forms("method.efg.dilation")),
-    part("essential", "method.essential", || forms("method.efg.essential")),
-    part("masses", "method.mass, vibrations", || forms("method.efg.mass")),
+    part("essential", "method.essential, family = \"efg\"", || forms("method.efg.essential")),
+    part("masses", "method.mass, procedure.kind = \"modes\"", || forms("method.efg.mass")),
     part("procedures", "procedure.kind", || forms("procedure")),
     part("transfers", "output.transfer.scheme", transfers),
     part("solutions", "reference.exact", || Item::of_entries(SOLUTIONS)),
@@ -60,7 +60,11 @@ pub fn list(what: Option<&str>) -> u8 {
     let parts = chosen.map(|part| (part, (part.items)())).filter(|(_, items)| !items.is_empty());
     let texts: Vec<String> =
         parts.map(|(part, items)| format!("{} ({})\n{}", part.name, part.key, print(&items))).collect();
-    println!("{}", texts.join("\n").trim_end());
+    let text = texts.join("\n");
+    if text.contains("    [") {
+        println!("Settings in [brackets] may be left out.\n");
+    }
+    println!("{}", text.trim_end());
     0
 }
 

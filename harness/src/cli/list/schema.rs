@@ -11,7 +11,14 @@ pub fn forms(path: &str) -> Vec<Item> {
     for step in path.split('.') {
         forms = forms.into_iter().flat_map(|form| below(form, step)).collect();
     }
-    forms.into_iter().flat_map(items).collect()
+    let mut found: Vec<Item> = Vec::new();
+    for item in forms.into_iter().filter_map(items) {
+        // The items of a list are the value alone once more.
+        if found.iter().all(|other| other.name != item.name) {
+            found.push(item);
+        }
+    }
+    found
 }
 
 /// The alternatives of a value or of the items of a list, `null` left out.
@@ -47,37 +54,39 @@ fn items(form: &Value) -> Option<Item> {
     }
     let keys = form["properties"].as_object()?;
     let word = tag(keys);
-    let name = word.map_or("{ ... }", |(_, word)| word);
+    let name = word.map_or("a table", |(_, word)| word);
     let mut settings = settings("", form, word.map(|(key, _)| key));
     settings.extend(surfaces(form, keys));
     Some(Item { settings, ..Item::new(name, "", meaning) })
 }
 
-/// The keys of a table, and those of tables in it.
+/// The keys of a table, those it needs first, each followed by those of a table that it may be.
 fn settings(above: &str, table: &Value, tag: Option<&str>) -> Vec<Item> {
-    let keys = table["properties"].as_object().into_iter().flatten();
-    let is_required =
-        |key: &String| table["required"].as_array().is_some_and(|keys| keys.iter().any(|k| k == key));
+    let keys: Vec<_> = table["properties"].as_object().into_iter().flatten().collect();
+    let required = |key: &str| table["required"].as_array().is_some_and(|keys| keys.iter().any(|k| k == key));
+    let (first, last): (Vec<_>, Vec<_>) = keys.into_iter().partition(|(key, _)| required(key));
     let mut found = Vec::new();
-    for (key, schema) in keys.filter(|(key, _)| Some(key.as_str()) != tag) {
+    for (key, schema) in first.into_iter().chain(last).filter(|(key, _)| Some(key.as_str()) != tag) {
         let forms = alternatives(schema);
-        let said = [schema].into_iter().chain(forms.iter().copied());
-        let meaning = said.filter_map(|schema| schema["description"].as_str()).next().unwrap_or_default();
+        let mut said = [schema].into_iter().chain(forms.iter().copied());
+        let mut meaning =
+            said.find_map(|schema| schema["description"].as_str()).unwrap_or_default().to_string();
+        let words: Vec<&str> = forms.iter().filter_map(|form| form["const"].as_str()).collect();
+        if !words.is_empty() {
+            meaning = format!("{}: {}", meaning.trim_end_matches('.'), words.join(", "));
+        }
         let name = format!("{above}{key}");
-        found.push(Item::new(&optional(&name, is_required(key)), &value(schema, &forms), meaning));
+        found.push(Item::new(&optional(&name, required(key)), &value(schema, &forms), &meaning));
         let tables = forms.iter().filter(|form| form["properties"].is_object());
         tables.for_each(|form| found.extend(settings(&format!("{name}."), form, None)));
     }
-    found.sort_by_key(|item| item.name.starts_with('['));
     found
 }
 
 /// The type of a value in words.
 fn value(schema: &Value, forms: &[&Value]) -> String {
-    let words: Vec<_> =
-        forms.iter().filter_map(|form| Some(format!("\"{}\"", form["const"].as_str()?))).collect();
-    if !words.is_empty() {
-        return words.join(", ");
+    if forms.iter().any(|form| form["const"].is_string()) {
+        return "word".into();
     }
     let form = forms.first().copied().unwrap_or(schema);
     if let Some(dimension) = form["x-quantity"].as_str() {
