@@ -15,6 +15,7 @@ mod verify;
 use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
+use catalogue::nearest;
 
 use crate::Failure;
 use baseline::baseline;
@@ -89,7 +90,9 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
             Some(index) => chosen.push(index),
             None => {
                 let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
-                eprintln!("{}: no method '{id}'; it has {}", path.display(), known.join(", "));
+                let near = nearest(id, known.iter().copied());
+                let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+                eprintln!("{}: no method '{id}'; it has {}{near}", path.display(), known.join(", "));
                 return Err(2);
             }
         }

@@ -13,7 +13,7 @@ pub fn stages(method: &str, plan: &Plan) -> String {
     let mut text = format!("{method}\n");
     for stage in plan.stages() {
         let word = if stage.ran { "run " } else { "skip" };
-        writeln!(text, "  {word}  {:28} {}", stage.stage.name(), stage.why).expect("a string");
+        writeln!(text, "  {word}  {:28}  {}", stage.stage.name(), stage.why).expect("a string");
     }
     text
 }
