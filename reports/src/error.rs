@@ -7,6 +7,9 @@ use thiserror::Error;
 /// Why records couldn't be written, read or rendered.
 #[derive(Debug, Error)]
 pub enum ReportError {
+    /// A folder without results.
+    #[error("{path} holds no results (no provenance.json); `tissuebench verify --out {path}` writes some", path = .0.display())]
+    NoResults(PathBuf),
     /// A record holds a number that isn't finite.
     #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
     NotFinite {

@@ -103,10 +103,14 @@ pub fn source_of(dir: &Path) -> Option<String> {
 
 /// Reads a run back from its folder; surface fields in the order of their file names.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
+    let provenance = dir.join("provenance.json");
+    if !provenance.exists() {
+        return Err(ReportError::NoResults(dir.into()));
+    }
     let fields_dir = dir.join("fields");
     let fields = if fields_dir.is_dir() { files_ending(&fields_dir, &["json"])? } else { Vec::new() };
     let run = RunSet {
-        provenance: read_json(&dir.join("provenance.json"))?,
+        provenance: read_json(&provenance)?,
         records: frame::read(&dir.join("records.csv"))?,
         checks: read_json(&dir.join("checks.json"))?,
         fields: fields.iter().map(|path| read_json(path)).collect::<Result<_, _>>()?,

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use catalogue::suggest;
+use catalogue::{nearest, suggest};
 
 use super::document::written;
 use super::expression::Expression;
@@ -328,6 +328,7 @@ fn keys(
 ) {
     let empty = Map::new();
     let known = form.get("properties").and_then(Value::as_object).unwrap_or(&empty);
+    let mut mistyped = Vec::new();
     for (key, value) in table {
         let name = key.get_ref().as_ref();
         let other = form.get("additionalProperties").filter(|schema| !schema.is_boolean());
@@ -335,6 +336,7 @@ fn keys(
             any(value.get_ref(), value.span(), &join(path, name), schema, findings);
         } else {
             let names: Vec<&str> = known.keys().map(String::as_str).collect();
+            mistyped.extend(nearest(name, names.iter().copied()));
             let now = RENAMED.iter().find(|(old, new)| *old == name && known.contains_key(*new));
             let problem = match now {
                 Some((_, new)) => Problem::new("is an old name").help(format!("write {new}")),
@@ -346,7 +348,7 @@ fn keys(
     }
     for name in form.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
     {
-        if !table.keys().any(|key| key.get_ref().as_ref() == name) {
+        if !mistyped.contains(&name) && !table.keys().any(|key| key.get_ref().as_ref() == name) {
             let mut forms = Vec::new();
             known.get(name).into_iter().for_each(|schema| flatten(schema, &mut forms));
             let problem = Problem::new("is missing").help(format!("add {}", describe_all(&forms)));

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 use super::family::OverMesh;
 use super::region::Region;
+use super::words::words;
 
 /// A way to solve the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,29 +19,15 @@ pub struct Method {
     pub mass: Option<Mass>,
 }
 
-/// How mass is shared out among nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Mass {
-    /// `M_IJ`, the integral of density and both shape functions.
-    Consistent,
-    /// Diagonal, on the nodal parameters: row sums, of quadratic elements the scaled diagonal.
-    Lumped,
-    /// The same masses on the displacements of the nodes, which a cloud's parameters are not.
-    Transformed,
-}
-
-impl Mass {
-    /// All, in the order they are listed.
-    pub const ALL: [Mass; 3] = [Mass::Consistent, Mass::Lumped, Mass::Transformed];
-
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Mass::Consistent => "consistent",
-            Mass::Lumped => "lumped",
-            Mass::Transformed => "transformed",
-        }
+words! {
+    /// How mass is distributed among the nodes.
+    pub enum Mass {
+        /// The integral of density and both shape functions, `M_IJ`.
+        Consistent = "consistent",
+        /// Diagonal, on the nodal parameters: row sums; for quadratic elements the scaled diagonal.
+        Lumped = "lumped",
+        /// The lumped masses on the displacements of the nodes, which a cloud's parameters are not.
+        Transformed = "transformed",
     }
 }
 
@@ -119,57 +103,36 @@ impl Functions {
     pub fn basis(&self) -> &'static str {
         match self {
             Functions::MovingLeastSquares { basis, .. } => basis.name(),
-            Functions::MaximumEntropy { .. } => "maximum-entropy",
+            Functions::MaximumEntropy { .. } => Entropy::Maximum.name(),
         }
     }
 }
 
-/// Element types.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // the names are the field's words
-pub enum Element {
-    Tet4,
-    Tet10,
-    Hex8,
-    Hex20,
-}
-
-impl Element {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Element::Tet4 => "tet4",
-            Element::Tet10 => "tet10",
-            Element::Hex8 => "hex8",
-            Element::Hex20 => "hex20",
-        }
+words! {
+    /// Element types.
+    pub enum Element {
+        /// Linear tetrahedron.
+        Tet4 = "tet4",
+        /// Quadratic tetrahedron.
+        Tet10 = "tet10",
+        /// Trilinear hexahedron.
+        Hex8 = "hex8",
+        /// Quadratic serendipity hexahedron.
+        Hex20 = "hex20",
     }
 }
 
-/// Treatment of the volume change: which integration points share one dilation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Dilation {
-    /// Each point its own.
-    Standard,
-    /// One per element (B-bar).
-    ElementMean,
-    /// One per node.
-    NodalMean,
-    /// An independent pressure field.
-    Mixed,
-}
-
-impl Dilation {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Dilation::Standard => "standard",
-            Dilation::ElementMean => "element-mean",
-            Dilation::NodalMean => "nodal-mean",
-            Dilation::Mixed => "mixed",
-        }
+words! {
+    /// Treatment of the volume change: which integration points share one dilation.
+    pub enum Dilation {
+        /// Each point has its own.
+        Standard = "standard",
+        /// One per element (B-bar).
+        ElementMean = "element-mean",
+        /// One per node.
+        NodalMean = "nodal-mean",
+        /// An independent pressure field.
+        Mixed = "mixed",
     }
 }
 
@@ -294,45 +257,32 @@ pub enum SupportRule {
     },
 }
 
-/// What a node's support looks like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum SupportShape {
-    /// A ball.
-    #[default]
-    Ball,
-    /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic.
-    Ellipsoid,
-}
-
-impl SupportShape {
-    /// Both, in the order they are listed.
-    pub const ALL: [SupportShape; 2] = [SupportShape::Ball, SupportShape::Ellipsoid];
-
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            SupportShape::Ball => "ball",
-            SupportShape::Ellipsoid => "ellipsoid",
-        }
+words! {
+    /// Shape of the support of a node.
+    pub enum SupportShape {
+        /// A ball; used unless given.
+        Ball = "ball",
+        /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic. It follows the cells of the mesh
+        /// whose nodes form the cloud.
+        Ellipsoid = "ellipsoid",
     }
 }
 
-/// Polynomial bases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the names are the field's words
-pub enum Basis {
-    Linear,
-    Quadratic,
+words! {
+    /// Polynomial bases of moving least squares.
+    pub enum Basis {
+        /// Complete linear polynomials: 1, x, y, z.
+        Linear = "linear",
+        /// Complete quadratic polynomials: 10 terms.
+        Quadratic = "quadratic",
+    }
 }
 
-impl Basis {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Basis::Linear => "linear",
-            Basis::Quadratic => "quadratic",
-        }
+words! {
+    /// Bases that are not polynomial.
+    pub(crate) enum Entropy {
+        /// Local maximum entropy: positive shape functions, exact on linear fields (Arroyo and Ortiz 2006).
+        Maximum = "maximum-entropy",
     }
 }
 
@@ -391,22 +341,42 @@ pub enum Essential {
     Coupling,
 }
 
-/// What the eliminated rows of a held surface say, one for each node whose share of the surface this is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ConstraintRows {
-    /// The mean displacement over the share is the prescribed one's.
-    Means,
-    /// The displacement at the point of the surface nearest to the node is the prescribed one.
-    Points,
+impl Essential {
+    /// Which of them it is.
+    pub fn kind(&self) -> EssentialKind {
+        match self {
+            Essential::Nitsche { .. } => EssentialKind::Nitsche,
+            Essential::Penalty { .. } => EssentialKind::Penalty,
+            Essential::Multipliers => EssentialKind::Multipliers,
+            Essential::Elimination { .. } => EssentialKind::Elimination,
+            Essential::Coupling => EssentialKind::Coupling,
+        }
+    }
 }
 
-impl ConstraintRows {
-    /// The name in files and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            ConstraintRows::Means => "means",
-            ConstraintRows::Points => "points",
-        }
+words! {
+    /// Ways to impose prescribed displacements on a cloud.
+    pub enum EssentialKind {
+        /// Nitsche's method: consistent and symmetric, with a stabilisation factor.
+        Nitsche = "nitsche",
+        /// Penalty, with a factor.
+        Penalty = "penalty",
+        /// Lagrange multipliers.
+        Multipliers = "multipliers",
+        /// Exact elimination of constraint rows.
+        Elimination = "elimination",
+        /// Linear finite elements along the constrained surface, coupled consistently to the cloud; their nodes are constrained
+        /// exactly.
+        Coupling = "coupling",
+    }
+}
+
+words! {
+    /// What the eliminated rows of a constrained surface prescribe, one row for each of its nodes.
+    pub enum ConstraintRows {
+        /// The mean displacement over the tributary area of the node; used unless given.
+        Means = "means",
+        /// The displacement at the point of the surface nearest to the node.
+        Points = "points",
     }
 }

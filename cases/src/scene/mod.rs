@@ -29,6 +29,7 @@ mod tool;
 mod units;
 mod validate;
 mod vocabulary;
+mod words;
 
 use std::path::Path;
 
@@ -39,8 +40,8 @@ pub use family::{FAMILIES, OverMesh};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use material::{Material, Relaxation, medium};
 pub use method::{
-    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, Family, Fem, Functions, Integration,
-    Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
+    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, Family, Fem, Functions,
+    Integration, Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
 };
 pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};

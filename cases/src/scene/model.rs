@@ -2,6 +2,7 @@
 
 use super::document::Origin;
 use catalogue::Problem;
+use geometry::generate::surfaces;
 
 use super::error::{ErrorKind, SceneError};
 use super::field::{Prescribed, ScalarField, VectorField};
@@ -87,6 +88,12 @@ impl Scene {
     }
 }
 
+/// Parts of a surface, and "surface" for all of it.
+pub(crate) fn with_all(parts: &[&'static str]) -> Vec<&'static str> {
+    let all = surfaces::BALL[0];
+    parts.iter().copied().filter(|part| *part != all).chain([all]).collect()
+}
+
 /// Bodies; lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
@@ -141,18 +148,17 @@ impl Body {
     }
 
     /// Names of the parts of its surface; `None` where only the mesh file knows them. "surface" is all of it.
-    pub fn surfaces(&self) -> Option<&'static [&'static str]> {
-        match self {
-            Body::Box { .. } => Some(&["x-min", "x-max", "y-min", "y-max", "z-min", "z-max", "surface"]),
-            Body::Cylinder { .. } => Some(&["bottom", "top", "side", "surface"]),
-            Body::Ball { .. } | Body::Kidney { half: false } => Some(&["surface"]),
-            Body::Kidney { half: true } => Some(&["surface", "symmetry"]),
-            Body::SphereShell { octant: false, .. } => Some(&["inner", "outer", "surface"]),
-            Body::SphereShell { octant: true, .. } => {
-                Some(&["inner", "outer", "x-min", "y-min", "z-min", "surface"])
-            }
-            Body::File(_) => None,
-        }
+    pub fn surfaces(&self) -> Option<Vec<&'static str>> {
+        let (parts, further): (&[_], &[_]) = match self {
+            Body::Box { .. } => (&surfaces::BOX, &[]),
+            Body::Cylinder { .. } => (&surfaces::CYLINDER, &[]),
+            Body::Ball { .. } | Body::Kidney { half: false } => (&surfaces::BALL, &[]),
+            Body::Kidney { half: true } => (&surfaces::BALL, &surfaces::HALF),
+            Body::SphereShell { octant: false, .. } => (&surfaces::SHELL, &[]),
+            Body::SphereShell { octant: true, .. } => (&surfaces::SHELL, &surfaces::OCTANT),
+            Body::File(_) => return None,
+        };
+        Some([with_all(parts), further.to_vec()].concat())
     }
 }
 

@@ -140,16 +140,19 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         report.add(&format!("{key}.scene"), Problem::new("can't be found").help(help));
     }
     let at = |name: &str| format!("{key}.{name}");
-    let sound = keys.levels.iter().all(|l| (1..=8).contains(l));
-    report.require(sound, &at("levels"), "holds a number that is no level", "levels are 1 to 8");
-    let sound = keys.poisson.iter().all(|nu| *nu > -1.0 && *nu < 0.5);
-    let help = "give ratios above -1 and below 0.5, such as 0.4999";
-    report.require(sound, &at("poisson"), "holds a number that is no Poisson's ratio", help);
-    let sound = keys.nodes.iter().all(|n| *n >= 4);
-    report.require(sound, &at("nodes"), "holds a number that is no cloud", "give 4 nodes or more");
-    let sound = keys.support_scales.iter().all(|d| (1.0..=10.0).contains(d));
-    let help = "1 to 10, as in a method; 1.2 to 3 is usual";
-    report.require(sound, &at("support_scales"), "holds a number that is no support scale", help);
+    let mut each = |name: &str, sound: Vec<bool>, problem: &str, help: &str| {
+        for (i, _) in sound.iter().enumerate().filter(|(_, sound)| !**sound) {
+            report.add(&format!("{key}.{name}[{i}]"), Problem::new(problem).help(help));
+        }
+    };
+    let sound = keys.levels.iter().map(|l| (1..=8).contains(l)).collect();
+    each("levels", sound, "is no level", "levels are 1 to 8");
+    let sound = keys.poisson.iter().map(|nu| *nu > -1.0 && *nu < 0.5).collect();
+    each("poisson", sound, "is no Poisson's ratio", "give ratios above -1 and below 0.5, such as 0.4999");
+    let sound = keys.nodes.iter().map(|n| *n >= 4).collect();
+    each("nodes", sound, "are too few for a cloud", "give 4 nodes or more");
+    let sound = keys.support_scales.iter().map(|d| (1.0..=10.0).contains(d)).collect();
+    each("support_scales", sound, "is no support scale", "1 to 10, as in a method; 1.2 to 3 is usual");
     let sound = keys.seeds != 1 && keys.seeds <= 10_000;
     report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
@@ -207,7 +210,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         ("essentials", !run.essentials.is_empty()),
         ("split", run.split.is_some()),
     ] {
-        let help = "element-free Galerkin methods have them";
+        let help = "it goes with element-free Galerkin methods: name one in methods, or leave it out";
         report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
     }
     for (i, essential) in run.essentials.iter().enumerate() {

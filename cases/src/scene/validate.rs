@@ -253,7 +253,7 @@ fn surfaces(scene: &Scene, report: &mut Report) {
         let Place::On(names) = place else { continue };
         for name in names.iter().filter(|n| !known.contains(&n.as_str())) {
             let problem = format!("is not a surface of a {}", scene.body.name());
-            report.add(&key, Problem::new(problem).found(name).help(suggest(name, known)));
+            report.add(&key, Problem::new(problem).found(name).help(suggest(name, &known)));
         }
     }
 }

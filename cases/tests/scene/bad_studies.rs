@@ -49,7 +49,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nsupport_scales = [1.2, 0.5] #<",
-        "run[0].support_scales",
+        "run[0].support_scales[1]",
         &["no support scale", "1.2 to 3"],
     ),
     (

@@ -279,8 +279,18 @@ fn contradictions_of_a_static_scene_name_their_key() {
         ),
         ("steps = 10", "steps = 10\nlimit-within = 2", "procedure.limit-within", "is no part of the load"),
         ("steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"),
-        ("steps = 10", "steps = 10\nduration = \"1 s\"", "procedure.duration", "has nothing to last"),
-        ("steps = 10", "steps = 10\nover = \"1 s\"", "procedure.over", "goes with kind = \"explicit\" or"),
+        (
+            "steps = 10",
+            "steps = 10\nduration = \"1 s\"",
+            "procedure.duration",
+            "it goes with explicit, implicit-dynamic",
+        ),
+        (
+            "steps = 10",
+            "steps = 10\nover = \"1 s\"",
+            "procedure.over",
+            "does not belong to kind = \"static\"",
+        ),
         (
             "poisson = 0.45\n",
             "poisson = 0.45\nprony = [{ g = 0.3, tau = \"1 s\" }]\n",

@@ -34,15 +34,15 @@ fn what_has_no_part_in_vibrations_names_its_key() {
         ("modes = 12", "modes = 0", "procedure.modes", "is no number of modes"),
         (
             "modes = 12",
-            "modes = 12, steps = 2, duration = \"1 s\"",
+            "modes = 12, duration = \"1 s\"",
             "procedure.duration",
-            "has nothing to last",
+            "does not belong to kind = \"modes\"; leave it out; it goes with explicit, implicit-dynamic",
         ),
         (
             "\"modes\", modes = 12",
             "\"linear\", modes = 12",
             "procedure.modes",
-            "goes with kind = \"modes\" only",
+            "does not belong to kind = \"linear\"; leave it out; it goes with modes",
         ),
         ("\"modes\", modes = 12", "\"linear\"", "method[0].mass", "is of vibrations alone"),
         ("\"modes\", modes = 12", "\"linear\"", "check[0].metric", "needs [procedure] kind = \"modes\""),

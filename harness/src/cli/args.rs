@@ -49,10 +49,17 @@ pub enum Command {
     Baseline(BaselineArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
-    /// List cases, elements, kernels, transfer schemes and exact solutions
-    List,
-    /// Print the JSON schema of scene files
-    Schema,
+    /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
+    List {
+        /// Only this part, such as laws
+        what: Option<String>,
+    },
+    /// Print the JSON schema of scene files, or of study files
+    Schema {
+        /// The schema of study files
+        #[arg(long)]
+        study: bool,
+    },
     /// Inspect and convert mesh files
     Mesh {
         /// What to do with them

@@ -9,14 +9,17 @@ mod mesh_files;
 mod plan;
 mod reference;
 mod run;
+mod text;
 mod verify;
 
 use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
+use catalogue::nearest;
 
 use crate::Failure;
 use baseline::baseline;
+use list::list;
 use plan::plan;
 use reference::reference;
 use run::run;
@@ -48,12 +51,10 @@ pub fn main(cli: Cli) -> u8 {
             Ok(()) => 0,
             Err(code) => code,
         },
-        Command::List => {
-            list::print();
-            0
-        }
-        Command::Schema => {
-            println!("{}", serde_json::to_string_pretty(&scene::schema()).expect("a JSON value"));
+        Command::List { what } => list(what.as_deref()),
+        Command::Schema { study } => {
+            let schema = if study { scene::study_schema() } else { scene::schema() };
+            println!("{schema:#}");
             0
         }
         Command::Mesh { action } => match mesh_files::act(&action) {
@@ -89,7 +90,9 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
             Some(index) => chosen.push(index),
             None => {
                 let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
-                eprintln!("{}: no method '{id}'; it has {}", path.display(), known.join(", "));
+                let near = nearest(id, known.iter().copied());
+                let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+                eprintln!("{}: no method '{id}'; it has {}{near}", path.display(), known.join(", "));
                 return Err(2);
             }
         }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::Failure;
 use crate::cli::args::ReferenceArgs;
-use crate::cli::{fail, list, open};
+use crate::cli::{fail, open, text};
 use crate::run::stored::Stored;
 use crate::study::make_reference::make;
 
@@ -43,7 +43,7 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
         None => make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?,
     };
     beside.iter().for_each(|other| stored.widen(other));
-    print!("{}", list::reference(&stored));
+    print!("{}", text::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");
     std::fs::write(&args.out, json + "\n")
         .map_err(|bad| fail(&Failure::Run(format!("{} can't be written: {bad}", args.out.display()))))

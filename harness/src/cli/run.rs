@@ -8,7 +8,7 @@ use reports::{RunSet, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{list, open, report};
+use crate::cli::{open, report, text};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, check, folder, stalled};
@@ -132,10 +132,10 @@ impl Made<'_> {
     /// Prints the table and the checks that do not hold, and writes the folder of results.
     fn conclude(mut self, machine: reports::Machine) -> u8 {
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
-            println!("{}", list::outcomes(&self.outcomes));
+            println!("{}", text::outcomes(&self.outcomes));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-            eprintln!("{}", list::verdict(check));
+            eprintln!("{}", text::verdict(check));
             self.code = self.code.max(1);
         }
         let Some(out) = &self.args.out else { return self.code };

@@ -3,7 +3,7 @@
 use cases::scene;
 use reports::Status;
 
-use crate::cli::{list, refuse, report};
+use crate::cli::{refuse, report, text};
 use crate::study::{Plan, VerifyArgs, folder};
 
 /// Runs the study, writes its results and the report; returns the exit code.
@@ -47,7 +47,7 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
     }
     let count = |status| set.checks.iter().filter(|c| c.status == status).count();
     for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-        eprintln!("{}", list::verdict(check));
+        eprintln!("{}", text::verdict(check));
     }
     let (failed, not_run) = (count(Status::Fail), count(Status::NotRun));
     println!(

@@ -89,8 +89,12 @@ impl Stages {
     fn prepare() -> Stages {
         const NOTHING: &str = "nothing is solved (kind = \"prepare\")";
         Stages {
+            mass: (false, NOTHING.into()),
             stiffness: (false, NOTHING.into()),
+            time_steps: (false, NOTHING.into()),
             factorisation: (false, NOTHING.into()),
+            newton: (false, NOTHING.into()),
+            relaxation: (false, NOTHING.into()),
             no_transfer: Some(NOTHING),
             no_contact: Some(NOTHING),
             ..Stages::linear()

@@ -22,6 +22,7 @@ pub(crate) struct Vibration {
 pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
         mass: (true, setup.mass.map_or("consistent", scene::Mass::name).into()),
+        stiffness: (true, "of small vibrations".into()),
         factorisation: (true, "one, dense, into all modes".into()),
         no_transfer: Some("modes are compared where they are integrated"),
         ..Stages::linear()

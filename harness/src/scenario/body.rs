@@ -54,7 +54,7 @@ fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -
             }
             Body::Cylinder { radius, height } => {
                 let along = (height / (2.0 * radius) * 2.0 * n as f64).round().max(1.0) as usize;
-                cylinder_mesh(kind, radius, height, [n, along], 1.0).and_then(named_ends)
+                cylinder_mesh(kind, radius, height, [n, along], 1.0)
             }
             Body::Ball { radius } => ball_mesh(kind, radius, n),
             Body::SphereShell { inner, outer, octant } => {
@@ -132,12 +132,6 @@ fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failu
             Failure::at(ErrorKind::NotRun, Key::Size(""), format!("makes no mesh: {bad}"), "")
         }
     }
-}
-
-/// The ends of an upright cylinder under the names that scenes know.
-fn named_ends(mesh: Mesh) -> Result<Mesh, generate::GenerateError> {
-    let [bottom, top] = ["z-min", "z-max"].map(|name| mesh.group(name).unwrap_or_default().to_vec());
-    Ok(mesh.with_group("bottom", bottom)?.with_group("top", top)?)
 }
 
 /// Cells across the narrowest extent at level 1. Levels double it.

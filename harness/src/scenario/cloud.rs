@@ -220,14 +220,14 @@ impl CloudMethod {
                     efg::Smoothing::Constant => "constant",
                     efg::Smoothing::Linear => "linear",
                 };
-                format!("{face_points} points per face, smoothed to {gradients} gradients per cell")
+                format!("{}, smoothed to {gradients} gradients per cell", per_face(*face_points))
             }
             Integration::NodeSmoothed { stabilisation, face_points } => {
                 let cells = match stabilisation {
                     0.0 => String::new(),
                     share => format!(", cells with {share} of the weight"),
                 };
-                format!("{face_points} points per face, smoothed to one gradient per vertex{cells}")
+                format!("{}, smoothed to one gradient per vertex{cells}", per_face(*face_points))
             }
         };
         let coupled = match &self.coupled {
@@ -319,4 +319,9 @@ fn functions(functions: scene::Functions) -> Functions {
         }
         scene::Functions::MaximumEntropy { gamma } => Functions::MaximumEntropy { gamma },
     }
+}
+
+/// Points of a face rule in words.
+fn per_face(points: usize) -> String {
+    if points == 1 { "1 point per face".into() } else { format!("{points} points per face") }
 }

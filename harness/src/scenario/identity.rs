@@ -104,15 +104,14 @@ pub(crate) fn rule(integration: scene::Integration) -> String {
 }
 
 fn essential(essential: scene::Essential) -> String {
-    let with = |name: &str, factor: Option<f64>| {
-        factor.map_or_else(|| name.to_string(), |factor| format!("{name}-{factor}"))
-    };
+    let name = essential.kind().name();
     match essential {
-        scene::Essential::Nitsche { factor } => with("nitsche", factor),
-        scene::Essential::Penalty { factor } => with("penalty", factor),
-        scene::Essential::Multipliers => "multipliers".into(),
-        scene::Essential::Coupling => "coupling".into(),
-        scene::Essential::Elimination { rows } => format!("elimination-{}", rows.name()),
+        scene::Essential::Nitsche { factor: Some(factor) }
+        | scene::Essential::Penalty { factor: Some(factor) } => {
+            format!("{name}-{factor}")
+        }
+        scene::Essential::Elimination { rows } => format!("{name}-{}", rows.name()),
+        _ => name.into(),
     }
 }
 

@@ -40,7 +40,7 @@ mod values;
 pub use dimension::Dimension;
 pub use entry::{Entry, find, names};
 pub use names::{nearest, suggest};
-pub use parameter::{Kind, Parameter, Range};
+pub use parameter::{Kind, Parameter, Range, short};
 pub use problem::{Problem, clip};
 pub use quantity::{Exponents, Quantity, UnitWord, units};
 pub use values::{Value, Values};

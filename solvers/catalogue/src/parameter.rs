@@ -162,11 +162,16 @@ impl Range {
             Range::Any => "any number".into(),
             Range::Positive => "a value above zero".into(),
             Range::NotNegative => "zero or more".into(),
-            Range::AtLeast(low) => format!("{low} or more"),
-            Range::Within(low, high) => format!("{low} to {high}"),
-            Range::Between(low, high) => format!("a value above {low} and below {high}"),
+            Range::AtLeast(low) => format!("{} or more", short(low)),
+            Range::Within(low, high) => format!("{} to {}", short(low), short(high)),
+            Range::Between(low, high) => format!("a value above {} and below {}", short(low), short(high)),
         }
     }
+}
+
+/// A number as people write it: a small one by its power of ten.
+pub fn short(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1e-3 { format!("{number:e}") } else { number.to_string() }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod convert;
 mod cylinder;
 mod lattice;
 mod shell;
+pub mod surfaces;
 
 pub use ball::{ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};

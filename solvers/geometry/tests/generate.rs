@@ -189,7 +189,7 @@ fn curved_nodes_lie_on_their_surfaces() {
             on(&octant, name, &|p| p[axis], 0.0);
         }
         on(&cylinder_mesh(kind, 0.3, 1.0, [3, 2], 1.0).unwrap(), "side", &|p| p.x.hypot(p.y), 0.3);
-        on(&cylinder_mesh(kind, 0.3, 0.8, [3, 2], 1.0).unwrap(), "z-max", &|p| p.z, 0.8);
+        on(&cylinder_mesh(kind, 0.3, 0.8, [3, 2], 1.0).unwrap(), "top", &|p| p.z, 0.8);
         on(&kidney_mesh(kind, 3).unwrap(), "surface", &|p| Kidney.level(p), 0.0);
     }
 }

@@ -10,12 +10,14 @@ use crate::scene::expression::Expression;
 use crate::scene::region::Region;
 use crate::scene::units::{BodyForce, ContactSlope, Dim, Force, Length, Pressure, Q, Time, Unit};
 use crate::scene::vocabulary::{Given, ToolShapes, Word, tagged};
+use crate::scene::words::words;
 
-/// The word "exact": values from the solution that `[reference]` names
-#[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ExactWord {
-    Exact,
+words! {
+    /// A field that is not written out.
+    pub(crate) enum ExactWord {
+        /// The values of the exact solution that `[reference]` names.
+        Exact = "exact",
+    }
 }
 
 /// A quantity, or an expression in x, y and z (metres) with the unit of its value

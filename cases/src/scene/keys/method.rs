@@ -7,10 +7,13 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::scene::family::OverMeshKeys;
-use crate::scene::method::{ConstraintRows, Dilation, Element, Mass, SupportShape};
+use crate::scene::method::{
+    Basis, ConstraintRows, Dilation, Element, Entropy, EssentialKind, Mass, SupportShape,
+};
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
 use crate::scene::vocabulary::{Given, Kernels, Word};
+use crate::scene::words::words;
 
 /// How fine: one of nodes, spacing, level, cells and file
 #[derive(Deserialize, JsonSchema)]
@@ -102,7 +105,7 @@ pub(crate) struct EfgKeys {
     pub nodes: Option<u32>,
     /// Size of the mesh whose nodes form the cloud; or nodes
     pub size: Option<SizeKeys>,
-    /// By name, or a table of a file or of an error
+    /// Nodes of the cloud; mesh with size, uniform with nodes unless given
     pub cloud: Option<CloudKeys>,
     /// Regions that a graded cloud is denser in
     pub graded_towards: Option<Region>,
@@ -118,7 +121,7 @@ pub(crate) struct EfgKeys {
     pub factor: Option<f64>,
     /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
     pub neighbourhood: Option<SupportShape>,
-    pub basis: BasisName,
+    pub basis: BasisKeys,
     /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
     pub gamma: Option<f64>,
     pub integration: IntegrationKeys,
@@ -138,6 +141,7 @@ pub(crate) enum CloudKeys {
     Table(CloudTable),
 }
 
+/// The nodes of a file, or a cloud refined by an estimate of its error
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CloudTable {
@@ -145,7 +149,7 @@ pub(crate) struct CloudTable {
     pub file: Option<String>,
     /// Unit of the numbers in the file
     pub unit: Option<Unit<Length>>,
-    /// Denser where an error is
+    /// Makes the cloud denser where its error is larger
     pub refine: Option<RefineKeys>,
 }
 
@@ -153,34 +157,38 @@ pub(crate) struct CloudTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct RefineKeys {
     pub by: Indicator,
-    /// How often the cloud is made anew; 2 unless given
+    /// How often the cloud is regenerated; 2 unless given
     pub steps: Option<u32>,
     /// Coarsest over finest spacing at most; 3 unless given
     pub ratio: Option<f64>,
 }
 
-/// What is taken for the error
-#[derive(Clone, Copy, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Indicator {
-    /// Displacement gradients against recovered ones
-    GradientError,
+words! {
+    /// Estimate of the error that a cloud is refined by.
+    pub(crate) enum Indicator {
+        /// Displacement gradients against recovered ones.
+        GradientError = "gradient-error",
+    }
 }
 
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum BasisName {
-    Linear,
-    Quadratic,
-    MaximumEntropy,
+/// Basis of the shape functions
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum BasisKeys {
+    Polynomial(Basis),
+    Entropy(Entropy),
 }
 
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum CloudName {
-    Mesh,
-    Uniform,
-    Graded,
+words! {
+    /// Clouds by name.
+    pub(crate) enum CloudName {
+        /// The nodes of a mesh of this size.
+        Mesh = "mesh",
+        /// Quasi-uniform, with this number of nodes.
+        Uniform = "uniform",
+        /// Denser towards the region `graded_towards`, with this number of nodes.
+        Graded = "graded",
+    }
 }
 
 /// A kernel by name, or a table with its parameters
@@ -202,42 +210,49 @@ pub(crate) struct KernelTable {
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum IntegrationKeys {
     /// Gauss points in the tetrahedra or hexahedra of the background mesh
-    Gauss { points: u32 },
+    Gauss {
+        /// Points per cell; in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known
+        points: u32,
+    },
     /// Gauss points in the cells of a grid, those outside the body left out
-    Grid { points: u32, spacing: Option<Q<Length>> },
-    /// Conforming smoothing over tetrahedra, with points per face; order 2 (6 points) is variationally consistent integration to
-    /// second order, and what the quadratic basis wants
-    CellSmoothed { points: Option<u32>, order: Option<u32> },
-    /// Smoothing over the quarters of tetrahedra around each vertex, with points per face; stabilisation is the share of the
-    /// weight that the tetrahedra keep, 0 for none
-    NodeSmoothed { stabilisation: f64, points: Option<u32> },
+    Grid {
+        /// Points per cell, a cube number
+        points: u32,
+        /// Edge of a cell; the mean node spacing unless given
+        spacing: Option<Q<Length>>,
+    },
+    /// Conforming strain smoothing over the tetrahedra of the background mesh
+    CellSmoothed {
+        /// Points per face: 1, 3 or 6; 1 unless given, and 6 with order 2
+        points: Option<u32>,
+        /// 1 (unless given) is exact for linear displacements, 2 for quadratic ones (variationally consistent integration of
+        /// second order), as the quadratic basis needs
+        order: Option<u32>,
+    },
+    /// Strain smoothing over the quarters of the tetrahedra around each vertex of the background mesh
+    NodeSmoothed {
+        /// Part of the weight that the tetrahedra keep, from 0 to below 1; 0.05 is usual
+        stabilisation: f64,
+        /// Points per face: 1, 3 or 6; 1 unless given
+        points: Option<u32>,
+    },
 }
 
 /// How prescribed displacements are imposed
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum EssentialKeys {
-    Name(EssentialName),
+    Name(EssentialKind),
     Table(EssentialTable),
 }
 
-#[derive(Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum EssentialName {
-    Nitsche,
-    Penalty,
-    Multipliers,
-    Elimination,
-    Coupling,
-}
-
+/// One of these with settings
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EssentialTable {
-    pub method: EssentialName,
-    /// Stabilisation or penalty factor
+    pub method: EssentialKind,
+    /// Stabilisation factor of Nitsche's method, or penalty factor; with these two only
     pub factor: Option<f64>,
-    /// What eliminated rows say, one for each node of the held surface: the mean displacement over its share (unless given)
-    /// or that at its point
+    /// What the eliminated rows prescribe; with elimination only
     pub rows: Option<ConstraintRows>,
 }

@@ -4,17 +4,20 @@
 mod condition;
 mod method;
 mod output;
+mod procedure;
 
 use std::borrow::Cow;
 
+use geometry::generate::surfaces;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
 pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
+pub(crate) use procedure::*;
 
-use super::procedure::ProcedureKeys;
+use super::model::with_all;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::units::{Density, Length, Q, Time, Unit};
@@ -28,10 +31,8 @@ pub(crate) struct SceneKeys {
     pub title: String,
     /// Where the case and its reference come from
     pub source: Option<String>,
-    /// What the scene is for: "patch" (exact in every method), "smooth" (the default: errors fall with the order of theory), "rough"
-    /// (no order is promised) or "published" (compared with the numbers of `published`)
-    #[serde(default)]
-    pub purpose: Purpose,
+    /// What the scene is for; "smooth" unless given
+    pub purpose: Option<Purpose>,
     /// A published comparison of methods: its claim on run times and errors is tested by the results
     pub published: Option<Publication>,
     pub body: BodyKeys,
@@ -62,26 +63,57 @@ pub(crate) struct SceneKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum BodyKeys {
-    /// From corner to corner, or of a size with one corner at the origin
-    Box { min: Option<[Q<Length>; 3]>, max: Option<[Q<Length>; 3]>, size: Option<[Q<Length>; 3]> },
-    /// About the z axis, the base at z = 0
-    Cylinder { radius: Q<Length>, height: Q<Length> },
-    /// About the origin
-    Ball { radius: Q<Length> },
-    /// About the origin; the octant x, y, z >= 0 alone if wanted
+    /// An axis-parallel box: give two corners (min, max), or a size with one corner at the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BOX)))]
+    Box {
+        /// Lower corner; the origin unless given
+        min: Option<[Q<Length>; 3]>,
+        /// Upper corner
+        max: Option<[Q<Length>; 3]>,
+        /// Edge lengths
+        size: Option<[Q<Length>; 3]>,
+    },
+    /// An upright cylinder about the z axis with its base at z = 0
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::CYLINDER)))]
+    Cylinder {
+        /// Radius
+        radius: Q<Length>,
+        /// Height
+        height: Q<Length>,
+    },
+    /// A ball about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
+    Ball {
+        /// Radius
+        radius: Q<Length>,
+    },
+    /// A thick sphere about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::SHELL)))]
     SphereShell {
+        /// Inner radius
         inner: Q<Length>,
+        /// Outer radius
         outer: Q<Length>,
+        /// Only the octant x, y, z >= 0
         #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::OCTANT))]
         octant: bool,
     },
-    /// The bean of 40 x 75 x 30 mm, by its map from the ball; the half z >= 0 alone if wanted
+    /// The kidney, a bean of 40 x 75 x 30 mm
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
     Kidney {
+        /// Only the half z >= 0
         #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::HALF))]
         half: bool,
     },
-    /// The mesh in a Gmsh file whose numbers are in `unit`
-    File { path: String, unit: Unit<Length> },
+    /// The mesh of a Gmsh file, which names its surfaces itself
+    File {
+        /// The file, relative to the folder of the scene
+        path: String,
+        /// Unit of the numbers in the file
+        unit: Unit<Length>,
+    },
 }
 
 /// A material law and its constants

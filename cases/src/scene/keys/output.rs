@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::{Names, SizeKeys};
 use crate::scene::units::{Length, Q, Time, Unit};
 use crate::scene::vocabulary::{Given, Schemes, Solutions, Word};
+use crate::scene::words::words;
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -51,7 +52,7 @@ pub(crate) struct TransferKeys {
     pub settings: Given<Schemes>,
 }
 
-/// A scheme, or "own": the solver's own rows
+/// A transfer scheme, or "own": the shape functions of the method itself
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum SchemeKeys {
@@ -59,11 +60,12 @@ pub(crate) enum SchemeKeys {
     Own(OwnWord),
 }
 
-/// The solver's own rows
-#[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum OwnWord {
-    Own,
+words! {
+    /// A transfer without a scheme.
+    pub(crate) enum OwnWord {
+        /// The shape functions of the method itself.
+        Own = "own",
+    }
 }
 
 /// "reference-nodes", "probes", or the nodes of a mesh file
@@ -74,11 +76,14 @@ pub(crate) enum TargetKeys {
     File(MeshFileKeys),
 }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum TargetName {
-    ReferenceNodes,
-    Probes,
+words! {
+    /// Points that a transfer goes to.
+    pub(crate) enum TargetName {
+        /// The nodes of the reference method.
+        ReferenceNodes = "reference-nodes",
+        /// The probes of the output.
+        Probes = "probes",
+    }
 }
 
 #[derive(Deserialize, JsonSchema)]

@@ -61,7 +61,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     let cloud = cloud(layout, key, report);
     let help = "take the nodes of a mesh: size = { level = 2 }";
     report.require(
-        keys.neighbourhood.unwrap_or_default() == SupportShape::Ball || with_cells,
+        keys.neighbourhood != Some(SupportShape::Ellipsoid) || with_cells,
         &at("neighbourhood"),
         "follows the cells around each node, and the nodes of this cloud have none",
         help,
@@ -206,7 +206,7 @@ struct Reach {
 }
 
 fn functions(
-    basis: BasisName,
+    basis: BasisKeys,
     kernel: Option<KernelKeys>,
     reach: Reach,
     gamma: Option<f64>,
@@ -215,9 +215,8 @@ fn functions(
 ) -> Option<Functions> {
     let at = |name: &str| format!("{key}.{name}");
     let basis = match basis {
-        BasisName::Linear => Basis::Linear,
-        BasisName::Quadratic => Basis::Quadratic,
-        BasisName::MaximumEntropy => {
+        BasisKeys::Polynomial(basis) => basis,
+        BasisKeys::Entropy(Entropy::Maximum) => {
             let given = [
                 ("kernel", kernel.is_some()),
                 ("support_scale", reach.support_scale.is_some()),
@@ -241,7 +240,7 @@ fn functions(
         "goes with basis = \"maximum-entropy\" only",
         "leave it out",
     );
-    let shape = reach.shape.unwrap_or_default();
+    let shape = reach.shape.unwrap_or(SupportShape::Ball);
     let support = support(reach, basis, key, report);
     let Some(kernel) = kernel else {
         report.missing(&at("kernel"), "give kernel = \"cubic-spline\", or basis = \"maximum-entropy\"");
@@ -384,17 +383,17 @@ pub(crate) fn essential(keys: EssentialKeys, key: &str, report: &mut Report) -> 
     if let Some(factor) = factor {
         positive(factor, &at("factor"), report);
     }
-    let weak = matches!(name, EssentialName::Nitsche | EssentialName::Penalty);
+    let weak = matches!(name, EssentialKind::Nitsche | EssentialKind::Penalty);
     let help = "leave it out";
     report.require(factor.is_none() || weak, &at("factor"), "goes with nitsche and penalty only", help);
-    let eliminated = name == EssentialName::Elimination;
+    let eliminated = name == EssentialKind::Elimination;
     report.require(rows.is_none() || eliminated, &at("rows"), "goes with elimination only", help);
     match name {
-        EssentialName::Nitsche => Essential::Nitsche { factor },
-        EssentialName::Penalty => Essential::Penalty { factor },
-        EssentialName::Multipliers => Essential::Multipliers,
-        EssentialName::Coupling => Essential::Coupling,
-        EssentialName::Elimination => Essential::Elimination { rows: rows.unwrap_or(ConstraintRows::Means) },
+        EssentialKind::Nitsche => Essential::Nitsche { factor },
+        EssentialKind::Penalty => Essential::Penalty { factor },
+        EssentialKind::Multipliers => Essential::Multipliers,
+        EssentialKind::Coupling => Essential::Coupling,
+        EssentialKind::Elimination => Essential::Elimination { rows: rows.unwrap_or(ConstraintRows::Means) },
     }
 }
 

@@ -5,7 +5,7 @@ mod entries;
 pub use entries::*;
 
 use crate::Dimension;
-use crate::names::suggest;
+use crate::names::nearest;
 use crate::problem::Problem;
 
 /// A number computed from one run, or from a family of runs at several levels.
@@ -111,8 +111,10 @@ pub fn find(name: &str) -> Option<&'static Metric> {
 /// The metric of exactly that name, or the nearest name.
 pub fn named(name: &str) -> Result<&'static Metric, Problem> {
     METRICS.iter().copied().find(|metric| metric.name == name).ok_or_else(|| {
-        let names: Vec<&str> = METRICS.iter().map(|metric| metric.name).collect();
-        Problem::new("is not a known metric").found(name).help(suggest(name, &names))
+        let near = nearest(name, METRICS.iter().map(|metric| metric.name));
+        let near = near.map_or(String::new(), |near| format!("did you mean '{near}'? "));
+        let help = format!("{near}`tissuebench list metrics` explains all of them");
+        Problem::new("is not a known metric").found(name).help(help)
     })
 }
 

@@ -1,6 +1,6 @@
 //! The ball as seven blocks (a cube in the middle, six pyramids' frustums around it), and the kidney as its image.
 
-use super::{GenerateError, check_cells, check_positive, check_total, into_kind, lattice};
+use super::{GenerateError, check_cells, check_positive, check_total, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3, Vector3, quality, shapes::Kidney};
 
 /// Half side of the inner cube in the parameter space, where the whole ball is the cube [-1, 1]^3.
@@ -88,7 +88,7 @@ fn parameter_ball(kind: CellKind, blocks: Blocks) -> Result<Mesh, GenerateError>
     // On the surface one parameter is +-1 exactly; mid-edge nodes between two of them keep it.
     let surface = |q: &Point3| q.coords.amax() == 1.0;
     let symmetry = |q: &Point3| q.z == 0.0;
-    let groups: [lattice::Group; 2] = [("surface", &surface), ("symmetry", &symmetry)];
+    let groups: [lattice::Group; 2] = [(surfaces::BALL[0], &surface), (surfaces::HALF[0], &symmetry)];
     Ok(into_kind(mesh.finish(&groups[..1 + jaw as usize])?, kind))
 }
 

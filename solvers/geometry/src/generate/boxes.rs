@@ -16,7 +16,7 @@ pub struct Jitter {
 ///
 /// `grading` is the ratio of the last to the first interval per axis (1: uniform; spacing grows geometrically).
 /// `jitter` moves corner nodes inside the box by up to `fraction` of the smaller adjoining interval, per axis; mid-
-/// edge nodes stay halfway. Facet groups: "x-min", "x-max", "y-min", "y-max", "z-min", "z-max". Corner nodes are
+/// edge nodes stay halfway. Facet groups: [`surfaces::BOX`](super::surfaces::BOX). Corner nodes are
 /// numbered with x fastest. Fails when jitter or grading leaves a cell
 /// inside out or flat.
 pub fn box_mesh(
@@ -112,7 +112,7 @@ fn hexahedra(points: Vec<Point3>, cells: [usize; 3]) -> Result<Mesh, GenerateErr
         }
     }
     let mut mesh = Mesh::from_flat(points, vec![CellKind::Hex8; nx * ny * nz], nodes)?;
-    for (name, facets) in ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"].into_iter().zip(groups) {
+    for (name, facets) in super::surfaces::BOX.into_iter().zip(groups) {
         mesh = mesh.with_group(name, facets)?;
     }
     Ok(mesh)

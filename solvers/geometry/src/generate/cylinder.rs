@@ -1,6 +1,6 @@
 //! Upright cylinders as five blocks: a square core and four sectors around it.
 
-use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice};
+use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3};
 
 /// Half side of the inner square in parameters, where the section is the square [-1, 1]^2.
@@ -13,7 +13,7 @@ const BULGE: f64 = 0.35;
 ///
 /// `cells = [across, along]`: hexahedra along each side of the core square (with `(across + 1) / 2` layers around
 /// it), and along the height. `grading` is the ratio of the last to the first interval along the height (1:
-/// uniform). Facet groups: "side", "z-min", "z-max". Quadratic nodes of the side lie on the cylinder.
+/// uniform). Facet groups: [`surfaces::CYLINDER`]. Quadratic nodes of the side lie on the cylinder.
 pub fn cylinder_mesh(
     kind: CellKind,
     radius: f64,
@@ -51,10 +51,11 @@ pub fn cylinder_mesh(
             mesh.hexahedron(lattice::CORNERS.map(key), place);
         }
     }
+    let [side, bottom, top] = surfaces::CYLINDER;
     let mesh = mesh.finish(&[
-        ("side", &|q: &Point3| q.x.abs().max(q.y.abs()) == 1.0),
-        ("z-min", &|q: &Point3| q.z == 0.0),
-        ("z-max", &|q: &Point3| q.z == 1.0),
+        (side, &|q: &Point3| q.x.abs().max(q.y.abs()) == 1.0),
+        (bottom, &|q: &Point3| q.z == 0.0),
+        (top, &|q: &Point3| q.z == 1.0),
     ])?;
     Ok(into_kind(mesh, kind).moved(|q| {
         let [x, y] = onto_disc(q.x, q.y);

@@ -1,6 +1,6 @@
 //! Thick spheres, whole or one octant.
 
-use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice};
+use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3};
 
 /// How much of a sphere shell to mesh.
@@ -56,12 +56,13 @@ pub fn sphere_shell_mesh(
             mesh.hexahedron(lattice::CORNERS.map(key), place);
         }
     }
+    let ([inside, outside], [x, y, z]) = (surfaces::SHELL, surfaces::OCTANT);
     let mut groups: Vec<lattice::Group> =
-        vec![("inner", &|q| q.coords.amax() == 1.0), ("outer", &|q| q.coords.amax() == 2.0)];
+        vec![(inside, &|q| q.coords.amax() == 1.0), (outside, &|q| q.coords.amax() == 2.0)];
     if extent == ShellExtent::Octant {
-        groups.push(("x-min", &|q| q.x == 0.0));
-        groups.push(("y-min", &|q| q.y == 0.0));
-        groups.push(("z-min", &|q| q.z == 0.0));
+        groups.push((x, &|q| q.x == 0.0));
+        groups.push((y, &|q| q.y == 0.0));
+        groups.push((z, &|q| q.z == 0.0));
     }
     let mesh = into_kind(mesh.finish(&groups)?, kind);
     Ok(mesh.moved(|q| {

@@ -21,7 +21,7 @@ pub struct MooneyRivlin {
 }
 
 const SHARE: Parameter =
-    Parameter::optional("share", Dimension::None, "of the second constant: c01 / (c10 + c01), from 0 to 1")
+    Parameter::optional("share", Dimension::None, "part of the second constant: c01 / (c10 + c01)")
         .within(Range::Within(0.0, 1.0));
 
 pub(super) const ENTRY: LawEntry = Entry {

@@ -1,84 +1,19 @@
-//! Text for people: lists, plans, the table of a run, verdicts.
+//! Text for people: plans, the table of a run, verdicts.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
-use cases::exact::SOLUTIONS;
-use cases::scene::{Basis, Element, Mass, SupportShape};
-use catalogue::{Parameter, metric::METRICS, names};
-use contact::TOOL_SHAPES;
-use material::LAWS;
 use reports::{Check, Status};
 
 use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
 use crate::run::stored::Stored;
 
-/// Prints what scenes may name.
-pub fn print() {
-    println!(
-        "elements    {}",
-        [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex20].map(Element::name).join(", ")
-    );
-    println!("kernels     {}", names(efg::KERNELS).join(", "));
-    println!("clouds      mesh, uniform, graded, {{ file }}, {{ refine }}");
-    println!("supports    {}", SupportShape::ALL.map(SupportShape::name).join(", "));
-    println!("bases       {}, {}, maximum-entropy", Basis::Linear.name(), Basis::Quadratic.name());
-    println!("masses      {}", Mass::ALL.map(Mass::name).join(", "));
-    println!("essential   nitsche, penalty, multipliers, elimination, coupling");
-    println!("transfer    {}, own", names(interp::SCHEMES).join(", "));
-    println!("laws, with their constants");
-    for law in LAWS {
-        println!("  {:24} {}", law.name, parameters(law.parameters));
-    }
-    println!("tools, with their lengths");
-    for shape in TOOL_SHAPES {
-        println!("  {:24} {}", shape.name, parameters(shape.parameters));
-    }
-    println!("exact solutions, with their parameters");
-    for solution in SOLUTIONS {
-        println!("  {:24} {}", solution.name, parameters(solution.parameters));
-    }
-    println!("metrics");
-    for metric in METRICS {
-        println!("  {:24} {}", metric.name, metric.meaning);
-    }
-    let mut scenes = Vec::new();
-    ["cases/scenes", "cases/studies"].iter().for_each(|folder| files(Path::new(folder), &mut scenes));
-    if !scenes.is_empty() {
-        println!("scenes and studies here\n  {}", scenes.join("\n  "));
-    }
-}
-
-/// The TOML files in a folder and the folders below it, those of a folder in order of their names.
-fn files(folder: &Path, found: &mut Vec<String>) {
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "toml") {
-            found.push(path.display().to_string());
-        }
-    }
-}
-
-/// Names with units; in brackets those that may be left out.
-fn parameters(parameters: &[Parameter]) -> String {
-    let one = |p: &Parameter| {
-        let name = if p.required { p.name.to_string() } else { format!("({})", p.name) };
-        if p.dimension.is_plain() { name } else { format!("{name} [{}]", p.dimension.si_unit()) }
-    };
-    parameters.iter().map(one).collect::<Vec<_>>().join(", ")
-}
-
 /// The plan of one method.
 pub fn stages(method: &str, plan: &Plan) -> String {
     let mut text = format!("{method}\n");
     for stage in plan.stages() {
         let word = if stage.ran { "run " } else { "skip" };
-        writeln!(text, "  {word}  {:28} {}", stage.stage.name(), stage.why).expect("a string");
+        writeln!(text, "  {word}  {:28}  {}", stage.stage.name(), stage.why).expect("a string");
     }
     text
 }

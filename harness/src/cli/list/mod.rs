@@ -1,0 +1,121 @@
+//! `tissuebench list`: everything that a scene can name, from the catalogue's entries and from the schema of scenes.
+
+mod item;
+mod schema;
+
+use std::path::Path;
+
+use cases::exact::SOLUTIONS;
+use catalogue::metric::METRICS;
+use catalogue::{Dimension, suggest, units};
+use contact::TOOL_SHAPES;
+use material::LAWS;
+
+use item::{Item, print};
+use schema::forms;
+
+/// A part of the list.
+struct Part {
+    name: &'static str,
+    /// Where a scene names one of them.
+    key: &'static str,
+    items: fn() -> Vec<Item>,
+}
+
+const fn part(name: &'static str, key: &'static str, items: fn() -> Vec<Item>) -> Part {
+    Part { name, key, items }
+}
+
+const PARTS: [Part; 20] = [
+    part("bodies", "body.shape; their surfaces: on", || forms("body")),
+    part("laws", "material.law", || Item::of_entries(LAWS)),
+    part("tools", "tool.shape", || Item::of_entries(TOOL_SHAPES)),
+    part("elements", "method.element, family = \"fem\"", || forms("method.fem.element")),
+    part("clouds", "method.cloud, family = \"efg\"", || forms("method.efg.cloud")),
+    part("kernels", "method.kernel", || Item::of_entries(efg::KERNELS)),
+    part("bases", "method.basis", || forms("method.efg.basis")),
+    part("neighbourhoods", "method.neighbourhood", || forms("method.efg.neighbourhood")),
+    part("integration", "method.integration.rule", || forms("method.efg.integration")),
+    part("dilations", "method.dilation", || forms("method.efg.dilation")),
+    part("essential", "method.essential, family = \"efg\"", || forms("method.efg.essential")),
+    part("masses", "method.mass, procedure.kind = \"modes\"", || forms("method.efg.mass")),
+    part("procedures", "procedure.kind", || forms("procedure")),
+    part("transfers", "output.transfer.scheme", transfers),
+    part("solutions", "reference.exact", || Item::of_entries(SOLUTIONS)),
+    part("purposes", "purpose", || forms("purpose")),
+    part("publications", "published", || forms("published")),
+    part("units", "of quantities such as \"20 kPa\"", dimensions),
+    part("metrics", "check.metric, and what is recorded", metrics),
+    part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
+];
+
+/// Prints all parts, or the one of that name; the exit code.
+pub fn list(what: Option<&str>) -> u8 {
+    let names = PARTS.map(|part| part.name);
+    if let Some(what) = what.filter(|what| !names.contains(what)) {
+        eprintln!("tissuebench: no part of the list is called '{what}'; {}", suggest(what, &names));
+        return 2;
+    }
+    let chosen = PARTS.iter().filter(|part| what.is_none_or(|what| what == part.name));
+    let parts = chosen.map(|part| (part, (part.items)())).filter(|(_, items)| !items.is_empty());
+    let texts: Vec<String> =
+        parts.map(|(part, items)| format!("{} ({})\n{}", part.name, part.key, print(&items))).collect();
+    let text = texts.join("\n");
+    if text.contains("    [") {
+        println!("Settings in [brackets] may be left out.\n");
+    }
+    println!("{}", text.trim_end());
+    0
+}
+
+fn transfers() -> Vec<Item> {
+    let own = forms("output.transfer.scheme").into_iter().filter(|item| item.name == "own");
+    Item::of_entries(interp::SCHEMES).into_iter().chain(own).collect()
+}
+
+/// Units to offer by dimension, then every other word of a unit.
+fn dimensions() -> Vec<Item> {
+    let named = |dimension: &&Dimension| !dimension.is_plain();
+    let item = |dimension: &Dimension| {
+        Item::new(dimension.name(), dimension.si_unit(), &dimension.offered().join(", "))
+    };
+    let mut items: Vec<Item> = Dimension::ALL.iter().filter(named).map(item).collect();
+    let words = |prefixed: bool| {
+        units()
+            .filter(move |word| word.prefixed == prefixed)
+            .map(|word| word.name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let prefixes = format!("{} with the prefixes G, M, k, h, c, m, u, n", words(true));
+    items.push(Item::new(
+        "words of units",
+        "",
+        &format!("{prefixes}; {}; joined as in N/mm^2", words(false)),
+    ));
+    items
+}
+
+fn metrics() -> Vec<Item> {
+    METRICS.iter().map(|metric| Item::new(metric.name, metric.unit(), metric.meaning)).collect()
+}
+
+/// The TOML files of the folders `scenes` and `studies` and below, those of a folder in order of their names.
+fn files(cases: &Path) -> Vec<Item> {
+    let mut found = Vec::new();
+    ["scenes", "studies"].iter().for_each(|folder| collect(&cases.join(folder), &mut found));
+    found
+}
+
+fn collect(folder: &Path, found: &mut Vec<Item>) {
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            collect(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "toml") {
+            found.push(Item::new(&path.display().to_string(), "", ""));
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! What users read, held against its stored form: lists, help, plans, the JSON of a run, messages.
+//!
+//! `INSTA_UPDATE=always cargo test -p tissuebench-harness --test snapshots` stores what is printed now; `git diff` shows it.
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+use common::{BLOCK, PRESSED, moving};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Everything that a command prints in a folder, and its exit code if it fails.
+fn printed(folder: &Path, args: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
+    let output = command.args(args).current_dir(folder).env_remove("COLUMNS").output().unwrap();
+    let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert!(!stderr.contains("panicked"), "{args:?}: {stderr}");
+    let code = output.status.code().unwrap();
+    let end = if code == 0 { String::new() } else { format!("exit code {code}\n") };
+    let text = format!("{stdout}{stderr}{end}");
+    text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// A folder with files.
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, text)| std::fs::write(dir.path().join(name), text).unwrap());
+    dir
+}
+
+#[test]
+fn the_list_names_everything() {
+    insta::assert_snapshot!("list", printed(folder(&[]).path(), &["list"]));
+}
+
+#[test]
+fn every_verb_has_help() {
+    let dir = folder(&[]);
+    let verbs = ["run", "plan", "verify", "report", "baseline", "reference", "list", "schema", "mesh"];
+    let further = [vec!["mesh", "info"], vec!["mesh", "convert"]];
+    let all = std::iter::once(vec![]).chain(verbs.map(|verb| vec![verb])).chain(further);
+    let help = |verb: Vec<&str>| {
+        let text = printed(dir.path(), &[&verb[..], &["--help"]].concat());
+        format!("## tissuebench {} --help\n\n{text}", verb.join(" "))
+    };
+    let text: Vec<String> = all.map(help).collect();
+    insta::assert_snapshot!("help", text.join("\n"));
+}
+
+#[test]
+fn each_procedure_has_a_plan() {
+    let squeezed = PRESSED.replace("kind = \"static\", steps = 2", "KIND");
+    let two = |text: &str| {
+        text.lines()
+            .filter(|l| !l.contains("mixed") && !l.contains("tet4-nodal"))
+            .map(|l| format!("{l}\n"))
+            .collect::<String>()
+    };
+    let dense = |text: &str| text.replace("poisson = 0.45", "poisson = 0.45, density = \"1000 kg/m^3\"");
+    let block = |kind: &str| format!("{BLOCK}procedure = {{ kind = \"{kind}\" }}\n");
+    let free = BLOCK.lines().filter(|l| !l.starts_with("load")).map(|l| format!("{l}\n")).collect::<String>();
+    let vibrating = free
+        .replace("poisson = 0.3", "poisson = 0.3, density = \"1000 kg/m^3\"")
+        .replace("element = \"tet4\"", "element = \"tet4\", mass = \"lumped\"");
+    let implicit = dense(&two(&squeezed))
+        .replace("KIND", "kind = \"implicit-dynamic\", duration = \"20 ms\", steps = 4");
+    for (kind, text) in [
+        ("prepare", block("prepare")),
+        ("linear", block("linear")),
+        ("modes", format!("{vibrating}procedure = {{ kind = \"modes\" }}\n")),
+        ("static", two(PRESSED)),
+        ("explicit", moving(&two(PRESSED))),
+        ("implicit-dynamic", implicit),
+    ] {
+        let dir = folder(&[("scene.toml", &text)]);
+        insta::assert_snapshot!(format!("plan-{kind}"), printed(dir.path(), &["plan", "scene.toml"]));
+    }
+}
+
+#[test]
+fn a_run_prints_its_object() {
+    let dir = folder(&[("block.toml", BLOCK)]);
+    let text = printed(dir.path(), &["run", "block.toml", "--format", "json"]);
+    let mut object: Value = serde_json::from_str(&text).unwrap();
+    object["metrics"]["memory"]["value"] = "[of the machine]".into();
+    // What is left by rounding is another on other processors.
+    object["metrics"]["residual"]["value"] = "[rounding]".into();
+    object["phases"].as_object_mut().unwrap().values_mut().for_each(|time| *time = "[of the machine]".into());
+    rounded(&mut object);
+    insta::assert_snapshot!("run", serde_json::to_string_pretty(&object).unwrap());
+}
+
+/// Keeps four digits of every number, and none of what only rounding leaves.
+fn rounded(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap();
+            *value = if number.abs() < 1e-9 { 0.0 } else { format!("{number:.3e}").parse().unwrap() }.into();
+        }
+        Value::Array(values) => values.iter_mut().for_each(rounded),
+        Value::Object(values) => values.values_mut().for_each(rounded),
+        _ => {}
+    }
+}
+
+/// What is wrong with a scene, and how a sound one becomes it.
+const SCENES: [(&str, &str, &str); 20] = [
+    ("a key that is not known", "poisson", "poison"),
+    ("a key that is missing", "young = \"20 kPa\", ", ""),
+    ("a key of another law", "poisson = 0.3", "poisson = 0.3, alpha = [1]"),
+    ("a key of another family", "element = \"tet4\"", "element = \"tet4\", support_scale = 1.6"),
+    ("a word that is not known", "\"tet4\", size", "\"tet5\", size"),
+    ("a law that is not known", "\"linear\"", "\"neo-hookan\""),
+    ("a body that is not known", "\"box\"", "\"bax\""),
+    ("a number without a unit", "\"20 kPa\"", "20"),
+    ("a unit of another dimension", "20 kPa", "20 mm"),
+    ("a unit that is not known", "20 kPa", "20 kPaa"),
+    ("a number out of its range", "0.3", "0.5"),
+    ("a list where a text belongs", "\"xyz\"", "[1, 2, 3]"),
+    ("a list of another length", "[2, 2, 1]", "[2, 2]"),
+    ("two sizes", "cells = [2, 2, 1]", "cells = [2, 2, 1], level = 1"),
+    ("a surface that the body has not", "\"z-max\"", "\"zmax\""),
+    ("a region that is not read", "z == 0 mm", "z = 0 mm"),
+    ("a support that touches nothing", "z == 0 mm", "z == 90 mm"),
+    ("a body that can move", "fix = \"xyz\"", "fix = \"z\""),
+    (
+        "a check of a metric that is not known",
+        "title",
+        "check = [{ metric = \"rmss\", at_most = \"1 mm\" }]\ntitle",
+    ),
+    ("a text that is not TOML", "material =", "material"),
+];
+
+#[test]
+fn mistakes_in_a_scene_are_explained() {
+    let mut text = String::new();
+    for (what, from, to) in SCENES {
+        let scene = BLOCK.replacen(from, to, 1);
+        assert_ne!(scene, BLOCK, "{what}");
+        let dir = folder(&[("scene.toml", &scene)]);
+        text += &format!("## {what}\n\n{}\n", printed(dir.path(), &["run", "scene.toml"]));
+    }
+    insta::assert_snapshot!("bad-scenes", text);
+}
+
+/// A sound study of the block.
+const STUDY: &str = r#"title = "Blocks"
+[[run]]
+scene = "block.toml"
+methods = ["tet4"]
+levels = [1, 2]
+check = [{ metric = "load-z", at_least = "-2 N" }]
+"#;
+
+const STUDIES: [(&str, &str, &str); 8] = [
+    ("a scene that is not there", "block.toml", "black.toml"),
+    ("a method that the scene has not", "\"tet4\"", "\"tet10\""),
+    ("a key that is not known", "levels", "level"),
+    ("a key under its old name", "levels = [1, 2]", "dilatations = [1.6]"),
+    ("a level out of range", "[1, 2]", "[1, 9]"),
+    ("a setting of clouds for elements", "levels = [1, 2]", "support_scales = [1.6]"),
+    ("a bound of another dimension", "-2 N", "-2 mm"),
+    ("a kernel that is not known", "levels = [1, 2]", "kernels = [\"cubic\"]"),
+];
+
+#[test]
+fn mistakes_in_a_study_are_explained() {
+    let mut text = String::new();
+    for (what, from, to) in STUDIES {
+        let study = STUDY.replacen(from, to, 1);
+        assert_ne!(study, STUDY, "{what}");
+        let dir = folder(&[("block.toml", BLOCK), ("study.toml", &study)]);
+        text += &format!("## {what}\n\n{}\n", printed(dir.path(), &["verify", "study.toml", "--out", "out"]));
+    }
+    insta::assert_snapshot!("bad-studies", text);
+}
+
+#[test]
+fn mistakes_on_the_command_line_are_explained() {
+    let dir = folder(&[("block.toml", BLOCK)]);
+    let mut text = String::new();
+    for line in [
+        "",
+        "frobnicate",
+        "run",
+        "run block.toml --format yaml",
+        "run block.toml --method tet5",
+        "run no-such-scene.toml",
+        "run block.toml --threads 0",
+        "verify no-such-study.toml",
+        "verify --shard 3/2",
+        "report no-such-results",
+        "list lawz",
+        "mesh info no-such-mesh.msh",
+        "mesh info block.toml",
+        "baseline no-such-results --check",
+    ] {
+        let args: Vec<&str> = line.split_whitespace().collect();
+        text += &format!("## tissuebench {line}\n\n{}\n", printed(dir.path(), &args));
+    }
+    insta::assert_snapshot!("bad-command-lines", text);
+}
