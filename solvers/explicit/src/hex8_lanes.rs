@@ -207,7 +207,10 @@ fn pull_back_stress<const FMA: bool>(
 ) {
     for l in 0..LANES {
         let w = point.weight[l];
-        let mut wp = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
+        let mut wp = [0.0; 9];
+        for k in 0..9 {
+            wp[k] = w * p[k][l];
+        }
         if let Some(pressure) = pressure {
             let (x, minors) = strain.invariants(l);
             add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, w * pressure[l], &mut wp);

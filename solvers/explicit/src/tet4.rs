@@ -219,12 +219,21 @@ fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain,
     }
 }
 
+#[inline(always)]
+fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
+    let mut out = [0.0; 9];
+    for k in 0..9 {
+        out[k] = w * p[k][l];
+    }
+    out
+}
+
 /// Forces of eight elements at the stress `p`.
 #[inline(always)]
 fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 9]) {
     for l in 0..LANES {
         let w = block.weight[l];
-        let p = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
+        let p = weighted(p, w, l);
         forces::<FMA>(&p, &block.grads, l, out);
     }
 }
@@ -240,7 +249,7 @@ fn dilated_forces_of<const FMA: bool>(
 ) {
     for l in 0..LANES {
         let w = block.weight[l];
-        let mut p = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
+        let mut p = weighted(p, w, l);
         let (x, minors) = strain.invariants(l);
         add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, 0.25 * w * pressure[l], &mut p);
         forces::<FMA>(&p, &block.grads, l, out);
