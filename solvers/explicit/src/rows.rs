@@ -183,7 +183,8 @@ fn neo_hookean<const FMA: bool>(
 #[inline(always)]
 fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lanes; 9], good: &mut Lanes) {
     let mut strain = LaneStrain::ZERO;
-    strained::<FMA>(x, &mut strain, good);
+    strained::<FMA>(x, &mut strain);
+    strain.check(good);
     stress(path, law, &strain, x);
     for p in x {
         for l in 0..LANES {
@@ -193,12 +194,10 @@ fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lan
 }
 
 #[inline(always)]
-fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain, good: &mut Lanes) {
+fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain) {
     for l in 0..LANES {
         let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
         out.set::<FMA>(l, &h);
-        let j = out.invariants[0][l] + out.invariants[1][l];
-        good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
     }
 }
 

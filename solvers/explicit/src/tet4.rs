@@ -12,6 +12,7 @@ use super::moduli::{LaneLaw, Moduli, stress};
 use super::nodal::Nodal;
 use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
 use lanes::{LanePath, on_path};
+use material::Law;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
 use material::lane::math::madd;
 use material::lane::{LANES, LaneStrain, Lanes};
@@ -67,9 +68,7 @@ impl Tet4 {
             None => border.for_each(slots, sums, |c, slots, sums| {
                 load(border.chunk(c), u, slots);
                 sums.fill(Slot::ZERO);
-                let mut upright = true;
-                internal(path, path, laws, &chunks[c], slots, sums, &mut upright);
-                upright
+                internal(path, laws, &chunks[c], slots, sums)
             }),
             Some(nodal) => {
                 let upright = border.for_each(slots, nodal.slots(), |c, slots, sums| {
@@ -86,7 +85,7 @@ impl Tet4 {
                         *shared = closed[node as usize];
                     }
                     sums.fill(Slot::ZERO);
-                    dilated(path, path, laws, &chunks[c], &slots[border.range(c)], shared, sums);
+                    dilated(path, laws, &chunks[c], &slots[border.range(c)], shared, sums);
                     true
                 });
                 upright
@@ -210,12 +209,10 @@ fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &
 
 /// `H` of eight elements.
 #[inline(always)]
-fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain, good: &mut Lanes) {
+fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain) {
     for l in 0..LANES {
         let h = gradient::<FMA>(d, g, l);
         out.set::<FMA>(l, &h);
-        let j = out.invariants[0][l] + out.invariants[1][l];
-        good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
     }
 }
 
@@ -256,45 +253,27 @@ fn dilated_forces_of<const FMA: bool>(
     }
 }
 
-on_path! {
-    /// Internal forces of one chunk, added to `f`; `upright` turns false where some `J` is not positive.
-    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) = internal_lanes
-}
-
-#[inline(always)]
-fn internal_lanes<const FMA: bool>(
-    path: LanePath,
-    laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    f: &mut [Slot],
-    upright: &mut bool,
-) {
+/// Internal forces of one chunk, added to `f`; false where some `J` is not positive.
+fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot]) -> bool {
     let mut first = 0;
     let mut good = [1.0; LANES];
     for &(end, region) in &chunk.runs {
         let blocks = &chunk.blocks[first..end];
         match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(blocks, *moduli, u, f, &mut good),
-            LaneLaw::Other(law, _) => {
-                for block in blocks {
-                    let d = gather::<FMA>(block, u);
-                    let mut x = LaneStrain::ZERO;
-                    strain::<FMA>(&d, &block.grads, &mut x, &mut good);
-                    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-                    stress(path, law, &x, &mut p);
-                    forces_of::<FMA>(block, &p, &mut out);
-                    scatter::<FMA>(block, &out, f);
-                }
-            }
+            LaneLaw::NeoHookean(moduli) => neo_hookean(path, blocks, *moduli, u, f, &mut good),
+            LaneLaw::Other(law, _) => other(path, path, blocks, law, u, f, &mut good),
         }
         first = end;
     }
-    *upright = good == [1.0; LANES];
+    good == [1.0; LANES]
+}
+
+on_path! {
+    fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes
 }
 
 #[inline(always)]
-fn neo_hookean<const FMA: bool>(
+fn neo_hookean_lanes<const FMA: bool>(
     blocks: &[Block],
     Moduli { mu, lambda }: Moduli,
     u: &[Slot],
@@ -311,6 +290,32 @@ fn neo_hookean<const FMA: bool>(
             let p = piola::<FMA>(&h, minors, x.stress::<FMA>(block.weight[l], mu, lambda));
             forces::<FMA>(&p, &block.grads, l, &mut out);
         }
+        scatter::<FMA>(block, &out, f);
+    }
+}
+
+on_path! {
+    /// Any other law.
+    fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes
+}
+
+#[inline(always)]
+fn other_lanes<const FMA: bool>(
+    path: LanePath,
+    blocks: &[Block],
+    law: &Law,
+    u: &[Slot],
+    f: &mut [Slot],
+    good: &mut Lanes,
+) {
+    let mut x = LaneStrain::ZERO;
+    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
+    for block in blocks {
+        let d = gather::<FMA>(block, u);
+        strain::<FMA>(&d, &block.grads, &mut x);
+        x.check(good);
+        stress(path, law, &x, &mut p);
+        forces_of::<FMA>(block, &p, &mut out);
         scatter::<FMA>(block, &out, f);
     }
 }
@@ -357,13 +362,8 @@ fn dilations_lanes<const FMA: bool>(
     *upright = good == [1.0; LANES];
 }
 
-on_path! {
-    /// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
-    fn dilated(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_lanes
-}
-
-#[inline(always)]
-fn dilated_lanes<const FMA: bool>(
+/// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
+fn dilated(
     path: LanePath,
     laws: &[LaneLaw],
     chunk: &Chunk,
@@ -375,26 +375,19 @@ fn dilated_lanes<const FMA: bool>(
     for &(end, region) in &chunk.runs {
         let blocks = &chunk.blocks[first..end];
         match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean::<FMA>(blocks, moduli.mu, u, closed, f),
-            LaneLaw::Other(law, _) => {
-                for block in blocks {
-                    let d = gather::<FMA>(block, u);
-                    let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-                    let (mut x, mut good) = (LaneStrain::ZERO, [1.0; LANES]);
-                    strain::<FMA>(&d, &block.grads, &mut x, &mut good);
-                    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-                    stress(path, law, &x, &mut p);
-                    dilated_forces_of::<FMA>(block, &x, &p, &shared[1], &mut out);
-                    scatter::<FMA>(block, &out, f);
-                }
-            }
+            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean(path, blocks, moduli.mu, u, closed, f),
+            LaneLaw::Other(law, _) => dilated_other(path, path, blocks, law, u, closed, f),
         }
         first = end;
     }
 }
 
+on_path! {
+    fn dilated_neo_hookean(blocks: &[Block], mu: f64, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_neo_hookean_lanes
+}
+
 #[inline(always)]
-fn dilated_neo_hookean<const FMA: bool>(
+fn dilated_neo_hookean_lanes<const FMA: bool>(
     blocks: &[Block],
     mu: f64,
     u: &[Slot],
@@ -414,6 +407,32 @@ fn dilated_neo_hookean<const FMA: bool>(
             let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
             forces::<FMA>(&p, &block.grads, l, &mut out);
         }
+        scatter::<FMA>(block, &out, f);
+    }
+}
+
+on_path! {
+    /// Any other law.
+    fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes
+}
+
+#[inline(always)]
+fn dilated_other_lanes<const FMA: bool>(
+    path: LanePath,
+    blocks: &[Block],
+    law: &Law,
+    u: &[Slot],
+    closed: &[[f64; 2]],
+    f: &mut [Slot],
+) {
+    let mut x = LaneStrain::ZERO;
+    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
+    for block in blocks {
+        let d = gather::<FMA>(block, u);
+        let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
+        strain::<FMA>(&d, &block.grads, &mut x);
+        stress(path, law, &x, &mut p);
+        dilated_forces_of::<FMA>(block, &x, &p, &shared[1], &mut out);
         scatter::<FMA>(block, &out, f);
     }
 }

@@ -55,6 +55,16 @@ impl LaneStrain {
         (self.invariants[0][l], self.invariants[1][l]) = (x.trace, x.rest);
         (self.minors[0][l], self.minors[1][l], self.minors[2][l]) = (minors[0], minors[1], minors[2]);
     }
+
+    /// Turns `good` of a lane to 0 where its `J` is not positive. A loop of its own: together with [`LaneStrain::set`] it
+    /// becomes a branch on each lane.
+    #[inline(always)]
+    pub fn check(&self, good: &mut Lanes) {
+        for l in 0..LANES {
+            let j = self.invariants[0][l] + self.invariants[1][l];
+            good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
+        }
+    }
 }
 
 /// The scalar law lane by lane: for a law without lanes of its own, and beyond the range of its series.
