@@ -61,7 +61,7 @@ struct Scratch {
     /// Of the stress.
     coefficients: [[Lanes; 3]; 8],
     /// Of a law with lanes of its own.
-    stress: [Lanes; 9],
+    stress: [[Lanes; 9]; 8],
 }
 
 impl Scratch {
@@ -71,7 +71,7 @@ impl Scratch {
         slopes: [[[[0.0; LANES]; 4]; 3]; 3],
         points: [LaneStrain::ZERO; 8],
         coefficients: [[[0.0; LANES]; 3]; 8],
-        stress: [[0.0; LANES]; 9],
+        stress: [[[0.0; LANES]; 9]; 8],
     };
 }
 
@@ -397,11 +397,11 @@ fn other<const FMA: bool>(
             share::<FMA>(&sums, [0.0, volume.logarithmic, volume.quadratic], &mut shared);
         }
         let pressure = volume.map(|_| &shared[1]);
+        stress(path, law, &x.points, &mut x.stress);
         for q in 0..8 {
-            stress(path, law, &x.points[q], &mut x.stress);
             next.points[q].fetch();
             gather::<FMA>(next, q, u, &mut x.u);
-            pull_back_stress::<FMA>(&block.points[q], &x.stress, pressure, &mut x.points[q]);
+            pull_back_stress::<FMA>(&block.points[q], &x.stress[q], pressure, &mut x.points[q]);
         }
         forces::<FMA>(block, &mut x, f);
     }

@@ -14,6 +14,7 @@ use material::lane::invariants::{Invariants, piola};
 use material::lane::{LANES, LaneStrain, Lanes};
 use shape::Vector3;
 use shape::locality_order;
+use std::slice::{from_mut, from_ref};
 
 /// Points per chunk: the displacements and forces of their nodes (64 bytes each) stay in the second-level cache, the
 /// copies of nodes are few beside the entries.
@@ -185,7 +186,7 @@ fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lan
     let mut strain = LaneStrain::ZERO;
     strained::<FMA>(x, &mut strain);
     strain.check(good);
-    stress(path, law, &strain, x);
+    stress(path, law, from_ref(&strain), from_mut(x));
     for p in x {
         for l in 0..LANES {
             p[l] *= batch.weights[l];

@@ -18,6 +18,7 @@ use material::lane::math::madd;
 use material::lane::{LANES, LaneStrain, Lanes};
 use shape::Vector3;
 use shape::locality_order;
+use std::slice::{from_mut, from_ref};
 
 /// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
 const SIZE: usize = 2048;
@@ -314,7 +315,7 @@ fn other_lanes<const FMA: bool>(
         let d = gather::<FMA>(block, u);
         strain::<FMA>(&d, &block.grads, &mut x);
         x.check(good);
-        stress(path, law, &x, &mut p);
+        stress(path, law, from_ref(&x), from_mut(&mut p));
         forces_of::<FMA>(block, &p, &mut out);
         scatter::<FMA>(block, &out, f);
     }
@@ -431,7 +432,7 @@ fn dilated_other_lanes<const FMA: bool>(
         let d = gather::<FMA>(block, u);
         let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
         strain::<FMA>(&d, &block.grads, &mut x);
-        stress(path, law, &x, &mut p);
+        stress(path, law, from_ref(&x), from_mut(&mut p));
         dilated_forces_of::<FMA>(block, &x, &p, &shared[1], &mut out);
         scatter::<FMA>(block, &out, f);
     }

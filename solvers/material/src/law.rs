@@ -82,6 +82,11 @@ impl Material for Law {
         of_each!(self, m => Material::stress_lanes::<FMA>(m, strain, p))
     }
 
+    #[inline(always)]
+    fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
+        of_each!(self, m => Material::stress_batch::<FMA>(m, strains, p))
+    }
+
     fn split(&self) -> Option<(Law, Volumetric)> {
         of_each!(self, variant, m => Material::split(m).map(|(shape, volume)| (variant(shape), volume)))
     }

@@ -34,8 +34,7 @@ impl LaneStrain {
     /// Gradient of one lane, row by row.
     #[inline(always)]
     pub fn lane(&self, l: usize) -> [f64; 9] {
-        let h = &self.h;
-        [h[0][l], h[1][l], h[2][l], h[3][l], h[4][l], h[5][l], h[6][l], h[7][l], h[8][l]]
+        of_lane(&self.h, l)
     }
 
     /// Invariants and minors of one lane.
@@ -65,6 +64,12 @@ impl LaneStrain {
             good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
         }
     }
+}
+
+/// One lane of nine numbers.
+#[inline(always)]
+pub(super) fn of_lane(h: &[Lanes; 9], l: usize) -> [f64; 9] {
+    [h[0][l], h[1][l], h[2][l], h[3][l], h[4][l], h[5][l], h[6][l], h[7][l], h[8][l]]
 }
 
 /// The scalar law lane by lane: for a law without lanes of its own, and beyond the range of its series.
