@@ -18,10 +18,12 @@ use material::lane::math::madd;
 use material::lane::{LANES, LaneStrain, Lanes};
 use shape::Vector3;
 use shape::locality_order;
-use std::slice::{from_mut, from_ref};
 
 /// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
 const SIZE: usize = 2048;
+
+/// Blocks that go through each step together where the law is called.
+const TOGETHER: usize = 4;
 
 /// Standard or nodal-mean dilation on tetrahedra of four nodes.
 pub(super) struct Tet4 {
@@ -309,15 +311,19 @@ fn other_lanes<const FMA: bool>(
     f: &mut [Slot],
     good: &mut Lanes,
 ) {
-    let mut x = LaneStrain::ZERO;
-    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        strain::<FMA>(&d, &block.grads, &mut x);
-        x.check(good);
-        stress(path, law, from_ref(&x), from_mut(&mut p));
-        forces_of::<FMA>(block, &p, &mut out);
-        scatter::<FMA>(block, &out, f);
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], [[[0.0; LANES]; 9]; TOGETHER]);
+    let mut out = [[0.0; LANES]; 9];
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            let d = gather::<FMA>(block, u);
+            strain::<FMA>(&d, &block.grads, x);
+            x.check(good);
+        }
+        stress(path, law, &x[..blocks.len()], &mut p);
+        for (block, p) in blocks.iter().zip(&p) {
+            forces_of::<FMA>(block, p, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
     }
 }
 
@@ -426,14 +432,18 @@ fn dilated_other_lanes<const FMA: bool>(
     closed: &[[f64; 2]],
     f: &mut [Slot],
 ) {
-    let mut x = LaneStrain::ZERO;
-    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-        strain::<FMA>(&d, &block.grads, &mut x);
-        stress(path, law, from_ref(&x), from_mut(&mut p));
-        dilated_forces_of::<FMA>(block, &x, &p, &shared[1], &mut out);
-        scatter::<FMA>(block, &out, f);
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], [[[0.0; LANES]; 9]; TOGETHER]);
+    let mut out = [[0.0; LANES]; 9];
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            let d = gather::<FMA>(block, u);
+            strain::<FMA>(&d, &block.grads, x);
+        }
+        stress(path, law, &x[..blocks.len()], &mut p);
+        for ((block, x), p) in blocks.iter().zip(&x).zip(&p) {
+            let [_, pressure] = lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_forces_of::<FMA>(block, x, p, &pressure, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::lane::math::{ln_1p, madd};
 use super::lane::series::{self, unrolled};
-use super::lane::stretch::Stretch;
+use super::lane::stretch::{Stretch, pair_of, pairs};
 use super::lane::{LANES, LaneStrain, Lanes, of_lane, one_by_one};
 use super::principal::{Principal, Slopes};
 use super::{LinearElastic, Material, MaterialError, Tangent, Volumetric};
@@ -73,14 +73,18 @@ impl Material for Hencky {
 
     #[inline(always)]
     fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
-        for (strain, p) in strains.iter().zip(p) {
-            let stretch = Stretch::new::<FMA>(strain);
-            match series::rung(&stretch.a).and_then(series::of_logarithm) {
-                Some(series) => {
-                    let log_j = if self.bulk() == 0.0 { [0.0; LANES] } else { logarithm::<FMA>(strain) };
-                    unrolled!(series, stress::<FMA>([self.mu, self.bulk()], &log_j, &stretch, &strain.h, p));
+        let bulk = self.bulk();
+        for pair in pairs(strains.len()) {
+            let stretch = pair_of::<FMA>(strains, pair);
+            for (&k, stretch) in pair.iter().zip(&stretch) {
+                let (strain, p) = (&strains[k], &mut p[k]);
+                match series::rung(&stretch.a).and_then(series::of_logarithm) {
+                    Some(series) => {
+                        let log_j = if bulk == 0.0 { [0.0; LANES] } else { logarithm::<FMA>(strain) };
+                        unrolled!(series, stress::<FMA>([self.mu, bulk], &log_j, stretch, &strain.h, p));
+                    }
+                    None => one_by_one(self, strain, p),
                 }
-                None => one_by_one(self, strain, p),
             }
         }
     }

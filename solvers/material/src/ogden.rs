@@ -3,7 +3,7 @@
 use super::kinematics::exp_m1_less;
 use super::lane::math::madd;
 use super::lane::series::{self, BOUNDS, Power, unrolled};
-use super::lane::stretch::{Stretch, squared};
+use super::lane::stretch::{Stretch, pair_of, pairs, squared};
 use super::lane::{LANES, LaneStrain, Lanes, one_by_one};
 use super::principal::{Principal, Slopes};
 use super::{Material, MaterialError, Tangent, Volumetric};
@@ -149,17 +149,24 @@ impl Material for Ogden {
 
     #[inline(always)]
     fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
-        for (strain, p) in strains.iter().zip(p) {
-            let stretch = Stretch::new::<FMA>(strain);
-            let rung = series::rung(&stretch.a);
-            let of_stress = rung.and_then(|rung| self.series[rung].as_ref());
-            match (rung.and_then(series::of_logarithm), of_stress) {
-                (Some(of_logarithm), Some(of_stress)) => {
-                    let mut log = Logarithm::ZERO;
-                    unrolled!(of_logarithm, logarithm::<FMA>(&stretch, &mut log));
-                    unrolled!(of_stress, stress::<FMA>(self.bulk, strain, &stretch, &log, p));
+        for pair in pairs(strains.len()) {
+            let stretch = pair_of::<FMA>(strains, pair);
+            let (mut log, mut of_stress) = ([Logarithm::ZERO; 2], [None; 2]);
+            for m in 0..2 {
+                let rung = series::rung(&stretch[m].a);
+                if let Some(series) = rung.and_then(series::of_logarithm) {
+                    unrolled!(series, logarithm::<FMA>(&stretch[m], &mut log[m]));
+                    of_stress[m] = rung.and_then(|rung| self.series[rung].as_ref());
                 }
-                _ => one_by_one(self, strain, p),
+            }
+            for m in 0..2 {
+                let (strain, p) = (&strains[pair[m]], &mut p[pair[m]]);
+                match of_stress[m] {
+                    Some(series) => {
+                        unrolled!(series, stress::<FMA>(self.bulk, strain, &stretch[m], &log[m], p))
+                    }
+                    None => one_by_one(self, strain, p),
+                }
             }
         }
     }

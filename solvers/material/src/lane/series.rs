@@ -13,7 +13,7 @@ use super::{LANES, Lanes};
 pub(crate) const BOUNDS: [f64; 4] = [0.05, 0.15, 0.35, 0.6];
 
 /// Numbers of coefficients for which Horner's scheme is straight-line code; the logarithm's own among them.
-const LENGTHS: [usize; 9] = [6, 8, 10, 12, 14, 17, 21, 32, 64];
+const LENGTHS: [usize; 6] = [10, 12, 14, 21, 32, 64];
 
 /// `g_0, g_1, ...`, with zeros up to one of [`LENGTHS`], which change no bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Power {
 /// `$function(g, ...)` with the coefficients of a [`Power`] as an array.
 macro_rules! unrolled {
     ($power:expr, $function:ident::<$fma:ident>($($arg:expr),* $(,)?)) => {
-        unrolled!(@ $power, $function, $fma, ($($arg),*); 6 8 10 12 14 17 21 32 64)
+        unrolled!(@ $power, $function, $fma, ($($arg),*); 10 12 14 21 32 64)
     };
     (@ $power:expr, $function:ident, $fma:ident, $args:tt; $($length:literal)*) => {
         $(if let Some(g) = $power.exactly::<$length>() {

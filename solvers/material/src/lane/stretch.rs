@@ -21,6 +21,17 @@ pub(crate) struct Stretch {
     scale: Lanes,
 }
 
+/// `0..count` two by two, the last twice where it is left over. A law is a chain of some 250 cycles, and two of them overlap.
+#[inline(always)]
+pub(crate) fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..count).step_by(2).map(move |k| [k, (k + 1).min(count - 1)])
+}
+
+#[inline(always)]
+pub(crate) fn pair_of<const FMA: bool>(strains: &[LaneStrain], [a, b]: [usize; 2]) -> [Stretch; 2] {
+    [Stretch::new::<FMA>(&strains[a]), Stretch::new::<FMA>(&strains[b])]
+}
+
 impl Stretch {
     #[inline(always)]
     pub fn new<const FMA: bool>(strain: &LaneStrain) -> Stretch {
