@@ -157,10 +157,9 @@ fn isochoric<const FMA: bool>(
 
 /// The point's parts of volume and `w (J - 1)`.
 #[inline(always)]
-fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3], good: &mut Lanes) {
+fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3]) {
     for l in 0..LANES {
         let (x, _) = strain.invariants(l);
-        good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
         sums[0][l] += w[l];
         sums[1][l] = madd::<FMA>(w[l], x.j, sums[1][l]);
     }
@@ -388,12 +387,15 @@ fn other<const FMA: bool>(
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
         strains::<FMA>(block, &mut x);
-        let mut sums = [[0.0; LANES]; 3];
         for q in 0..8 {
-            volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut sums, &mut good);
+            x.points[q].check(&mut good);
         }
         let mut shared = [[0.0; LANES]; 2];
         if let Some(volume) = volume {
+            let mut sums = [[0.0; LANES]; 3];
+            for q in 0..8 {
+                volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut sums);
+            }
             share::<FMA>(&sums, [0.0, volume.logarithmic, volume.quadratic], &mut shared);
         }
         let pressure = volume.map(|_| &shared[1]);

@@ -97,8 +97,9 @@ fn logarithm(bound: f64) -> Vec<f64> {
 /// `sum_k g_k X^k` as its three numbers, by the `a` and `b` of `X`.
 #[inline(always)]
 pub(crate) fn horner<const FMA: bool, const N: usize>(g: &[f64; N], a: f64, b: f64) -> [f64; 3] {
-    let [mut g0, mut g1, mut g2] = [0.0; 3];
-    for k in (0..N).rev() {
+    // The first three steps multiply zeros.
+    let [mut g0, mut g1, mut g2] = [g[N - 3], g[N - 2], g[N - 1]];
+    for k in (0..N - 3).rev() {
         (g0, g1, g2) = (madd::<FMA>(b, g2, g[k]), madd::<FMA>(a, g2, g0), g1);
     }
     [g0, g1, g2]
