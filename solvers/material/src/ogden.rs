@@ -149,9 +149,10 @@ impl Material for Ogden {
 
     #[inline(always)]
     fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
+        let mut log = [Logarithm::ZERO; 2];
         for pair in pairs(strains.len()) {
             let stretch = pair_of::<FMA>(strains, pair);
-            let (mut log, mut of_stress) = ([Logarithm::ZERO; 2], [None; 2]);
+            let mut of_stress = [None; 2];
             for m in 0..2 {
                 let rung = series::rung(&stretch[m].a);
                 if let Some(series) = rung.and_then(series::of_logarithm) {
