@@ -91,8 +91,8 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
         (out.x[3][l], out.x[4][l], out.x[5][l]) = (xy, xz, yz);
         (out.adjugate[0][l], out.adjugate[1][l], out.adjugate[2][l]) = (axx, ayy, azz);
         (out.adjugate[3][l], out.adjugate[4][l], out.adjugate[5][l]) = (axy, axz, ayz);
-        let normal = m(xx, xx, m(yy, yy, zz * zz));
-        out.a[l] = m(0.5, normal, m(xy, xy, m(xz, xz, yz * yz)));
+        // tr adj X = -a.
+        out.a[l] = -(axx + ayy + azz);
         out.b[l] = m(xx, axx, m(xy, axy, xz * axz));
         out.scale[l] = c_over_j * c_over_j;
     }
@@ -147,14 +147,14 @@ fn over_c<const FMA: bool>(a: f64, b: f64, scale: f64, &[t0, t1, t2]: &[f64; 3])
 /// `P = F S`, `S = s0 I + s1 X + s2 X^2`.
 #[inline(always)]
 fn first_piola<const FMA: bool>(
-    Stretch { x, adjugate, .. }: &Stretch,
+    Stretch { x, adjugate, a, .. }: &Stretch,
     h: &[f64; 9],
     &[s0, s1, s2]: &[f64; 3],
     l: usize,
 ) -> [f64; 9] {
     let m = madd::<FMA>;
-    // tr adj X = -a.
-    let s0 = m(-s2, adjugate[0][l] + adjugate[1][l] + adjugate[2][l], s0);
+    // X^2 = adj X + a I.
+    let s0 = m(s2, a[l], s0);
     let at = |n: usize, first: f64| m(s1, x[n][l], m(s2, adjugate[n][l], first));
     let (xx, yy, zz) = (at(0, s0), at(1, s0), at(2, s0));
     let (xy, xz, yz) = (at(3, 0.0), at(4, 0.0), at(5, 0.0));
