@@ -256,6 +256,39 @@ fn dilated_forces_of<const FMA: bool>(
     }
 }
 
+#[inline(always)]
+fn neo_hookean_forces<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    Moduli { mu, lambda }: Moduli,
+    out: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let (x, minors) = strain.invariants(l);
+        let p = piola::<FMA>(&strain.lane(l), minors, x.stress::<FMA>(block.weight[l], mu, lambda));
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
+/// The shared numbers are four times the means of `J_a^(2/3)` and `p_a`.
+#[inline(always)]
+fn dilated_neo_hookean_forces<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    mu: f64,
+    shared: &[Lanes; 2],
+    out: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let (h, (x, minors)) = (strain.lane(l), strain.invariants(l));
+        let w = block.weight[l];
+        let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
+        let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
+        let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
 /// Internal forces of one chunk, added to `f`; false where some `J` is not positive.
 fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot]) -> bool {
     let mut first = 0;
@@ -278,22 +311,21 @@ on_path! {
 #[inline(always)]
 fn neo_hookean_lanes<const FMA: bool>(
     blocks: &[Block],
-    Moduli { mu, lambda }: Moduli,
+    moduli: Moduli,
     u: &[Slot],
     f: &mut [Slot],
     good: &mut Lanes,
 ) {
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        let mut out = [[0.0; LANES]; 9];
-        for l in 0..LANES {
-            let h = gradient::<FMA>(&d, &block.grads, l);
-            let (x, minors) = Invariants::of::<FMA>(&h);
-            good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-            let p = piola::<FMA>(&h, minors, x.stress::<FMA>(block.weight[l], mu, lambda));
-            forces::<FMA>(&p, &block.grads, l, &mut out);
+    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            x.check(good);
         }
-        scatter::<FMA>(block, &out, f);
+        for (block, x) in blocks.iter().zip(&x) {
+            neo_hookean_forces::<FMA>(block, x, moduli, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
     }
 }
 
@@ -315,8 +347,7 @@ fn other_lanes<const FMA: bool>(
     let mut out = [[0.0; LANES]; 9];
     for blocks in blocks.chunks(TOGETHER) {
         for (block, x) in blocks.iter().zip(&mut x) {
-            let d = gather::<FMA>(block, u);
-            strain::<FMA>(&d, &block.grads, x);
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
             x.check(good);
         }
         stress(path, law, &x[..blocks.len()], &mut p);
@@ -401,20 +432,16 @@ fn dilated_neo_hookean_lanes<const FMA: bool>(
     closed: &[[f64; 2]],
     f: &mut [Slot],
 ) {
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-        let mut out = [[0.0; LANES]; 9];
-        for l in 0..LANES {
-            let h = gradient::<FMA>(&d, &block.grads, l);
-            let (x, minors) = Invariants::of::<FMA>(&h);
-            let w = block.weight[l];
-            let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
-            let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
-            let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
-            forces::<FMA>(&p, &block.grads, l, &mut out);
+    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
         }
-        scatter::<FMA>(block, &out, f);
+        for (block, x) in blocks.iter().zip(&x) {
+            let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_neo_hookean_forces::<FMA>(block, x, mu, &shared, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
     }
 }
 
@@ -436,8 +463,7 @@ fn dilated_other_lanes<const FMA: bool>(
     let mut out = [[0.0; LANES]; 9];
     for blocks in blocks.chunks(TOGETHER) {
         for (block, x) in blocks.iter().zip(&mut x) {
-            let d = gather::<FMA>(block, u);
-            strain::<FMA>(&d, &block.grads, x);
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
         }
         stress(path, law, &x[..blocks.len()], &mut p);
         for ((block, x), p) in blocks.iter().zip(&x).zip(&p) {
