@@ -14,7 +14,6 @@ use material::lane::invariants::{Invariants, piola};
 use material::lane::{LANES, LaneStrain, Lanes};
 use shape::Vector3;
 use shape::locality_order;
-use std::slice::{from_mut, from_ref};
 
 /// Points per chunk: the displacements and forces of their nodes (64 bytes each) stay in the second-level cache, the
 /// copies of nodes are few beside the entries.
@@ -134,10 +133,17 @@ fn internal_lanes<const FMA: bool>(
                 start = end;
             }
         }
-        for (batch, x) in batches.iter().zip(&mut x) {
-            match &laws[batch.region as usize] {
-                LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(batch, *moduli, x, &mut good),
-                LaneLaw::Other(law, _) => other::<FMA>(path, batch, law, x, &mut good),
+        let mut rest = x.as_mut_slice();
+        for alike in batches.chunk_by(|a, b| a.region == b.region) {
+            let (x, after) = std::mem::take(&mut rest).split_at_mut(alike.len());
+            rest = after;
+            match &laws[alike[0].region as usize] {
+                LaneLaw::NeoHookean(moduli) => {
+                    for (batch, x) in alike.iter().zip(x) {
+                        neo_hookean::<FMA>(batch, *moduli, x, &mut good);
+                    }
+                }
+                LaneLaw::Other(law, _) => other::<FMA>(path, alike, law, x, &mut good),
             }
         }
         start = first;
@@ -180,16 +186,26 @@ fn neo_hookean<const FMA: bool>(
     }
 }
 
-/// As [`neo_hookean`], of any other law.
+/// As [`neo_hookean`], of any other law and up to [`TOGETHER`] batches.
 #[inline(always)]
-fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lanes; 9], good: &mut Lanes) {
-    let mut strain = LaneStrain::ZERO;
-    strained::<FMA>(x, &mut strain);
-    strain.check(good);
-    stress(path, law, from_ref(&strain), from_mut(x));
-    for p in x {
-        for l in 0..LANES {
-            p[l] *= batch.weights[l];
+fn other<const FMA: bool>(
+    path: LanePath,
+    batches: &[Batch],
+    law: &Law,
+    x: &mut [[Lanes; 9]],
+    good: &mut Lanes,
+) {
+    let mut strains = [LaneStrain::ZERO; TOGETHER];
+    for (h, strain) in x.iter().zip(&mut strains) {
+        strained::<FMA>(h, strain);
+        strain.check(good);
+    }
+    stress(path, law, &strains[..batches.len()], x);
+    for (batch, p) in batches.iter().zip(x) {
+        for p in p {
+            for l in 0..LANES {
+                p[l] *= batch.weights[l];
+            }
         }
     }
 }

@@ -50,7 +50,8 @@ macro_rules! unrolled {
 pub(crate) use unrolled;
 
 /// `g` of `ln(1 + x) = x g(x) + constant`, by [`BOUNDS`].
-static LOGARITHM: LazyLock<[Option<Power>; 4]> = LazyLock::new(|| BOUNDS.map(|bound| Power::new(logarithm(bound))));
+static LOGARITHM: LazyLock<[Option<Power>; 4]> =
+    LazyLock::new(|| BOUNDS.map(|bound| Power::new(logarithm(bound))));
 
 /// The place in [`BOUNDS`] that holds all lanes; none beyond the last. No eigenvalue is above `2 sqrt(a / 3)`.
 #[inline(always)]

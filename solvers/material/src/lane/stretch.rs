@@ -109,11 +109,7 @@ fn deviator_of<const FMA: bool>(a: f64, [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
 #[inline(always)]
 fn in_powers_of_x<const FMA: bool>(e: &[f64; 3], square: &[f64; 3], [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
     let m = madd::<FMA>;
-    [
-        m(g1, e[0], m(g2, square[0], g0)),
-        m(g1, e[1], g2 * square[1]),
-        m(g1, e[2], g2 * square[2]),
-    ]
+    [m(g1, e[0], m(g2, square[0], g0)), m(g1, e[1], g2 * square[1]), m(g1, e[2], g2 * square[2])]
 }
 
 /// `e^2` and the `a`, `b` of `e^3 = a e + b I`.
