@@ -62,6 +62,10 @@ struct Scratch {
     coefficients: [[Lanes; 3]; 8],
     /// Of a law with lanes of its own.
     stress: [[Lanes; 9]; 8],
+    /// Of each element: volume, `w (J - 1)`, `w mu b`.
+    sums: [Lanes; 3],
+    /// `J^(2/3)` and `p` of each element.
+    shared: [Lanes; 2],
 }
 
 impl Scratch {
@@ -72,6 +76,8 @@ impl Scratch {
         points: [LaneStrain::ZERO; 8],
         coefficients: [[[0.0; LANES]; 3]; 8],
         stress: [[[0.0; LANES]; 9]; 8],
+        sums: [[0.0; LANES]; 3],
+        shared: [[0.0; LANES]; 2],
     };
 }
 
@@ -350,17 +356,16 @@ fn dilated_neo_hookean<const FMA: bool>(
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
         strains::<FMA>(block, &mut x);
-        let mut sums = [[0.0; LANES]; 3];
+        x.sums = [[0.0; LANES]; 3];
         for q in 0..8 {
             let w = &block.points[q].weight;
-            isochoric::<FMA>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut sums, &mut good);
+            isochoric::<FMA>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut x.sums, &mut good);
         }
-        let mut shared = [[0.0; LANES]; 2];
-        share::<FMA>(&sums, [moduli.mu, moduli.lambda, 0.0], &mut shared);
+        share::<FMA>(&x.sums, [moduli.mu, moduli.lambda, 0.0], &mut x.shared);
         for q in 0..8 {
             next.points[q].fetch();
             gather::<FMA>(next, q, u, &mut x.u);
-            let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &shared);
+            let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &x.shared);
             pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, h| {
                 pressed::<FMA>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
             });
@@ -390,15 +395,14 @@ fn other<const FMA: bool>(
         for q in 0..8 {
             x.points[q].check(&mut good);
         }
-        let mut shared = [[0.0; LANES]; 2];
         if let Some(volume) = volume {
-            let mut sums = [[0.0; LANES]; 3];
+            x.sums = [[0.0; LANES]; 3];
             for q in 0..8 {
-                volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut sums);
+                volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut x.sums);
             }
-            share::<FMA>(&sums, [0.0, volume.logarithmic, volume.quadratic], &mut shared);
+            share::<FMA>(&x.sums, [0.0, volume.logarithmic, volume.quadratic], &mut x.shared);
         }
-        let pressure = volume.map(|_| &shared[1]);
+        let pressure = volume.map(|_| &x.shared[1]);
         stress(path, law, &x.points, &mut x.stress);
         for q in 0..8 {
             next.points[q].fetch();

@@ -25,6 +25,10 @@ pub(super) struct Block {
     pub nodes: [[u16; LANES]; 4],
 }
 
+/// Aligned as [`LaneStrain`] is.
+#[repr(align(64))]
+struct Stresses([[Lanes; 9]; TOGETHER]);
+
 /// Displacements relative to node 0, [3 a + i].
 #[inline(always)]
 fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
@@ -213,15 +217,15 @@ fn other_lanes<const FMA: bool>(
     f: &mut [Slot],
     good: &mut Lanes,
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], [[[0.0; LANES]; 9]; TOGETHER]);
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
     let mut out = [[0.0; LANES]; 9];
     for blocks in blocks.chunks(TOGETHER) {
         for (block, x) in blocks.iter().zip(&mut x) {
             strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
             x.check(good);
         }
-        stress(path, law, &x[..blocks.len()], &mut p);
-        for (block, p) in blocks.iter().zip(&p) {
+        stress(path, law, &x[..blocks.len()], &mut p.0);
+        for (block, p) in blocks.iter().zip(&p.0) {
             forces_of::<FMA>(block, p, &mut out);
             scatter::<FMA>(block, &out, f);
         }
@@ -329,14 +333,14 @@ fn dilated_other_lanes<const FMA: bool>(
     closed: &[[f64; 2]],
     f: &mut [Slot],
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], [[[0.0; LANES]; 9]; TOGETHER]);
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
     let mut out = [[0.0; LANES]; 9];
     for blocks in blocks.chunks(TOGETHER) {
         for (block, x) in blocks.iter().zip(&mut x) {
             strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
         }
-        stress(path, law, &x[..blocks.len()], &mut p);
-        for ((block, x), p) in blocks.iter().zip(&x).zip(&p) {
+        stress(path, law, &x[..blocks.len()], &mut p.0);
+        for ((block, x), p) in blocks.iter().zip(&x).zip(&p.0) {
             let [_, pressure] = lanes_of_sums::<FMA>(closed, &block.nodes);
             dilated_forces_of::<FMA>(block, x, p, &pressure, &mut out);
             scatter::<FMA>(block, &out, f);

@@ -188,6 +188,7 @@ impl Material for Ogden {
 
 /// `e = dev ln C`, its square, and the `a`, `b` of `e^3 = a e + b I`.
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 struct Logarithm {
     e: [Lanes; 3],
     square: [Lanes; 3],

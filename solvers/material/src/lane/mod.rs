@@ -15,8 +15,10 @@ pub use lanes::LANES;
 /// One number of eight points.
 pub type Lanes = [f64; LANES];
 
-/// Displacement gradients of eight points and what every kernel forms of them.
+/// Displacement gradients of eight points and what every kernel forms of them. Aligned: registers of 64 bytes would
+/// otherwise straddle cache lines, as the stack happens to lie (up to 1.5 times the time).
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 pub struct LaneStrain {
     /// `H_ij`, [3 i + j].
     pub h: [Lanes; 9],

@@ -8,7 +8,7 @@ use super::series::horner;
 use super::{LANES, LaneStrain, Lanes};
 
 /// `C = c (I + X)`, `tr X = 0`. Functions of `X` are three numbers each, `x0 I + x1 X + x2 X^2`.
-#[derive(Clone, Copy)]
+#[repr(align(64))]
 pub(crate) struct Stretch {
     /// `X` as xx, yy, zz, xy, xz, yz.
     x: [Lanes; 6],
