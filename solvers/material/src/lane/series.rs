@@ -110,6 +110,21 @@ pub(crate) fn horner<const FMA: bool, const N: usize>(g: &[f64; N], a: f64, b: f
 mod tests {
     use super::*;
 
+    fn length<const FMA: bool, const N: usize>(_: &[f64; N], out: &mut usize) {
+        *out = N;
+    }
+
+    #[test]
+    fn every_length_has_code_of_its_own() {
+        const FMA: bool = false;
+        for expected in LENGTHS {
+            let (power, mut found) = (Power::new(vec![1.0; expected - 1]).unwrap(), 0);
+            unrolled!(power, length::<FMA>(&mut found));
+            assert_eq!(found, expected);
+        }
+        assert_eq!(Power::new(vec![1.0; 65]), None);
+    }
+
     #[test]
     fn differences_of_logarithms_agree_with_the_library() {
         for (rung, bound) in BOUNDS.into_iter().enumerate() {
