@@ -61,7 +61,11 @@ struct Scratch {
     /// Of the stress.
     coefficients: [[Lanes; 3]; 8],
     /// Of a law with lanes of its own.
-    stress: [Lanes; 9],
+    stress: [[Lanes; 9]; 8],
+    /// Of each element: volume, `w (J - 1)`, `w mu b`.
+    sums: [Lanes; 3],
+    /// `J^(2/3)` and `p` of each element.
+    shared: [Lanes; 2],
 }
 
 impl Scratch {
@@ -71,7 +75,9 @@ impl Scratch {
         slopes: [[[[0.0; LANES]; 4]; 3]; 3],
         points: [LaneStrain::ZERO; 8],
         coefficients: [[[0.0; LANES]; 3]; 8],
-        stress: [[0.0; LANES]; 9],
+        stress: [[[0.0; LANES]; 9]; 8],
+        sums: [[0.0; LANES]; 3],
+        shared: [[0.0; LANES]; 2],
     };
 }
 
@@ -157,10 +163,9 @@ fn isochoric<const FMA: bool>(
 
 /// The point's parts of volume and `w (J - 1)`.
 #[inline(always)]
-fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3], good: &mut Lanes) {
+fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3]) {
     for l in 0..LANES {
         let (x, _) = strain.invariants(l);
-        good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
         sums[0][l] += w[l];
         sums[1][l] = madd::<FMA>(w[l], x.j, sums[1][l]);
     }
@@ -207,7 +212,10 @@ fn pull_back_stress<const FMA: bool>(
 ) {
     for l in 0..LANES {
         let w = point.weight[l];
-        let mut wp = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
+        let mut wp = [0.0; 9];
+        for k in 0..9 {
+            wp[k] = w * p[k][l];
+        }
         if let Some(pressure) = pressure {
             let (x, minors) = strain.invariants(l);
             add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, w * pressure[l], &mut wp);
@@ -348,17 +356,16 @@ fn dilated_neo_hookean<const FMA: bool>(
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
         strains::<FMA>(block, &mut x);
-        let mut sums = [[0.0; LANES]; 3];
+        x.sums = [[0.0; LANES]; 3];
         for q in 0..8 {
             let w = &block.points[q].weight;
-            isochoric::<FMA>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut sums, &mut good);
+            isochoric::<FMA>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut x.sums, &mut good);
         }
-        let mut shared = [[0.0; LANES]; 2];
-        share::<FMA>(&sums, [moduli.mu, moduli.lambda, 0.0], &mut shared);
+        share::<FMA>(&x.sums, [moduli.mu, moduli.lambda, 0.0], &mut x.shared);
         for q in 0..8 {
             next.points[q].fetch();
             gather::<FMA>(next, q, u, &mut x.u);
-            let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &shared);
+            let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &x.shared);
             pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, h| {
                 pressed::<FMA>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
             });
@@ -385,20 +392,22 @@ fn other<const FMA: bool>(
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
         strains::<FMA>(block, &mut x);
-        let mut sums = [[0.0; LANES]; 3];
         for q in 0..8 {
-            volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut sums, &mut good);
+            x.points[q].check(&mut good);
         }
-        let mut shared = [[0.0; LANES]; 2];
         if let Some(volume) = volume {
-            share::<FMA>(&sums, [0.0, volume.logarithmic, volume.quadratic], &mut shared);
+            x.sums = [[0.0; LANES]; 3];
+            for q in 0..8 {
+                volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut x.sums);
+            }
+            share::<FMA>(&x.sums, [0.0, volume.logarithmic, volume.quadratic], &mut x.shared);
         }
-        let pressure = volume.map(|_| &shared[1]);
+        let pressure = volume.map(|_| &x.shared[1]);
+        stress(path, law, &x.points, &mut x.stress);
         for q in 0..8 {
-            stress(path, law, &x.points[q], &mut x.stress);
             next.points[q].fetch();
             gather::<FMA>(next, q, u, &mut x.u);
-            pull_back_stress::<FMA>(&block.points[q], &x.stress, pressure, &mut x.points[q]);
+            pull_back_stress::<FMA>(&block.points[q], &x.stress[q], pressure, &mut x.points[q]);
         }
         forces::<FMA>(block, &mut x, f);
     }

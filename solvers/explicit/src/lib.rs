@@ -43,6 +43,7 @@ mod quad;
 mod relaxation;
 mod rows;
 mod tet4;
+mod tet4_lanes;
 mod tools;
 mod trilinear;
 

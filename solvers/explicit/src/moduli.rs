@@ -45,13 +45,13 @@ impl LaneLaw {
 }
 
 on_path! {
-    /// Stress of eight points, Pa.
-    pub(super) fn stress(law: &Law, strain: &LaneStrain, p: &mut [Lanes; 9]) = stress_lanes
+    /// Stress of eight points each, Pa.
+    pub(super) fn stress(law: &Law, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) = stress_lanes
 }
 
 #[inline(always)]
-fn stress_lanes<const FMA: bool>(law: &Law, strain: &LaneStrain, p: &mut [Lanes; 9]) {
-    law.stress_lanes::<FMA>(strain, p);
+fn stress_lanes<const FMA: bool>(law: &Law, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
+    law.stress_batch::<FMA>(strains, p);
 }
 
 /// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,

@@ -133,10 +133,17 @@ fn internal_lanes<const FMA: bool>(
                 start = end;
             }
         }
-        for (batch, x) in batches.iter().zip(&mut x) {
-            match &laws[batch.region as usize] {
-                LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(batch, *moduli, x, &mut good),
-                LaneLaw::Other(law, _) => other::<FMA>(path, batch, law, x, &mut good),
+        let mut rest = x.as_mut_slice();
+        for alike in batches.chunk_by(|a, b| a.region == b.region) {
+            let (x, after) = std::mem::take(&mut rest).split_at_mut(alike.len());
+            rest = after;
+            match &laws[alike[0].region as usize] {
+                LaneLaw::NeoHookean(moduli) => {
+                    for (batch, x) in alike.iter().zip(x) {
+                        neo_hookean::<FMA>(batch, *moduli, x, &mut good);
+                    }
+                }
+                LaneLaw::Other(law, _) => other::<FMA>(path, alike, law, x, &mut good),
             }
         }
         start = first;
@@ -179,26 +186,35 @@ fn neo_hookean<const FMA: bool>(
     }
 }
 
-/// As [`neo_hookean`], of any other law.
+/// As [`neo_hookean`], of any other law and up to [`TOGETHER`] batches.
 #[inline(always)]
-fn other<const FMA: bool>(path: LanePath, batch: &Batch, law: &Law, x: &mut [Lanes; 9], good: &mut Lanes) {
-    let mut strain = LaneStrain::ZERO;
-    strained::<FMA>(x, &mut strain, good);
-    stress(path, law, &strain, x);
-    for p in x {
-        for l in 0..LANES {
-            p[l] *= batch.weights[l];
+fn other<const FMA: bool>(
+    path: LanePath,
+    batches: &[Batch],
+    law: &Law,
+    x: &mut [[Lanes; 9]],
+    good: &mut Lanes,
+) {
+    let mut strains = [LaneStrain::ZERO; TOGETHER];
+    for (h, strain) in x.iter().zip(&mut strains) {
+        strained::<FMA>(h, strain);
+        strain.check(good);
+    }
+    stress(path, law, &strains[..batches.len()], x);
+    for (batch, p) in batches.iter().zip(x) {
+        for p in p {
+            for l in 0..LANES {
+                p[l] *= batch.weights[l];
+            }
         }
     }
 }
 
 #[inline(always)]
-fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain, good: &mut Lanes) {
+fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain) {
     for l in 0..LANES {
         let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
         out.set::<FMA>(l, &h);
-        let j = out.invariants[0][l] + out.invariants[1][l];
-        good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
     }
 }
 

@@ -7,14 +7,10 @@
 use super::Kernel;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
-use super::moduli::{LaneLaw, Moduli, stress};
-
+use super::moduli::LaneLaw;
 use super::nodal::Nodal;
-use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
-use lanes::{LanePath, on_path};
-use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
-use material::lane::math::madd;
-use material::lane::{LANES, LaneStrain, Lanes};
+use super::tet4_lanes::{Block, dilated, dilations, internal};
+use lanes::{LANES, LanePath};
 use shape::Vector3;
 use shape::locality_order;
 
@@ -67,9 +63,7 @@ impl Tet4 {
             None => border.for_each(slots, sums, |c, slots, sums| {
                 load(border.chunk(c), u, slots);
                 sums.fill(Slot::ZERO);
-                let mut upright = true;
-                internal(path, path, laws, &chunks[c], slots, sums, &mut upright);
-                upright
+                internal(path, laws, &chunks[c], slots, sums)
             }),
             Some(nodal) => {
                 let upright = border.for_each(slots, nodal.slots(), |c, slots, sums| {
@@ -86,7 +80,7 @@ impl Tet4 {
                         *shared = closed[node as usize];
                     }
                     sums.fill(Slot::ZERO);
-                    dilated(path, path, laws, &chunks[c], &slots[border.range(c)], shared, sums);
+                    dilated(path, laws, &chunks[c], &slots[border.range(c)], shared, sums);
                     true
                 });
                 upright
@@ -97,19 +91,11 @@ impl Tet4 {
     }
 }
 
-#[repr(C, align(64))]
-pub(super) struct Block {
-    /// Gradients of nodes 1 to 3, [3 a + j].
-    grads: [[f64; LANES]; 9],
-    weight: [f64; LANES],
-    nodes: [[u16; LANES]; 4],
-}
-
 /// Blocks of one chunk, by law.
 pub(super) struct Chunk {
-    blocks: Vec<Block>,
+    pub blocks: Vec<Block>,
     /// Blocks up to this one are of this region.
-    runs: Vec<(usize, u16)>,
+    pub runs: Vec<(usize, u16)>,
 }
 
 impl Chunk {
@@ -150,261 +136,5 @@ impl Chunk {
             runs.push((blocks.len(), region(alike[0])));
         }
         Chunk { blocks, runs }
-    }
-}
-
-/// Displacements relative to node 0, [3 a + i].
-#[inline(always)]
-fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
-    let mut origin = [Slot::ZERO; LANES];
-    for l in 0..LANES {
-        origin[l] = u[block.nodes[0][l] as usize];
-    }
-    let mut d = [[0.0; LANES]; 9];
-    for a in 0..3 {
-        let lanes = lanes_of_differences::<FMA>(u, &block.nodes[a + 1], &origin);
-        d[3 * a..3 * a + 3].copy_from_slice(&lanes);
-    }
-    d
-}
-
-/// Adds the forces of nodes 1 to 3, and minus their sum on node 0.
-#[inline(always)]
-fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
-    let mut sum = [Slot::ZERO; LANES];
-    for a in 0..3 {
-        let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
-        for l in 0..LANES {
-            add::<FMA>(&quads[l], &mut f[block.nodes[a + 1][l] as usize]);
-            axpy::<FMA>(-1.0, &quads[l], &mut sum[l]);
-        }
-    }
-    for l in 0..LANES {
-        add::<FMA>(&sum[l], &mut f[block.nodes[0][l] as usize]);
-    }
-}
-
-/// `H_ij = sum_a d_ai g_aj` of one lane.
-#[inline(always)]
-fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
-    let m = madd::<FMA>;
-    let mut h = [0.0; 9];
-    for k in 0..9 {
-        let (i, j) = (k / 3, k % 3);
-        h[k] = m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]));
-    }
-    h
-}
-
-/// `f_a = w P grad N_a` of one lane.
-#[inline(always)]
-fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [[f64; LANES]; 9]) {
-    let m = madd::<FMA>;
-    for a in 0..3 {
-        for i in 0..3 {
-            out[3 * a + i][l] =
-                m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]));
-        }
-    }
-}
-
-/// `H` of eight elements.
-#[inline(always)]
-fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain, good: &mut Lanes) {
-    for l in 0..LANES {
-        let h = gradient::<FMA>(d, g, l);
-        out.set::<FMA>(l, &h);
-        let j = out.invariants[0][l] + out.invariants[1][l];
-        good[l] = if 1.0 + j > 0.0 { good[l] } else { 0.0 };
-    }
-}
-
-/// Forces of eight elements at the stress `p`.
-#[inline(always)]
-fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 9]) {
-    for l in 0..LANES {
-        let w = block.weight[l];
-        let p = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
-        forces::<FMA>(&p, &block.grads, l, out);
-    }
-}
-
-/// As [`forces_of`] with the mean pressure of the groups, four times which is `pressure`.
-#[inline(always)]
-fn dilated_forces_of<const FMA: bool>(
-    block: &Block,
-    strain: &LaneStrain,
-    p: &[Lanes; 9],
-    pressure: &Lanes,
-    out: &mut [Lanes; 9],
-) {
-    for l in 0..LANES {
-        let w = block.weight[l];
-        let mut p = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| w * p[k][l]);
-        let (x, minors) = strain.invariants(l);
-        add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, 0.25 * w * pressure[l], &mut p);
-        forces::<FMA>(&p, &block.grads, l, out);
-    }
-}
-
-on_path! {
-    /// Internal forces of one chunk, added to `f`; `upright` turns false where some `J` is not positive.
-    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) = internal_lanes
-}
-
-#[inline(always)]
-fn internal_lanes<const FMA: bool>(
-    path: LanePath,
-    laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    f: &mut [Slot],
-    upright: &mut bool,
-) {
-    let mut first = 0;
-    let mut good = [1.0; LANES];
-    for &(end, region) in &chunk.runs {
-        let blocks = &chunk.blocks[first..end];
-        match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(blocks, *moduli, u, f, &mut good),
-            LaneLaw::Other(law, _) => {
-                for block in blocks {
-                    let d = gather::<FMA>(block, u);
-                    let mut x = LaneStrain::ZERO;
-                    strain::<FMA>(&d, &block.grads, &mut x, &mut good);
-                    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-                    stress(path, law, &x, &mut p);
-                    forces_of::<FMA>(block, &p, &mut out);
-                    scatter::<FMA>(block, &out, f);
-                }
-            }
-        }
-        first = end;
-    }
-    *upright = good == [1.0; LANES];
-}
-
-#[inline(always)]
-fn neo_hookean<const FMA: bool>(
-    blocks: &[Block],
-    Moduli { mu, lambda }: Moduli,
-    u: &[Slot],
-    f: &mut [Slot],
-    good: &mut Lanes,
-) {
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        let mut out = [[0.0; LANES]; 9];
-        for l in 0..LANES {
-            let h = gradient::<FMA>(&d, &block.grads, l);
-            let (x, minors) = Invariants::of::<FMA>(&h);
-            good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-            let p = piola::<FMA>(&h, minors, x.stress::<FMA>(block.weight[l], mu, lambda));
-            forces::<FMA>(&p, &block.grads, l, &mut out);
-        }
-        scatter::<FMA>(block, &out, f);
-    }
-}
-
-on_path! {
-    /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
-    fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], upright: &mut bool) = dilations_lanes
-}
-
-#[inline(always)]
-fn dilations_lanes<const FMA: bool>(
-    laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    sums: &mut [[f64; 2]],
-    upright: &mut bool,
-) {
-    let mut first = 0;
-    let mut good = [1.0; LANES];
-    for &(end, region) in &chunk.runs {
-        // Of the other laws the first number alone.
-        let [mu, ..] = laws[region as usize].of_group();
-        for block in &chunk.blocks[first..end] {
-            let d = gather::<FMA>(block, u);
-            let mut out = [[0.0; LANES]; 2];
-            for l in 0..LANES {
-                let h = gradient::<FMA>(&d, &block.grads, l);
-                let (x, _) = Invariants::of::<FMA>(&h);
-                good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-                let share = 0.25 * block.weight[l];
-                out[0][l] = share * x.j;
-                out[1][l] = share * mu * x.isochoric::<FMA>(&h, 0.0).0;
-            }
-            for l in 0..LANES {
-                for a in 0..4 {
-                    let at = &mut sums[block.nodes[a][l] as usize];
-                    at[0] += out[0][l];
-                    at[1] += out[1][l];
-                }
-            }
-        }
-        first = end;
-    }
-    *upright = good == [1.0; LANES];
-}
-
-on_path! {
-    /// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
-    fn dilated(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_lanes
-}
-
-#[inline(always)]
-fn dilated_lanes<const FMA: bool>(
-    path: LanePath,
-    laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    closed: &[[f64; 2]],
-    f: &mut [Slot],
-) {
-    let mut first = 0;
-    for &(end, region) in &chunk.runs {
-        let blocks = &chunk.blocks[first..end];
-        match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean::<FMA>(blocks, moduli.mu, u, closed, f),
-            LaneLaw::Other(law, _) => {
-                for block in blocks {
-                    let d = gather::<FMA>(block, u);
-                    let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-                    let (mut x, mut good) = (LaneStrain::ZERO, [1.0; LANES]);
-                    strain::<FMA>(&d, &block.grads, &mut x, &mut good);
-                    let (mut p, mut out) = ([[0.0; LANES]; 9], [[0.0; LANES]; 9]);
-                    stress(path, law, &x, &mut p);
-                    dilated_forces_of::<FMA>(block, &x, &p, &shared[1], &mut out);
-                    scatter::<FMA>(block, &out, f);
-                }
-            }
-        }
-        first = end;
-    }
-}
-
-#[inline(always)]
-fn dilated_neo_hookean<const FMA: bool>(
-    blocks: &[Block],
-    mu: f64,
-    u: &[Slot],
-    closed: &[[f64; 2]],
-    f: &mut [Slot],
-) {
-    for block in blocks {
-        let d = gather::<FMA>(block, u);
-        let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-        let mut out = [[0.0; LANES]; 9];
-        for l in 0..LANES {
-            let h = gradient::<FMA>(&d, &block.grads, l);
-            let (x, minors) = Invariants::of::<FMA>(&h);
-            let w = block.weight[l];
-            let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
-            let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
-            let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
-            forces::<FMA>(&p, &block.grads, l, &mut out);
-        }
-        scatter::<FMA>(block, &out, f);
     }
 }

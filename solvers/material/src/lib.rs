@@ -92,6 +92,17 @@ pub trait Material {
         lane::one_by_one(self, strain, p);
     }
 
+    /// [`Material::stress_lanes`] of many: where a law is a long chain, several overlap.
+    #[inline(always)]
+    fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]])
+    where
+        Self: Sized,
+    {
+        for (strain, p) in strains.iter().zip(p) {
+            self.stress_lanes::<FMA>(strain, p);
+        }
+    }
+
     /// The law without its volumetric part, and that part, where the energy is a sum of the two and the first does not
     /// change with `J`; a shared dilation then acts on the second alone.
     fn split(&self) -> Option<(Self, Volumetric)>

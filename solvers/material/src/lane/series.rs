@@ -12,8 +12,46 @@ use super::{LANES, Lanes};
 /// Bounds of the eigenvalues of `X` for which there is a series, each of another length.
 pub(crate) const BOUNDS: [f64; 4] = [0.05, 0.15, 0.35, 0.6];
 
+/// Numbers of coefficients for which Horner's scheme is straight-line code; the logarithm's own among them.
+const LENGTHS: [usize; 6] = [10, 12, 14, 21, 32, 64];
+
+/// `g_0, g_1, ...`, with zeros up to one of [`LENGTHS`], which change no bit.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Power(Vec<f64>);
+
+impl Power {
+    /// None beyond the longest.
+    pub fn new(mut g: Vec<f64>) -> Option<Power> {
+        let length = LENGTHS.into_iter().find(|&length| g.len() <= length)?;
+        g.resize(length, 0.0);
+        Some(Power(g))
+    }
+
+    /// All of them, if there are `N`.
+    pub fn exactly<const N: usize>(&self) -> Option<&[f64; N]> {
+        self.0.as_slice().try_into().ok()
+    }
+}
+
+/// `$function(g, ...)` with the coefficients of a [`Power`] as an array.
+macro_rules! unrolled {
+    ($power:expr, $function:ident::<$fma:ident>($($arg:expr),* $(,)?)) => {
+        unrolled!(@ $power, $function, $fma, ($($arg),*); 10 12 14 21 32 64)
+    };
+    (@ $power:expr, $function:ident, $fma:ident, $args:tt; $($length:literal)*) => {
+        $(if let Some(g) = $power.exactly::<$length>() {
+            unrolled!(@call $function, $fma, $length, g, $args)
+        })else*
+    };
+    (@call $function:ident, $fma:ident, $length:literal, $g:ident, ($($arg:expr),*)) => {
+        $function::<$fma, $length>($g, $($arg),*)
+    };
+}
+pub(crate) use unrolled;
+
 /// `g` of `ln(1 + x) = x g(x) + constant`, by [`BOUNDS`].
-static LOGARITHM: LazyLock<[Vec<f64>; 4]> = LazyLock::new(|| BOUNDS.map(logarithm));
+static LOGARITHM: LazyLock<[Option<Power>; 4]> =
+    LazyLock::new(|| BOUNDS.map(|bound| Power::new(logarithm(bound))));
 
 /// The place in [`BOUNDS`] that holds all lanes; none beyond the last. No eigenvalue is above `2 sqrt(a / 3)`.
 #[inline(always)]
@@ -30,8 +68,8 @@ pub(crate) fn rung(a: &Lanes) -> Option<usize> {
 
 /// `g` of the logarithm on one rung.
 #[inline(always)]
-pub(crate) fn of_logarithm(rung: usize) -> &'static [f64] {
-    &LOGARITHM[rung]
+pub(crate) fn of_logarithm(rung: usize) -> Option<&'static Power> {
+    LOGARITHM[rung].as_ref()
 }
 
 /// `g_0, g_1, ...` by the Chebyshev series of the logarithm on `[-bound, bound]`,
@@ -59,29 +97,40 @@ fn logarithm(bound: f64) -> Vec<f64> {
 
 /// `sum_k g_k X^k` as its three numbers, by the `a` and `b` of `X`.
 #[inline(always)]
-pub(crate) fn horner<const FMA: bool>(g: &[f64], a: &Lanes, b: &Lanes, out: &mut [Lanes; 3]) {
-    let [mut g0, mut g1, mut g2] = [[0.0; LANES]; 3];
-    for &c in g.iter().rev() {
-        for l in 0..LANES {
-            let top = g2[l];
-            g2[l] = g1[l];
-            g1[l] = madd::<FMA>(a[l], top, g0[l]);
-            g0[l] = madd::<FMA>(b[l], top, c);
-        }
+pub(crate) fn horner<const FMA: bool, const N: usize>(g: &[f64; N], a: f64, b: f64) -> [f64; 3] {
+    // The first three steps multiply zeros.
+    let [mut g0, mut g1, mut g2] = [g[N - 3], g[N - 2], g[N - 1]];
+    for k in (0..N - 3).rev() {
+        (g0, g1, g2) = (madd::<FMA>(b, g2, g[k]), madd::<FMA>(a, g2, g0), g1);
     }
-    *out = [g0, g1, g2];
+    [g0, g1, g2]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn length<const FMA: bool, const N: usize>(_: &[f64; N], out: &mut usize) {
+        *out = N;
+    }
+
+    #[test]
+    fn every_length_has_code_of_its_own() {
+        const FMA: bool = false;
+        for expected in LENGTHS {
+            let (power, mut found) = (Power::new(vec![1.0; expected - 1]).unwrap(), 0);
+            unrolled!(power, length::<FMA>(&mut found));
+            assert_eq!(found, expected);
+        }
+        assert_eq!(Power::new(vec![1.0; 65]), None);
+    }
+
     #[test]
     fn differences_of_logarithms_agree_with_the_library() {
         for (rung, bound) in BOUNDS.into_iter().enumerate() {
             for i in -100..=100 {
                 let x = bound * f64::from(i) / 100.0;
-                let sum = of_logarithm(rung).iter().rev().fold(0.0, |sum, c| sum * x + c) * x;
+                let sum = of_logarithm(rung).unwrap().0.iter().rev().fold(0.0, |sum, c| sum * x + c) * x;
                 // The constant is lost in the deviator; it is below the last digit all the same.
                 let error = (sum - x.ln_1p()).abs();
                 assert!(error < 1e-15 * x.abs().max(0.2 * bound), "{bound}: {x}: {error:e}");
@@ -95,11 +144,10 @@ mod tests {
         let z = -x - y;
         let (a, b) = (0.5 * (x * x + y * y + z * z), x * y * z);
         let g = [1.5, -0.4, 0.7, 2.0, -1.1, 0.3];
-        let mut out = [[0.0; LANES]; 3];
-        horner::<false>(&g, &[a; LANES], &[b; LANES], &mut out);
+        let out = horner::<false, 6>(&g, a, b);
         for t in [x, y, z] {
             let expected = g.iter().rev().fold(0.0, |sum, c| sum * t + c);
-            let found = out[0][3] + t * (out[1][3] + t * out[2][3]);
+            let found = out[0] + t * (out[1] + t * out[2]);
             assert!((found - expected).abs() < 1e-15, "{t}: {found} {expected}");
         }
     }

@@ -1,10 +1,14 @@
 //! `C = F^T F` of eight points by its mean eigenvalue and its deviator, for laws in logarithmic strain.
+//!
+//! Each law goes over the lanes once with a long straight-line body. In many short loops over lanes the compiler takes the
+//! vectors apart and puts them together again between one and the next (Ogden's law: 1.4 times the time).
 
-use super::math::{ln_1p, madd};
-use super::series::{horner, of_logarithm};
+use super::math::madd;
+use super::series::horner;
 use super::{LANES, LaneStrain, Lanes};
 
 /// `C = c (I + X)`, `tr X = 0`. Functions of `X` are three numbers each, `x0 I + x1 X + x2 X^2`.
+#[repr(align(64))]
 pub(crate) struct Stretch {
     /// `X` as xx, yy, zz, xy, xz, yz.
     x: [Lanes; 6],
@@ -12,9 +16,20 @@ pub(crate) struct Stretch {
     adjugate: [Lanes; 6],
     /// `X^3 = a X + b I`.
     pub a: Lanes,
-    b: Lanes,
+    pub b: Lanes,
     /// `c^2 / J^2 = 1 / (c det(I + X))`.
     scale: Lanes,
+}
+
+/// `0..count` two by two, the last twice where it is left over. A law is a chain of some 250 cycles, and two of them overlap.
+#[inline(always)]
+pub(crate) fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..count).step_by(2).map(move |k| [k, (k + 1).min(count - 1)])
+}
+
+#[inline(always)]
+pub(crate) fn pair_of<const FMA: bool>(strains: &[LaneStrain], [a, b]: [usize; 2]) -> [Stretch; 2] {
+    [Stretch::new::<FMA>(&strains[a]), Stretch::new::<FMA>(&strains[b])]
 }
 
 impl Stretch {
@@ -26,33 +41,28 @@ impl Stretch {
         out
     }
 
-    /// `dev ln C`, twice the isochoric logarithmic strain.
+    /// `dev ln C` of one lane, twice the isochoric logarithmic strain, by the coefficients of its series.
     #[inline(always)]
-    pub fn logarithm<const FMA: bool>(&self, rung: usize) -> [Lanes; 3] {
-        let mut e = [[0.0; LANES]; 3];
-        horner::<FMA>(of_logarithm(rung), &self.a, &self.b, &mut e);
-        deviator_of::<FMA>(&self.a, &mut e);
-        e
+    pub fn logarithm<const FMA: bool, const N: usize>(&self, g: &[f64; N], l: usize) -> [f64; 3] {
+        deviator_of::<FMA>(self.a[l], horner::<FMA, N>(g, self.a[l], self.b[l]))
     }
 
     /// `dev (e g(e))` of a traceless `e`.
     #[inline(always)]
-    pub fn series<const FMA: bool>(&self, g: &[f64], e: &[Lanes; 3]) -> [Lanes; 3] {
-        let (mut square, mut ab) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2]);
-        squared::<FMA>((&self.a, &self.b), e, &mut square, &mut ab);
-        let mut out = [[0.0; LANES]; 3];
-        horner::<FMA>(g, &ab[0], &ab[1], &mut out);
-        deviator_of::<FMA>(&ab[0], &mut out);
-        in_powers_of_x::<FMA>(e, &square, &mut out);
-        out
+    pub fn series<const FMA: bool, const N: usize>(
+        &self,
+        g: &[f64; N],
+        e: &[f64; 3],
+        square: &[f64; 3],
+        [a, b]: [f64; 2],
+    ) -> [f64; 3] {
+        in_powers_of_x::<FMA>(e, square, deviator_of::<FMA>(a, horner::<FMA, N>(g, a, b)))
     }
 
-    /// `P = F C^-1 tau` at the Kirchhoff stress `tau`.
+    /// `P = F C^-1 tau` of one lane at the Kirchhoff stress `tau`.
     #[inline(always)]
-    pub fn stress<const FMA: bool>(&self, strain: &LaneStrain, tau: &[Lanes; 3], p: &mut [Lanes; 9]) {
-        let mut s = [[0.0; LANES]; 3];
-        over_c::<FMA>((&self.a, &self.b, &self.scale), tau, &mut s);
-        first_piola::<FMA>((&self.x, &self.adjugate), &strain.h, &s, p);
+    pub fn stress<const FMA: bool>(&self, h: &[f64; 9], tau: &[f64; 3], l: usize) -> [f64; 9] {
+        first_piola::<FMA>(self, h, &over_c::<FMA>(self.a[l], self.b[l], self.scale[l], tau), l)
     }
 }
 
@@ -81,8 +91,8 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
         (out.x[3][l], out.x[4][l], out.x[5][l]) = (xy, xz, yz);
         (out.adjugate[0][l], out.adjugate[1][l], out.adjugate[2][l]) = (axx, ayy, azz);
         (out.adjugate[3][l], out.adjugate[4][l], out.adjugate[5][l]) = (axy, axz, ayz);
-        let normal = m(xx, xx, m(yy, yy, zz * zz));
-        out.a[l] = m(0.5, normal, m(xy, xy, m(xz, xz, yz * yz)));
+        // tr adj X = -a.
+        out.a[l] = -(axx + ayy + azz);
         out.b[l] = m(xx, axx, m(xy, axy, xz * axz));
         out.scale[l] = c_over_j * c_over_j;
     }
@@ -90,112 +100,67 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
 
 /// From `g(X)` to the deviator of `X g(X)`.
 #[inline(always)]
-fn deviator_of<const FMA: bool>(a: &Lanes, g: &mut [Lanes; 3]) {
-    for l in 0..LANES {
-        let (g0, g1, g2) = (g[0][l], g[1][l], g[2][l]);
-        // tr X^2 = 2 a.
-        g[0][l] = a[l] * g1 * (-2.0 / 3.0);
-        g[1][l] = madd::<FMA>(a[l], g2, g0);
-        g[2][l] = g1;
-    }
+fn deviator_of<const FMA: bool>(a: f64, [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
+    // tr X^2 = 2 a.
+    [a * g1 * (-2.0 / 3.0), madd::<FMA>(a, g2, g0), g1]
 }
 
 /// From the three numbers in `I`, `e`, `e^2` to those in `I`, `X`, `X^2`.
 #[inline(always)]
-fn in_powers_of_x<const FMA: bool>(e: &[Lanes; 3], square: &[Lanes; 3], out: &mut [Lanes; 3]) {
+fn in_powers_of_x<const FMA: bool>(e: &[f64; 3], square: &[f64; 3], [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
     let m = madd::<FMA>;
-    for l in 0..LANES {
-        let (g0, g1, g2) = (out[0][l], out[1][l], out[2][l]);
-        out[0][l] = m(g1, e[0][l], m(g2, square[0][l], g0));
-        out[1][l] = m(g1, e[1][l], g2 * square[1][l]);
-        out[2][l] = m(g1, e[2][l], g2 * square[2][l]);
-    }
+    [m(g1, e[0], m(g2, square[0], g0)), m(g1, e[1], g2 * square[1]), m(g1, e[2], g2 * square[2])]
 }
 
 /// `e^2` and the `a`, `b` of `e^3 = a e + b I`.
 #[inline(always)]
-fn squared<const FMA: bool>(
-    (a, b): (&Lanes, &Lanes),
-    e: &[Lanes; 3],
-    square: &mut [Lanes; 3],
-    ab: &mut [Lanes; 2],
-) {
+pub(crate) fn squared<const FMA: bool>(a: f64, b: f64, [e0, e1, e2]: [f64; 3]) -> ([f64; 3], [f64; 2]) {
     let m = madd::<FMA>;
-    for l in 0..LANES {
-        let (a, b) = (a[l], b[l]);
-        let (e0, e1, e2) = (e[0][l], e[1][l], e[2][l]);
-        // X^3 = a X + b I, X^4 = a X^2 + b X.
-        let (cube, fourth) = (2.0 * e1 * e2, e2 * e2);
-        let s0 = m(e0, e0, cube * b);
-        let s1 = m(2.0 * e0, e1, m(cube, a, fourth * b));
-        let s2 = m(2.0 * e0, e2, m(e1, e1, fourth * a));
-        (square[0][l], square[1][l], square[2][l]) = (s0, s1, s2);
-        // Half of tr e^2 and a third of tr e^3; tr X^2 = 2 a, tr X^3 = 3 b, tr X^4 = 2 a^2.
-        ab[0][l] = m(1.5, s0, a * s2);
-        let (second, third) = (2.0 * a, 3.0 * b);
-        let of_x = m(s1, second, s2 * third);
-        let of_square = m(s0, second, m(s1, third, s2 * (second * a)));
-        let trace = 2.0 * ab[0][l];
-        ab[1][l] = m(e0, trace, m(e1, of_x, e2 * of_square)) * (1.0 / 3.0);
-    }
+    // X^3 = a X + b I, X^4 = a X^2 + b X.
+    let (cube, fourth) = (2.0 * e1 * e2, e2 * e2);
+    let s0 = m(e0, e0, cube * b);
+    let s1 = m(2.0 * e0, e1, m(cube, a, fourth * b));
+    let s2 = m(2.0 * e0, e2, m(e1, e1, fourth * a));
+    // Half of tr e^2 and a third of tr e^3; tr X^2 = 2 a, tr X^3 = 3 b, tr X^4 = 2 a^2.
+    let half = m(1.5, s0, a * s2);
+    let (second, third) = (2.0 * a, 3.0 * b);
+    let of_x = m(s1, second, s2 * third);
+    let of_square = m(s0, second, m(s1, third, s2 * (second * a)));
+    let trace = 2.0 * half;
+    ([s0, s1, s2], [half, m(e0, trace, m(e1, of_x, e2 * of_square)) * (1.0 / 3.0)])
 }
 
 /// `C^-1 tau`, by `(I + X)^-1 det(I + X) = X^2 - X + (1 - a) I`.
 #[inline(always)]
-fn over_c<const FMA: bool>((a, b, scale): (&Lanes, &Lanes, &Lanes), tau: &[Lanes; 3], out: &mut [Lanes; 3]) {
+fn over_c<const FMA: bool>(a: f64, b: f64, scale: f64, &[t0, t1, t2]: &[f64; 3]) -> [f64; 3] {
     let m = madd::<FMA>;
-    for l in 0..LANES {
-        let (a, b, s) = (a[l], b[l], scale[l]);
-        let (t0, t1, t2) = (tau[0][l], tau[1][l], tau[2][l]);
-        let k = 1.0 - a;
-        // (X - I) tau, then once more by X.
-        let (v0, v1, v2) = (m(b, t2, -t0), m(a, t2, t0 - t1), t1 - t2);
-        out[0][l] = s * m(b, v2, k * t0);
-        out[1][l] = s * m(a, v2, m(k, t1, v0));
-        out[2][l] = s * m(k, t2, v1);
-    }
+    let k = 1.0 - a;
+    // (X - I) tau, then once more by X.
+    let (v0, v1, v2) = (m(b, t2, -t0), m(a, t2, t0 - t1), t1 - t2);
+    [scale * m(b, v2, k * t0), scale * m(a, v2, m(k, t1, v0)), scale * m(k, t2, v1)]
 }
 
 /// `P = F S`, `S = s0 I + s1 X + s2 X^2`.
 #[inline(always)]
 fn first_piola<const FMA: bool>(
-    (x, adjugate): (&[Lanes; 6], &[Lanes; 6]),
-    h: &[Lanes; 9],
-    s: &[Lanes; 3],
-    p: &mut [Lanes; 9],
-) {
+    Stretch { x, adjugate, a, .. }: &Stretch,
+    h: &[f64; 9],
+    &[s0, s1, s2]: &[f64; 3],
+    l: usize,
+) -> [f64; 9] {
     let m = madd::<FMA>;
-    for l in 0..LANES {
-        let (s1, s2) = (s[1][l], s[2][l]);
-        // tr adj X = -a.
-        let s0 = m(-s2, adjugate[0][l] + adjugate[1][l] + adjugate[2][l], s[0][l]);
-        let at = |n: usize, first: f64| m(s1, x[n][l], m(s2, adjugate[n][l], first));
-        let (xx, yy, zz) = (at(0, s0), at(1, s0), at(2, s0));
-        let (xy, xz, yz) = (at(3, 0.0), at(4, 0.0), at(5, 0.0));
-        let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        for i in 0..3 {
-            let (a, b, c) = (h[3 * i][l], h[3 * i + 1][l], h[3 * i + 2][l]);
-            for j in 0..3 {
-                p[3 * i + j][l] = m(a, rows[0][j], m(b, rows[1][j], m(c, rows[2][j], rows[i][j])));
-            }
+    // X^2 = adj X + a I.
+    let s0 = m(s2, a[l], s0);
+    let at = |n: usize, first: f64| m(s1, x[n][l], m(s2, adjugate[n][l], first));
+    let (xx, yy, zz) = (at(0, s0), at(1, s0), at(2, s0));
+    let (xy, xz, yz) = (at(3, 0.0), at(4, 0.0), at(5, 0.0));
+    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let mut p = [0.0; 9];
+    for i in 0..3 {
+        for j in 0..3 {
+            let (a, b, c) = (h[3 * i], h[3 * i + 1], h[3 * i + 2]);
+            p[3 * i + j] = m(a, rows[0][j], m(b, rows[1][j], m(c, rows[2][j], rows[i][j])));
         }
     }
-}
-
-/// `tau + modulus ln(J) I`.
-#[inline(always)]
-pub(crate) fn add_logarithmic<const FMA: bool>(modulus: f64, strain: &LaneStrain, tau: &mut Lanes) {
-    for l in 0..LANES {
-        let j = strain.invariants[0][l] + strain.invariants[1][l];
-        tau[l] = madd::<FMA>(modulus, ln_1p::<FMA>(j), tau[l]);
-    }
-}
-
-/// `tau + modulus J (J - 1) I`.
-#[inline(always)]
-pub(crate) fn add_quadratic<const FMA: bool>(modulus: f64, strain: &LaneStrain, tau: &mut Lanes) {
-    for l in 0..LANES {
-        let j = strain.invariants[0][l] + strain.invariants[1][l];
-        tau[l] = madd::<FMA>(modulus * j, 1.0 + j, tau[l]);
-    }
+    p
 }

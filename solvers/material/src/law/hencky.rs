@@ -1,11 +1,14 @@
 //! Hencky's law: Hooke's law between logarithmic strain and Kirchhoff stress.
 
 use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
-use crate::lane::stretch::{Stretch, add_logarithmic};
-use crate::lane::{LaneStrain, Lanes, one_by_one, series};
+use crate::lane::math::{ln_1p, madd};
+use crate::lane::series::{self, unrolled};
+use crate::lane::stretch::{Stretch, pair_of, pairs};
+use crate::lane::{LANES, LaneStrain, Lanes, of_lane, one_by_one};
 use crate::principal::{Principal, Slopes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use shape::Matrix3;
+use std::slice::{from_mut, from_ref};
 
 /// `W = mu e : e + lambda/2 (tr e)^2`, `e = ln V` (`V^2 = F F^T`); `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
 ///
@@ -75,18 +78,27 @@ impl Material for Hencky {
         (principal.stress(H, &tau), principal.tangent(H, &tau, &self.slopes()))
     }
 
-    /// `tau = mu dev ln C + kappa ln(J) I`.
     #[inline(always)]
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
-        let stretch = Stretch::new::<FMA>(strain);
-        let Some(rung) = series::rung(&stretch.a) else { return one_by_one(self, strain, p) };
-        let mut tau = stretch.logarithm::<FMA>(rung);
-        tau.iter_mut().flatten().for_each(|tau| *tau *= self.mu);
+        self.stress_batch::<FMA>(from_ref(strain), from_mut(p));
+    }
+
+    #[inline(always)]
+    fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
         let bulk = self.bulk();
-        if bulk != 0.0 {
-            add_logarithmic::<FMA>(bulk, strain, &mut tau[0]);
+        for pair in pairs(strains.len()) {
+            let stretch = pair_of::<FMA>(strains, pair);
+            for (&k, stretch) in pair.iter().zip(&stretch) {
+                let (strain, p) = (&strains[k], &mut p[k]);
+                match series::rung(&stretch.a).and_then(series::of_logarithm) {
+                    Some(series) => {
+                        let log_j = if bulk == 0.0 { [0.0; LANES] } else { logarithm::<FMA>(strain) };
+                        unrolled!(series, stress::<FMA>([self.mu, bulk], &log_j, stretch, &strain.h, p));
+                    }
+                    None => one_by_one(self, strain, p),
+                }
+            }
         }
-        stretch.stress::<FMA>(strain, &tau, p);
     }
 
     fn split(&self) -> Option<(Hencky, Volumetric)> {
@@ -104,5 +116,35 @@ impl Material for Hencky {
 
     fn lambda(&self) -> f64 {
         self.lambda
+    }
+}
+
+/// `ln J`.
+#[inline(always)]
+fn logarithm<const FMA: bool>(strain: &LaneStrain) -> Lanes {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        out[l] = ln_1p::<FMA>(strain.invariants[0][l] + strain.invariants[1][l]);
+    }
+    out
+}
+
+/// At `tau = mu dev ln C + kappa ln(J) I`.
+#[inline(always)]
+fn stress<const FMA: bool, const N: usize>(
+    g: &[f64; N],
+    [mu, bulk]: [f64; 2],
+    log_j: &Lanes,
+    stretch: &Stretch,
+    h: &[Lanes; 9],
+    p: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let e = stretch.logarithm::<FMA, N>(g, l);
+        let tau = [madd::<FMA>(bulk, log_j[l], mu * e[0]), mu * e[1], mu * e[2]];
+        let at = stretch.stress::<FMA>(&of_lane(h, l), &tau, l);
+        for k in 0..9 {
+            p[k][l] = at[k];
+        }
     }
 }

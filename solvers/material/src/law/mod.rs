@@ -84,6 +84,13 @@ macro_rules! laws {
                 }
             }
 
+            #[inline(always)]
+            fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
+                match self {
+                    $(Law::$law(law) => law.stress_batch::<FMA>(strains, p),)*
+                }
+            }
+
             fn split(&self) -> Option<(Law, Volumetric)> {
                 match self {
                     $(Law::$law(law) => law.split().map(|(shape, volume)| (shape.into(), volume)),)*

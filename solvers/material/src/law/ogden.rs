@@ -2,13 +2,15 @@
 
 use super::{BULK, Dimension, Entry, Kind, LawEntry, Parameter, Problem};
 use crate::kinematics::exp_m1_less;
-use crate::lane::series::{self, BOUNDS};
-use crate::lane::stretch::{Stretch, add_quadratic};
-use crate::lane::{LaneStrain, Lanes, one_by_one};
+use crate::lane::math::madd;
+use crate::lane::series::{self, BOUNDS, Power, unrolled};
+use crate::lane::stretch::{Stretch, pair_of, pairs, squared};
+use crate::lane::{LANES, LaneStrain, Lanes, one_by_one};
 use crate::principal::{Principal, Slopes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use catalogue::Values;
 use shape::Matrix3;
+use std::slice::{from_mut, from_ref};
 
 /// `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1`, isochoric stretches
 /// `l_a = J^(-1/3) lambda_a`, `D1 = 2 / kappa`; moduli in Pa.
@@ -54,29 +56,22 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
     })
 }
 
-/// `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` as a power series in `e = dev ln C`, for lanes.
-#[derive(Clone, Debug, PartialEq)]
-struct Series {
-    g: Vec<f64>,
-    /// Coefficients that are enough, by [`BOUNDS`]; none where the terms of the series would cancel.
-    lengths: [Option<usize>; BOUNDS.len()],
-}
+/// `g` of `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` in `e = dev ln C`, for lanes: by [`BOUNDS`] as long as it must be,
+/// none where its terms would cancel.
+type Series = [Option<Power>; BOUNDS.len()];
 
-impl Series {
-    fn new(terms: &[(f64, f64)]) -> Series {
-        let steepest = terms.iter().map(|(_, alpha)| 0.5 * alpha.abs()).fold(0.0, f64::max);
-        let lengths = BOUNDS.map(|bound| {
-            // |e| is largest at the smallest eigenvalue of C.
-            let exponent = steepest * -(-bound).ln_1p();
-            // A term z^n / (n + 1)! against the first; terms as large as exp(4) cost no more than a digit.
-            let mut term = 1.0;
-            let enough = |n: &usize| {
-                term *= exponent / (*n as f64 + 1.0);
-                term < 2f64.powi(-55)
-            };
-            if exponent <= 4.0 { (1..64).find(enough) } else { None }
-        });
-        let length = lengths.iter().flatten().copied().max().unwrap_or(0);
+fn series_of(terms: &[(f64, f64)]) -> Series {
+    let steepest = terms.iter().map(|(_, alpha)| 0.5 * alpha.abs()).fold(0.0, f64::max);
+    BOUNDS.map(|bound| {
+        // |e| is largest at the smallest eigenvalue of C.
+        let exponent = steepest * -(-bound).ln_1p();
+        // A term z^n / (n + 1)! against the first; terms as large as exp(4) cost no more than a digit.
+        let mut term = 1.0;
+        let enough = |n: &usize| {
+            term *= exponent / (*n as f64 + 1.0);
+            term < 2f64.powi(-55)
+        };
+        let length = if exponent <= 4.0 { (1..64).find(enough)? } else { return None };
         let mut powers: Vec<f64> = terms.iter().map(|(mu, _)| *mu).collect();
         let coefficient = |k: usize| {
             for (power, (_, alpha)) in powers.iter_mut().zip(terms) {
@@ -84,8 +79,8 @@ impl Series {
             }
             powers.iter().sum()
         };
-        Series { g: (0..length).map(coefficient).collect(), lengths }
-    }
+        Power::new((0..length).map(coefficient).collect())
+    })
 }
 
 impl Ogden {
@@ -104,7 +99,7 @@ impl Ogden {
         if !(bulk > 0.0 && bulk.is_finite()) {
             return Err(MaterialError::Bulk { bulk });
         }
-        Ok(Ogden { terms: terms.to_vec(), bulk, series: Series::new(terms) })
+        Ok(Ogden { terms: terms.to_vec(), bulk, series: series_of(terms) })
     }
 
     /// The terms `(mu_p, alpha_p)`.
@@ -178,17 +173,34 @@ impl Material for Ogden {
         (principal.stress(H, &tau), principal.tangent(H, &tau, &self.slopes(&principal)))
     }
 
-    /// `tau = dev f(dev ln C) + kappa J (J - 1) I`.
     #[inline(always)]
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
-        let stretch = Stretch::new::<FMA>(strain);
-        let rung = series::rung(&stretch.a);
-        let length = rung.and_then(|rung| self.series.lengths[rung]);
-        let (Some(rung), Some(length)) = (rung, length) else { return one_by_one(self, strain, p) };
-        let e = stretch.logarithm::<FMA>(rung);
-        let mut tau = stretch.series::<FMA>(&self.series.g[..length], &e);
-        add_quadratic::<FMA>(self.bulk, strain, &mut tau[0]);
-        stretch.stress::<FMA>(strain, &tau, p);
+        self.stress_batch::<FMA>(from_ref(strain), from_mut(p));
+    }
+
+    #[inline(always)]
+    fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
+        let mut log = [Logarithm::ZERO; 2];
+        for pair in pairs(strains.len()) {
+            let stretch = pair_of::<FMA>(strains, pair);
+            let mut of_stress = [None; 2];
+            for m in 0..2 {
+                let rung = series::rung(&stretch[m].a);
+                if let Some(series) = rung.and_then(series::of_logarithm) {
+                    unrolled!(series, logarithm::<FMA>(&stretch[m], &mut log[m]));
+                    of_stress[m] = rung.and_then(|rung| self.series[rung].as_ref());
+                }
+            }
+            for m in 0..2 {
+                let (strain, p) = (&strains[pair[m]], &mut p[pair[m]]);
+                match of_stress[m] {
+                    Some(series) => {
+                        unrolled!(series, stress::<FMA>(self.bulk, strain, &stretch[m], &log[m], p))
+                    }
+                    None => one_by_one(self, strain, p),
+                }
+            }
+        }
     }
 
     fn split(&self) -> Option<(Ogden, Volumetric)> {
@@ -206,6 +218,54 @@ impl Material for Ogden {
 
     fn lambda(&self) -> f64 {
         self.bulk - 2.0 / 3.0 * Material::mu(self)
+    }
+}
+
+/// `e = dev ln C`, its square, and the `a`, `b` of `e^3 = a e + b I`.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Logarithm {
+    e: [Lanes; 3],
+    square: [Lanes; 3],
+    ab: [Lanes; 2],
+}
+
+impl Logarithm {
+    const ZERO: Logarithm =
+        Logarithm { e: [[0.0; LANES]; 3], square: [[0.0; LANES]; 3], ab: [[0.0; LANES]; 2] };
+}
+
+#[inline(always)]
+fn logarithm<const FMA: bool, const N: usize>(g: &[f64; N], stretch: &Stretch, out: &mut Logarithm) {
+    for l in 0..LANES {
+        let e = stretch.logarithm::<FMA, N>(g, l);
+        let (square, [a, b]) = squared::<FMA>(stretch.a[l], stretch.b[l], e);
+        (out.e[0][l], out.e[1][l], out.e[2][l]) = (e[0], e[1], e[2]);
+        (out.square[0][l], out.square[1][l], out.square[2][l]) = (square[0], square[1], square[2]);
+        (out.ab[0][l], out.ab[1][l]) = (a, b);
+    }
+}
+
+/// At `tau = dev f(dev ln C) + kappa J (J - 1) I`.
+#[inline(always)]
+fn stress<const FMA: bool, const N: usize>(
+    g: &[f64; N],
+    bulk: f64,
+    strain: &LaneStrain,
+    stretch: &Stretch,
+    Logarithm { e, square, ab }: &Logarithm,
+    p: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let e = [e[0][l], e[1][l], e[2][l]];
+        let square = [square[0][l], square[1][l], square[2][l]];
+        let mut tau = stretch.series::<FMA, N>(g, &e, &square, [ab[0][l], ab[1][l]]);
+        let j = strain.invariants[0][l] + strain.invariants[1][l];
+        tau[0] = madd::<FMA>(bulk * j, 1.0 + j, tau[0]);
+        let at = stretch.stress::<FMA>(&strain.lane(l), &tau, l);
+        for k in 0..9 {
+            p[k][l] = at[k];
+        }
     }
 }
 

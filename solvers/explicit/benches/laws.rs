@@ -1,0 +1,141 @@
+//! Internal forces: the time of every law over the neo-Hookean's, one group for each kernel and one entry for each law, on
+//! one thread. `cargo bench` prints the ratios once more at the end, of turns that take the laws one after the other: that
+//! is what to read on a machine that is not quiet.
+//!
+//! Floating-point operations per point in vector instructions (a fused product is one), counted in the source, of the law
+//! alone; and the measured time of the whole kernel over the neo-Hookean's at strains near 0.1, AVX2 / AVX-512 (Intel of
+//! family 6, model 167, 2 shared cores, one thread, in cache):
+//!
+//! | law | instructions | tet4 | tet4 nodal | hex8 | hex8 mean | rows |
+//! |---|---|---|---|---|---|---|
+//! | neo-Hookean, ns | 55 | 10.8 / 10.8 | 21.6 / 19.9 | 67 / 53 | 80 / 59 | 63 / 61 |
+//! | linear | 10 | 0.79 / 0.73 | - | 0.85 / 0.88 | - | 1.01 / 1.02 |
+//! | St. Venant-Kirchhoff | 60 | 0.90 / 0.78 | - | 0.99 / 0.97 | - | 1.04 / 1.02 |
+//! | isochoric neo-Hookean | 85 | 1.12 / 0.90 | 1.09 / 1.00 | 1.20 / 1.15 | 1.15 / 1.12 | 1.06 / 1.06 |
+//! | Mooney-Rivlin | 130 | 1.39 / 1.03 | 1.23 / 1.08 | 1.54 / 1.35 | 1.40 / 1.32 | 1.10 / 1.08 |
+//! | Hencky | 165 | 1.41 / 1.08 | 1.21 / 1.07 | 1.58 / 1.52 | 1.38 / 1.31 | 1.10 / 1.09 |
+//! | Ogden, three terms | 190 | 1.58 / 1.14 | 1.33 / 1.15 | 1.70 / 1.60 | 1.63 / 1.52 | 1.12 / 1.10 |
+//!
+//! The bound of Ogden's law on hex8 in AVX2: 8 points x 190 instructions on 4 lanes at two per cycle of some 3.5 GHz are
+//! 54 ns per element, beside the 55 ns of the kernel with the linear law: 1.63 of the neo-Hookean's time. Bytes are those of the kernel, whatever
+//! the law (see the benchmark `explicit`).
+
+mod common;
+
+use std::time::{Duration, Instant};
+
+use common::{cloud, solid};
+use criterion::{Criterion, Throughput};
+use explicit::{ExplicitBody, InternalForce, Kernel};
+use geometry::CellKind;
+use lanes::LanePath;
+use material::Law;
+use shape::{DilationGroups, Vector3, VolumeRows};
+
+/// Turns of the table at the end, and evaluations of one law in each; the shortest counts.
+const TURNS: usize = 60;
+const IN_TURN: usize = 4;
+
+/// All laws, the neo-Hookean first.
+fn laws() -> Vec<Law> {
+    let mut laws = Law::all(20e3, 0.495).unwrap();
+    laws.sort_by_key(|law| !matches!(law, Law::NeoHookean(_)));
+    laws
+}
+
+/// One table of each kernel.
+struct Bodies {
+    tet4: (VolumeRows, DilationGroups, Vec<Vector3>),
+    hex8: (VolumeRows, DilationGroups, Vec<Vector3>),
+    rows: (VolumeRows, Vec<Vector3>),
+}
+
+impl Bodies {
+    fn new() -> Bodies {
+        Bodies { tet4: solid(CellKind::Tet4, 10), hex8: solid(CellKind::Hex8, 18), rows: cloud(6, 28) }
+    }
+
+    /// Volume, groups, displacements and points per item.
+    fn each(&self) -> [(&VolumeRows, Option<&DilationGroups>, &[Vector3], usize); 5] {
+        let ((tet4, nodal, u), (hex8, mean, v), (rows, w)) = (&self.tet4, &self.hex8, &self.rows);
+        [
+            (tet4, None, u, 1),
+            (tet4, Some(nodal), u, 1),
+            (hex8, None, v, 8),
+            (hex8, Some(mean), v, 8),
+            (rows, None, w, 1),
+        ]
+    }
+}
+
+/// Kernels of one table with each law, but for those that take the plain loop.
+fn forces<'a>(
+    laws: &'a [Law],
+    (volume, groups): (&'a VolumeRows, Option<&'a DilationGroups>),
+    path: LanePath,
+) -> Vec<(&'a str, InternalForce<'a>)> {
+    let force = |law: &'a Law| {
+        let body = ExplicitBody { volume, laws: std::slice::from_ref(law), region: &[], groups };
+        (law.name(), InternalForce::new(body, path).unwrap())
+    };
+    laws.iter().map(force).filter(|(_, force)| force.info().kernel.is_parallel()).collect()
+}
+
+fn kernel_of(forces: &[(&str, InternalForce)]) -> Kernel {
+    forces[0].1.info().kernel
+}
+
+fn groups(c: &mut Criterion, laws: &[Law], bodies: &Bodies) {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for (volume, groups, u, per_item) in bodies.each() {
+        let mut forces = forces(laws, (volume, groups), LanePath::best());
+        let mut group = c.benchmark_group(format!("laws of {}", kernel_of(&forces).name()));
+        group
+            .sample_size(20)
+            .measurement_time(Duration::from_secs(1))
+            .warm_up_time(Duration::from_millis(300));
+        group.throughput(Throughput::Elements((volume.weights().len() / per_item) as u64));
+        let mut f = vec![Vector3::zeros(); u.len()];
+        for (name, force) in &mut forces {
+            group.bench_function(*name, |b| one.install(|| b.iter(|| force.evaluate(u, &mut f).unwrap())));
+        }
+        group.finish();
+    }
+}
+
+/// Nanoseconds per element (per point for rows) and the ratio to the first law, of every kernel and path.
+fn table(laws: &[Law], bodies: &Bodies) {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for path in LanePath::available() {
+        for (volume, groups, u, per_item) in bodies.each() {
+            let mut forces = forces(laws, (volume, groups), path);
+            let mut best = vec![f64::INFINITY; forces.len()];
+            let mut f = vec![Vector3::zeros(); u.len()];
+            for _ in 0..TURNS {
+                for ((_, force), best) in forces.iter_mut().zip(&mut best) {
+                    for _ in 0..IN_TURN {
+                        let start = Instant::now();
+                        one.install(|| force.evaluate(u, &mut f).unwrap());
+                        *best = best.min(start.elapsed().as_secs_f64());
+                    }
+                }
+            }
+            println!("{}, {}:", path.name(), kernel_of(&forces).name());
+            for ((name, _), time) in forces.iter().zip(&best) {
+                let each = time * 1e9 * per_item as f64 / volume.weights().len() as f64;
+                println!("  {name:24} {each:7.1} ns {:6.2}", time / best[0]);
+            }
+        }
+    }
+}
+
+fn main() {
+    let (laws, bodies) = (laws(), Bodies::new());
+    let mut criterion = Criterion::default().configure_from_args();
+    groups(&mut criterion, &laws, &bodies);
+    criterion.final_summary();
+    // Without it the benchmark is a test.
+    if std::env::args().any(|argument| argument == "--bench") {
+        table(&laws, &bodies);
+    }
+}

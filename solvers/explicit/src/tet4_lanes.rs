@@ -1,0 +1,349 @@
+//! Kernels of the tetrahedron of four nodes: eight elements in the lanes of one block.
+//!
+//! Two passes over a few blocks, with the law between them: strains, then stress and forces. In one pass a block is a chain
+//! that fills the window of the processor (the neo-Hookean law in two takes 0.8 of the time). Each law's loop over blocks
+//! is compiled on its own: two in one function spoil each other's vectors.
+
+use super::chunks::Slot;
+use super::moduli::{LaneLaw, Moduli, stress};
+use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
+use super::tet4::Chunk;
+use lanes::{LanePath, on_path};
+use material::Law;
+use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
+use material::lane::math::madd;
+use material::lane::{LANES, LaneStrain, Lanes};
+
+/// Blocks that go through each pass together; two and eight take as long.
+const TOGETHER: usize = 4;
+
+#[repr(C, align(64))]
+pub(super) struct Block {
+    /// Gradients of nodes 1 to 3, [3 a + j].
+    pub grads: [[f64; LANES]; 9],
+    pub weight: [f64; LANES],
+    pub nodes: [[u16; LANES]; 4],
+}
+
+/// Aligned as [`LaneStrain`] is.
+#[repr(align(64))]
+struct Stresses([[Lanes; 9]; TOGETHER]);
+
+/// Displacements relative to node 0, [3 a + i].
+#[inline(always)]
+fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
+    let mut origin = [Slot::ZERO; LANES];
+    for l in 0..LANES {
+        origin[l] = u[block.nodes[0][l] as usize];
+    }
+    let mut d = [[0.0; LANES]; 9];
+    for a in 0..3 {
+        let lanes = lanes_of_differences::<FMA>(u, &block.nodes[a + 1], &origin);
+        d[3 * a..3 * a + 3].copy_from_slice(&lanes);
+    }
+    d
+}
+
+/// Adds the forces of nodes 1 to 3, and minus their sum on node 0.
+#[inline(always)]
+fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
+    let mut sum = [Slot::ZERO; LANES];
+    for a in 0..3 {
+        let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
+        for l in 0..LANES {
+            add::<FMA>(&quads[l], &mut f[block.nodes[a + 1][l] as usize]);
+            axpy::<FMA>(-1.0, &quads[l], &mut sum[l]);
+        }
+    }
+    for l in 0..LANES {
+        add::<FMA>(&sum[l], &mut f[block.nodes[0][l] as usize]);
+    }
+}
+
+/// `H_ij = sum_a d_ai g_aj` of one lane.
+#[inline(always)]
+fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
+    let m = madd::<FMA>;
+    let mut h = [0.0; 9];
+    for k in 0..9 {
+        let (i, j) = (k / 3, k % 3);
+        h[k] = m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]));
+    }
+    h
+}
+
+/// `f_a = w P grad N_a` of one lane.
+#[inline(always)]
+fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [[f64; LANES]; 9]) {
+    let m = madd::<FMA>;
+    for a in 0..3 {
+        for i in 0..3 {
+            out[3 * a + i][l] =
+                m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]));
+        }
+    }
+}
+
+/// `H` of eight elements.
+#[inline(always)]
+fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain) {
+    for l in 0..LANES {
+        let h = gradient::<FMA>(d, g, l);
+        out.set::<FMA>(l, &h);
+    }
+}
+
+#[inline(always)]
+fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
+    let mut out = [0.0; 9];
+    for k in 0..9 {
+        out[k] = w * p[k][l];
+    }
+    out
+}
+
+/// Forces of eight elements at the stress `p`.
+#[inline(always)]
+fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 9]) {
+    for l in 0..LANES {
+        let w = block.weight[l];
+        let p = weighted(p, w, l);
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
+/// As [`forces_of`] with the mean pressure of the groups, four times which is `pressure`.
+#[inline(always)]
+fn dilated_forces_of<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    p: &[Lanes; 9],
+    pressure: &Lanes,
+    out: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let w = block.weight[l];
+        let mut p = weighted(p, w, l);
+        let (x, minors) = strain.invariants(l);
+        add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, 0.25 * w * pressure[l], &mut p);
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
+#[inline(always)]
+fn neo_hookean_forces<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    Moduli { mu, lambda }: Moduli,
+    out: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let (x, minors) = strain.invariants(l);
+        let p = piola::<FMA>(&strain.lane(l), minors, x.stress::<FMA>(block.weight[l], mu, lambda));
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
+/// The shared numbers are four times the means of `J_a^(2/3)` and `p_a`.
+#[inline(always)]
+fn dilated_neo_hookean_forces<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    mu: f64,
+    shared: &[Lanes; 2],
+    out: &mut [Lanes; 9],
+) {
+    for l in 0..LANES {
+        let (h, (x, minors)) = (strain.lane(l), strain.invariants(l));
+        let w = block.weight[l];
+        let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
+        let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
+        let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
+        forces::<FMA>(&p, &block.grads, l, out);
+    }
+}
+
+/// Internal forces of one chunk, added to `f`; false where some `J` is not positive.
+pub(super) fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot]) -> bool {
+    let mut first = 0;
+    let mut good = [1.0; LANES];
+    for &(end, region) in &chunk.runs {
+        let blocks = &chunk.blocks[first..end];
+        match &laws[region as usize] {
+            LaneLaw::NeoHookean(moduli) => neo_hookean(path, blocks, *moduli, u, f, &mut good),
+            LaneLaw::Other(law, _) => other(path, path, blocks, law, u, f, &mut good),
+        }
+        first = end;
+    }
+    good == [1.0; LANES]
+}
+
+on_path! {
+    fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes
+}
+
+#[inline(always)]
+fn neo_hookean_lanes<const FMA: bool>(
+    blocks: &[Block],
+    moduli: Moduli,
+    u: &[Slot],
+    f: &mut [Slot],
+    good: &mut Lanes,
+) {
+    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            x.check(good);
+        }
+        for (block, x) in blocks.iter().zip(&x) {
+            neo_hookean_forces::<FMA>(block, x, moduli, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
+    }
+}
+
+on_path! {
+    /// Any other law.
+    fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes
+}
+
+#[inline(always)]
+fn other_lanes<const FMA: bool>(
+    path: LanePath,
+    blocks: &[Block],
+    law: &Law,
+    u: &[Slot],
+    f: &mut [Slot],
+    good: &mut Lanes,
+) {
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 9];
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            x.check(good);
+        }
+        stress(path, law, &x[..blocks.len()], &mut p.0);
+        for (block, p) in blocks.iter().zip(&p.0) {
+            forces_of::<FMA>(block, p, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
+    }
+}
+
+on_path! {
+    /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
+    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], upright: &mut bool) = dilations_lanes
+}
+
+#[inline(always)]
+fn dilations_lanes<const FMA: bool>(
+    laws: &[LaneLaw],
+    chunk: &Chunk,
+    u: &[Slot],
+    sums: &mut [[f64; 2]],
+    upright: &mut bool,
+) {
+    let mut first = 0;
+    let mut good = [1.0; LANES];
+    for &(end, region) in &chunk.runs {
+        // Of the other laws the first number alone.
+        let [mu, ..] = laws[region as usize].of_group();
+        for block in &chunk.blocks[first..end] {
+            let d = gather::<FMA>(block, u);
+            let mut out = [[0.0; LANES]; 2];
+            for l in 0..LANES {
+                let h = gradient::<FMA>(&d, &block.grads, l);
+                let (x, _) = Invariants::of::<FMA>(&h);
+                good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
+                let share = 0.25 * block.weight[l];
+                out[0][l] = share * x.j;
+                out[1][l] = share * mu * x.isochoric::<FMA>(&h, 0.0).0;
+            }
+            for l in 0..LANES {
+                for a in 0..4 {
+                    let at = &mut sums[block.nodes[a][l] as usize];
+                    at[0] += out[0][l];
+                    at[1] += out[1][l];
+                }
+            }
+        }
+        first = end;
+    }
+    *upright = good == [1.0; LANES];
+}
+
+/// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
+pub(super) fn dilated(
+    path: LanePath,
+    laws: &[LaneLaw],
+    chunk: &Chunk,
+    u: &[Slot],
+    closed: &[[f64; 2]],
+    f: &mut [Slot],
+) {
+    let mut first = 0;
+    for &(end, region) in &chunk.runs {
+        let blocks = &chunk.blocks[first..end];
+        match &laws[region as usize] {
+            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean(path, blocks, moduli.mu, u, closed, f),
+            LaneLaw::Other(law, _) => dilated_other(path, path, blocks, law, u, closed, f),
+        }
+        first = end;
+    }
+}
+
+on_path! {
+    fn dilated_neo_hookean(blocks: &[Block], mu: f64, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_neo_hookean_lanes
+}
+
+#[inline(always)]
+fn dilated_neo_hookean_lanes<const FMA: bool>(
+    blocks: &[Block],
+    mu: f64,
+    u: &[Slot],
+    closed: &[[f64; 2]],
+    f: &mut [Slot],
+) {
+    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+        }
+        for (block, x) in blocks.iter().zip(&x) {
+            let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_neo_hookean_forces::<FMA>(block, x, mu, &shared, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
+    }
+}
+
+on_path! {
+    /// Any other law.
+    fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes
+}
+
+#[inline(always)]
+fn dilated_other_lanes<const FMA: bool>(
+    path: LanePath,
+    blocks: &[Block],
+    law: &Law,
+    u: &[Slot],
+    closed: &[[f64; 2]],
+    f: &mut [Slot],
+) {
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 9];
+    for blocks in blocks.chunks(TOGETHER) {
+        for (block, x) in blocks.iter().zip(&mut x) {
+            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+        }
+        stress(path, law, &x[..blocks.len()], &mut p.0);
+        for ((block, x), p) in blocks.iter().zip(&x).zip(&p.0) {
+            let [_, pressure] = lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_forces_of::<FMA>(block, x, p, &pressure, &mut out);
+            scatter::<FMA>(block, &out, f);
+        }
+    }
+}
