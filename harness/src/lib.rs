@@ -4,9 +4,9 @@
 //!
 //! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `outcome` > `error`
 //!
-//! Data flows the other way round: a scene (TOML, checked) becomes a [`scenario::Scenario`], that a
-//! [`scenario::setup::Setup`] and a [`discretise::Discretisation`], these the tables of [`prepare::prepare`]. A procedure
-//! solves them, `measure` compares the solution, and [`run::run`] makes an [`outcome::Outcome`] of records. Nothing here
+//! Data flows the other way round: a scene (TOML, checked) becomes a `scenario::Scenario`, that a
+//! `scenario::setup::Setup` and a `discretise::Discretisation`, these the tables of `prepare::prepare`. A procedure
+//! solves them, `measure` compares the solution, and `run::run` makes an [`outcome::Outcome`] of records. Nothing here
 //! draws; nothing in `reports` solves.
 //!
 //! ```

@@ -58,7 +58,7 @@ enum TypedKeys {
     /// Finite elements
     Fem(FemKeys),
     /// Element-free Galerkin
-    Efg(EfgKeys),
+    Efg(Box<EfgKeys>),
 }
 
 impl JsonSchema for MethodKeys {
