@@ -1,5 +1,12 @@
-//! How a scene is solved: the procedures.
+//! How a scene is solved: the procedures, the keys of each, and how keys become values.
 
+use catalogue::Problem;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::report::Report;
+use super::resolve::positive;
+use super::units::{Length, Q, Rate, Time};
 use super::words::words;
 
 /// Kinds of procedures; what each is and takes is said at its keys.
@@ -146,7 +153,7 @@ pub struct Implicit {
 /// Spectral radius where the file gives none. At 0.8 what a step cannot resolve loses a fifth per step. Above 0 a step balances a
 /// mean of the forces at both its ends: a tool that has left the tissue pushes on for a step, and stiff contact gains energy that
 /// way (a block between plates of 5 MPa/mm swung by 38 mm at 0.5 where it should move by 3 mm).
-pub(crate) fn spectral_radius(tools: bool) -> f64 {
+fn spectral_radius(tools: bool) -> f64 {
     if tools { 0.0 } else { 0.8 }
 }
 
@@ -164,14 +171,14 @@ pub struct Explicit {
 }
 
 /// Time step over the critical one where the file gives none.
-pub(crate) const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.9;
 
 /// Mass of a driven tool over the body's where the file gives none: a tenth hardly slows its motion and is heavy enough for the
 /// steps that a soft body takes.
-pub(crate) const TOOL_MASS: f64 = 0.1;
+const TOOL_MASS: f64 = 0.1;
 
 /// Modes that are reported where the file gives no number.
-pub(crate) const MODES: usize = 24;
+const MODES: usize = 24;
 
 /// How a static step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,4 +194,209 @@ pub struct Newton {
 impl Newton {
     /// Where the file says nothing.
     pub const STANDARD: Newton = Newton { tolerance: 1e-8, iterations: 25, augmentations: 0 };
+}
+
+/// How the scene is solved; kind = "linear" unless given
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum ProcedureKeys {
+    /// Shape functions and integration rows only: what a method costs before anything is solved
+    Prepare {
+        /// Read and not used, so that one word changes the kind
+        steps: Option<u32>,
+    },
+    /// One linear solve
+    Linear {
+        /// Read and not used, so that one word changes the kind
+        steps: Option<u32>,
+    },
+    /// Small free vibrations: the lowest modes and every frequency
+    Modes {
+        /// Lowest modes of vibration that are reported and compared; 24 unless given
+        modes: Option<u32>,
+        /// Read and not used, so that one word changes the kind
+        steps: Option<u32>,
+    },
+    /// Quasi-static load steps, each by Newton's method; large-strain laws and tools
+    Static(StaticKeys),
+    /// Explicit dynamics: central differences
+    Explicit(ExplicitKeys),
+    /// Implicit dynamics: generalised-alpha
+    ImplicitDynamic(ImplicitKeys),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) struct StaticKeys {
+    /// Load steps at whose ends results are reported; 1 unless given
+    pub steps: Option<u32>,
+    #[serde(flatten)]
+    pub newton: NewtonKeys,
+    /// Part of the load to within which a limit point is located, if the path loses its stability: steps are halved
+    /// down to it. Unless given, a limit point is reported at the end of the load step that passes it
+    pub limit_within: Option<f64>,
+    /// What follows if no equilibrium is found
+    pub on_stall: Option<OnStall>,
+}
+
+/// How a step is solved by Newton's method
+#[derive(Deserialize, JsonSchema)]
+pub(crate) struct NewtonKeys {
+    /// Relative residual of a step by Newton's method; 1e-8 unless given
+    pub tolerance: Option<f64>,
+    /// Most iterations of Newton's method in a step; 25 unless given
+    pub iterations: Option<u32>,
+    /// Uzawa iterations of contact in a step; 0 (a plain penalty) unless given
+    pub augmentations: Option<u32>,
+}
+
+/// The time axis of dynamics
+#[derive(Deserialize, JsonSchema)]
+pub(crate) struct RampKeys {
+    /// Equal intervals of time at whose ends results are reported; 1 unless given
+    pub steps: Option<u32>,
+    /// End of the time axis
+    pub duration: Q<Time>,
+    /// Time over which loads and supports grow before they are constant; the duration unless given, "0 s" is at once
+    pub over: Option<Q<Time>>,
+    /// Mass-proportional damping, in explicit dynamics also of tools that have a mass; none unless given
+    pub damping: Option<Q<Rate>>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) struct ExplicitKeys {
+    #[serde(flatten)]
+    pub ramp: RampKeys,
+    /// Time step over the critical one; 0.9 unless given
+    pub safety: Option<f64>,
+    /// Time step; safety times the critical one unless given
+    pub step: Option<Q<Time>>,
+    /// Mass of a tool driven by a force over that of the body; 0.1 unless given
+    pub tool_mass: Option<f64>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) struct ImplicitKeys {
+    #[serde(flatten)]
+    pub ramp: RampKeys,
+    #[serde(flatten)]
+    pub newton: NewtonKeys,
+    /// Whether mass acts; true unless given, false for a quasi-static motion of tissue that relaxes
+    pub inertia: Option<bool>,
+    /// Spectral radius at infinite frequency, 0 to 1; 0.8 unless given, and 0 with tools
+    pub spectral_radius: Option<f64>,
+    /// Local error of a displacement that a time step may make; unlimited unless given
+    pub accuracy: Option<Q<Length>>,
+}
+
+/// Without a table it is linear.
+pub(crate) fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> Procedure {
+    match keys {
+        None => Procedure::Linear,
+        Some(ProcedureKeys::Linear { steps: unused }) => {
+            steps(unused, report);
+            Procedure::Linear
+        }
+        Some(ProcedureKeys::Prepare { steps: unused }) => {
+            steps(unused, report);
+            Procedure::Prepare
+        }
+        Some(ProcedureKeys::Modes { modes: count, steps: unused }) => {
+            steps(unused, report);
+            Procedure::Modes { count: modes(count, report) }
+        }
+        Some(ProcedureKeys::Static(keys)) => Procedure::Static(load_steps(&keys, report)),
+        Some(ProcedureKeys::Explicit(keys)) => Procedure::Explicit(explicit(&keys, report)),
+        Some(ProcedureKeys::ImplicitDynamic(keys)) => {
+            Procedure::ImplicitDynamic(implicit(&keys, tools, report))
+        }
+    }
+}
+
+fn modes(modes: Option<u32>, report: &mut Report) -> usize {
+    let modes = modes.map_or(MODES, |n| n as usize);
+    let sound = (1..=1000).contains(&modes);
+    report.require(sound, "procedure.modes", "is no number of modes", "give 1 to 1000; 24 is usual");
+    modes
+}
+
+fn load_steps(keys: &StaticKeys, report: &mut Report) -> Static {
+    let limit_within = keys.limit_within;
+    let sound = limit_within.is_none_or(|part| (1e-4..=1.0).contains(&part));
+    let help = "give 1e-4 to 1; 0.02 is usual";
+    report.require(sound, "procedure.limit-within", "is no part of the load", help);
+    Static {
+        steps: steps(keys.steps, report),
+        newton: newton(&keys.newton, report),
+        limit_within,
+        on_stall: keys.on_stall.unwrap_or(OnStall::Stop),
+    }
+}
+
+fn steps(steps: Option<u32>, report: &mut Report) -> usize {
+    let steps = steps.unwrap_or(1);
+    report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
+    steps as usize
+}
+
+fn newton(keys: &NewtonKeys, report: &mut Report) -> Newton {
+    let standard = Newton::STANDARD;
+    let tolerance = keys.tolerance.unwrap_or(standard.tolerance);
+    // Rounding leaves about 1e-13 of the forces of a nearly incompressible body.
+    let sound = (1e-12..=1e-2).contains(&tolerance);
+    report.require(sound, "procedure.tolerance", "is no tolerance", "give 1e-12 to 1e-2; 1e-8 is usual");
+    let iterations = keys.iterations.map_or(standard.iterations, |n| n as usize);
+    report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
+    let augmentations = keys.augmentations.map_or(standard.augmentations, |n| n as usize);
+    Newton { tolerance, iterations, augmentations }
+}
+
+fn ramp(keys: &RampKeys, report: &mut Report) -> Ramp {
+    let steps = steps(keys.steps, report);
+    let duration = positive(keys.duration.0, "procedure.duration", report);
+    let over = keys.over.as_ref().map(|q| q.0);
+    let sound = over.is_none_or(|t| t >= 0.0);
+    report.require(sound, "procedure.over", "is negative", "give \"0 s\" for at once, or leave it out");
+    let damping = keys.damping.as_ref().map_or(0.0, |q| q.0);
+    report.require(damping >= 0.0, "procedure.damping", "is negative", "give 0 /s or more, or leave it out");
+    Ramp { duration, over, steps, damping }
+}
+
+fn explicit(keys: &ExplicitKeys, report: &mut Report) -> Explicit {
+    let explicit = Explicit {
+        ramp: ramp(&keys.ramp, report),
+        safety: keys.safety.unwrap_or(SAFETY),
+        step: keys.step.as_ref().map(|q| positive(q.0, "procedure.step", report)),
+        tool_mass: keys.tool_mass.map_or(TOOL_MASS, |m| positive(m, "procedure.tool-mass", report)),
+    };
+    let sound = explicit.safety > 0.0 && explicit.safety <= 1.0;
+    report.require(sound, "procedure.safety", "is not in (0, 1]", "0.9 is usual");
+    let both = keys.safety.is_some() && explicit.step.is_some();
+    report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
+    explicit
+}
+
+fn implicit(keys: &ImplicitKeys, tools: bool, report: &mut Report) -> Implicit {
+    let implicit = Implicit {
+        ramp: ramp(&keys.ramp, report),
+        newton: newton(&keys.newton, report),
+        inertia: keys.inertia.unwrap_or(true),
+        spectral_radius: keys.spectral_radius.unwrap_or(spectral_radius(tools)),
+        accuracy: keys.accuracy.as_ref().map(|q| positive(q.0, "procedure.accuracy", report)),
+    };
+    let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
+    let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
+    report.require(sound, "procedure.spectral-radius", "is not in [0, 1]", help);
+    let moving = [
+        ("damping", keys.ramp.damping.is_some()),
+        ("spectral-radius", keys.spectral_radius.is_some()),
+        ("accuracy", keys.accuracy.is_some()),
+    ];
+    for (name, _) in moving.into_iter().filter(|(_, given)| *given && !implicit.inertia) {
+        let problem = Problem::new("is of a motion, and inertia = false has none").help("leave it out");
+        report.add(&format!("procedure.{name}"), problem);
+    }
+    implicit
 }

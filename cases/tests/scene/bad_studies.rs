@@ -9,12 +9,12 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("title = \"t\"\n[[run]] #<\nlevels = [1]", "run[0].scene", &["is missing"]),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [0] #<",
-        "run[0].levels",
+        "run[0].levels[0]",
         &["no level"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\npoisson = [0.5] #<",
-        "run[0].poisson",
+        "run[0].poisson[0]",
         &["0.4999"],
     ),
     (
@@ -24,7 +24,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nnodes = [3] #<",
-        "run[0].nodes",
+        "run[0].nodes[0]",
         &["4 nodes or more"],
     ),
     (

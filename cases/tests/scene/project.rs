@@ -69,3 +69,17 @@ fn no_two_scenes_write_out_the_same_method() {
     }
     assert!(known.len() > 30, "{}", known.len());
 }
+
+#[test]
+fn kinds_of_procedures_have_the_names_of_their_keys() {
+    use cases::scene::ProcedureKind::{self, Explicit, ImplicitDynamic, Linear, Modes, Prepare, Static};
+    let schema = cases::scene::schema();
+    let forms = &schema["properties"]["procedure"]["anyOf"][0]["oneOf"];
+    let words: Vec<&str> = forms
+        .as_array()
+        .unwrap_or_else(|| panic!("{}", schema["properties"]["procedure"]))
+        .iter()
+        .map(|form| form["properties"]["kind"]["const"].as_str().unwrap())
+        .collect();
+    assert_eq!(words, [Prepare, Linear, Modes, Static, Explicit, ImplicitDynamic].map(ProcedureKind::name));
+}

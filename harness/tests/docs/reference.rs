@@ -124,7 +124,8 @@ fn walk(
     if let Some((name, _)) = same {
         value = vec![format!("as [`{name}`](#{name})")];
     }
-    let meaning = meaning.into_iter().filter(|m| !m.is_empty()).collect::<Vec<_>>().join(" ");
+    let meaning =
+        meaning.into_iter().filter(|m| !m.is_empty()).collect::<Vec<_>>().join(". ").replace(".. ", ". ");
     rows.push(Row { key: key.into(), value: value.join(" or "), required, kinds: kinds.to_vec(), meaning });
     if same.is_none() {
         alternatives.iter().for_each(|a| below(key, a, kinds, rows, top));

@@ -4,7 +4,6 @@
 mod condition;
 mod method;
 mod output;
-mod procedure;
 
 use std::borrow::Cow;
 
@@ -15,9 +14,9 @@ use serde::Deserialize;
 pub(crate) use condition::*;
 pub(crate) use method::*;
 pub(crate) use output::*;
-pub(crate) use procedure::*;
 
 use super::model::with_all;
+use super::procedure::ProcedureKeys;
 use super::purpose::{Publication, Purpose};
 use super::region::Region;
 use super::units::{Density, Length, Q, Time, Unit};

@@ -4,12 +4,12 @@ mod condition;
 mod material;
 mod method;
 mod output;
-mod procedure;
 mod tool;
 
 use super::keys::{BodyKeys, Names, SceneKeys};
 use super::method::{MeshFile, Method};
 use super::model::{Body, MaterialRegion, Scene};
+use super::procedure::procedure;
 use super::purpose::Purpose;
 use super::report::Report;
 use super::units::{Dim, Q};
@@ -20,7 +20,6 @@ use method::method;
 pub(crate) use method::{essential, integration, jitter, size};
 pub(crate) use output::checks;
 use output::{output, reference};
-use procedure::procedure;
 use tool::tool;
 
 /// Unit of a mesh file's numbers unless the scene gives another: what CAD programs and Gmsh models of organs are in.
