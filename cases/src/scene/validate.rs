@@ -169,7 +169,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         {
             "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene"
         }
-        Needs::Dynamics if !scene.procedure.ramp().is_some() => {
+        Needs::Dynamics if scene.procedure.ramp().is_none() => {
             "needs [procedure] kind = \"explicit\" or \"implicit-dynamic\" in the scene"
         }
         Needs::Explicit if scene.procedure.kind() != ProcedureKind::Explicit => {
@@ -206,7 +206,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::Exact if !moves(scene) => {
             "needs output.probes and dynamics with [reference] exact = \"...\" in the scene"
         }
-        Needs::Motion if !scene.procedure.ramp().is_some() || scene.output.probes.is_empty() => {
+        Needs::Motion if scene.procedure.ramp().is_none() || scene.output.probes.is_empty() => {
             "needs output.probes and dynamics in the scene"
         }
         Needs::Transfer if scene.output.transfers.is_empty() => "needs output.transfer in the scene",

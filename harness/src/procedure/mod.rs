@@ -97,7 +97,6 @@ impl Stages {
             relaxation: (false, NOTHING.into()),
             no_transfer: Some(NOTHING),
             no_contact: Some(NOTHING),
-            ..Stages::linear()
         }
     }
 
