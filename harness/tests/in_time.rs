@@ -150,8 +150,8 @@ fn bad_scenes_in_time_name_the_key() {
         ),
         ("steps = 2", "steps = 2, accuracy = 0.1", 2, "'procedure.accuracy': '0.1' has no unit"),
         ("steps = 2", "steps = 2, accuracy = \"0 mm\"", 2, "'procedure.accuracy'"),
-        ("steps = 2", "steps = 2, safety = 0.5", 2, "goes with kind = \"explicit\" only"),
-        ("steps = 2", "steps = 2, on-stall = \"relax\"", 2, "goes with kind = \"static\" only"),
+        ("steps = 2", "steps = 2, safety = 0.5", 2, "it goes with explicit"),
+        ("steps = 2", "steps = 2, on-stall = \"relax\"", 2, "it goes with static"),
         (
             "steps = 2",
             "steps = 2, inertia = false, damping = \"5 /s\"",
@@ -162,7 +162,7 @@ fn bad_scenes_in_time_name_the_key() {
             "\"implicit-dynamic\", duration = \"1 s\"",
             "\"static\", inertia = true",
             2,
-            "goes with kind = \"implicit-dynamic\" only",
+            "it goes with implicit-dynamic",
         ),
     ] {
         assert!(good.contains(from), "{from}");
