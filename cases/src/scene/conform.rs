@@ -184,7 +184,7 @@ fn not_one_of(value: &DeValue<'_>, words: &[&str]) -> Problem {
     Problem::new("is not known").found(&text).help(suggest(&text, words))
 }
 
-/// Of several tables told apart by the word under one key (`shape = "box"`), the one meant.
+/// Of several tables distinguished by the word under one key (`shape = "box"`), the one meant.
 fn tagged<'s>(
     table: &DeTable<'_>,
     span: Range<usize>,
@@ -300,7 +300,7 @@ fn items(
     }
 }
 
-/// The key that tells a form from others, and its word.
+/// The key that distinguishes a form from others, and its word.
 fn tag(form: &Map<String, Value>) -> Option<(&str, &str)> {
     let keys = form.get("properties")?.as_object()?;
     keys.iter().find_map(|(key, schema)| Some((key.as_str(), schema.get("const")?.as_str()?)))
@@ -317,7 +317,7 @@ fn of_another(name: &str, form: &Map<String, Value>, others: &[&Map<String, Valu
     (!words.is_empty()).then(|| problem.help(format!("leave it out; it goes with {}", words.join(", "))))
 }
 
-/// `others` are the forms that the table might have had, told apart by a word as [`tagged`] does.
+/// `others` are the forms that the table might have had, distinguished by a word as [`tagged`] does.
 fn keys(
     table: &DeTable<'_>,
     span: Range<usize>,

@@ -103,8 +103,8 @@ fn relaxing_compression_is_the_convolution_of_its_past() {
             .sum();
         let now = strains(time);
         let stress = Matrix3::identity() * (elastic.bulk() * now.trace()) + past * (2.0 * elastic.mu());
-        let told = exact.at(time).unwrap().stress(&Point3::origin());
-        assert!((stress - told).norm() < 1e-6 * told.norm(), "{time}: {stress} {told}");
+        let stated = exact.at(time).unwrap().stress(&Point3::origin());
+        assert!((stress - stated).norm() < 1e-6 * stated.norm(), "{time}: {stress} {stated}");
     }
     // Put on at once, it starts as Hooke has it.
     let at_once = RelaxingCompression::new(elastic, strain, 0.0, [share, tau]).unwrap();

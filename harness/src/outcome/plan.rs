@@ -1,5 +1,6 @@
-//! The plan of a run: its stages in order, whether each runs, and why. The run executes it: it asks [`Plan::runs`] before each
-//! stage, so that a stage which the plan skips cannot run.
+//! The plan of a run: its stages in order, whether each runs, and why. The run asks [`Plan::runs`] before
+//! refinement, relaxation, transfer and schemes; what a procedure does inside its solver follows from the values that its stages
+//! are made of, and is held against the counters by a test.
 
 use serde::Serialize;
 

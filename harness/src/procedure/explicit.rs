@@ -130,13 +130,15 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
             }
         });
     let mut states = States { critical: first.dt, ..States::default() };
+    let mut made = 0;
     let failure = match motion {
         Err(failure @ ExplicitError::StepTooLarge { .. }) => Some(failure),
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
             let mut run = Run { motion, asked, setup, prepared, states };
             let failure = run.march(&mut load, interval).err();
-            counters.time_steps += run.motion.steps() as u64;
+            made = run.motion.steps() as u64;
+            counters.time_steps += made;
             if let Some(tools) = run.motion.tools() {
                 counters.contact_evaluations += tools.counts().evaluations;
                 counters.contact_skips += tools.counts().skipped;
@@ -149,7 +151,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let last = steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(setup.tools.len()));
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
     let mut metrics = Vec::new();
-    push(&mut metrics, &metric::TIME_STEPS, counters.time_steps as f64);
+    push(&mut metrics, &metric::TIME_STEPS, made as f64);
     push(&mut metrics, &metric::TIME_REACHED, last.load * asked.ramp.duration);
     push(&mut metrics, &metric::CRITICAL_STEP, critical);
     push(&mut metrics, &metric::MASS, mass.iter().sum());

@@ -7,6 +7,7 @@ use statics::{Mass, Modes, modes};
 
 use super::{Problem, Solution, Stages};
 use crate::Failure;
+use crate::error::Key;
 use crate::outcome::Meters;
 use crate::scenario::setup::Setup;
 
@@ -21,7 +22,7 @@ pub(crate) struct Vibration {
 
 pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
-        mass: (true, setup.mass.map_or("consistent", scene::Mass::name).into()),
+        mass: (true, setup.mass.map_or("none given", scene::Mass::name).into()),
         stiffness: (true, "of small vibrations".into()),
         factorisation: (true, "one, dense, into all modes".into()),
         no_transfer: Some("modes are compared where they are integrated"),
@@ -52,17 +53,21 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
         let rows = &volume.rows;
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
     };
-    Ok(match (setup.mass, method.interpolates) {
+    let Some(kind) = setup.mass else {
+        let help = "mass = \"consistent\", \"lumped\" or \"transformed\"";
+        return Err(Failure::input(Key::Method("mass"), "is missing, and vibrations need one", help));
+    };
+    Ok(match (kind, method.interpolates) {
         // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
-        (None | Some(scene::Mass::Consistent), _) => {
+        (scene::Mass::Consistent, _) => {
             let (fine, region) = prepared.fine_volume()?;
             Mass::consistent(&fine, &density, &region)?
         }
-        (Some(scene::Mass::Transformed), false) => {
+        (scene::Mass::Transformed, false) => {
             let (at_nodes, _) = prepared.source.at_points(method.nodes())?;
             Mass::transformed(at_nodes.rows(), &lumped()?)?
         }
         // Parameters of elements are displacements: nothing is left to transform.
-        (Some(scene::Mass::Lumped | scene::Mass::Transformed), _) => Mass::lumped(&lumped()?)?,
+        (scene::Mass::Lumped | scene::Mass::Transformed, _) => Mass::lumped(&lumped()?)?,
     })
 }
