@@ -84,7 +84,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     let make = |methods: &[&str], out: &str, beside: &[&str]| {
         let mut args = vec!["reference", &scene, "--points", &points, "--out", out];
         args.extend(methods.iter().flat_map(|id| ["--method", id]));
-        args.extend(beside.iter().flat_map(|file| ["--beside", file]));
+        args.extend(beside.iter().flat_map(|file| ["--alongside", file]));
         tissuebench(&args)
     };
     let all = inside(&dir, "all.json");
@@ -99,8 +99,18 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     // Or all made before.
     let (nodal, last) = (inside(&dir, "nodal.json"), inside(&dir, "last.json"));
     assert_eq!((make(&["tet4-nodal"], &nodal, &[]).code, make(&["hex20-mixed"], &last, &[]).code), (0, 0));
-    let join =
-        ["reference", &scene, "--points", &points, "--told", &last, "--beside", &nodal, "--beside", &part];
+    let join = [
+        "reference",
+        &scene,
+        "--points",
+        &points,
+        "--from",
+        &last,
+        "--alongside",
+        &nodal,
+        "--alongside",
+        &part,
+    ];
     assert_eq!(tissuebench(&[&join[..], &["--out", &joined]].concat()).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     // A solution is no witness of itself.

@@ -11,7 +11,7 @@ pub(crate) struct Question {
     pub(crate) ending: &'static str,
     /// In a sentence.
     pub(crate) name: &'static str,
-    /// Relative errors that tell it, the best first. A case is asked by one of them.
+    /// Relative errors that measure it, the best first. A case is asked by one of them.
     errors: &'static [&'static str],
     /// Whether a single number is asked for, which can be right by chance, and not a field.
     pub(crate) scalar: bool,

@@ -1,4 +1,4 @@
-//! Numbers told step by step or mode by mode: which of them a run recorded, and one quantity over another.
+//! Numbers recorded step by step or mode by mode: which of them a run recorded, and one quantity over another.
 
 use std::collections::BTreeMap;
 

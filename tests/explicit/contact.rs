@@ -50,7 +50,7 @@ impl Pressed {
             .dt
     }
 
-    fn held<'a>(&self, hold: &'a (dyn Fn(f64) -> f64 + Sync)) -> Vec<Prescribed<'a>> {
+    fn constrained<'a>(&self, hold: &'a (dyn Fn(f64) -> f64 + Sync)) -> Vec<Prescribed<'a>> {
         let nodes = self.block.nodes_of(&["z-min"]);
         nodes
             .iter()
@@ -109,7 +109,7 @@ fn energy_balances_with_tools_that_slide_and_swing() {
     let pressed = Pressed::new();
     let surface = ContactSurface::new(&pressed.surface);
     let hold = |_: f64| 0.0;
-    let held = pressed.held(&hold);
+    let constrained = pressed.constrained(&hold);
     let body: f64 = pressed.mass.iter().sum();
     let dt = pressed.step(0.6);
     let aslant = Vector3::new(0.8, 0.1, -1.0);
@@ -126,7 +126,7 @@ fn energy_balances_with_tools_that_slide_and_swing() {
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
         let mut motion =
-            Dynamics::new(&mut force, &pressed.mass, &held, params(dt, damping), start.0, start.1)
+            Dynamics::new(&mut force, &pressed.mass, &constrained, params(dt, damping), start.0, start.1)
                 .unwrap()
                 .with_tools(tools)
                 .unwrap();
@@ -149,7 +149,7 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
     let pressed = Pressed::new();
     let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(-Vector3::z(), 0.0));
     let hold = |_: f64| 0.0;
-    let held = pressed.held(&hold);
+    let constrained = pressed.constrained(&hold);
     let body: f64 = pressed.mass.iter().sum();
     let dt = pressed.step(0.9);
     let mut ends = Vec::new();
@@ -160,7 +160,7 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
         let mut motion =
-            Dynamics::new(&mut force, &pressed.mass, &held, params(dt, damping), start.0, start.1)
+            Dynamics::new(&mut force, &pressed.mass, &constrained, params(dt, damping), start.0, start.1)
                 .unwrap()
                 .with_tools(tools)
                 .unwrap();
@@ -182,7 +182,7 @@ fn a_step_may_change_on_the_way() {
     let pressed = Pressed::new();
     let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(-Vector3::z(), 0.0));
     let hold = |_: f64| 0.0;
-    let held = pressed.held(&hold);
+    let constrained = pressed.constrained(&hold);
     let body: f64 = pressed.mass.iter().sum();
     let dt = pressed.step(0.8);
     let run = |plan: &[(f64, usize)]| {
@@ -191,10 +191,11 @@ fn a_step_may_change_on_the_way() {
         let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
-        let mut motion = Dynamics::new(&mut force, &pressed.mass, &held, params(dt, 30.0), start.0, start.1)
-            .unwrap()
-            .with_tools(tools)
-            .unwrap();
+        let mut motion =
+            Dynamics::new(&mut force, &pressed.mass, &constrained, params(dt, 30.0), start.0, start.1)
+                .unwrap()
+                .with_tools(tools)
+                .unwrap();
         let mut drift = 0.0f64;
         for &(dt, steps) in plan {
             motion.set_step(dt).unwrap();

@@ -80,11 +80,11 @@ fn a_bent_box_comes_to_rest_and_too_few_steps_are_an_error() {
     let (u, info) = relax(&mut force, &mass, &fixed, &mut none, ramp.clone(), params(1e-9)).unwrap();
     let mut f = u.clone();
     force.evaluate(&u, &mut f).unwrap();
-    let held: Vec<_> = fixed.iter().map(|d| (d.node as usize, d.axis as usize)).collect();
+    let constrained: Vec<_> = fixed.iter().map(|d| (d.node as usize, d.axis as usize)).collect();
     let largest = f.iter().map(|f| f.amax()).fold(0.0, f64::max);
     for (i, f) in f.iter().enumerate() {
         for axis in 0..3 {
-            if !held.contains(&(i, axis)) {
+            if !constrained.contains(&(i, axis)) {
                 assert!(f[axis].abs() < 1e-7 * largest, "{i} {axis}: {} of {largest} {info:?}", f[axis]);
             }
         }

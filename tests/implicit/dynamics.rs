@@ -7,7 +7,7 @@ use integration::cuboid::{Cuboid, distance, largest, moving, params};
 use material::{Law, LinearElastic, NeoHookean};
 use shape::{FixedDof, Matrix3, Point3, Vector3};
 use statics::{
-    Dilation, HeldSurface, Inertia, Load, Mass, NewtonParams, Ramp, Ramps, StaticParams, StaticProblem,
+    Dilation, Inertia, Load, Mass, NewtonParams, PenaltySurface, Ramp, Ramps, StaticParams, StaticProblem,
     TimeError, TimeParams, TimeProblem, solve_in_time, solve_static,
 };
 
@@ -69,7 +69,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_body() {
     for (kind, lumped) in [(CellKind::Hex8, true), (CellKind::Hex20, false), (CellKind::Tet10, false)] {
         let block = block(kind, [3, 2, 1]);
         let laws = [linear()];
-        let fixed = block.held(|x, _| (x.x == 0.0).then_some(0.0));
+        let fixed = block.constrained(|x, _| (x.x == 0.0).then_some(0.0));
         let body = block.body(&laws, &fixed);
         let mass = if lumped { block.lumped(DENSITY) } else { block.consistent(DENSITY) };
         let velocity = stirred(&block);
@@ -148,7 +148,7 @@ fn a_neo_hookean_body_keeps_energy_within_bounds_and_momentum_exactly() {
 fn the_same_bits_with_one_thread_and_two() {
     let block = block(CellKind::Tet10, [4, 3, 2]);
     let laws = [soft(0.45)];
-    let fixed = block.held(|x, _| (x.x == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, _| (x.x == 0.0).then_some(0.0));
     let mass = block.consistent(DENSITY);
     let velocity = stirred(&block);
     let groups = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
@@ -171,7 +171,7 @@ fn the_same_bits_with_one_thread_and_two() {
 fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let block = block(CellKind::Hex8, [4, 4, 3]);
     let laws = [soft(0.3)];
-    let fixed = block.held(|x, _| (x.z == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, _| (x.z == 0.0).then_some(0.0));
     let rule = SurfaceRule::STANDARD;
     let surface = fem::surface_rows(&block.mesh, &block.mesh.boundary(), &rule).unwrap();
     let contact = ContactSurface::new(&surface);
@@ -217,7 +217,7 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
 fn a_moved_base_carries_the_body() {
     let block = block(CellKind::Hex8, [3, 2, 2]);
     let laws = [linear()];
-    let fixed = block.held(|x, axis| (x.z == 0.0).then_some([5e-3, 0.0, 0.0][axis]));
+    let fixed = block.constrained(|x, axis| (x.z == 0.0).then_some([5e-3, 0.0, 0.0][axis]));
     let body = block.body(&laws, &fixed);
     let mass = block.consistent(DENSITY);
     let ramps = Ramps::all(Ramp::Smooth { over: 0.05 });
@@ -248,21 +248,21 @@ fn a_moved_base_carries_the_body() {
     assert!(error < 1e-6, "{error:e}");
 }
 
-/// A surface held by a penalty moves as one held node by node does.
+/// A surface constrained by a penalty moves as one constrained node by node does.
 #[test]
 fn a_surface_held_by_penalty_is_driven_too() {
     let block = block(CellKind::Hex8, [3, 2, 2]);
     let laws = [linear()];
     let bottom = block.mesh.group("z-min").unwrap();
     let surface = fem::surface_rows(&block.mesh, bottom, &SurfaceRule::STANDARD).unwrap();
-    let held = [HeldSurface {
+    let constrained = [PenaltySurface {
         surface: &surface,
         axes: [true; 3],
         values: vec![Vector3::new(5e-3, 0.0, 0.0); surface.weights().len()],
         beta: 1e10,
     }];
-    let body = StaticProblem { held: &held, ..block.body(&laws, &[]) };
-    let fixed = block.held(|x, axis| (x.z == 0.0).then_some([5e-3, 0.0, 0.0][axis]));
+    let body = StaticProblem { penalties: &constrained, ..block.body(&laws, &[]) };
+    let fixed = block.constrained(|x, axis| (x.z == 0.0).then_some([5e-3, 0.0, 0.0][axis]));
     let exact = block.body(&laws, &fixed);
     let mass = block.lumped(DENSITY);
     let run = |body: &StaticProblem| {
@@ -279,7 +279,7 @@ fn a_surface_held_by_penalty_is_driven_too() {
 fn steps_follow_the_accuracy_asked_for() {
     let block = block(CellKind::Hex8, [3, 1, 1]);
     let laws = [linear()];
-    let fixed = block.held(|x, _| (x.x == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, _| (x.x == 0.0).then_some(0.0));
     let pull = vec![Vector3::new(2e4, 0.0, 0.0); block.volume.weights().len()];
     let loads = [Load::Body { values: pull }];
     let body = StaticProblem { loads: &loads, ..block.body(&laws, &fixed) };
@@ -308,7 +308,7 @@ fn steps_follow_the_accuracy_asked_for() {
 fn what_ends_early_is_named() {
     let block = block(CellKind::Hex8, [3, 1, 1]);
     let laws = [soft(0.3)];
-    let fixed = block.held(|x, _| (x.x == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, _| (x.x == 0.0).then_some(0.0));
     let push = vec![Vector3::new(-3e7, 0.0, 0.0); block.volume.weights().len()];
     let loads = [Load::Body { values: push }];
     let body = StaticProblem { loads: &loads, ..block.body(&laws, &fixed) };

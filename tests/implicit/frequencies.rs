@@ -19,7 +19,7 @@ fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f
     let block = Cuboid::new(CellKind::Hex8, [0.01; 3], [1; 3]);
     let laws = linear(20e3, 0.0);
     let omega = (20e3 / 0.01 / (DENSITY * 0.01 / 2.0_f64)).sqrt();
-    let fixed = block.held(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
     let body = block.body(&laws, &fixed);
     let mass = block.lumped(DENSITY);
     let up = |value: f64| block.field(|x| Vector3::new(0.0, 0.0, if x.z > 0.0 { value } else { 0.0 }));
@@ -101,7 +101,7 @@ fn a_bar_vibrates_in_its_discrete_mode() {
     let exact = k * wave.sqrt();
     assert!((omega / exact - 1.0 - (k * h).powi(2) / 24.0).abs() < 1e-4);
 
-    let fixed = bar.held(|x, axis| (axis > 0 || x.x == 0.0).then_some(0.0));
+    let fixed = bar.constrained(|x, axis| (axis > 0 || x.x == 0.0).then_some(0.0));
     let body = bar.body(&laws, &fixed);
     let mass = bar.consistent(DENSITY);
     let mode = bar.field(|x| Vector3::new(1e-3 * (k * x.x).sin(), 0.0, 0.0));

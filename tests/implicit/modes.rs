@@ -30,7 +30,7 @@ fn one_element_on_the_floor() {
     // Its top moves along z: `omega^2 = E A / L / (rho A L / 2)` lumped; a linear field has a third of the mass.
     let block = Cuboid::new(CellKind::Hex8, [0.01; 3], [1; 3]);
     let laws = law(20e3, 0.0);
-    let fixed = block.held(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
     let problem = problem(&block, &laws, &fixed);
     let square = 20e3 / DENSITY / 0.01f64.powi(2);
     for (mass, share) in [(block.lumped(DENSITY), 2.0), (block.consistent(DENSITY), 3.0)] {
@@ -51,7 +51,7 @@ fn a_bar_vibrates_in_its_discrete_modes() {
     let laws = law(20e3, 0.3);
     let wave = (laws[0].lambda() + 2.0 * laws[0].mu()) / DENSITY;
     // What supports prescribe has no part in vibrations.
-    let fixed = bar.held(|x, axis| (axis > 0 || x.x == 0.0).then_some(1e-3));
+    let fixed = bar.constrained(|x, axis| (axis > 0 || x.x == 0.0).then_some(1e-3));
     let problem = problem(&bar, &laws, &fixed);
     let consistent = modes(&problem, &bar.consistent(DENSITY)).unwrap();
     let lumped = modes(&problem, &bar.lumped(DENSITY)).unwrap();
@@ -65,7 +65,7 @@ fn a_bar_vibrates_in_its_discrete_modes() {
         assert!(below < wave * k * k && wave * k * k < above);
         assert!(missed(&consistent, above) < 1e-11 && missed(&lumped, below) < 1e-11, "{number}");
     }
-    // The first is `sin k x` itself, with unit mass and zero where it is held.
+    // The first is `sin k x` itself, with unit mass and zero where it is constrained.
     let k = 0.5 * std::f64::consts::PI / length;
     let sine = bar.field(|x| Vector3::new((k * x.x).sin(), 0.0, 0.0));
     let mass = bar.consistent(DENSITY);
@@ -93,7 +93,7 @@ fn a_free_block_has_six_rigid_modes() {
 fn units_scale() {
     let squared = |size: f64, young: f64, density: f64| {
         let block = Cuboid::new(CellKind::Tet4, [4.0 * size, 3.6 * size, 3.0 * size], [3; 3]);
-        let fixed = block.held(|x, _| (x.z == 0.0).then_some(0.0));
+        let fixed = block.constrained(|x, _| (x.z == 0.0).then_some(0.0));
         let laws = law(young, 0.3);
         modes(&problem(&block, &laws, &fixed), &block.consistent(density)).unwrap().squared
     };

@@ -47,7 +47,7 @@ fn pulls(
 
 /// All faces moved by these elongations.
 fn stretched(block: &Cuboid, by: [f64; 3]) -> Vec<FixedDof> {
-    block.held(|x, axis| {
+    block.constrained(|x, axis| {
         let face = x.iter().any(|c| *c < 1e-9 || *c > SIDE - 1e-9);
         face.then_some(x[axis] * by[axis])
     })
@@ -55,7 +55,7 @@ fn stretched(block: &Cuboid, by: [f64; 3]) -> Vec<FixedDof> {
 
 /// Sliding on the three planes through the origin.
 fn symmetric(block: &Cuboid, pulled: Option<f64>) -> Vec<FixedDof> {
-    block.held(|x, axis| match pulled {
+    block.constrained(|x, axis| match pulled {
         Some(by) if axis == 0 && end(x) => Some(by),
         _ => (x[axis] == 0.0).then_some(0.0),
     })
@@ -94,14 +94,14 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
                     let error = (force - exact).abs() / whole;
                     // Newton's 1e-11.
                     assert!(error < 1e-10, "{} {kind:?} {t}: {error:e}", laws[0].name());
-                    // What is held does no work.
+                    // What is constrained does no work.
                     let work = done.energy.external / found[0].2.energy.external;
                     assert!((work - 1.0).abs() < 1e-10, "{t}: {work}");
                 }
                 if !laws[0].is_small_strain() {
                     continue;
                 }
-                // At constant rate, then held, the integral of the series is exact too.
+                // At constant rate, then constant, the integral of the series is exact too.
                 for (t, force, _) in
                     pulls(&block, &body, Ramp::Linear { over: 0.5 }, &prony, &params(2.0, 16, 1.0))
                 {
@@ -218,7 +218,7 @@ fn a_relaxing_oscillator_is_damped_with_order_two() {
     let prony = [Some(Prony::new(&[(g, tau)]).unwrap())];
     let laws = [Law::LinearElastic(LinearElastic::new(YOUNG, 0.2).unwrap())];
     let block = Cuboid::new(CellKind::Hex8, [SIDE; 3], [1; 3]);
-    let fixed = block.held(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
+    let fixed = block.constrained(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
     let body = block.body(&laws, &fixed);
     let mass = block.lumped(1000.0);
     let modulus = laws[0].lambda() + 2.0 * laws[0].mu();

@@ -75,7 +75,7 @@ fn by_nitsche_on_all_sides_and_axis_by_axis() {
         let material = [soft()];
         let body = block.body(&material);
         let all = block.flux(&SIDES);
-        let held = |axes| WeakSupport {
+        let constrained = |axes| WeakSupport {
             flux: &all,
             axes,
             values: all.points().iter().map(affine).collect(),
@@ -84,7 +84,10 @@ fn by_nitsche_on_all_sides_and_axis_by_axis() {
             h: 0.01,
             trace: None,
         };
-        for weak in [vec![held([true; 3])], vec![held([true, false, false]), held([false, true, true])]] {
+        for weak in [
+            vec![constrained([true; 3])],
+            vec![constrained([true, false, false]), constrained([false, true, true])],
+        ] {
             let problem = LinearProblem { body, loads: &[], fixed: &[], constraints: &[], weak: &weak };
             let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
             check(&block, &body, &solution);
@@ -106,7 +109,7 @@ fn by_nitsche_rollers_and_tractions() {
         .map(|(flux, _, axis)| WeakSupport {
             flux,
             axes: [0, 1, 2].map(|a| a == *axis),
-            // NaN along axes that are not held is ignored.
+            // NaN along axes that are not constrained is ignored.
             values: flux
                 .points()
                 .iter()

@@ -126,9 +126,12 @@ fn each_piece_is_checked() {
         let row = |a, b, axis| ConstraintRow { terms: vec![(a, axis, 1.0), (b, axis, -1.0)], value: 0.0 };
         pairs.iter().flat_map(|&(a, b)| (0..3).map(move |axis| row(a, b, axis))).collect()
     };
-    let held = hold(0..3);
-    attempt(body, &[], &held, &tie(&[(1, 4), (2, 6), (3, 7)]), &[]).unwrap();
-    assert_eq!(free_modes(attempt(body, &[], &held, &tie(&[(1, 4), (3, 7)]), &[])), ["rotation about z"]);
+    let constrained = hold(0..3);
+    attempt(body, &[], &constrained, &tie(&[(1, 4), (2, 6), (3, 7)]), &[]).unwrap();
+    assert_eq!(
+        free_modes(attempt(body, &[], &constrained, &tie(&[(1, 4), (3, 7)]), &[])),
+        ["rotation about z"]
+    );
 }
 
 #[test]
@@ -205,8 +208,8 @@ fn contradictory_constraints_are_not_solved_through() {
         let result = assemble(&problem).unwrap().factor_with(dense_limit).and_then(|f| f.solve(1.0));
         assert!(matches!(result, Err(SolveError::Algebra(AlgebraError::Residual { .. }))), "{result:?}");
     }
-    let held = [hold(0, 1e-3)];
-    let result = attempt(block.body(&material), &[], &fixed, &held, &[]);
+    let constrained = [hold(0, 1e-3)];
+    let result = attempt(block.body(&material), &[], &fixed, &constrained, &[]);
     assert_eq!(result.err(), Some(SolveError::Inconsistent { row: 0, gap: 1e-3 }));
 }
 
@@ -328,7 +331,7 @@ fn a_node_that_no_point_sees_is_named() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-    /// Whatever few parameters are held: solved with a small residual or refused for a free motion, never a panic
+    /// Whatever few parameters are constrained: solved with a small residual or refused for a free motion, never a panic
     /// and never a NaN.
     #[test]
     fn any_few_holds_are_solved_or_refused(

@@ -103,10 +103,11 @@ fn eliminated_rows_equal_multipliers() {
     let surface = block.surface(&["x-max"]);
     let values = vec![Vector3::new(0.0, 30.0, 40.0); surface.weights().len()];
     let loads = [Load::Traction { surface: &surface, values }];
-    let held = block.surface(&["x-min"]);
-    let values: Vec<Vector3> = held.points().iter().map(|x| Vector3::new(0.0, 1e-3, x.y * 0.1)).collect();
-    let rows = multiplier_rows(&held, held.rows(), [true; 3], &values).unwrap();
-    // A parameter of the rows held besides.
+    let constrained = block.surface(&["x-min"]);
+    let values: Vec<Vector3> =
+        constrained.points().iter().map(|x| Vector3::new(0.0, 1e-3, x.y * 0.1)).collect();
+    let rows = multiplier_rows(&constrained, constrained.rows(), [true; 3], &values).unwrap();
+    // A parameter of the rows constrained besides.
     let fixed = [FixedDof { node: rows[0].terms[0].0, axis: 1, value: 1e-3 }];
     let problem = |constraints| LinearProblem { body, loads: &loads, fixed: &fixed, constraints, weak: &[] };
     let with_multipliers = assemble(&problem(&rows)).unwrap().factor().unwrap();
@@ -147,7 +148,7 @@ fn eliminated_rows_equal_multipliers() {
     assert!(matches!(refused, Some(SolveError::Dependent { .. })), "{refused:?}");
 }
 
-/// A tie between two free nodes, and one between a free and a held node.
+/// A tie between two free nodes, and one between a free and a constrained node.
 #[test]
 fn a_row_between_two_nodes_holds() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);
@@ -157,9 +158,9 @@ fn a_row_between_two_nodes_holds() {
     let values = surface.points().iter().map(|x| Vector3::new(x.y * 1e4, 0.0, 0.0)).collect();
     let loads = [Load::Traction { surface: &surface, values }];
     let fixed = block.fix(&["x-min"], |_| Vector3::new(2e-3, 0.0, 0.0));
-    let (a, b, held) = (3, 15, 0);
+    let (a, b, constrained) = (3, 15, 0);
     let tie = |a, b, value| ConstraintRow { terms: vec![(a, 0, 1.0), (b, 0, -1.0)], value };
-    let ties = [tie(a, b, 1e-3), tie(b, held, 5e-4)];
+    let ties = [tie(a, b, 1e-3), tie(b, constrained, 5e-4)];
     let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &ties, weak: &[] };
     let by_multipliers = assemble(&problem).unwrap().factor().unwrap();
     let by_elimination = assemble(&problem).unwrap().factor_eliminated().unwrap();
@@ -177,7 +178,7 @@ fn all_held_needs_no_system() {
     let block = Block::new(CellKind::Hex8, [1, 1, 1]);
     let material = [soft()];
     let fixed = block.fix(&SIDES, affine);
-    // A row over held parameters only is checked and dropped.
+    // A row over constrained parameters only is checked and dropped.
     let first = fixed[0];
     let rows = [ConstraintRow { terms: vec![(first.node, first.axis, 2.0)], value: 2.0 * first.value }];
     let body = block.body(&material);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Source      Coulomb; Wriggers, Computational Contact Mechanics (2006), ch. 5.2.
-//! Body        box of 2 x 2 x 2 cells, E = 1e13 Pa (its compliance h / E is 1e-6 of the contact's 1 / k), top held still.
+//! Body        box of 2 x 2 x 2 cells, E = 1e13 Pa (its compliance h / E is 1e-6 of the contact's 1 / k), top fixed.
 //! Conditions  a plate comes up from 0.02 mm below and sideways at once, in 10 steps, along (sin b, 0, cos b). From the
 //!             touch on the pressure is k_n d cos b and the elastic slip k_t d sin b, d the way since.
 //! Must hold   below the limit tan b = mu k_n / k_t by 0.1 %: stick, T / N = 0.999 mu to 1e-4 of it;
@@ -45,14 +45,14 @@ fn drag(projection: (CellKind, Projection), factor: f64, sideways: Vector3) -> V
 fn the_block_sticks_below_the_limit_and_slips_at_it() {
     let sideways = Vector3::new(0.6, -0.8, 0.0);
     for method in [(CellKind::Hex8, Projection::Standard), (CellKind::Tet10, Projection::Mixed)] {
-        for (factor, held, tolerance) in
+        for (factor, constrained, tolerance) in
             [(0.5, 0.5, 1e-4), (0.999, 0.999, 1e-4), (1.001, 1.0, 1e-9), (3.0, 1.0, 1e-9)]
         {
             // The block pushes the plate down and holds it back.
             let force = drag(method, factor, sideways);
             let tangential = Vector3::new(force.x, force.y, 0.0);
             let ratio = tangential.norm() / (COEFFICIENT * -force.z);
-            assert!((ratio - held).abs() < tolerance, "{method:?} at {factor}: T / (mu N) = {ratio}");
+            assert!((ratio - constrained).abs() < tolerance, "{method:?} at {factor}: T / (mu N) = {ratio}");
             assert!(tangential.normalize().dot(&sideways) < -1.0 + 1e-9, "{method:?} at {factor}: {force}");
         }
     }

@@ -7,7 +7,7 @@
 //! Cook        48 mm long, 44 mm high at the clamped side and 16 mm at the other, a slab one cell thick in plane strain;
 //!             dead shear of 0.02 E upwards; neo-Hookean, nu = 0.495 and 0.4999; mean deflection of the loaded side.
 //! Must hold   the locking-free methods come within 3 % of the exact values at the second level while the standard hex8 does
-//!             not; linear tetrahedra bend too stiffly at any nu, so theirs is held against the standard tet4 at nu = 0.3.
+//!             not; linear tetrahedra bend too stiffly at any nu, so theirs is compared with the standard tet4 at nu = 0.3.
 //!             Cook: hex8 with element mean and the mixed tet10 rise to one limit, within 0.2 % of each other.
 //! ```
 

@@ -3,12 +3,12 @@
 //! ```text
 //! Source      Roache (2002); here b = -Div P(F(X)) and t = P N with P by principal stretches (cases::exact).
 //! Body        unit cube, not jittered; neo-Hookean, nu = 0.3; u of degree 3 with gradients up to 0.3.
-//! Conditions  u on all faces but z = 1 (with less held, dead loads of this size buckle the cube);
+//! Conditions  u on all faces but z = 1 (with less constrained, dead loads of this size buckle the cube);
 //!             dead tractions P N there, dead body force b, both at the quadrature points. Div P by
 //!             differences of fourth order (step 1e-3: exact to 1e-10).
 //! Must hold   order + 1 in L2 and order in energy norm (gradients), within 0.15 on the finest pair of meshes: 2 / 1 for tet4
 //!             and hex8, 3 / 2 for tet10 and hex20, and for the projected methods of the same elements; tet10 with one
-//!             dilation per cell falls to 2 / 1 (1.77 / 0.84 at five cells, rising: held to 0.25).
+//!             dilation per cell falls to 2 / 1 (1.77 / 0.84 at five cells, rising: bounded by 0.25).
 //! ```
 
 use cases::exact::{Elastic, Hyperelastic};

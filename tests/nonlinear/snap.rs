@@ -5,7 +5,7 @@
 //!             stress along the strut, P(z) = E A z (h^2 - z^2) / (2 L^3) down; its limit is E A h^3 / (3 sqrt(3) L^3)
 //!             at z = h / sqrt(3), and beyond it the next equilibrium is far below z = -h.
 //! Body        a bar of 100 x 10 x 10 mm, rising by 10 mm; St. Venant-Kirchhoff, nu = 0; 10 x 2 x 1 hex20.
-//! Conditions  hinges in the middle of both ends: the foot held, the apex free along y; 0.5 and 1.5 times the limit load on
+//! Conditions  hinges in the middle of both ends: the foot constrained, the apex free along y; 0.5 and 1.5 times the limit load on
 //!             the apex, dead, in 4 steps.
 //! Must hold   below the limit the strut stays up, above it hangs at the other equilibrium, where its tangent is definite
 //!             again. A force on a line presses the hinges in: within 4 % of h. Sought, the limit is found: within 2 % of
@@ -37,14 +37,15 @@ fn strut(factor: f64, params: &StaticParams) -> (StaticPath, f64) {
     assert_eq!((foot.len(), top.len()), (3, 3));
     let mesh = flat.moved(|p| Point3::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z)).unwrap();
     let model = Model::new(mesh, Projection::Standard);
-    let held = |nodes: &[u32], axes: &[u8]| -> Vec<FixedDof> {
+    let constrained = |nodes: &[u32], axes: &[u8]| -> Vec<FixedDof> {
         nodes
             .iter()
             .flat_map(|&node| axes.iter().map(move |&axis| FixedDof { node, axis, value: 0.0 }))
             .collect()
     };
     let everywhere: Vec<u32> = (0..model.mesh.points().len() as u32).collect();
-    let fixed = [held(&foot, &[0, 1]), held(&top, &[0]), held(&everywhere, &[2])].concat();
+    let fixed =
+        [constrained(&foot, &[0, 1]), constrained(&top, &[0]), constrained(&everywhere, &[2])].concat();
     let limit = YOUNG * (RISE / LENGTH).powi(3) / (3.0 * 3f64.sqrt());
     let end = fem::surface_rows(&model.mesh, &model.facets(&["x-max"]), &SurfaceRule::STANDARD).unwrap();
     let values = vec![Vector3::new(0.0, -factor * limit, 0.0); end.weights().len()];

@@ -54,7 +54,7 @@ impl Block {
         self.mesh.facet_group_nodes(&self.facets(sides))
     }
 
-    /// All three axes of the nodes on `sides` held at `field`.
+    /// All three axes of the nodes on `sides` prescribed by `field`.
     pub fn fix(&self, sides: &[&str], field: impl Fn(&Point3) -> Vector3) -> Vec<FixedDof> {
         self.nodes_of(sides)
             .into_iter()

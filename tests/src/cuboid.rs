@@ -47,8 +47,8 @@ impl Cuboid {
         Mass::lumped(&nodal).unwrap()
     }
 
-    /// Degrees of freedom held at the values that `value` names.
-    pub fn held(&self, value: impl Fn(&Point3, usize) -> Option<f64>) -> Vec<FixedDof> {
+    /// Degrees of freedom prescribed at the values that `value` names.
+    pub fn constrained(&self, value: impl Fn(&Point3, usize) -> Option<f64>) -> Vec<FixedDof> {
         (0..self.nodes().len())
             .flat_map(|i| (0..3).map(move |axis| (i, axis)))
             .filter_map(|(i, axis)| {
@@ -66,7 +66,15 @@ impl Cuboid {
     /// A body of these laws without loads and tools.
     pub fn body<'a>(&'a self, laws: &'a [Law], fixed: &'a [FixedDof]) -> StaticProblem<'a> {
         let solid = Solid { volume: &self.volume, laws, region: &[], dilation: Dilation::Standard };
-        StaticProblem { nodes: self.nodes(), solid, loads: &[], fixed, held: &[], contact: None, tools: &[] }
+        StaticProblem {
+            nodes: self.nodes(),
+            solid,
+            loads: &[],
+            fixed,
+            penalties: &[],
+            contact: None,
+            tools: &[],
+        }
     }
 }
 

@@ -84,7 +84,7 @@ impl Model {
             },
             loads: &[],
             fixed: &[],
-            held: &[],
+            penalties: &[],
             contact: None,
             tools: &[],
         }
@@ -95,7 +95,7 @@ impl Model {
         sides.iter().flat_map(|s| self.mesh.group(s).unwrap().to_vec()).collect()
     }
 
-    /// `axes` of the nodes on a side held at a displacement field.
+    /// `axes` of the nodes on a side prescribed by a displacement field.
     pub fn hold(&self, sides: &[&str], axes: &[u8], field: impl Fn(&Point3) -> Vector3) -> Vec<FixedDof> {
         (self.mesh.facet_group_nodes(&self.facets(sides)).into_iter())
             .flat_map(|node| {

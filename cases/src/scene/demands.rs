@@ -58,7 +58,7 @@ fn refined(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Where nothing is solved there is no displacement to compare, carry over or tell.
+/// Where nothing is solved there is no displacement to compare, transfer or report.
 fn unsolved(scene: &Scene, report: &mut Report) {
     if scene.procedure.kind() != ProcedureKind::Prepare {
         return;
@@ -76,7 +76,7 @@ fn unsolved(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Vibrations are free: mass and stiffness are all there is, and what is told of them is no displacement.
+/// Vibrations are free: mass and stiffness are all there is, and what they report is no displacement.
 fn vibrating(scene: &Scene, report: &mut Report) {
     let vibrates = scene.procedure.kind() == ProcedureKind::Modes;
     for (i, method) in scene.methods.iter().enumerate() {

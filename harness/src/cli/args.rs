@@ -93,11 +93,11 @@ pub struct ReferenceArgs {
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
     /// Solve nothing: take the values of this reference of the same scene, made before
-    #[arg(long, value_name = "FILE", conflicts_with = "methods")]
-    pub told: Option<PathBuf>,
+    #[arg(long, alias = "told", value_name = "FILE", conflicts_with = "methods")]
+    pub from: Option<PathBuf>,
     /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
-    #[arg(long, value_name = "FILE")]
-    pub beside: Vec<PathBuf>,
+    #[arg(long, alias = "beside", value_name = "FILE")]
+    pub alongside: Vec<PathBuf>,
     /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
     #[arg(long, value_name = "MESH")]
     pub points: PathBuf,

@@ -20,15 +20,15 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
         stored.belongs(&text, mesh.points()).map_err(of_file)?;
         Ok(stored)
     };
-    let told = args.told.as_ref().map(read).transpose()?;
-    let mut used: Vec<String> = match &told {
-        Some(told) => told.methods().map(Into::into).collect(),
+    let from = args.from.as_ref().map(read).transpose()?;
+    let mut used: Vec<String> = match &from {
+        Some(from) => from.methods().map(Into::into).collect(),
         None if args.methods.is_empty() => scene.methods.iter().map(|m| m.id.clone()).collect(),
         None => args.methods.clone(),
     };
     // Refused before hours are spent on the methods.
-    let mut beside = Vec::new();
-    for path in &args.beside {
+    let mut alongside = Vec::new();
+    for path in &args.alongside {
         let other = read(path)?;
         // A solution is no witness of itself.
         if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
@@ -36,13 +36,13 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
             return Err(fail(&Failure::Input(problem)));
         }
         used.extend(other.methods().map(Into::into));
-        beside.push(other);
+        alongside.push(other);
     }
-    let mut stored = match told {
-        Some(told) => told,
+    let mut stored = match from {
+        Some(from) => from,
         None => make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?,
     };
-    beside.iter().for_each(|other| stored.widen(other));
+    alongside.iter().for_each(|other| stored.widen(other));
     print!("{}", text::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");
     std::fs::write(&args.out, json + "\n")

@@ -109,7 +109,7 @@ pub struct Discretisation {
     pub inner: InnerPoints,
     /// How the cloud follows an error, if it does.
     pub refine: Option<Refine>,
-    /// How supports are found; `None` where the cells tell the neighbours.
+    /// How supports are found; `None` where the cells give the neighbours.
     pub supports: Option<String>,
     /// How shape functions are made and where they are evaluated.
     pub shape_functions: String,

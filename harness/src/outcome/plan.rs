@@ -1,6 +1,6 @@
 //! The plan of a run: its stages in order, whether each runs, and why. The run asks [`Plan::runs`] before
 //! refinement, relaxation, transfer and schemes; what a procedure does inside its solver follows from the values that its stages
-//! are made of, and is held against the counters by a test.
+//! are made of, and is compared with the counters by a test.
 
 use serde::Serialize;
 

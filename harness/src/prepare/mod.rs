@@ -10,7 +10,7 @@ use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::FixedDof;
 use shape::{FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows};
 use statics::{
-    Assembled, Body, ConstraintRow, Factored, HeldSurface, LinearProblem, Load, SolveError, Weak,
+    Assembled, Body, ConstraintRow, Factored, LinearProblem, Load, PenaltySurface, SolveError, Weak,
     WeakSupport, multiplier_rows,
 };
 
@@ -31,7 +31,7 @@ enum Values {
     Pressure(Vec<f64>),
 }
 
-/// A surface held weakly, with its tables owned.
+/// A surface constrained weakly, with its tables owned.
 struct OwnedWeak {
     flux: FluxRows,
     axes: [bool; 3],
@@ -41,7 +41,7 @@ struct OwnedWeak {
     trace: Option<TraceRows>,
 }
 
-/// A surface held by penalty in a static procedure, with its table owned.
+/// A surface constrained by penalty in a static procedure, with its table owned.
 struct OwnedPenalty {
     surface: SurfaceRows,
     axes: [bool; 3],
@@ -64,7 +64,7 @@ pub struct Prepared {
     /// Whether the constraints are eliminated, not enforced by multipliers.
     eliminates: bool,
     weak: Vec<OwnedWeak>,
-    held: Vec<OwnedPenalty>,
+    penalties: Vec<OwnedPenalty>,
     /// Where tools may touch; `None` without tools.
     pub contact: Option<SurfaceRows>,
 }
@@ -83,7 +83,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
         constraints: Vec::new(),
         eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
-        held: Vec::new(),
+        penalties: Vec::new(),
         contact: None,
     };
     for load in &setup.loads {
@@ -144,16 +144,16 @@ impl Prepared {
             .collect()
     }
 
-    /// Degrees of freedom held at values.
+    /// Degrees of freedom prescribed.
     pub fn fixed(&self) -> &[FixedDof] {
         &self.fixed
     }
 
-    /// The surfaces held by penalty in a static procedure, borrowed as the solver takes them.
-    pub fn held(&self) -> Vec<HeldSurface<'_>> {
-        self.held
+    /// The surfaces constrained by penalty in a static procedure, borrowed as the solver takes them.
+    pub fn penalties(&self) -> Vec<PenaltySurface<'_>> {
+        self.penalties
             .iter()
-            .map(|h| HeldSurface {
+            .map(|h| PenaltySurface {
                 surface: &h.surface,
                 axes: h.axes,
                 values: h.values.clone(),
@@ -365,7 +365,7 @@ impl Prepared {
         let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
-                "is not available where a support is held by Newton's method",
+                "is not available where a support is constrained by Newton's method",
                 "essential = \"penalty\" and \"coupling\" are",
             ));
         };
@@ -373,7 +373,7 @@ impl Prepared {
             let flux = weak.flux;
             let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
             let surface = SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?;
-            self.held.push(OwnedPenalty { surface, axes: weak.axes, values: weak.values, beta });
+            self.penalties.push(OwnedPenalty { surface, axes: weak.axes, values: weak.values, beta });
         }
         Ok(())
     }
@@ -446,7 +446,7 @@ fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
     }
 }
 
-/// `u(x_c) = g(x_c)` at points, by one constraint row per point and held axis.
+/// `u(x_c) = g(x_c)` at points, by one constraint row per point and constrained axis.
 fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<ConstraintRow> {
     let mut out = Vec::new();
     for (c, value) in values.iter().enumerate() {

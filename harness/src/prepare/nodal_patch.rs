@@ -1,6 +1,6 @@
-//! What of a held surface belongs to which node of a cloud, and the constraint rows made of it.
+//! What of a constrained surface belongs to which node of a cloud, and the constraint rows made of it.
 //!
-//! Rows at points let test functions through that vanish there and not between: the traction on the held surface does
+//! Rows at points let test functions through that vanish there and not between: the traction on the constrained surface does
 //! work on them, and a patch test misses by it. Rows of means over shares that cover the surface do no such work under a
 //! constant traction, by whatever rule the surface is integrated, if it is the rule of the energy.
 
@@ -20,7 +20,7 @@ pub struct NodalPatch {
 
 /// Shares by ascending node; every point of the surface is in one of them. A node on an edge answers for the side on which
 /// more points are nearest to it, and those of the other go to the nearest node there: with a share on each side, a cube
-/// of 6 x 6 x 6 nodes held all round would have more rows than nodes.
+/// of 6 x 6 x 6 nodes constrained on all sides would have more rows than nodes.
 pub fn nodal_patches(nodes: &[Point3], surface: &SurfaceRows) -> Vec<NodalPatch> {
     // The row's nodes are those near the point: the nearest of all is among them, or the point's values are poor.
     let nearest = |q: usize, of: &dyn Fn(usize) -> bool| {
@@ -54,7 +54,7 @@ pub fn nodal_patches(nodes: &[Point3], surface: &SurfaceRows) -> Vec<NodalPatch>
     sides.into_iter().flatten().collect()
 }
 
-/// The mean displacement over each share is that of `values` (m, one per point of the surface), along each held axis.
+/// The mean displacement over each share is that of `values` (m, one per point of the surface), along each constrained axis.
 pub fn mean_rows(
     surface: &SurfaceRows,
     patches: &[NodalPatch],

@@ -110,10 +110,11 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Some(surface) => Some(Tools::new(surface, &moving, &zeros)?),
         None => None,
     };
-    let held: BTreeSet<usize> =
+    let constrained: BTreeSet<usize> =
         loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
     let springs = prepared.contact.as_ref().map(|surface| Springs { surface, modulus: stiffest(setup) });
-    let first = critical_step_touching(&mut force, &mass, &zeros, |k| !held.contains(&k), springs, LANCZOS)?;
+    let first =
+        critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS)?;
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
     let longest = asked.step.unwrap_or(asked.safety * first.dt);
     let params = DynamicsParams {
@@ -182,7 +183,7 @@ fn stiffest(setup: &Setup) -> f64 {
     setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
 }
 
-/// Degrees of freedom held, with their displacement (m) at the end. A node on two supports has one value or none.
+/// Prescribed degrees of freedom, with their displacement (m) at the end. A node on two supports has one value or none.
 pub(crate) fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
     let mut led = BTreeMap::new();
     for fixed in prepared.fixed() {

@@ -90,7 +90,7 @@ pub(super) fn continue_from(
     let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
     let mut force = InternalForce::new(body, LanePath::best())?;
     let loads = nodal_forces(rows, &prepared.loads())?;
-    let held = led(prepared)?;
+    let constrained = led(prepared)?;
     let surface = prepared.contact.as_ref().map(ContactSurface::new);
     let part_of = |drive: Drive, load: f64| match drive {
         Drive::Closure(full) => Drive::Closure(full * load),
@@ -114,8 +114,10 @@ pub(super) fn continue_from(
         if load <= from.load * (1.0 + 1e-12) {
             continue;
         }
-        let fixed: Vec<FixedDof> =
-            held.iter().map(|(&(node, axis), value)| FixedDof { node, axis, value: value * load }).collect();
+        let fixed: Vec<FixedDof> = constrained
+            .iter()
+            .map(|(&(node, axis), value)| FixedDof { node, axis, value: value * load })
+            .collect();
         let mut external = |_: &[Vector3], f: &mut [Vector3]| {
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);
         };

@@ -201,7 +201,7 @@ pub(crate) fn with_static_problem<T>(
         solid: Solid { volume: &volume.rows, laws: &setup.laws, region: &volume.region, dilation },
         loads: &prepared.loads(),
         fixed: prepared.fixed(),
-        held: &prepared.held(),
+        penalties: &prepared.penalties(),
         contact,
         tools: &tools,
     })

@@ -7,7 +7,7 @@ use geometry::{Point3, msh};
 use interp::Scheme;
 
 use super::stored::Stored;
-use super::{Solved, run};
+use super::{Finished, run};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{self, Repeats, Request};
@@ -133,7 +133,7 @@ impl<'a> Group<'a> {
     }
 
     /// One method's solution, once and compared with nothing.
-    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Solved, Failure> {
+    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Finished, Failure> {
         let setup = scenario.setup()?;
         let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
         let request = Request { watch: self.watch, ..Request::alone(&self.probes, &self.targets) };

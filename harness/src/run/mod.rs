@@ -28,7 +28,7 @@ pub use crate::measure::Repeats;
 pub use group::{Group, RunOptions, case_name};
 
 /// A finished run with its nodal parameters.
-pub(crate) struct Solved {
+pub(crate) struct Finished {
     /// Identity, numbers, times.
     pub(crate) outcome: Outcome,
     prepared: Prepared,
@@ -46,7 +46,7 @@ pub(crate) fn run(
     method: &Discretisation,
     setup: &Setup,
     request: &Request,
-) -> Result<Solved, Failure> {
+) -> Result<Finished, Failure> {
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
 }
 
@@ -56,7 +56,7 @@ fn on_pool(
     method: &Discretisation,
     setup: &Setup,
     request: &Request,
-) -> Result<Solved, Failure> {
+) -> Result<Finished, Failure> {
     let baseline = Baseline::new();
     let mut meters = Meters::default();
     let Pass { refined, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
@@ -72,7 +72,7 @@ fn on_pool(
     } else {
         loaded(&mut outcome, &run, request, meters)?;
     }
-    Ok(Solved { outcome, prepared, u: solution.u })
+    Ok(Finished { outcome, prepared, u: solution.u })
 }
 
 /// What a pass over a run leaves.
@@ -224,8 +224,8 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
 }
 
 /// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.
-pub(crate) fn reference(solved: Solved, targets: &[Point3]) -> Result<Reference, Failure> {
-    let Solved { outcome, prepared, u } = solved;
+pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Reference, Failure> {
+    let Finished { outcome, prepared, u } = finished;
     let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
         Ok(prepared.source.at_points(points)?.0.rows().apply(&u))
     };

@@ -33,6 +33,24 @@ struct Placed {
     cells: Option<Mesh>,
 }
 
+/// How a method on a cloud meets its supports.
+#[derive(Clone)]
+enum Supports {
+    /// In the same way whatever the cloud is.
+    Enforced(Essential),
+    /// By finite elements at these constrained vertices of the background.
+    Coupled(Vec<u32>),
+}
+
+impl Supports {
+    fn coupled(&self) -> Option<&[u32]> {
+        match self {
+            Supports::Coupled(vertices) => Some(vertices),
+            Supports::Enforced(_) => None,
+        }
+    }
+}
+
 /// All of an element-free method but its nodes.
 #[derive(Clone)]
 struct CloudMethod {
@@ -41,9 +59,7 @@ struct CloudMethod {
     followed: Option<Arc<Mesh>>,
     functions: Functions,
     integration: Integration,
-    essential: Essential,
-    /// Vertices of the background that are constrained, where finite elements stand there.
-    coupled: Option<Vec<u32>>,
+    supports: Supports,
     dilation: Dilation,
     /// Steps, ratio and seed of a cloud that follows an error.
     refine: Option<(scene::Refine, u64, Body)>,
@@ -64,9 +80,9 @@ impl Scenario<'_> {
             scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Ellipsoid, .. }
         );
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
-        let coupled = match efg.essential {
-            scene::Essential::Coupling => Some(self.constrained_vertices(&background)?),
-            _ => None,
+        let supports = match essential(efg) {
+            Some(essential) => Supports::Enforced(essential),
+            None => Supports::Coupled(self.constrained_vertices(&background)?),
         };
         let background = Arc::new(self.with_regions(background)?);
         let method = CloudMethod {
@@ -74,8 +90,7 @@ impl Scenario<'_> {
             background,
             followed: cells.filter(|_| adapted).map(Arc::new),
             functions: functions(efg.functions),
-            essential: essential(efg),
-            coupled,
+            supports,
             dilation: dilation(efg.dilation),
             refine,
         };
@@ -150,13 +165,13 @@ impl Scenario<'_> {
 impl CloudMethod {
     /// The method on a cloud.
     fn on(&self, cloud: Cloud) -> Result<Discretisation, Failure> {
-        let (nodes, essential) = match &self.coupled {
-            Some(vertices) => {
+        let (nodes, essential) = match &self.supports {
+            Supports::Coupled(vertices) => {
                 let nodes = efg::coupled_nodes(&cloud.points, &self.background, vertices)?;
                 let free = nodes.len() - vertices.len();
                 (nodes, Essential::Coupling(Coupled { vertices: vertices.clone(), free }))
             }
-            None => (cloud.points.clone(), self.essential.clone()),
+            Supports::Enforced(essential) => (cloud.points.clone(), essential.clone()),
         };
         let refine = self.refine.as_ref().map(|(refine, seed, shape)| {
             let method = self.clone();
@@ -182,15 +197,15 @@ impl CloudMethod {
             supports,
             shape_functions,
             source: Arc::new(move || {
-                let CloudMethod { background, followed, functions, integration, coupled, .. } = &method;
-                let (followed, coupled) = (followed.as_deref(), coupled.as_deref());
+                let CloudMethod { background, followed, functions, integration, supports, .. } = &method;
+                let followed = followed.as_deref();
                 let (background, integration) = (background.clone(), integration.clone());
                 Ok(Box::new(CloudSource::new(
                     *functions,
                     &cloud,
                     followed,
                     background,
-                    coupled,
+                    supports.coupled(),
                     integration,
                 )?))
             }),
@@ -230,7 +245,7 @@ impl CloudMethod {
                 format!("{}, smoothed to one gradient per vertex{cells}", per_face(*face_points))
             }
         };
-        let coupled = match &self.coupled {
+        let coupled = match self.supports.coupled() {
             Some(vertices) => format!(", coupled to {} nodes of finite elements", vertices.len()),
             None => String::new(),
         };
@@ -282,9 +297,9 @@ fn integration(
     })
 }
 
-/// How the scene constrains the cloud; a coupling is made with its nodes.
-fn essential(efg: &scene::Efg) -> Essential {
-    match efg.essential {
+/// How the scene constrains the cloud; `None` for a coupled cloud, whose elements it takes a background to find.
+fn essential(efg: &scene::Efg) -> Option<Essential> {
+    Some(match efg.essential {
         scene::Essential::Nitsche { factor } => {
             let smoothed = matches!(
                 efg.integration,
@@ -295,8 +310,8 @@ fn essential(efg: &scene::Efg) -> Essential {
         scene::Essential::Penalty { factor } => Essential::Penalty(factor.unwrap_or(PENALTY)),
         scene::Essential::Multipliers => Essential::Multipliers,
         scene::Essential::Elimination { rows } => Essential::Elimination(rows),
-        scene::Essential::Coupling => Essential::Nodal,
-    }
+        scene::Essential::Coupling => return None,
+    })
 }
 
 /// The shape functions that a scene names.

@@ -46,7 +46,7 @@ impl Read {
             Some(shape) => self.cloud.points.iter().map(|p| beyond(shape, p)).collect(),
             None => {
                 let found = locate(background, &self.cloud.points).map_err(|bad| {
-                    Failure::input(FILE, format!("can't be held against the body: {bad}"), "")
+                    Failure::input(FILE, format!("can't be compared with the body: {bad}"), "")
                 })?;
                 found.iter().map(|location| location.outside).collect()
             }

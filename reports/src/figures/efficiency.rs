@@ -17,6 +17,9 @@ type Cluster = (String, bool, Vec<(f64, f64)>);
 /// Ends the title of a panel that compares kernels.
 const KERNELS: &str = ": kernels";
 
+/// The error of the dashed line.
+const PERCENT: f64 = 0.01;
+
 /// A panel as `(title, error, clusters)`.
 type Paned = (String, &'static str, Vec<Cluster>);
 
@@ -84,7 +87,18 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styl
     }
 }
 
-fn content<'a>((title, error, clusters): &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'a> {
+fn y_axis((_, error, clusters): &Paned) -> Axis {
+    let errors = clusters.iter().flat_map(|c| c.2.iter().map(|p| p.1));
+    Axis::log(&label(error), decade(errors.collect()).into_iter())
+}
+
+/// Whether the axis reaches an error of 1 %.
+fn shows_percent(y: &Axis) -> bool {
+    (y.low()..y.high()).contains(&PERCENT)
+}
+
+fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'a> {
+    let (title, _, clusters) = panel;
     let points = || clusters.iter().flat_map(|c| c.2.iter().copied());
     let (scale, x) = match clock {
         Clock::First => (1.0, Axis::log("run time, median [s]", points().map(|p| p.0))),
@@ -96,13 +110,13 @@ fn content<'a>((title, error, clusters): &'a Paned, clock: Clock, styles: &'a [S
     Content {
         title: title.clone(),
         x,
-        y: Axis::log(&label(error), decade(points().map(|p| p.1).collect()).into_iter()),
+        y: y_axis(panel),
         plot: Box::new(move |canvas, panel| {
             let at = |p: &(f64, f64)| panel.at(scale * p.0, p.1);
             let best = pareto(clusters.iter().flat_map(|c| c.2.iter().copied()), |p| *p);
             front(canvas, panel, &best.iter().map(at).collect::<Vec<_>>());
-            if (panel.y.low()..panel.y.high()).contains(&0.01) {
-                let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, 0.01));
+            if shows_percent(&panel.y) {
+                let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, PERCENT));
                 canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
             }
             if clock == Clock::Repeated {
@@ -129,8 +143,10 @@ fn decade(mut errors: Vec<f64>) -> Vec<f64> {
 }
 
 fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
-    let mut note =
-        "Grey staircase: Pareto front. Dashed: an error of 1 %. Down and to the left is better.".to_string();
+    let mut note = "Grey staircase: Pareto front. Down and to the left is better.".to_string();
+    if panels.iter().any(|panel| shows_percent(&y_axis(panel))) {
+        note += " Dashed: an error of 1 %.";
+    }
     if clock == Clock::Repeated {
         let all = DEADLINES.map(|d| format!("{} ({})", d.name, d.what));
         note += &format!(" Upright: the periods of {}.", list(&all));

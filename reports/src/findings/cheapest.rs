@@ -9,7 +9,7 @@ use crate::text::{duration, list, percent, significant};
 /// Relative errors that a user may be content with.
 const TOLERANCES: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 
-/// The displacement is told beside a single number where it is off by more than this many tolerances: it may be right by chance.
+/// The displacement is reported next to a single number where it is off by more than this many tolerances: it may be right by chance.
 const CHANCE: f64 = 3.0;
 
 /// A timed run with its error.
@@ -51,7 +51,7 @@ pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// What every tolerance takes, and which of them nobody reaches. `beside` is an error told where it is far larger.
+/// What every tolerance takes, and which of them nobody reaches. `beside` is an error reported where it is far larger.
 fn answers(timed: &[Timed], beside: Option<&str>) -> String {
     let mut answers: Vec<(Vec<String>, String)> = Vec::new();
     let mut missed = Vec::new();
@@ -68,9 +68,9 @@ fn answers(timed: &[Timed], beside: Option<&str>) -> String {
         answers.into_iter().map(|(reached, text)| format!("{} first by {text}", list(&reached))).collect();
     let closest = timed.iter().min_by(|a, b| a.error.total_cmp(&b.error));
     if let (Some(closest), false) = (closest, missed.is_empty()) {
-        let told = told(closest, closest.error, beside);
+        let phrase = phrase(closest, closest.error, beside);
         parts.push(format!(
-            "nobody reaches {}, the closest is {told} with {}",
+            "nobody reaches {}, the closest is {phrase} with {}",
             list(&missed),
             percent(closest.error)
         ));
@@ -85,7 +85,7 @@ fn answer(timed: &[Timed], tolerance: f64, beside: Option<&str>) -> Option<Strin
         good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     };
     let best = cheapest(&|_| true)?;
-    let mut text = told(best, tolerance, beside);
+    let mut text = phrase(best, tolerance, beside);
     let other = |t: &Timed| t.is_fem() != best.is_fem();
     if timed.iter().any(other) {
         let family = if best.is_fem() { "EFG" } else { "FEM" };
@@ -93,7 +93,7 @@ fn answer(timed: &[Timed], tolerance: f64, beside: Option<&str>) -> Option<Strin
             None => format!(", by no {family}"),
             Some(next) => format!(
                 ", by {family} with {}, {} times as long",
-                told(next, tolerance, beside),
+                phrase(next, tolerance, beside),
                 significant(next.seconds / best.seconds, 2)
             ),
         };
@@ -101,7 +101,7 @@ fn answer(timed: &[Timed], tolerance: f64, beside: Option<&str>) -> Option<Strin
     Some(text)
 }
 
-fn told(timed: &Timed, tolerance: f64, beside: Option<&str>) -> String {
+fn phrase(timed: &Timed, tolerance: f64, beside: Option<&str>) -> String {
     let off = beside.and_then(|error| timed.run.value(error)).filter(|e| *e > CHANCE * tolerance);
     let off = off.map_or(String::new(), |e| format!(", displacement off by {}", percent(e)));
     format!("{} in {} ({} nodes{off})", timed.label, duration(timed.seconds), timed.run.is.nodes)

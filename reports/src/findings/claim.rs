@@ -12,12 +12,12 @@ type Point = (f64, f64);
 
 /// One sentence per case that tests a publication and whose errors are known.
 pub(super) fn claim(runs: &[Run]) -> Vec<String> {
-    let told = |(case, group): (String, &[Run])| {
+    let claim = |(case, group): (String, &[Run])| {
         let publication = tested(group[0].is)?;
         let share = seconds(publication, Family::Efg) / seconds(publication, Family::Fem);
         Some(format!("{case}: {}.", verdict(group, share)?))
     };
-    chosen(runs).into_iter().filter_map(told).collect()
+    chosen(runs).into_iter().filter_map(claim).collect()
 }
 
 /// Seconds of the published whole run.
@@ -28,7 +28,7 @@ fn seconds(publication: &Publication, family: Family) -> f64 {
 
 fn verdict(group: &[Run], share: f64) -> Option<String> {
     let less = percent(1.0 - share);
-    let (mut told, mut sides, mut missing) = (Vec::new(), [Vec::new(), Vec::new(), Vec::new()], None);
+    let (mut phrases, mut sides, mut missing) = (Vec::new(), [Vec::new(), Vec::new(), Vec::new()], None);
     let mut elements: Vec<String> = Vec::new();
     for question in &QUESTIONS {
         let Some(error) = question.error(group) else { continue };
@@ -47,10 +47,10 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
         };
         let timed = |r: &&Run| r.is.family == Family::Fem && point(r, error, Clock::First).is_some();
         elements.extend(group.iter().filter(timed).map(|r| r.name().to_string()));
-        told.push(format!("{} {}", question.name, matched.told()));
+        phrases.push(format!("{} {}", question.name, matched.phrase()));
         sides[matched.side(share)].push(question.name.to_string());
     }
-    if told.is_empty() {
+    if phrases.is_empty() {
         return missing.map(|family| {
             format!(
                 "whether EFG is as accurate as FEM at {less} less cost, as published, is not known, for no {family} run has a time and an error"
@@ -66,7 +66,7 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
         "of the cheapest FEM run's time ({}) at the same error the cheapest EFG run takes: {}. Published is {less} less cost at about \
          the same accuracy: {}",
         list(&elements),
-        told.join("; "),
+        phrases.join("; "),
         verdicts.join(", ")
     ))
 }
@@ -94,7 +94,7 @@ impl Matched {
         })
     }
 
-    fn told(&self) -> String {
+    fn phrase(&self) -> String {
         let times = |ratio: f64| significant(ratio, 2);
         let (low, high) = (times(self.ratio.0), times(self.ratio.1));
         let span = if low == high { low } else { format!("{low} to {high}") };

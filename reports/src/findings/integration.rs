@@ -16,14 +16,14 @@ pub(super) fn integration(runs: &[Run]) -> Vec<String> {
             0 => String::new(),
             _ => {
                 let methods = groups(&worse, |p| p.label.as_str());
-                let told: Vec<String> = methods
+                let phrases: Vec<String> = methods
                     .iter()
                     .map(|m| {
                         let nodes: Vec<String> = m.iter().map(|p| p.run.is.nodes.to_string()).collect();
                         format!("{} at {} nodes", m[0].label, list(&nodes))
                     })
                     .collect();
-                format!(": {}", told.join("; "))
+                format!(": {}", phrases.join("; "))
             }
         };
         out.push(format!(

@@ -15,12 +15,12 @@ pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
         let is = group[0].is;
         let error = ERRORS.iter().find_map(|(quantity, words, unit, scale)| {
             let spread = Spread::of(group, quantity)?;
-            Some((spread.count, told(spread, words, unit, *scale)))
+            Some((spread.count, phrase(spread, words, unit, *scale)))
         });
         let Some((whole, error)) = error else { continue };
         let mut parts = vec![error];
         if let Some(force) = Spread::of(group, "tool-force").filter(|f| f.quantiles[0] != f.quantiles[4]) {
-            parts.push(told(force, "a tool force", " N", 1.0));
+            parts.push(phrase(force, "a tool force", " N", 1.0));
         }
         let failed = match group.len() - whole {
             0 => String::new(),
@@ -38,7 +38,7 @@ pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
     out
 }
 
-fn told(spread: Spread, words: &str, unit: &str, scale: f64) -> String {
+fn phrase(spread: Spread, words: &str, unit: &str, scale: f64) -> String {
     let [least, _, median, _, most] = spread.quantiles.map(|q| significant(q * scale, 3));
     format!("{words} of {median}{unit} in the median, {least} to {most}{unit} in all")
 }

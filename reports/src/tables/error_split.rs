@@ -70,7 +70,7 @@ pub(super) fn error_split(runs: &[Run]) -> Table {
         "What the errors of clouds are made of",
         "RMS of the displacement. Discretisation is the same cloud, finely integrated, from the reference; integration is the cloud from itself, finely \
          integrated; transfer is the cloud carried over by inverse distance from its own shape functions; the whole is the cloud with its own shape \
-         functions from the reference. The reference's own error is 0 where it is exact, and is told elsewhere by the elements nearest to it. RMS do not \
+         functions from the reference. The reference's own error is 0 where it is exact, and is reported elsewhere by the elements nearest to it. RMS do not \
          add up",
         &[
             ("case", Words),
@@ -149,8 +149,8 @@ mod tests {
         records.push(record(("other", Family::Efg, "cubic-spline", None), 83, "rms", 1e-4));
         let runs = runs(&records);
         let parts = parts(&runs);
-        let told: Vec<_> = parts.iter().map(|p| (p.label.as_str(), p.run.is.nodes, p.transfer)).collect();
-        assert_eq!(told, [("gauss", 83, Some(6e-4)), ("gauss", 332, None), ("smoothed", 83, None)]);
+        let listed: Vec<_> = parts.iter().map(|p| (p.label.as_str(), p.run.is.nodes, p.transfer)).collect();
+        assert_eq!(listed, [("gauss", 83, Some(6e-4)), ("gauss", 332, None), ("smoothed", 83, None)]);
         assert_eq!(parts.iter().map(Parts::badly_integrated).collect::<Vec<_>>(), [false, true, true]);
         assert!(
             parts.iter().all(|p| p.reference == Some(2e-5) && p.total == Some(4.5e-4) && p.cells() == 10.0)

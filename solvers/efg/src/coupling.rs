@@ -15,7 +15,7 @@ use crate::row_list::RowList;
 /// Marks a vertex that is no finite-element node.
 const NONE: u32 = u32::MAX;
 
-/// Nodes of a cloud stay where more than this is left of one. A node on what is held would have a function that vanishes at the node
+/// Nodes of a cloud stay where more than this is left of one. A node on the constrained surface would have a function that vanishes at the node
 /// itself and is negative around: its dilation has no positive volume, as that of one near by (kidney, 1331 nodes: at 0.3 left).
 const LEAST_SHARE: f64 = 0.5;
 

@@ -1,4 +1,4 @@
-//! What the conforming rules promise, held against its own definition: Gauss's theorem over every cell and over the whole
+//! What the conforming rules promise, compared with its own definition: Gauss's theorem over every cell and over the whole
 //! body, for jittered cells, in other units and far from the origin.
 
 mod common;
@@ -116,9 +116,10 @@ fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
 #[test]
 fn clouds_coupled_to_finite_elements_meet_it_too() {
     for (place, mesh) in boxes() {
-        let held = mesh.facet_group_nodes(mesh.group("x-min").unwrap());
-        let mls =
-            on_mesh(&mesh, 2.0, Kernel::WendlandC2(WendlandC2), Basis::Linear).coupled(&mesh, &held).unwrap();
+        let constrained = mesh.facet_group_nodes(mesh.group("x-min").unwrap());
+        let mls = on_mesh(&mesh, 2.0, Kernel::WendlandC2(WendlandC2), Basis::Linear)
+            .coupled(&mesh, &constrained)
+            .unwrap();
         for (name, rule) in RULES {
             let volume = rule(&mls, &mesh, 6);
             let off = imbalance(&mls, &mesh, &volume, 6);

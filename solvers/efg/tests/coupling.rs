@@ -33,7 +33,7 @@ fn uncoupled(name: &str, mesh: &Mesh, kernel: Kernel) -> Approximation {
 }
 
 /// One face, three that meet in a corner, all six: facets and their vertices.
-fn held(mesh: &Mesh) -> [(Vec<Facet>, Vec<u32>); 3] {
+fn constrained(mesh: &Mesh) -> [(Vec<Facet>, Vec<u32>); 3] {
     [&FACES[..1], &["x-min", "y-min", "z-max"], &FACES].map(|faces| {
         let facets: Vec<Facet> = faces.iter().flat_map(|face| mesh.group(face).unwrap().to_vec()).collect();
         let vertices = mesh.facet_group_nodes(&facets);
@@ -44,7 +44,7 @@ fn held(mesh: &Mesh) -> [(Vec<Facet>, Vec<u32>); 3] {
 /// Every cloud coupled at every set of vertices.
 fn coupled(mesh: &Mesh, kernel: Kernel) -> impl Iterator<Item = (String, Approximation, Vec<Facet>)> {
     CLOUDS.into_iter().flat_map(move |cloud| {
-        held(mesh).map(|(facets, vertices)| {
+        constrained(mesh).map(|(facets, vertices)| {
             let name = format!("{cloud}, {}, {} vertices", kernel.name(), vertices.len());
             let approximation = uncoupled(cloud, mesh, kernel).coupled(mesh, &vertices).unwrap();
             (name, approximation, facets)
@@ -149,7 +149,7 @@ fn the_cloud_vanishes_on_what_is_held_and_the_hats_are_those_of_its_vertices() {
 #[test]
 fn cells_without_a_listed_vertex_have_the_cloud_s_own_functions_to_the_last_bit() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    let (_, vertices) = held(&mesh)[0].clone();
+    let (_, vertices) = constrained(&mesh)[0].clone();
     let coupled =
         uncoupled("of the mesh", &mesh, Kernel::WendlandC2(WendlandC2)).coupled(&mesh, &vertices).unwrap();
     let left = coupled.nodes().len() - vertices.len();
@@ -172,7 +172,7 @@ fn cells_without_a_listed_vertex_have_the_cloud_s_own_functions_to_the_last_bit(
 #[test]
 fn what_cannot_be_coupled_is_refused() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    let (_, vertices) = held(&mesh)[0].clone();
+    let (_, vertices) = constrained(&mesh)[0].clone();
     let quadratic = on_mesh(&mesh, 2.2, Kernel::CubicSpline(CubicSpline), Basis::Quadratic);
     assert_eq!(quadratic.coupled(&mesh, &vertices).err(), Some(EfgError::NotCoupled));
     let spacing = vec![0.008; mesh.points().len()];

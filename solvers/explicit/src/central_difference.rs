@@ -62,7 +62,7 @@ pub struct Dynamics<'a, 'b> {
     mass: &'b [f64],
     prescribed: &'b [Prescribed<'b>],
     params: DynamicsParams,
-    held: Vec<bool>,
+    constrained: Vec<bool>,
     tools: Option<Tools<'b>>,
     step: usize,
     /// Step and time of the last change of the time step.
@@ -110,14 +110,14 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         if let Some(node) = mass.iter().position(|&m| !(m > 0.0 && m.is_finite())) {
             return Err(ExplicitError::NodalMass { node, mass: mass[node] });
         }
-        let held = held(n, prescribed.iter().map(|p| (p.node, p.axis)))?;
+        let constrained = constrained(n, prescribed.iter().map(|p| (p.node, p.axis)))?;
         let zeros = vec![Vector3::zeros(); n];
         let mut dynamics = Dynamics {
             force,
             mass,
             prescribed,
             params,
-            held,
+            constrained,
             tools: None,
             step: 0,
             since: (0, 0.0),
@@ -171,14 +171,21 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     /// Critical step at the present displacements.
     pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
-        let held = &self.held;
+        let constrained = &self.constrained;
         let springs = self.tools.as_ref().and_then(Tools::springs);
         let (step, time) = (self.step, self.time());
-        critical_step_touching(self.force, self.mass, &self.u, |k| !held[k], springs, self.params.critical)
-            .map_err(|error| match error {
-                ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
-                other => other,
-            })
+        critical_step_touching(
+            self.force,
+            self.mass,
+            &self.u,
+            |k| !constrained[k],
+            springs,
+            self.params.critical,
+        )
+        .map_err(|error| match error {
+            ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
+            other => other,
+        })
     }
 
     /// Displacements, m.
@@ -272,7 +279,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
                 work += 0.5 * before_dt * before.dot(&(self.external[i] + self.previous_external[i]));
             }
             for axis in 0..3 {
-                if self.held[3 * i + axis] {
+                if self.constrained[3 * i + axis] {
                     (before[axis], after[axis]) = (0.0, 0.0);
                 }
             }
@@ -373,16 +380,19 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 }
 
 /// Marks the (node, axis) of a list among all degrees of freedom; each may be named once.
-pub(super) fn held(nodes: usize, list: impl Iterator<Item = (u32, u8)>) -> Result<Vec<bool>, ExplicitError> {
-    let mut held = vec![false; 3 * nodes];
+pub(super) fn constrained(
+    nodes: usize,
+    list: impl Iterator<Item = (u32, u8)>,
+) -> Result<Vec<bool>, ExplicitError> {
+    let mut constrained = vec![false; 3 * nodes];
     for (node, axis) in list {
         let bad = |why| Err(ExplicitError::BadDof { node: node as usize, axis, why });
         if node as usize >= nodes || axis > 2 {
             return bad("there is no such node or axis");
         }
-        if std::mem::replace(&mut held[3 * node as usize + axis as usize], true) {
+        if std::mem::replace(&mut constrained[3 * node as usize + axis as usize], true) {
             return bad("it is prescribed twice");
         }
     }
-    Ok(held)
+    Ok(constrained)
 }

@@ -51,7 +51,7 @@ impl Springs<'_> {
 }
 
 /// Critical step of central differences at the displacements `u` (m) with lumped `mass` (kg). Where `free` is false a
-/// degree of freedom (3 node + axis) is held.
+/// degree of freedom (3 node + axis) is constrained.
 ///
 /// Lanczos on `A = M^-1/2 K M^-1/2`, `K v` by the central difference of internal forces at a displacement of 1e-6 of
 /// a length taken from the body's own size; full reorthogonalisation. The start vector is fixed pseudo-random noise,
@@ -86,7 +86,7 @@ pub fn critical_step_touching(
     }
     let n = 3 * mass.len();
     let root: Vec<f64> = (0..n).map(|k| mass[k / 3].sqrt()).collect();
-    let held: Vec<bool> = (0..n).map(|k| !free(k)).collect();
+    let constrained: Vec<bool> = (0..n).map(|k| !free(k)).collect();
     let reach = 1e-6 * spacing(force);
     let mut product = Difference {
         force,
@@ -94,7 +94,7 @@ pub fn critical_step_touching(
         reach,
         ends: [vec![Vector3::zeros(); u.len()], vec![Vector3::zeros(); u.len()]],
     };
-    let mut basis: Vec<Vec<f64>> = vec![noise(n, &held)];
+    let mut basis: Vec<Vec<f64>> = vec![noise(n, &constrained)];
     let (mut alpha, mut beta) = (Vec::new(), Vec::new());
     for k in 0..steps {
         let v = &basis[k];
@@ -104,7 +104,7 @@ pub fn critical_step_touching(
             springs.add(&scaled, &mut w);
         }
         for i in 0..n {
-            w[i] = if held[i] { 0.0 } else { w[i] / root[i] };
+            w[i] = if constrained[i] { 0.0 } else { w[i] / root[i] };
         }
         alpha.push(dot(&w, v));
         // Twice is enough (Parlett): the basis stays orthogonal to rounding.
@@ -158,13 +158,13 @@ fn spacing(force: &InternalForce) -> f64 {
     1.0 / force.body().volume.grads().iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero where held.
-fn noise(n: usize, held: &[bool]) -> Vec<f64> {
+/// Unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero where constrained.
+fn noise(n: usize, constrained: &[bool]) -> Vec<f64> {
     let mut state = 1u64;
     let mut v: Vec<f64> = (0..n)
         .map(|k| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            if held[k] { 0.0 } else { (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0 }
+            if constrained[k] { 0.0 } else { (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0 }
         })
         .collect();
     let length = dot(&v, &v).sqrt().max(f64::MIN_POSITIVE);

@@ -120,13 +120,13 @@ impl<'a> InternalForce<'a> {
     /// Internal forces (N) at nodal displacements `u` (m). On an error `f` holds no forces.
     pub fn evaluate(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
         assert_eq!((u.len(), f.len()), (self.node_count(), self.node_count()), "one vector per node");
-        let upright = match &mut self.engine {
+        let not_inverted = match &mut self.engine {
             Engine::Plain => return plain_forces(&self.body, u, f),
             Engine::Tet4(tet4) => tet4.forces(self.path, u, f),
             Engine::Hex8(hex8) => hex8.forces(self.path, u, f),
             Engine::Ragged(ragged) => ragged.forces(self.path, u, f),
         };
-        if !upright {
+        if !not_inverted {
             plain::check(self.body.volume, u)?;
             // A kernel and the plain loop may round `J` on two sides of zero: the plain loop decides.
             plain_forces(&self.body, u, f)?;

@@ -82,20 +82,20 @@ impl Hex8 {
     /// Internal forces; false where some `J` is not positive.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Hex8 { border, chunks, u: slots, f: sums, laws, mean } = self;
-        let upright = border.for_each(slots, sums, |c, slots, sums| {
+        let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
             load(border.chunk(c), u, slots);
             sums.fill(Slot::ZERO);
-            let (mut upright, mut first) = (true, 0);
+            let (mut not_inverted, mut first) = (true, 0);
             for &(end, region) in &chunks[c].runs {
                 let kernel = if *mean { dilated } else { internal };
                 let law = &laws[region as usize];
-                upright &= kernel(path, path, &chunks[c].blocks[first..end], law, slots, sums);
+                not_inverted &= kernel(path, path, &chunks[c].blocks[first..end], law, slots, sums);
                 first = end;
             }
-            upright
+            not_inverted
         });
         border.forces(sums, f);
-        upright
+        not_inverted
     }
 }
 

@@ -9,7 +9,7 @@ use shape::Vector3;
 pub struct PressingTool<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Closure (m) or force along its way (N), held through the relaxation.
+    /// Closure (m) or force along its way (N), constant through the relaxation.
     pub drive: Drive,
     /// Closure at the start, m; that of the drive from the first step on if it is led.
     pub closure: f64,

@@ -1,6 +1,6 @@
 //! Adaptive dynamic relaxation: the static solution as the end of a damped motion.
 
-use super::central_difference::held;
+use super::central_difference::constrained;
 use super::critical_step::{LanczosParams, critical_step_touching};
 use super::{ExplicitError, InternalForce, Pressing};
 use material::Material;
@@ -75,32 +75,32 @@ pub fn relax_under(
 ) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
     check(force.node_count(), mass, &start, params)?;
     let springs = pressing.as_ref().and_then(|p| p.springs());
-    let mut way = Way::new(force, mass, fixed, start)?;
-    let limit = |way: &mut Way| {
-        let (held, u) = (&way.held, &way.u);
-        critical_step_touching(way.force, mass, u, |k| !held[k], springs, params.critical)
+    let mut trajectory = Trajectory::new(force, mass, fixed, start)?;
+    let limit = |trajectory: &mut Trajectory| {
+        let (constrained, u) = (&trajectory.constrained, &trajectory.u);
+        critical_step_touching(trajectory.force, mass, u, |k| !constrained[k], springs, params.critical)
             .map(|found| found.dt)
     };
-    let mut dt = limit(&mut way)?;
+    let mut dt = limit(&mut trajectory)?;
     let mut confirmed = 0;
     for step in 0..params.steps {
-        way.forces(step, dt, load, pressing.as_deref_mut())?;
+        trajectory.forces(step, dt, load, pressing.as_deref_mut())?;
         if params.recheck > 0 && step > 0 && step.is_multiple_of(params.recheck) {
-            dt = limit(&mut way)?;
+            dt = limit(&mut trajectory)?;
         }
-        way.find_slowest(dt, pressing.as_deref());
-        way.advance(step, dt, pressing.as_deref_mut())?;
-        confirmed = if way.info.error < params.tolerance { confirmed + 1 } else { 0 };
+        trajectory.find_slowest(dt, pressing.as_deref());
+        trajectory.advance(step, dt, pressing.as_deref_mut())?;
+        confirmed = if trajectory.info.error < params.tolerance { confirmed + 1 } else { 0 };
         if confirmed == CONFIRM {
             if let Some(pressing) = &mut pressing {
                 let time = step as f64 * dt;
-                let within = pressing.check_sides(&way.u);
+                let within = pressing.check_sides(&trajectory.u);
                 within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
             }
-            return Ok((way.u, way.info));
+            return Ok((trajectory.u, trajectory.info));
         }
     }
-    let RelaxationInfo { steps, error, .. } = way.info;
+    let RelaxationInfo { steps, error, .. } = trajectory.info;
     Err(ExplicitError::NotRelaxed { steps, error, tolerance: params.tolerance })
 }
 
@@ -118,10 +118,10 @@ fn check(n: usize, mass: &[f64], start: &[Vector3], params: RelaxationParams) ->
 }
 
 /// The motion to rest.
-struct Way<'a, 'b> {
+struct Trajectory<'a, 'b> {
     force: &'a mut InternalForce<'b>,
     mass: &'a [f64],
-    held: Vec<bool>,
+    constrained: Vec<bool>,
     u: Vec<Vector3>,
     /// Of the last step.
     du: Vec<Vector3>,
@@ -135,15 +135,15 @@ struct Way<'a, 'b> {
     info: RelaxationInfo,
 }
 
-impl<'a, 'b> Way<'a, 'b> {
+impl<'a, 'b> Trajectory<'a, 'b> {
     fn new(
         force: &'a mut InternalForce<'b>,
         mass: &'a [f64],
         fixed: &[FixedDof],
         mut u: Vec<Vector3>,
-    ) -> Result<Way<'a, 'b>, ExplicitError> {
+    ) -> Result<Trajectory<'a, 'b>, ExplicitError> {
         let n = mass.len();
-        let held = held(n, fixed.iter().map(|f| (f.node, f.axis)))?;
+        let constrained = constrained(n, fixed.iter().map(|f| (f.node, f.axis)))?;
         for f in fixed {
             u[f.node as usize][f.axis as usize] = f.value;
         }
@@ -159,7 +159,19 @@ impl<'a, 'b> Way<'a, 'b> {
         let zeros = || vec![Vector3::zeros(); n];
         let (du, internal, previous, external) = (zeros(), zeros(), zeros(), zeros());
         let touch = Vec::new();
-        Ok(Way { force, mass, held, u, du, internal, previous, external, touch, expected, info })
+        Ok(Trajectory {
+            force,
+            mass,
+            constrained,
+            u,
+            du,
+            internal,
+            previous,
+            external,
+            touch,
+            expected,
+            info,
+        })
     }
 
     /// Internal forces less those of contact, and the external ones.
@@ -223,7 +235,7 @@ impl<'a, 'b> Way<'a, 'b> {
             for axis in 0..3 {
                 largest_force = largest_force.max(self.internal[i][axis].abs());
                 largest_u = largest_u.max(self.u[i][axis].abs());
-                if self.held[3 * i + axis] {
+                if self.constrained[3 * i + axis] {
                     continue;
                 }
                 let out = self.external[i][axis] - self.internal[i][axis];

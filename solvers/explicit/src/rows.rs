@@ -65,15 +65,15 @@ impl Ragged {
     /// Internal forces; false where some `J` is not positive.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Ragged { border, chunks, u: slots, f: sums, laws } = self;
-        let upright = border.for_each(slots, sums, |c, slots, sums| {
+        let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
             load(border.chunk(c), u, slots);
             sums.fill(Slot::ZERO);
-            let mut upright = true;
-            internal(path, path, laws, &chunks[c], slots, sums, &mut upright);
-            upright
+            let mut not_inverted = true;
+            internal(path, path, laws, &chunks[c], slots, sums, &mut not_inverted);
+            not_inverted
         });
         border.forces(sums, f);
-        upright
+        not_inverted
     }
 }
 
@@ -103,8 +103,8 @@ impl Chunk {
 }
 
 on_path! {
-    /// Internal forces of one chunk, added to `f`; `upright` turns false where some `J` is not positive.
-    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], upright: &mut bool) = internal_lanes
+    /// Internal forces of one chunk, added to `f`; `not_inverted` turns false where some `J` is not positive.
+    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], not_inverted: &mut bool) = internal_lanes
 }
 
 #[inline(always)]
@@ -114,7 +114,7 @@ fn internal_lanes<const FMA: bool>(
     chunk: &Chunk,
     u: &[Slot],
     f: &mut [Slot],
-    upright: &mut bool,
+    not_inverted: &mut bool,
 ) {
     // `H` of each batch, and in its place `w P`.
     let (mut x, mut good) = ([[[0.0; LANES]; 9]; TOGETHER], [1.0; LANES]);
@@ -163,7 +163,7 @@ fn internal_lanes<const FMA: bool>(
         }
         first = start;
     }
-    *upright = good == [1.0; LANES];
+    *not_inverted = good == [1.0; LANES];
 }
 
 /// `w P` in place of `H`. `good` turns 0 where `J` is not positive.

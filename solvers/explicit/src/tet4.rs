@@ -59,19 +59,19 @@ impl Tet4 {
     /// Internal forces; false where some `J` is not positive.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Tet4 { border, chunks, u: slots, f: sums, laws, nodal } = self;
-        let upright = match nodal {
+        let not_inverted = match nodal {
             None => border.for_each(slots, sums, |c, slots, sums| {
                 load(border.chunk(c), u, slots);
                 sums.fill(Slot::ZERO);
                 internal(path, laws, &chunks[c], slots, sums)
             }),
             Some(nodal) => {
-                let upright = border.for_each(slots, nodal.slots(), |c, slots, sums| {
+                let not_inverted = border.for_each(slots, nodal.slots(), |c, slots, sums| {
                     load(border.chunk(c), u, slots);
                     sums.fill([0.0; 2]);
-                    let mut upright = true;
-                    dilations(path, laws, &chunks[c], slots, sums, &mut upright);
-                    upright
+                    let mut not_inverted = true;
+                    dilations(path, laws, &chunks[c], slots, sums, &mut not_inverted);
+                    not_inverted
                 });
                 nodal.close(path, border);
                 let (closed, shared) = nodal.closed();
@@ -83,11 +83,11 @@ impl Tet4 {
                     dilated(path, laws, &chunks[c], &slots[border.range(c)], shared, sums);
                     true
                 });
-                upright
+                not_inverted
             }
         };
         border.forces(sums, f);
-        upright
+        not_inverted
     }
 }
 

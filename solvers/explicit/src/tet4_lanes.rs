@@ -234,7 +234,7 @@ fn other_lanes<const FMA: bool>(
 
 on_path! {
     /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
-    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], upright: &mut bool) = dilations_lanes
+    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], not_inverted: &mut bool) = dilations_lanes
 }
 
 #[inline(always)]
@@ -243,7 +243,7 @@ fn dilations_lanes<const FMA: bool>(
     chunk: &Chunk,
     u: &[Slot],
     sums: &mut [[f64; 2]],
-    upright: &mut bool,
+    not_inverted: &mut bool,
 ) {
     let mut first = 0;
     let mut good = [1.0; LANES];
@@ -271,7 +271,7 @@ fn dilations_lanes<const FMA: bool>(
         }
         first = end;
     }
-    *upright = good == [1.0; LANES];
+    *not_inverted = good == [1.0; LANES];
 }
 
 /// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.

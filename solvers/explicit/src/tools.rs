@@ -21,7 +21,7 @@ pub struct MovingTool<'a> {
     pub tool: &'a Tool,
     /// Closure or force at the end of the ramp.
     pub drive: Drive,
-    /// Length of the ramp, s; held from then on.
+    /// Length of the ramp, s; constant from then on.
     pub over: f64,
     /// Mass of a tool that is driven by force, kg.
     pub mass: f64,

@@ -25,11 +25,11 @@ const TREE: usize = 1000;
 
 /// Finds the `count` nearest nodes.
 pub(crate) struct Neighbours {
-    way: Way,
+    lookup: Lookup,
     count: usize,
 }
 
-enum Way {
+enum Lookup {
     All([Vec<f64>; 3]),
     Tree(Search),
 }
@@ -44,23 +44,23 @@ pub(crate) struct Found {
 impl Neighbours {
     /// `count` is at least 1 and at most the number of nodes, whose coordinates are finite.
     pub(crate) fn new(nodes: &[Point3], count: usize) -> Result<Neighbours, InterpError> {
-        let way = if nodes.len() < TREE {
-            Way::All(std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect()))
+        let lookup = if nodes.len() < TREE {
+            Lookup::All(std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect()))
         } else {
-            Way::Tree(Search::new(nodes)?)
+            Lookup::Tree(Search::new(nodes)?)
         };
-        Ok(Neighbours { way, count })
+        Ok(Neighbours { lookup, count })
     }
 
     /// Distance (m) and index of the nearest nodes, nearest first.
     pub(crate) fn of<'a>(&self, x: &Point3, found: &'a mut Found) -> &'a [(f64, u32)] {
         let Found { squares, best } = found;
         best.clear();
-        match &self.way {
-            Way::Tree(search) => {
+        match &self.lookup {
+            Lookup::Tree(search) => {
                 best.extend(search.nearest(x, self.count).iter().map(|n| (n.distance, n.index)));
             }
-            Way::All(axes) => {
+            Lookup::All(axes) => {
                 squares.resize(axes[0].len(), 0.0);
                 squared_distances(axes, x, squares);
                 smallest(squares, self.count, best);
@@ -107,11 +107,13 @@ mod tests {
         // A lattice, where most distances are shared by several nodes.
         let nodes: Vec<Point3> =
             (0..1000).map(|i| Point3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64)).collect();
-        let of = |way: Way, x: &Point3| Neighbours { way, count: 20 }.of(x, &mut Found::default()).to_vec();
+        let of = |lookup: Lookup, x: &Point3| {
+            Neighbours { lookup, count: 20 }.of(x, &mut Found::default()).to_vec()
+        };
         let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect());
         for x in [nodes[444], Point3::new(3.5, 4.5, 5.5), Point3::new(0.1, 7.3, 20.0)] {
-            let all = of(Way::All(axes.clone()), &x);
-            assert_eq!(all, of(Way::Tree(Search::new(&nodes).unwrap()), &x));
+            let all = of(Lookup::All(axes.clone()), &x);
+            assert_eq!(all, of(Lookup::Tree(Search::new(&nodes).unwrap()), &x));
             let mut sorted: Vec<(f64, u32)> =
                 nodes.iter().zip(0..).map(|(p, i)| ((p - x).norm_squared().sqrt(), i)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -15,7 +15,7 @@ use crate::hull::DEPTH;
 use crate::lanes::{LANES, Lanes};
 
 /// A circumsphere holds a point up to half of this much of the tetrahedron's size beyond it. What is taken from a cell then is
-/// wrong by the third power of that, and a point that lattices put on many spheres is held by all of them, in spite of
+/// wrong by the third power of that, and a point that lattices put on many spheres is constrained by all of them, in spite of
 /// rounding.
 const CLOSED: f64 = 1e-9;
 /// Largest distance from a point to the mean of its neighbours, relative to the half-extent of the cloud, that is put right

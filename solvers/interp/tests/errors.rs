@@ -165,8 +165,8 @@ fn functions_too_wide_for_the_nodes_are_refused() {
                     // 1e-6 is let pass of one field.
                     assert!(miss < 1e-5, "{radial:?}: {miss:e}");
                 }
-                Err(InterpError::TooWide { width: told, miss, .. }) => {
-                    assert!(told == width && !(miss < 1e-6), "{radial:?}: {miss:e}");
+                Err(InterpError::TooWide { width: reported, miss, .. }) => {
+                    assert!(reported == width && !(miss < 1e-6), "{radial:?}: {miss:e}");
                     refused.push((radial.name(), radial.polynomial(), width));
                 }
                 Err(error) => panic!("{radial:?}: {error}"),

@@ -1,6 +1,6 @@
 //! A nodal parameter with a prescribed value.
 
-/// One nodal parameter held at a value.
+/// One nodal parameter prescribed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedDof {
     /// The node.

@@ -39,7 +39,7 @@ pub trait RowSource: Send + Sync {
     /// Size h (m) such that halving every cell or spacing halves it; `volume` is the method's own quadrature.
     fn spacing(&self, volume: &VolumeRows) -> f64;
 
-    /// Nodes whose support had to be found; none where cells tell the neighbours.
+    /// Nodes whose support had to be found; none where the cells give the neighbours.
     fn supports(&self) -> usize {
         0
     }

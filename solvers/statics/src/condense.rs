@@ -14,14 +14,14 @@ pub struct Condensed {
     operator: Vec<f64>,
     loaded: usize,
     /// What the supports' own displacements make of each output, m.
-    held: Vec<Vector3>,
+    constrained: Vec<Vector3>,
 }
 
 impl Factored<'_> {
     /// Condenses to the points of `outputs` (rows over the nodes) and the nodes that `loaded` names.
     pub fn condense(&self, outputs: &Rows, loaded: &[u32]) -> Result<Condensed, SolveError> {
         let count = self.node_count();
-        let held = outputs.apply(&self.solve_forces(&vec![Vector3::zeros(); count], 1.0)?.u);
+        let constrained = outputs.apply(&self.solve_forces(&vec![Vector3::zeros(); count], 1.0)?.u);
         let mut operator = Vec::with_capacity(9 * outputs.len() * loaded.len());
         for output in 0..outputs.len() {
             let (nodes, values) = outputs.row(output);
@@ -36,7 +36,7 @@ impl Factored<'_> {
                 operator.extend(loaded.iter().flat_map(|&node| u[node as usize].iter().copied()));
             }
         }
-        Ok(Condensed { operator, loaded: loaded.len(), held })
+        Ok(Condensed { operator, loaded: loaded.len(), constrained })
     }
 }
 
@@ -46,11 +46,11 @@ impl Condensed {
     pub fn apply(&self, forces: &[Vector3], supports: f64, out: &mut [Vector3]) {
         assert_eq!(
             (forces.len(), out.len()),
-            (self.loaded, self.held.len()),
+            (self.loaded, self.constrained.len()),
             "forces and outputs of this operator"
         );
         let rows = self.operator.chunks_exact((3 * self.loaded).max(1));
-        for (output, row) in out.iter_mut().zip(&self.held) {
+        for (output, row) in out.iter_mut().zip(&self.constrained) {
             *output = row * supports;
         }
         for (at, row) in rows.enumerate() {

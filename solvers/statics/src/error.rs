@@ -117,7 +117,7 @@ pub enum SolveError {
         /// Number of nodes in all.
         nodes: usize,
     },
-    /// A zero or negative pivot although rigid motions are all held: the integration is too poor to hold the body
+    /// A zero or negative pivot although rigid motions are all suppressed: the integration is too poor to hold the body
     /// (zero-energy modes), or parts of it are joined by a hinge only.
     #[error(
         "the stiffness is not positive definite though no rigid motion is free: zero-energy modes of a reduced \

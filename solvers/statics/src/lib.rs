@@ -84,7 +84,7 @@ pub use implicit::{
 pub use load::{Load, nodal_forces};
 pub use modes::{Modes, modes};
 pub use nonlinear::{
-    Dilation, Frames, HeldSurface, Inverted, Iteration, NewtonParams, Solid, StaticError, StaticParams,
+    Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Solid, StaticError, StaticParams,
     StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};

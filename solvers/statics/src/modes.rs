@@ -49,8 +49,8 @@ pub struct Modes {
 pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> {
     check_len("nodes of the mass", mass.node_count(), problem.body.nodes.len())?;
     let assembled = assemble_free(problem)?;
-    let held: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
-    let reduction = Reduction::new(&held, &assembled.rows)?;
+    let constrained: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
+    let reduction = Reduction::new(&constrained, &assembled.rows)?;
     let (k, m) = (reduction.matrix(&assembled.stiffness), reduction.matrix(&mass.matrix()));
     let shift = shift(problem, mass);
     let eigen = eigen::shifted(&k, &m, shift).map_err(|error| match error {

@@ -24,11 +24,11 @@ pub struct LinearProblem<'a> {
     pub body: Body<'a>,
     /// Loads; they add up.
     pub loads: &'a [Load<'a>],
-    /// Nodal parameters held at values, eliminated exactly.
+    /// Nodal parameters prescribed, eliminated exactly.
     pub fixed: &'a [FixedDof],
     /// General linear constraints, by Lagrange multipliers or eliminated, as the problem is factored.
     pub constraints: &'a [ConstraintRow],
-    /// Surfaces held weakly.
+    /// Surfaces constrained weakly.
     pub weak: &'a [WeakSupport<'a>],
 }
 
@@ -78,7 +78,7 @@ pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveE
     assemble_if(problem, rigid::check)
 }
 
-/// As [`assemble`] for a body that need not be held.
+/// As [`assemble`] for a body that need not be constrained.
 pub(crate) fn assemble_free<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
     assemble_if(problem, |_, _, _, _, _| Ok(()))
 }

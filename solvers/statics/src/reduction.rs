@@ -1,4 +1,4 @@
-//! From nodal parameters to unknowns and back: `u = T v + g`, with parameters held at values, parameters given away to
+//! From nodal parameters to unknowns and back: `u = T v + g`, with parameters prescribed, parameters given away to
 //! others by eliminated constraints, and the rest, which are unknowns themselves.
 
 use algebra::Stiffness;
@@ -14,7 +14,7 @@ use crate::eliminate::{Block, blocks};
 pub(crate) struct Reduction {
     /// Terms of each degree of freedom `3 node + axis` in `terms`.
     offsets: Vec<usize>,
-    /// (unknown, weight); none of a degree of freedom that is held.
+    /// (unknown, weight); none of a degree of freedom that is constrained.
     terms: Vec<(usize, f64)>,
     /// `g`, m.
     value: Vec<f64>,
@@ -77,7 +77,7 @@ impl Reduction {
     }
 
     /// `factor g`, m.
-    pub fn held(&self, factor: f64) -> Vec<Vector3> {
+    pub fn constrained(&self, factor: f64) -> Vec<Vector3> {
         self.value.chunks_exact(3).map(|v| Vector3::new(v[0], v[1], v[2]) * factor).collect()
     }
 

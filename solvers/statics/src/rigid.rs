@@ -170,7 +170,7 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// Belongs to no piece: a node that no point sees. It is held along all axes (or was refused as an orphan).
+/// Belongs to no piece: a node that no point sees. It is constrained along all axes (or was refused as an orphan).
 const NOWHERE: usize = usize::MAX;
 
 /// Connected pieces of the quadrature's node graph, the piece of each node, and clusters as lists of pieces.

@@ -92,13 +92,13 @@ impl<'a> Assembled<'a> {
         Ok(Factored { problem: self, factorization, reduction, active })
     }
 
-    /// Appends the constraint rows with a free term to the matrix over the unknowns, and tells which with what scale.
+    /// Appends the constraint rows with a free term to the matrix over the unknowns, and returns which, with their scales.
     fn append_rows(&self, m: &mut Symmetric, place: &[usize]) -> Result<Vec<(usize, f64)>, SolveError> {
-        const HELD: usize = usize::MAX;
+        const CONSTRAINED: usize = usize::MAX;
         let largest = (0..m.dim()).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
         let mut active = Vec::new();
         for (index, row) in self.rows.iter().enumerate() {
-            let terms = || row.terms.iter().filter(|t| place[t.0] != HELD);
+            let terms = || row.terms.iter().filter(|t| place[t.0] != CONSTRAINED);
             let size = terms().fold(0.0f64, |s, t| s.max(t.1.abs()));
             if size == 0.0 {
                 let gap = row.value - row.held_part(&self.prescribed);
@@ -153,10 +153,10 @@ impl Factored<'_> {
             return Err(SolveError::NotFinite { what: "load factor", index: 0 });
         }
         let p = &self.problem;
-        let mut u = self.reduction.held(factor);
-        let held = p.stiffness.multiply(&u);
+        let mut u = self.reduction.constrained(factor);
+        let constrained = p.stiffness.multiply(&u);
         let forces: Vec<Vector3> =
-            (0..load.len()).map(|i| load[i] * part + p.weak_load[i] * factor - held[i]).collect();
+            (0..load.len()).map(|i| load[i] * part + p.weak_load[i] * factor - constrained[i]).collect();
         let mut b = vec![0.0; self.factorization.dim()];
         self.reduction.fold(&forces, &mut b);
         let free = self.reduction.free;
@@ -247,7 +247,7 @@ impl Factored<'_> {
                 out[dof / 3][dof % 3] += lambda * c;
             }
         }
-        for (dof, _) in p.prescribed.iter().enumerate().filter(|(_, held)| held.is_none()) {
+        for (dof, _) in p.prescribed.iter().enumerate().filter(|(_, constrained)| constrained.is_none()) {
             out[dof / 3][dof % 3] = 0.0;
         }
         out

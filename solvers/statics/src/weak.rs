@@ -1,6 +1,6 @@
 #![allow(non_snake_case)] // Ni, Nj as in the formulas
 //! Weak supports: prescribed displacements by Nitsche's method or by penalty, for bases whose parameters are not
-//! displacements. Each axis may be held on its own (rollers).
+//! displacements. Each axis may be constrained on its own (rollers).
 
 use algebra::Stiffness;
 use algebra::{Connectivity, Incidence};
@@ -29,14 +29,14 @@ pub enum Weak {
     },
 }
 
-/// A surface held weakly.
+/// A surface constrained weakly.
 #[derive(Clone, Debug)]
 pub struct WeakSupport<'a> {
     /// Values, gradients, weights and normals on the surface.
     pub flux: &'a FluxRows,
-    /// Which of x, y, z are held; for each of them the traction component `t_a = (sigma n)_a` enters Nitsche's terms.
+    /// Which of x, y, z are constrained; for each of them the traction component `t_a = (sigma n)_a` enters Nitsche's terms.
     pub axes: [bool; 3],
-    /// Prescribed displacement at each surface point, m; components along axes not held are ignored.
+    /// Prescribed displacement at each surface point, m; components along axes not constrained are ignored.
     pub values: Vec<Vector3>,
     /// Region of each surface point (index into the body's materials); empty when all are of region 0.
     pub region: &'a [u16],
@@ -85,15 +85,15 @@ pub(crate) struct WeakTable {
     nodes: Vec<u32>,
     /// Shape values.
     phi: Vec<f64>,
-    /// `P T_I` (3, 3), Pa/m: held components of the traction of node I's unit displacements; zero for a penalty.
+    /// `P T_I` (3, 3), Pa/m: constrained components of the traction of node I's unit displacements; zero for a penalty.
     traction: Vec<Matrix3>,
     weights: Vec<f64>,
     /// Stabilisation, Pa/m.
     beta: Vec<f64>,
-    /// Prescribed displacement, held components only, m.
+    /// Prescribed displacement, constrained components only, m.
     target: Vec<Vector3>,
     /// `P = diag(axes)`.
-    held: Matrix3,
+    constrained: Matrix3,
 }
 
 /// What one node contributes at one surface point.
@@ -110,7 +110,8 @@ impl WeakTable {
     pub fn new(support: &WeakSupport, body: &Body, projected: Option<&Projected>) -> WeakTable {
         let at = support.flux.at();
         let points = support.flux.weights().len();
-        let held = Matrix3::from_diagonal(&Vector3::from_fn(|a, _| f64::from(u8::from(support.axes[a]))));
+        let constrained =
+            Matrix3::from_diagonal(&Vector3::from_fn(|a, _| f64::from(u8::from(support.axes[a]))));
         let nitsche = matches!(support.method, Weak::Nitsche { .. });
         let trace = support.trace.filter(|_| nitsche);
         let mut offsets = vec![0];
@@ -158,8 +159,9 @@ impl WeakTable {
                 phi.push(value);
                 // t_a of a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c)
                 traction.push(if nitsche {
-                    held * (n * (g * shear + b * bulk).transpose()
-                        + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
+                    constrained
+                        * (n * (g * shear + b * bulk).transpose()
+                            + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
                 } else {
                     Matrix3::zeros()
                 });
@@ -173,11 +175,11 @@ impl WeakTable {
                 Weak::Penalty { factor } => factor * law.young() / support.h,
             });
         }
-        // `held * v` would turn an ignored NaN into a NaN; the choice does not.
+        // `constrained * v` would turn an ignored NaN into a NaN; the choice does not.
         let target =
             support.values.iter().map(|v| Vector3::from_fn(|a, _| if support.axes[a] { v[a] } else { 0.0 }));
         let (weights, target) = (support.flux.weights().to_vec(), target.collect());
-        WeakTable { offsets, nodes, phi, traction, weights, beta, target, held }
+        WeakTable { offsets, nodes, phi, traction, weights, beta, target, constrained }
     }
 
     pub fn connectivity(&self) -> Connectivity<'_> {
@@ -188,14 +190,14 @@ impl WeakTable {
         Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
     }
 
-    /// Adds the bilinear form `sum over held axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
+    /// Adds the bilinear form `sum over constrained axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
     pub fn add_stiffness(&self, stiffness: &mut Stiffness, incidence: &Incidence) {
         stiffness.for_each_row(|i, slot, row| {
             for &(q, k) in incidence.of(i) {
                 let (q, k) = (q as usize, k as usize);
                 let w = self.weights[q];
                 let (Ni, ti) = (self.phi[k], self.traction[k].transpose());
-                let stabilised = self.held * (self.beta[q] * Ni);
+                let stabilised = self.constrained * (self.beta[q] * Ni);
                 for j in self.offsets[q]..=k {
                     let (Nj, tj) = (self.phi[j], &self.traction[j]);
                     row[slot[self.nodes[j] as usize] as usize] += (stabilised * Nj - tj * Ni - ti * Nj) * w;
@@ -204,7 +206,7 @@ impl WeakTable {
         });
     }
 
-    /// Adds the linear form `sum over held axes of integral of g_a (beta v_a - t_a(v))` to the nodal forces.
+    /// Adds the linear form `sum over constrained axes of integral of g_a (beta v_a - t_a(v))` to the nodal forces.
     pub fn add_force(&self, incidence: &Incidence, force: &mut [Vector3]) {
         force.par_iter_mut().enumerate().for_each(|(i, force)| {
             for &(q, k) in incidence.of(i) {
@@ -230,10 +232,11 @@ impl WeakTable {
             .map(|q| {
                 let range = self.offsets[q]..self.offsets[q + 1];
                 let base = u[self.nodes[range.start] as usize];
-                let (mut gap, mut traction) = (self.held * base - self.target[q] * factor, Vector3::zeros());
+                let (mut gap, mut traction) =
+                    (self.constrained * base - self.target[q] * factor, Vector3::zeros());
                 for k in range {
                     let difference = u[self.nodes[k] as usize] - base;
-                    gap += self.held * difference * self.phi[k];
+                    gap += self.constrained * difference * self.phi[k];
                     traction += self.traction[k] * difference;
                 }
                 (gap, traction)

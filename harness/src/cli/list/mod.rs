@@ -26,10 +26,11 @@ const fn part(name: &'static str, key: &'static str, items: fn() -> Vec<Item>) -
     Part { name, key, items }
 }
 
-const PARTS: [Part; 20] = [
+const PARTS: [Part; 21] = [
     part("bodies", "body.shape; their surfaces: on", || forms("body")),
     part("laws", "material.law", || Item::of_entries(LAWS)),
     part("tools", "tool.shape", || Item::of_entries(TOOL_SHAPES)),
+    part("families", "method.family", || forms("method")),
     part("elements", "method.element, family = \"fem\"", || forms("method.fem.element")),
     part("clouds", "method.cloud, family = \"efg\"", || forms("method.efg.cloud")),
     part("kernels", "method.kernel", || Item::of_entries(efg::KERNELS)),

@@ -107,7 +107,7 @@ impl Symmetric {
         if self.multipliers < self.dim() { Kind::Saddle } else { Kind::Definite }
     }
 
-    /// The free part of a stiffness: `place` gives each degree of freedom its unknown (`usize::MAX` if held), `free`
+    /// The free part of a stiffness: `place` gives each degree of freedom its unknown (`usize::MAX` if constrained), `free`
     /// their number.
     pub fn displacements(stiffness: &Stiffness, place: &[usize], free: usize) -> Symmetric {
         let capacity = 9 * stiffness.pattern().block_count();

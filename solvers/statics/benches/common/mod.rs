@@ -1,4 +1,4 @@
-//! Boxes of tetrahedra, pressed from above and held below.
+//! Boxes of tetrahedra, pressed from above and constrained below.
 #![allow(dead_code)] // each bench uses its own part
 
 use fem::{SurfaceRule, VolumeRule};
@@ -19,7 +19,7 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// A cube of n^3 cells of six tet4: `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them held.
+    /// A cube of n^3 cells of six tet4: `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them constrained.
     pub fn new(n: usize) -> Pressed {
         Pressed::of(CellKind::Tet4, n)
     }
@@ -31,8 +31,8 @@ impl Pressed {
         let mesh = box_mesh(kind, Point3::origin(), max, [n; 3], [1.0; 3], jitter).unwrap();
         let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
         let top = fem::surface_rows(&mesh, mesh.group("z-max").unwrap(), &SurfaceRule::STANDARD).unwrap();
-        let held = mesh.facet_group_nodes(mesh.group("z-min").unwrap());
-        let fixed = held
+        let constrained = mesh.facet_group_nodes(mesh.group("z-min").unwrap());
+        let fixed = constrained
             .iter()
             .flat_map(|&node| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 }))
             .collect();

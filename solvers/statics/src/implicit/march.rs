@@ -162,8 +162,8 @@ impl<'a> March<'a> {
             .map(|i| forces.external[i] - forces.internal[i] - damping[i] * inertia.damping)
             .collect();
         let prescribed = self.newton.prescribed();
-        let held = |i: usize, axis: usize| prescribed[3 * i + axis].is_some();
-        inertia.mass.accelerate(&force, held, &mut self.motion.a)?;
+        let constrained = |i: usize, axis: usize| prescribed[3 * i + axis].is_some();
+        inertia.mass.accelerate(&force, constrained, &mut self.motion.a)?;
         if let Some(memory) = &mut self.memory {
             memory.advance(0.0, forces.deviator.clone());
         }
@@ -218,7 +218,7 @@ impl<'a> March<'a> {
         Ok(TimeStep { step, energy: self.energy, error })
     }
 
-    /// Value, velocity or acceleration (`order` 0, 1, 2) of held degrees of freedom at `time`.
+    /// Value, velocity or acceleration (`order` 0, 1, 2) of constrained degrees of freedom at `time`.
     fn prescribe(&self, field: &mut [Vector3], time: f64, order: usize) {
         let part = self.problem.ramps.supports.derivatives(time)[order];
         for (dof, value) in self.newton.prescribed().iter().enumerate() {
@@ -228,7 +228,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Velocities and accelerations with the displacement `u` at `time`; held degrees of freedom have those of the
+    /// Velocities and accelerations with the displacement `u` at `time`; constrained degrees of freedom have those of the
     /// ramp.
     fn motion_at(&self, time: f64, dt: f64, u: &[Vector3]) -> Motion {
         let Motion { u: from, v, a, .. } = &self.motion;
@@ -262,7 +262,7 @@ impl<'a> March<'a> {
         InertiaTerms { factor: update.factor(damping), from: u.clone(), settled, carried, guess }
     }
 
-    /// What balances held degrees of freedom; zero in free ones.
+    /// What balances constrained degrees of freedom; zero in free ones.
     fn reaction(&self, forces: &Ended, motion: &Motion) -> Vec<Vector3> {
         let mut inertia = vec![Vector3::zeros(); motion.u.len()];
         if let Some(given) = self.problem.inertia {

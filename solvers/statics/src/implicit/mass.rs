@@ -100,17 +100,17 @@ impl Mass {
         &self.table
     }
 
-    /// Accelerations `a` with `M a = force` in free degrees of freedom and the values that `a` already has in held
+    /// Accelerations `a` with `M a = force` in free degrees of freedom and the values that `a` already has in constrained
     /// ones, by conjugate gradients scaled with the diagonal.
     pub(crate) fn accelerate(
         &self,
         force: &[Vector3],
-        held: impl Fn(usize, usize) -> bool,
+        constrained: impl Fn(usize, usize) -> bool,
         a: &mut [Vector3],
     ) -> Result<(), TimeError> {
         let free = |v: &mut [Vector3]| {
             for (i, v) in v.iter_mut().enumerate() {
-                (0..3).filter(|&axis| held(i, axis)).for_each(|axis| v[axis] = 0.0);
+                (0..3).filter(|&axis| constrained(i, axis)).for_each(|axis| v[axis] = 0.0);
             }
         };
         let dot = |x: &[Vector3], y: &[Vector3]| x.iter().zip(y).map(|(x, y)| x.dot(y)).sum::<f64>();

@@ -5,13 +5,13 @@
 pub enum Ramp {
     /// All of it from the start.
     AtOnce,
-    /// In proportion to time over so many seconds, then held. Supports driven so start and stop with a jump of their
+    /// In proportion to time over so many seconds, then constant. Supports driven so start and stop with a jump of their
     /// velocity, which a body with inertia answers by a wave.
     Linear {
         /// Duration, s.
         over: f64,
     },
-    /// `10 s^3 - 15 s^4 + 6 s^5`, `s = t / over`, then held: velocity and acceleration are continuous.
+    /// `10 s^3 - 15 s^4 + 6 s^5`, `s = t / over`, then constant: velocity and acceleration are continuous.
     Smooth {
         /// Duration, s.
         over: f64,
@@ -23,7 +23,7 @@ pub enum Ramp {
 pub struct Ramps {
     /// Loads.
     pub loads: Ramp,
-    /// Prescribed displacements, of nodes and of surfaces held by penalty.
+    /// Prescribed displacements, of nodes and of surfaces constrained by penalty.
     pub supports: Ramp,
     /// Closures and forces of tools.
     pub tools: Ramp,

@@ -39,12 +39,12 @@ impl<'a> Frames<'a> {
         let mut target = time;
         loop {
             let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
-            let mut way = |descent| newton.find(state, before, target, self.augmentations, descent);
-            match near(!state.pressure.is_empty(), &mut way).or_else(|_| way(Descent::Down)) {
+            let mut solve = |descent| newton.find(state, before, target, self.augmentations, descent);
+            match near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down)) {
                 Ok((reached, step)) => {
                     self.newton.keep_scale();
                     let last = std::mem::replace(&mut self.state, reached);
-                    // A frame without motion tells nothing of the way.
+                    // A frame without motion predicts nothing.
                     if last.time != self.state.time {
                         self.before = Some(last);
                     }

@@ -84,7 +84,11 @@ impl Pairs {
 
 impl Solid<'_> {
     /// `J_a - 1` of each group.
-    pub(super) fn group_dilations(&self, groups: &DilationGroups, J1: &[f64]) -> Result<Vec<f64>, Inverted> {
+    pub(super) fn group_dilations(
+        &self,
+        groups: &DilationGroups,
+        j_minus_1: &[f64],
+    ) -> Result<Vec<f64>, Inverted> {
         let weights = self.volume.weights();
         (0..groups.len())
             .into_par_iter()
@@ -95,7 +99,7 @@ impl Solid<'_> {
                 for (&q, share) in points.iter().zip(shares) {
                     let dv = share * weights[q as usize];
                     volume += dv;
-                    sum += dv * J1[q as usize];
+                    sum += dv * j_minus_1[q as usize];
                 }
                 let mean = sum / volume;
                 let q = points[0] as usize;

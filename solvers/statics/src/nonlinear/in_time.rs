@@ -30,7 +30,7 @@ pub(crate) struct TimeTerms {
 }
 
 /// Inertia and damping of one step of an implicit scheme, the force `carried - M r`, with
-/// `r = factor (u - from) + settled` in free degrees of freedom and `r = settled` in held ones, m/s^2.
+/// `r = factor (u - from) + settled` in free degrees of freedom and `r = settled` in constrained ones, m/s^2.
 #[derive(Clone, Debug)]
 pub(crate) struct InertiaTerms {
     /// 1/s^2.
@@ -48,7 +48,7 @@ pub(crate) struct InertiaTerms {
 /// Nodal forces at the end of a step, N, and what relaxes.
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {
-    /// Loads, surfaces held by penalty and contact.
+    /// Loads, surfaces constrained by penalty and contact.
     pub external: Vec<Vector3>,
     pub internal: Vec<Vector3>,
     /// Deviators that a Prony series relaxes, per point, Pa; empty in an elastic body.

@@ -25,4 +25,4 @@ pub use error::{Inverted, StaticError, Worst};
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
 pub use solid::{Dilation, Solid};
-pub use statics::{HeldSurface, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static};
+pub use statics::{PenaltySurface, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static};

@@ -188,9 +188,9 @@ fn points<T: Send>(
     value: impl Fn(usize, &Point) -> T + Sync,
 ) -> Result<Vec<T>, StaticError> {
     let kinematics = solid.kinematics(u)?;
-    let (H, J1) = (&kinematics.H, &kinematics.J1);
+    let (H, j_minus_1) = (&kinematics.H, &kinematics.j_minus_1);
     let of_groups = match solid.dilation {
-        Dilation::Groups(groups) => solid.group_dilations(groups, J1)?,
+        Dilation::Groups(groups) => solid.group_dilations(groups, j_minus_1)?,
         _ => Vec::new(),
     };
     let pressures = match solid.dilation {
@@ -202,14 +202,14 @@ fn points<T: Send>(
         .with_min_len(64)
         .map(|q| {
             let law = solid.law(q);
-            let split = |theta1: f64| Split::new(law, &H[q], J1[q], theta1);
+            let split = |theta_minus_1: f64| Split::new(law, &H[q], j_minus_1[q], theta_minus_1);
             let splits = match solid.dilation {
-                Dilation::Standard => vec![(1.0, split(J1[q]))],
+                Dilation::Standard => vec![(1.0, split(j_minus_1[q]))],
                 Dilation::Groups(_) => (pairs.expect("groups have pairs").of(q).iter())
                     .map(|&(a, share)| (share, split(of_groups[a as usize])))
                     .collect(),
                 Dilation::Mixed(_) => {
-                    vec![(1.0, split(solid.mixed_dilation(q, &H[q], J1[q], pressures[q])?))]
+                    vec![(1.0, split(solid.mixed_dilation(q, &H[q], j_minus_1[q], pressures[q])?))]
                 }
             };
             Ok(value(q, &Point { law, H: H[q], splits }))

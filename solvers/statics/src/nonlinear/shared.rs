@@ -54,7 +54,7 @@ impl<'a> Shared<'a> {
         pairs: &'a Pairs,
         kinematics: &'a Kinematics,
     ) -> Result<Shared<'a>, Inverted> {
-        let theta = solid.group_dilations(groups, &kinematics.J1)?;
+        let theta = solid.group_dilations(groups, &kinematics.j_minus_1)?;
         let parts = match solid.laws {
             [law] => theta.iter().map(|&theta| law.separated(theta)).collect(),
             _ => None,
@@ -62,7 +62,7 @@ impl<'a> Shared<'a> {
         Ok(Shared { solid, groups, pairs, kinematics, theta, parts })
     }
 
-    /// The plain loop, which the one by point is held against.
+    /// The plain loop, which the one by point is compared with.
     #[cfg(test)]
     pub fn plain(mut self) -> Shared<'a> {
         self.parts = None;
@@ -86,8 +86,8 @@ impl<'a> Shared<'a> {
     }
 
     /// `F_q` through the dilation `theta`.
-    fn split(&self, q: usize, theta1: f64) -> Split {
-        Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.J1[q], theta1)
+    fn split(&self, q: usize, theta_minus_1: f64) -> Split {
+        Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.j_minus_1[q], theta_minus_1)
     }
 
     fn cofactor(&self, q: usize) -> Matrix3 {
@@ -240,7 +240,7 @@ impl<'a> Shared<'a> {
         self.solid.volume.row(q).1.iter().map(of_node)
     }
 
-    /// `stiffness` tells k of a group and a factor of its m; `add` adds what a point has of b and m to the sums of the group,
+    /// `stiffness` gives k of a group and a factor of its m; `add` adds what a point has of b and m to the sums of the group,
     /// at the slot of each node: by point, place in the pair list and share.
     fn group_hessians(
         &self,

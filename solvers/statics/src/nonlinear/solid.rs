@@ -63,7 +63,7 @@ pub(crate) struct Hessian {
 /// Displacement gradient and `J - 1` of each point.
 pub(super) struct Kinematics {
     pub H: Vec<Matrix3>,
-    pub J1: Vec<f64>,
+    pub j_minus_1: Vec<f64>,
     smallest: (usize, f64),
 }
 
@@ -94,7 +94,7 @@ impl Solid<'_> {
     }
 
     pub(super) fn kinematics(&self, u: &[Vector3]) -> Result<Kinematics, Inverted> {
-        let (H, J1): (Vec<Matrix3>, Vec<f64>) = (0..self.volume.weights().len())
+        let (H, j_minus_1): (Vec<Matrix3>, Vec<f64>) = (0..self.volume.weights().len())
             .into_par_iter()
             .with_min_len(256)
             .map(|q| {
@@ -103,13 +103,13 @@ impl Solid<'_> {
                 for (&node, g) in nodes.iter().zip(grads) {
                     H += u[node as usize] * g.transpose();
                 }
-                let J1 = dilation(self.law(q).is_small_strain(), &H);
-                (H, J1)
+                let j_minus_1 = dilation(self.law(q).is_small_strain(), &H);
+                (H, j_minus_1)
             })
             .unzip();
         let mut smallest = (0, f64::INFINITY);
-        for (q, &J1) in J1.iter().enumerate() {
-            let J = 1.0 + J1;
+        for (q, &j_minus_1) in j_minus_1.iter().enumerate() {
+            let J = 1.0 + j_minus_1;
             // A small-strain law knows no inversion; a NaN must not pass either way.
             if !(J > 0.0) && !self.law(q).is_small_strain() || J.is_nan() {
                 return Err(Inverted { point: q, det: J });
@@ -118,17 +118,23 @@ impl Solid<'_> {
                 smallest = (q, J);
             }
         }
-        Ok(Kinematics { H, J1, smallest })
+        Ok(Kinematics { H, j_minus_1, smallest })
     }
 
     /// `theta - 1` at a point of the mixed method.
-    pub(super) fn mixed_dilation(&self, q: usize, H: &Matrix3, J1: f64, p: f64) -> Result<f64, StaticError> {
+    pub(super) fn mixed_dilation(
+        &self,
+        q: usize,
+        H: &Matrix3,
+        j_minus_1: f64,
+        p: f64,
+    ) -> Result<f64, StaticError> {
         let law = self.law(q);
-        dilation_at_pressure(law, H, J1, p, J1)
+        dilation_at_pressure(law, H, j_minus_1, p, j_minus_1)
             // Far from J the guess p = kappa (theta - 1) may be the better one.
             .or_else(|| {
                 let guess = (p / (law.lambda() + 2.0 / 3.0 * law.mu())).max(-0.9);
-                dilation_at_pressure(law, H, J1, p, guess)
+                dilation_at_pressure(law, H, j_minus_1, p, guess)
             })
             .ok_or(StaticError::NoDilation { point: q, pressure: p })
     }
@@ -151,7 +157,7 @@ impl Solid<'_> {
         p: &[f64],
     ) -> Result<Internal, StaticError> {
         let kinematics = self.kinematics(u)?;
-        let Kinematics { H, J1, smallest } = &kinematics;
+        let Kinematics { H, j_minus_1, smallest } = &kinematics;
         let weights = self.volume.weights();
         let points = 0..weights.len();
         let mut misfit = Vec::new();
@@ -174,11 +180,11 @@ impl Solid<'_> {
                     .with_min_len(64)
                     .map(|q| {
                         let law = self.law(q);
-                        let theta = self.mixed_dilation(q, &H[q], J1[q], p[q])?;
-                        let split = Split::new(law, &H[q], J1[q], theta);
+                        let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
+                        let split = Split::new(law, &H[q], j_minus_1[q], theta);
                         let cof = cofactor(law.is_small_strain(), &H[q]);
                         let P = split.first(law).by_F + cof * p[q];
-                        let gap = J1[q] - theta;
+                        let gap = j_minus_1[q] - theta;
                         Ok((P * weights[q], (split.energy(law) + p[q] * gap) * weights[q], gap * weights[q]))
                     })
                     .collect::<Result<_, StaticError>>()?;
@@ -197,7 +203,7 @@ impl Solid<'_> {
         p: &[f64],
     ) -> Result<Hessian, StaticError> {
         let kinematics = self.kinematics(u)?;
-        let Kinematics { H, J1, .. } = &kinematics;
+        let Kinematics { H, j_minus_1, .. } = &kinematics;
         let weights = self.volume.weights();
         let points = (0..weights.len()).into_par_iter().with_min_len(64);
         let none = (Vec::new(), Vec::new());
@@ -216,8 +222,8 @@ impl Solid<'_> {
                 let each: Vec<(Tangent, (Matrix3, f64))> = points
                     .map(|q| {
                         let law = self.law(q);
-                        let theta = self.mixed_dilation(q, &H[q], J1[q], p[q])?;
-                        let (_, second) = Split::new(law, &H[q], J1[q], theta).second(law);
+                        let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
+                        let (_, second) = Split::new(law, &H[q], j_minus_1[q], theta).second(law);
                         let by_p = second.by_F_theta / second.by_theta_theta;
                         // theta follows F at constant p: the Schur complement of the local elimination.
                         let v = super::split::flat(&second.by_F_theta);

@@ -80,23 +80,23 @@ pub(crate) struct Split {
 
 impl Split {
     /// At `H` (with `J - 1` already known) and `theta - 1`; both dilations must be positive.
-    pub fn new(law: &Law, H: &Matrix3, J1: f64, theta1: f64) -> Split {
+    pub fn new(law: &Law, H: &Matrix3, j_minus_1: f64, theta_minus_1: f64) -> Split {
         if law.is_small_strain() {
             let I = Matrix3::identity();
-            let H_bar = H + I * ((theta1 - J1) / 3.0);
+            let H_bar = H + I * ((theta_minus_1 - j_minus_1) / 3.0);
             return Split { H_bar, F_bar: I, T: I, scale: 1.0, theta: 1.0, small_strain: true };
         }
         // ln(theta / J) / 3 by log1p: the difference of two nearly equal dilations keeps its digits.
-        let log = (theta1.ln_1p() - J1.ln_1p()) / 3.0;
+        let log = (theta_minus_1.ln_1p() - j_minus_1.ln_1p()) / 3.0;
         let (scale, grown) = (log.exp(), log.exp_m1());
         let F = Matrix3::identity() + H;
         let H_bar = H + F * grown;
         Split {
             H_bar,
             F_bar: Matrix3::identity() + H_bar,
-            T: cofactor(false, H) / (1.0 + J1),
+            T: cofactor(false, H) / (1.0 + j_minus_1),
             scale,
-            theta: 1.0 + theta1,
+            theta: 1.0 + theta_minus_1,
             small_strain: false,
         }
     }
@@ -159,18 +159,24 @@ pub(crate) fn unflat(v: &nalgebra::SVector<f64, 9>) -> Matrix3 {
 
 /// `theta - 1` at which `d psi / d theta = p`, by Newton's method from a guess; `None` where it leaves the positive
 /// dilations or does not settle.
-pub(crate) fn dilation_at_pressure(law: &Law, H: &Matrix3, J1: f64, p: f64, guess: f64) -> Option<f64> {
-    let mut theta1 = guess;
+pub(crate) fn dilation_at_pressure(
+    law: &Law,
+    H: &Matrix3,
+    j_minus_1: f64,
+    p: f64,
+    guess: f64,
+) -> Option<f64> {
+    let mut theta_minus_1 = guess;
     for _ in 0..40 {
-        let (first, second) = Split::new(law, H, J1, theta1).second(law);
+        let (first, second) = Split::new(law, H, j_minus_1, theta_minus_1).second(law);
         let step = (p - first.by_theta) / second.by_theta_theta;
         if !step.is_finite() {
             return None;
         }
         // No step may take away more than half of the volume; at small strain any dilation has a pressure.
-        theta1 += if law.is_small_strain() { step } else { step.max(-0.5 * (1.0 + theta1)) };
-        if step.abs() <= 1e-14 * (1.0 + theta1.abs()) {
-            return Some(theta1);
+        theta_minus_1 += if law.is_small_strain() { step } else { step.max(-0.5 * (1.0 + theta_minus_1)) };
+        if step.abs() <= 1e-14 * (1.0 + theta_minus_1.abs()) {
+            return Some(theta_minus_1);
         }
     }
     None

@@ -9,12 +9,12 @@ use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near};
 use super::solid::Solid;
 use crate::Load;
 
-/// A surface held by a penalty: for bases whose parameters are not displacements.
+/// A surface constrained by a penalty: for bases whose parameters are not displacements.
 #[derive(Clone, Debug)]
-pub struct HeldSurface<'a> {
+pub struct PenaltySurface<'a> {
     /// Values and weights.
     pub surface: &'a SurfaceRows,
-    /// Which of x, y, z are held.
+    /// Which of x, y, z are constrained.
     pub axes: [bool; 3],
     /// Prescribed displacement at each point at the end of the loading, m.
     pub values: Vec<Vector3>,
@@ -32,10 +32,10 @@ pub struct StaticProblem<'a> {
     pub solid: Solid<'a>,
     /// Loads; they add up.
     pub loads: &'a [Load<'a>],
-    /// Nodal parameters held at values.
+    /// Nodal parameters prescribed.
     pub fixed: &'a [FixedDof],
-    /// Surfaces held by penalty.
-    pub held: &'a [HeldSurface<'a>],
+    /// Surfaces constrained by penalty.
+    pub penalties: &'a [PenaltySurface<'a>],
     /// Where tools may touch.
     pub contact: Option<&'a ContactSurface<'a>>,
     /// The tools.

@@ -14,8 +14,8 @@ use super::solid::{Hessian, Internal};
 use super::sorted::Sorted;
 use super::{Dilation, Solid};
 
-/// Place of a held degree of freedom among the unknowns.
-pub(crate) const HELD: usize = usize::MAX;
+/// Place of a constrained degree of freedom among the unknowns.
+pub(crate) const CONSTRAINED: usize = usize::MAX;
 
 /// Gradients of points that the rows of a task go through together: with the tangents of their points 500 KB at most, which
 /// stay in the second-level cache.
@@ -92,7 +92,7 @@ pub(crate) struct System<'a> {
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
     stiffness: Stiffness,
-    /// Place of each degree of freedom among the unknowns, [`HELD`] if prescribed; pressures follow.
+    /// Place of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
     pub place: Vec<usize>,
     /// Number of free displacement degrees of freedom.
     pub free: usize,
@@ -102,7 +102,7 @@ pub(crate) struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    pub fn new(solid: Solid<'a>, held: &[bool], surfaces: Vec<SurfaceTable>) -> System<'a> {
+    pub fn new(solid: Solid<'a>, constrained: &[bool], surfaces: Vec<SurfaceTable>) -> System<'a> {
         let nodes = solid.node_count();
         let rows = solid.volume.rows();
         let points = Sorted::new((0..rows.len()).map(|q| {
@@ -129,11 +129,11 @@ impl<'a> System<'a> {
         tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
         let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
         let mut free = 0;
-        let place = held
+        let place = constrained
             .iter()
-            .map(|&held| {
-                if held {
-                    return HELD;
+            .map(|&constrained| {
+                if constrained {
+                    return CONSTRAINED;
                 }
                 free += 1;
                 free - 1
@@ -242,7 +242,7 @@ impl<'a> System<'a> {
                 let value = std::mem::replace(&mut sum[node as usize], Vector3::zeros());
                 for a in 0..3 {
                     let at = self.place[3 * node as usize + a];
-                    if at != HELD {
+                    if at != CONSTRAINED {
                         matrix.rows.push(at);
                         matrix.values.push(value[a]);
                     }
@@ -285,7 +285,7 @@ impl<'a> System<'a> {
                         for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)] {
                             let (row, column) =
                                 (self.place[3 * i as usize + a], self.place[3 * j as usize + b]);
-                            if row != HELD && column != HELD {
+                            if row != CONSTRAINED && column != CONSTRAINED {
                                 entries.push((row, column, skew[(a, b)] * vi * vj));
                             }
                         }
@@ -299,7 +299,7 @@ impl<'a> System<'a> {
     /// Unknowns gathered from nodal vectors and pressures.
     pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.dim()];
-        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
             out[at] = nodal[dof / 3][dof % 3];
         }
         out[self.free..].copy_from_slice(pressure);
@@ -308,7 +308,7 @@ impl<'a> System<'a> {
 
     /// Adds `factor` times the unknowns to nodal vectors and pressures.
     pub fn scatter_add(&self, step: &[f64], factor: f64, nodal: &mut [Vector3], pressure: &mut [f64]) {
-        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != HELD) {
+        for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
             nodal[dof / 3][dof % 3] += factor * step[at];
         }
         for (p, s) in pressure.iter_mut().zip(&step[self.free..]) {
@@ -316,12 +316,12 @@ impl<'a> System<'a> {
         }
     }
 
-    /// `K du` of held degrees of freedom that move: what they take from the right-hand side of the free ones.
+    /// `K du` of constrained degrees of freedom that move: what they take from the right-hand side of the free ones.
     pub fn held_part(&self, step: &[Vector3]) -> Vec<Vector3> {
         self.stiffness.multiply(step)
     }
 
-    /// Takes from the pressures' right-hand side what held degrees of freedom that move by `step` do to it.
+    /// Takes from the pressures' right-hand side what constrained degrees of freedom that move by `step` do to it.
     pub fn subtract_held_pressure(&self, hessian: &Hessian, step: &[Vector3], right: &mut [f64]) {
         if right.is_empty() {
             return;

@@ -31,13 +31,14 @@ fn split_derivatives_are_those_of_its_energy() {
     let h = 1e-6;
     for law in laws() {
         let small = law.is_small_strain();
-        let at = |H: &Matrix3, theta1: f64| Split::new(&law, H, dilation(small, H), theta1);
-        let (H, theta1) = (gradient(), 0.27);
-        let (first, second) = at(&H, theta1).second(&law);
+        let at = |H: &Matrix3, theta_minus_1: f64| Split::new(&law, H, dilation(small, H), theta_minus_1);
+        let (H, theta_minus_1) = (gradient(), 0.27);
+        let (first, second) = at(&H, theta_minus_1).second(&law);
         let scale = YOUNG;
-        let by_theta = (at(&H, theta1 + h).energy(&law) - at(&H, theta1 - h).energy(&law)) / (2.0 * h);
+        let by_theta =
+            (at(&H, theta_minus_1 + h).energy(&law) - at(&H, theta_minus_1 - h).energy(&law)) / (2.0 * h);
         assert!((by_theta - first.by_theta).abs() < 1e-7 * scale, "{}", law.name());
-        let (up, down) = (at(&H, theta1 + h).first(&law), at(&H, theta1 - h).first(&law));
+        let (up, down) = (at(&H, theta_minus_1 + h).first(&law), at(&H, theta_minus_1 - h).first(&law));
         let slope = (up.by_theta - down.by_theta) / (2.0 * h);
         assert!((slope - second.by_theta_theta).abs() < 1e-6 * scale, "{}", law.name());
         let slope = (up.by_F - down.by_F) / (2.0 * h);
@@ -45,7 +46,7 @@ fn split_derivatives_are_those_of_its_energy() {
         for k in 0..9 {
             let mut d = Matrix3::zeros();
             d[k] = h;
-            let (up, down) = (at(&(H + d), theta1), at(&(H - d), theta1));
+            let (up, down) = (at(&(H + d), theta_minus_1), at(&(H - d), theta_minus_1));
             let slope = (up.energy(&law) - down.energy(&law)) / (2.0 * h);
             assert!((slope - first.by_F[k]).abs() < 1e-7 * scale, "{} {k}", law.name());
             let slope = flat(&((up.first(&law).by_F - down.first(&law).by_F) / (2.0 * h)));
@@ -64,8 +65,8 @@ fn split_derivatives_are_those_of_its_energy() {
 fn split_at_its_own_dilation_is_the_law() {
     for law in laws() {
         let H = gradient();
-        let J1 = dilation(law.is_small_strain(), &H);
-        let split = Split::new(&law, &H, J1, J1);
+        let j_minus_1 = dilation(law.is_small_strain(), &H);
+        let split = Split::new(&law, &H, j_minus_1, j_minus_1);
         assert!((split.energy(&law) - law.energy(&H)).abs() < 1e-14 * YOUNG);
         let first = split.first(&law);
         let whole = first.by_F + super::split::cofactor(law.is_small_strain(), &H) * first.by_theta;
@@ -79,25 +80,33 @@ fn laws_part_into_shape_and_volume() {
     let h = 1e-6;
     let H = gradient();
     for law in laws() {
-        let J1 = dilation(law.is_small_strain(), &H);
-        let shape = Split::new(&law, &H, J1, 0.0);
-        for theta1 in [-0.4, 1e-9, 0.27] {
-            let at = |theta1: f64| law.separated(theta1);
-            let Some(parts) = at(theta1) else {
+        let j_minus_1 = dilation(law.is_small_strain(), &H);
+        let shape = Split::new(&law, &H, j_minus_1, 0.0);
+        for theta_minus_1 in [-0.4, 1e-9, 0.27] {
+            let at = |theta_minus_1: f64| law.separated(theta_minus_1);
+            let Some(parts) = at(theta_minus_1) else {
                 assert_eq!(law.name(), "saint-venant-kirchhoff");
                 continue;
             };
-            let whole = Split::new(&law, &H, J1, theta1);
+            let whole = Split::new(&law, &H, j_minus_1, theta_minus_1);
             let sum = parts.A[0] * shape.energy(&law) + parts.U[0];
-            assert!((sum - whole.energy(&law)).abs() < 1e-13 * YOUNG, "{} {theta1}", law.name());
+            assert!((sum - whole.energy(&law)).abs() < 1e-13 * YOUNG, "{} {theta_minus_1}", law.name());
             let stress = shape.first(&law).by_F * parts.A[0];
-            assert!((stress - whole.first(&law).by_F).norm() < 1e-13 * YOUNG, "{} {theta1}", law.name());
-            let (up, down) = (at(theta1 + h).unwrap(), at(theta1 - h).unwrap());
+            assert!(
+                (stress - whole.first(&law).by_F).norm() < 1e-13 * YOUNG,
+                "{} {theta_minus_1}",
+                law.name()
+            );
+            let (up, down) = (at(theta_minus_1 + h).unwrap(), at(theta_minus_1 - h).unwrap());
             for d in 0..2 {
                 let slope = (up.A[d] - down.A[d]) / (2.0 * h);
-                assert!((slope - parts.A[d + 1]).abs() < 1e-8, "{} A {d} {theta1}", law.name());
+                assert!((slope - parts.A[d + 1]).abs() < 1e-8, "{} A {d} {theta_minus_1}", law.name());
                 let slope = (up.U[d] - down.U[d]) / (2.0 * h);
-                assert!((slope - parts.U[d + 1]).abs() < 1e-7 * YOUNG, "{} U {d} {theta1}", law.name());
+                assert!(
+                    (slope - parts.U[d + 1]).abs() < 1e-7 * YOUNG,
+                    "{} U {d} {theta_minus_1}",
+                    law.name()
+                );
             }
         }
     }

@@ -67,13 +67,13 @@ impl Newton<'_> {
         }
         let inner = self.system.internal_force(&internal);
         let mut out: Vec<Vector3> = self.load.iter().map(|f| f * loads).collect();
-        for (held, table) in self.problem.held.iter().zip(&self.system.surfaces) {
+        for (penalty, table) in self.problem.penalties.iter().zip(&self.system.surfaces) {
             let at = table.displacement(&state.u);
-            let traction: Vec<Vector3> = (at.iter().zip(&held.values))
+            let traction: Vec<Vector3> = (at.iter().zip(&penalty.values))
                 .map(|(u, g)| {
-                    Vector3::from_fn(
-                        |a, _| if held.axes[a] { held.beta * (g[a] * supports - u[a]) } else { 0.0 },
-                    )
+                    Vector3::from_fn(|a, _| {
+                        if penalty.axes[a] { penalty.beta * (g[a] * supports - u[a]) } else { 0.0 }
+                    })
                 })
                 .collect();
             table.add_force(&traction, &mut out);

@@ -7,7 +7,7 @@ use shape::Vector3;
 use super::{Balance, Descent, Newton, State};
 use crate::nonlinear::Step;
 
-/// Strides of a start led by closure before it is given up: a tool that slips off never carries its force. Starts of the
+/// Strides of a start under displacement control before it is given up: a tool that slips off never reaches its force. Starts of the
 /// kidney between jaws take 10 to 13.
 const STRIDES: usize = 50;
 /// Part of the first stride below which a start is given up.
@@ -28,10 +28,10 @@ impl Newton<'_> {
             .collect()
     }
 
-    /// The force that drives a tool at `time`, N; `None` for one driven or led by closure.
+    /// The force that drives a tool at `time`, N; `None` for one driven or under displacement control.
     pub(super) fn force(&self, tool: usize, time: f64) -> Option<f64> {
         match self.problem.tools[tool].drive {
-            Drive::Force(full) if !self.led[tool] => Some(full * self.scales(time).tools),
+            Drive::Force(full) if !self.displacement_driven[tool] => Some(full * self.scales(time).tools),
             Drive::Force(_) | Drive::Closure(_) => None,
         }
     }
@@ -80,11 +80,11 @@ impl Newton<'_> {
         gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area)
     }
 
-    /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are led by closure until
-    /// each carries its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
+    /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are under displacement control until
+    /// each reaches its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
     /// whose tangent says nothing of those to come: Newton's method goes from no contact to deep contact and back,
     /// where a closure that is given is taken up by the body. `None` where all touch, or that leads to no equilibrium either.
-    pub(super) fn lead(
+    pub(super) fn under_displacement_control(
         &mut self,
         start: &State,
         time: f64,
@@ -96,9 +96,9 @@ impl Newton<'_> {
         if !tools.clone().any(|k| forced(k) && self.approach(k, start, 0.0) > 0.0) {
             return None;
         }
-        self.led = tools.map(forced).collect();
+        self.displacement_driven = tools.map(forced).collect();
         let reached = self.follow(start, time, augmentations, descent);
-        self.led.fill(false);
+        self.displacement_driven.fill(false);
         reached
     }
 
@@ -120,17 +120,19 @@ impl Newton<'_> {
         let unit: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, forces[k]) - gaps[k]).collect();
         let mut state = start.clone();
         // Motion of the nodes for a stride of one, once the tools touch: the guess of the next.
-        let mut way: Option<Vec<Vector3>> = None;
-        let mut carried = vec![0.0; tools.len()];
+        let mut per_stride: Option<Vec<Vector3>> = None;
+        let mut before = vec![0.0; tools.len()];
         let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
         for _ in 0..STRIDES {
-            let forced = !self.led.contains(&true);
+            let forced = !self.displacement_driven.contains(&true);
             let mut guess = state.clone();
-            for (k, closure) in guess.closures.iter_mut().enumerate().filter(|(k, _)| self.led[*k]) {
+            for (k, closure) in
+                guess.closures.iter_mut().enumerate().filter(|(k, _)| self.displacement_driven[*k])
+            {
                 *closure += stride * unit[k] + if touches { 0.0 } else { gaps[k] };
             }
-            if let (Some(way), false) = (&way, forced) {
-                guess.u.iter_mut().zip(way).for_each(|(u, way)| *u += stride * way);
+            if let (Some(per_stride), false) = (&per_stride, forced) {
+                guess.u.iter_mut().zip(per_stride).for_each(|(u, du)| *u += stride * du);
             }
             let kind = if forced { descent } else { Descent::Nearest };
             match self.step(&guess, None, time, augmentations, kind) {
@@ -140,26 +142,27 @@ impl Newton<'_> {
                 }
                 Ok((reached, step)) => {
                     iterations.extend_from_slice(&step.iterations);
-                    let carries: Vec<f64> = tools
+                    let pressed: Vec<f64> = tools
                         .iter()
                         .zip(&step.tools)
                         .map(|(t, now)| -now.force.dot(&t.tool.along()))
                         .collect();
                     // Beyond its force a tool would go back, and friction turn round: less of the stride then.
                     let part = (0..tools.len())
-                        .filter(|&k| self.led[k] && carries[k] > 1.1 * forces[k])
-                        .map(|k| (forces[k] - carried[k]) / (carries[k] - carried[k]))
+                        .filter(|&k| self.displacement_driven[k] && pressed[k] > 1.1 * forces[k])
+                        .map(|k| (forces[k] - before[k]) / (pressed[k] - before[k]))
                         .fold(1.0, f64::min);
                     if touches && part < 1.0 && stride > SHORTEST {
                         stride *= part.max(0.1);
                         continue;
                     }
-                    way = touches.then(|| {
+                    per_stride = touches.then(|| {
                         reached.u.iter().zip(&state.u).map(|(now, then)| (now - then) / stride).collect()
                     });
-                    (0..tools.len()).for_each(|k| self.led[k] &= carries[k] < 0.95 * forces[k]);
+                    (0..tools.len())
+                        .for_each(|k| self.displacement_driven[k] &= pressed[k] < 0.95 * forces[k]);
                     stride *= if step.iterations.len() <= QUICK { 2.0 } else { 1.0 };
-                    (state, carried, touches) = (reached, carries, true);
+                    (state, before, touches) = (reached, pressed, true);
                 }
                 Err(_) if forced || stride < SHORTEST => return None,
                 Err(_) => stride *= 0.25,

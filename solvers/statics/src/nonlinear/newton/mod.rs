@@ -105,8 +105,8 @@ pub(crate) struct Newton<'a> {
     indefinite: bool,
     /// Relative residual to which unsymmetric systems are solved.
     forcing: f64,
-    /// Tools driven by force that are led by closure for the time being.
-    led: Vec<bool>,
+    /// Tools driven by force that are under displacement control for the time being.
+    displacement_driven: Vec<bool>,
     /// Whether steps are the frames of a simulator's loop: each starts with the tangent of the last where that is expected to do,
     /// and a step that is cut goes on to where something touches.
     repeats: bool,
@@ -189,13 +189,13 @@ impl<'a> Newton<'a> {
         let load = nodal_forces(problem.solid.volume, problem.loads)?;
         check_len("nodes of the volume rows", problem.solid.node_count(), nodes)?;
         let mut surfaces: Vec<SurfaceTable> =
-            problem.held.iter().map(|h| SurfaceTable::new(h.surface)).collect();
+            problem.penalties.iter().map(|h| SurfaceTable::new(h.surface)).collect();
         if let (Some(contact), false) = (problem.contact, problem.tools.is_empty()) {
             surfaces.push(SurfaceTable::new(contact.rows()));
         }
         surfaces.extend(mass.cloned());
-        let held: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
-        let system = System::new(problem.solid, &held, surfaces);
+        let constrained: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
+        let system = System::new(problem.solid, &constrained, surfaces);
         let volume = problem.solid.volume.weights().iter().sum();
         Ok(Newton {
             problem,
@@ -214,7 +214,7 @@ impl<'a> Newton<'a> {
             descent: Descent::Nearest,
             indefinite: false,
             forcing: 1e-7,
-            led: vec![false; problem.tools.len()],
+            displacement_driven: vec![false; problem.tools.len()],
             repeats: false,
             kept: None,
         })
@@ -268,7 +268,7 @@ impl<'a> Newton<'a> {
         self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
     }
 
-    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, led by closure.
+    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, under displacement control.
     pub fn find(
         &mut self,
         start: &State,
@@ -279,7 +279,9 @@ impl<'a> Newton<'a> {
     ) -> Result<(State, Step), StaticError> {
         let step = self.step(start, before, time, augmentations, descent);
         step.or_else(|error| match descent {
-            Descent::Smooth | Descent::Nearest => self.lead(start, time, augmentations, descent).ok_or(error),
+            Descent::Smooth | Descent::Nearest => {
+                self.under_displacement_control(start, time, augmentations, descent).ok_or(error)
+            }
             Descent::Guarded | Descent::Down => Err(error),
         })
     }
@@ -402,18 +404,18 @@ impl<'a> Newton<'a> {
         let mut best = (0, f64::INFINITY);
         let mut last = self.kept.take().filter(|_| self.descent == Descent::Nearest);
         loop {
-            let held_move = self.held_move(state, time);
+            let prescribed_move = self.prescribed_move(state, time);
             let residual = self.residual(&balance, time);
-            let settled = held_move.is_none() && residual <= self.params.tolerance;
+            let settled = prescribed_move.is_none() && residual <= self.params.tolerance;
             if settled {
                 log.push(Iteration { residual, energy: 0.0, length: 0.0, definite: true, chord: false });
                 self.kept = last.filter(|last: &Direction| self.repeats && last.definite);
                 return Ok(balance);
             }
             let done = log.len() - first;
-            // Forces before held degrees of freedom have moved are those of the last state, and small.
-            if held_move.is_some() || residual < 0.9 * best.1 {
-                best = (done, if held_move.is_some() { f64::INFINITY } else { residual });
+            // Forces before constrained degrees of freedom have moved are those of the last state, and small.
+            if prescribed_move.is_some() || residual < 0.9 * best.1 {
+                best = (done, if prescribed_move.is_some() { f64::INFINITY } else { residual });
             }
             // On the way down the energy forces first grow.
             let stuck = self.descent != Descent::Down && done >= best.0 + PATIENCE;
@@ -426,11 +428,11 @@ impl<'a> Newton<'a> {
             self.forcing = (0.1 * residual).clamp(1e-7, 1e-2);
             let chord = self.params.chords
                 && last.is_some()
-                && held_move.is_none()
+                && prescribed_move.is_none()
                 && chord_suffices(&log[first..], residual, self.params.tolerance);
             let direction = match last.take().filter(|_| chord) {
                 Some(last) => self.again(last, state, &balance, time)?,
-                None => self.direction(state, &balance, time, held_move.as_deref())?,
+                None => self.direction(state, &balance, time, prescribed_move.as_deref())?,
             };
             let unknowns = self.system.gather(&balance.out, &balance.pressure);
             let lacking = self.lacking(&balance, time);
@@ -439,7 +441,7 @@ impl<'a> Newton<'a> {
                 first_energy = slope.abs();
             }
             let (next, length) =
-                self.search(state, &direction, held_move.as_deref(), slope, &balance, time)?;
+                self.search(state, &direction, prescribed_move.as_deref(), slope, &balance, time)?;
             let energy = if first_energy > 0.0 { slope.abs() / first_energy } else { 0.0 };
             log.push(Iteration { residual, energy, length, definite: direction.definite, chord });
 
@@ -447,8 +449,8 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// What held degrees of freedom still lack of their values at `time`.
-    fn held_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
+    /// What constrained degrees of freedom still lack of their values at `time`.
+    fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
         let scale = self.scales(time).supports;
         let mut lacking = false;
         let moves: Vec<Vector3> = (state.u.iter().enumerate())
@@ -465,7 +467,7 @@ impl<'a> Newton<'a> {
         lacking.then_some(moves)
     }
 
-    /// Sets held degrees of freedom to their values at `time`.
+    /// Sets constrained degrees of freedom to their values at `time`.
     fn prescribe(&self, u: &mut [Vector3], time: f64) {
         let scale = self.scales(time).supports;
         for (dof, value) in self.prescribed.iter().enumerate() {

@@ -22,7 +22,7 @@ impl Newton<'_> {
         &mut self,
         state: &mut State,
         direction: &Direction,
-        held_move: Option<&[Vector3]>,
+        prescribed_move: Option<&[Vector3]>,
         slope: f64,
         last: &Balance,
         time: f64,
@@ -34,10 +34,10 @@ impl Newton<'_> {
         let (free, scale) = (self.system.free, self.system.pressure_scale);
         let size = |r: &[f64]| norm(&r[..free]).hypot(scale * norm(&r[free..]));
         // A step is displacements, and pressures over the scale.
-        let way = |x: &[f64]| norm(&x[..free]).hypot(norm(&x[free..]) / scale);
+        let length_of = |x: &[f64]| norm(&x[..free]).hypot(norm(&x[free..]) / scale);
         let before =
             size(&self.system.gather(&last.out, &last.pressure)).hypot(norm(&self.lacking(last, time)));
-        // A tool driven by force that does not touch yet is on its approach: no force on its way tells where to stop.
+        // A tool driven by force that does not touch yet is on its approach: no force yet says where to stop.
         let forced = |tool: usize| self.force(tool, time).is_some();
         let approaches = (last.contacts.iter().enumerate())
             .any(|(k, contacts)| forced(k) && contacts.as_ref().is_none_or(|c| c.points().is_empty()));
@@ -55,14 +55,14 @@ impl Newton<'_> {
             state.u.clone_from(&start.0);
             state.pressure.clone_from(&start.1);
             state.closures.clone_from(&start.2);
-            // Held degrees of freedom go all the way, whatever part of the step the free ones take.
+            // Constrained degrees of freedom go all the way, whatever part of the step the free ones take.
             self.prescribe(&mut state.u, time);
             self.system.scatter_add(step, length, &mut state.u, &mut state.pressure);
             state.closures.iter_mut().zip(closures).for_each(|(c, d)| *c += length * d);
             let balance = match self.balance(state, time) {
                 Ok(balance) => balance,
                 Err(_) if reached.is_some() => break,
-                Err(error) if trial >= 10 || held_move.is_some() => return Err(error),
+                Err(error) if trial >= 10 || prescribed_move.is_some() => return Err(error),
                 Err(_) => {
                     length *= 0.5;
                     continue;
@@ -72,22 +72,22 @@ impl Newton<'_> {
             let lacking = self.lacking(&balance, time);
             let now = work(step, &unknowns) + work(closures, &lacking);
             let smaller = size(&unknowns).hypot(norm(&lacking)) <= (1.0 - 0.1 * length) * before;
-            if natural && !smaller && held_move.is_none() && trial < 6 {
+            if natural && !smaller && prescribed_move.is_none() && trial < 6 {
                 // No energy falls along a step of the pressure's saddle. What the same factor makes of the new
                 // residual is the step that is left: it must be shorter, whatever the scales of force and volume are
                 // (the natural monotonicity test, Deuflhard 2004, ch. 3.3).
                 let mut left = unknowns.clone();
                 self.solve(factored, &mut left)?;
-                if !(way(&left) <= (1.0 - 0.25 * length) * way(step)) {
+                if !(length_of(&left) <= (1.0 - 0.25 * length) * length_of(step)) {
                     let bend: Vec<f64> = left.iter().zip(step).map(|(l, s)| l - (1.0 - length) * s).collect();
-                    let best = 0.5 * length.powi(2) * way(step) / way(&bend);
+                    let best = 0.5 * length.powi(2) * length_of(step) / length_of(&bend);
                     length =
                         if best.is_finite() { best.clamp(0.1 * length, 0.5 * length) } else { 0.5 * length };
                     continue;
                 }
                 return Ok((balance, length));
             }
-            if downhill && now > 0.0 && held_move.is_none() {
+            if downhill && now > 0.0 && prescribed_move.is_none() {
                 if now > 0.5 * slope && (1.0..FARTHEST).contains(&length) {
                     reached = Some((state.clone(), balance, length));
                     length *= 2.0;
@@ -100,7 +100,7 @@ impl Newton<'_> {
             }
             let short = self.repeats && high.1 < 0.0 && now > 0.5 * slope && trial < 6;
             let less = smaller || now.abs() <= (1.0 - 0.2 * length) * slope.abs();
-            if less && !short || held_move.is_some() || saddle || approaches || trial >= 6 {
+            if less && !short || prescribed_move.is_some() || saddle || approaches || trial >= 6 {
                 return Ok((balance, length));
             }
             // Secant between the ends, kept between a tenth and a half of the way; a secant to the far side of a touch comes to it

@@ -27,7 +27,7 @@ pub(super) struct Direction {
 }
 
 impl Factored {
-    /// Whether tools driven by force leave the tangent definite, if it is so with them held.
+    /// Whether tools driven by force leave the tangent definite, if it is so with them constrained.
     fn stable(&self) -> bool {
         match self {
             Factored::Symmetric(_) => true,
@@ -45,12 +45,12 @@ impl Factored {
 }
 
 impl Newton<'_> {
-    /// `-w dt/dx` of every surface point, by surface: held ones first, then contact.
+    /// `-w dt/dx` of every surface point, by surface: constrained ones first, then contact.
     fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
-        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.held.iter())
+        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
             .map(|h| {
-                let held = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
-                h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(held * *w))).collect()
+                let constrained = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
+                h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(constrained * *w))).collect()
             })
             .collect();
         if self.problem.contact.is_some() && !self.problem.tools.is_empty() {
@@ -76,7 +76,7 @@ impl Newton<'_> {
         state: &State,
         balance: &Balance,
         time: f64,
-        held_move: Option<&[Vector3]>,
+        prescribed_move: Option<&[Vector3]>,
     ) -> Result<Direction, StaticError> {
         let pairs = self.system.pairs.as_ref();
         let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
@@ -90,11 +90,11 @@ impl Newton<'_> {
         let skew = self.system.skew(&blocks);
         let mut right = balance.out.clone();
         let mut right_pressure = balance.pressure.clone();
-        if let Some(moves) = held_move {
+        if let Some(moves) = prescribed_move {
             for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
                 *r -= k;
             }
-            // The accelerations of held degrees of freedom are given: they don't follow the move.
+            // The accelerations of constrained degrees of freedom are given: they don't follow the move.
             if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
                 let mass = self.system.surfaces.last().expect("inertia has a mass table");
                 inertia.give_back(mass, moves, &mut right);

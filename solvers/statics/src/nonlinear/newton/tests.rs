@@ -11,7 +11,7 @@ use super::{Descent, Newton, NewtonParams, State};
 use crate::nonlinear::solid::{Dilation, Solid};
 use crate::nonlinear::statics::StaticProblem;
 
-/// A column of 20 x 1 x 1, its ends held but for a guided one that sways, pressed by 1 %: five times the strain at which
+/// A column of 20 x 1 x 1, its ends constrained but for a guided one that sways, pressed by 1 %: five times the strain at which
 /// it buckles, `pi^2 / 12 (1 / 20)^2`. Straight it is in equilibrium, but not in a stable one.
 #[test]
 fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
@@ -36,7 +36,7 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
         solid: Solid { volume: &volume, laws: &laws, region: &[], dilation: Dilation::Standard },
         loads: &[],
         fixed: &fixed,
-        held: &[],
+        penalties: &[],
         contact: None,
         tools: &[],
     };
