@@ -45,6 +45,7 @@ solutions! {
     pure_bending::PureBending [ENTRY],
     cantilever::CantileverPlaneStrain [ENTRY],
     saint_venant::SaintVenantFlexure [ENTRY],
+    torsion::Torsion [ENTRY],
     uniaxial_compression::UniaxialCompression [ENTRY],
     thick_sphere::ThickSphere [ENTRY],
     rigid::Rigid [ENTRY],
