@@ -111,7 +111,8 @@ impl Exact for Hertz {
     }
 
     fn contact(&self) -> Option<Contact> {
-        Some(Contact { force: self.share * self.force(), radius: self.contact_radius() })
+        let area = PI * self.contact_radius().powi(2);
+        Some(Contact { force: self.share * self.force(), area: self.share * area })
     }
 }
 

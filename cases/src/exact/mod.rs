@@ -45,6 +45,7 @@ solutions! {
     pure_bending::PureBending [ENTRY],
     cantilever::CantileverPlaneStrain [ENTRY],
     saint_venant::SaintVenantFlexure [ENTRY],
+    torsion::Torsion [ENTRY],
     uniaxial_compression::UniaxialCompression [ENTRY],
     thick_sphere::ThickSphere [ENTRY],
     rigid::Rigid [ENTRY],
@@ -125,8 +126,8 @@ pub trait Vibrations {
 pub struct Contact {
     /// Force on the tool against its motion, N.
     pub force: f64,
-    /// Radius of the contact, m.
-    pub radius: f64,
+    /// Area of the contact, m^2.
+    pub area: f64,
 }
 
 /// The solution of that name for a material, with the parameters given in SI.

@@ -192,6 +192,9 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         Needs::ToolReference if scene.tools.is_empty() || !(solved || presses(scene)) => {
             "needs a [[tool]] and [reference] method or record, or exact = \"hertz\", in the scene"
         }
+        Needs::ExactContact if !presses(scene) => {
+            "needs a [[tool]] and [reference] exact = \"hertz\" in the scene"
+        }
         Needs::ProbesReference if scene.output.probes.is_empty() || !solved => {
             "needs output.probes and [reference] method or record in the scene"
         }

@@ -45,9 +45,11 @@ pub(crate) fn report(
             metrics.extend(&end.against);
         }
     }
-    if let (Some(contact), None) = (run.setup.contact, failure) {
-        let pushed = last.tools.first().map_or(0.0, |tool| tool.pushed);
-        push_tool(metrics, &metric::TOOL_FORCE_ERROR, 0, (pushed / contact.force - 1.0).abs());
+    if let (Some(exact), Some(tool), None) = (run.setup.contact, last.tools.first(), failure) {
+        push_tool(metrics, &metric::TOOL_FORCE_ERROR, 0, (tool.pushed / exact.force - 1.0).abs());
+        // ANCHOR: contact_radius_error
+        push(metrics, &metric::CONTACT_RADIUS_ERROR, ((tool.area / exact.area).sqrt() - 1.0).abs());
+        // ANCHOR_END: contact_radius_error
     }
     Ok(steps)
 }

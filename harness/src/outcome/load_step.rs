@@ -17,6 +17,8 @@ pub struct ToolStep {
     pub pushed: f64,
     /// Surface points in contact.
     pub active: u64,
+    /// Their undeformed area, m^2.
+    pub area: f64,
     /// Deepest penetration, m.
     pub penetration: f64,
 }
@@ -29,6 +31,7 @@ impl ToolStep {
             force: state.force,
             pushed: -state.force.dot(&tool.along()),
             active: state.active as u64,
+            area: state.area,
             penetration: state.penetration,
         }
     }
@@ -39,6 +42,7 @@ impl ToolStep {
         force: Vector3::new(0.0, 0.0, 0.0),
         pushed: 0.0,
         active: 0,
+        area: 0.0,
         penetration: 0.0,
     };
 }

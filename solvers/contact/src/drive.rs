@@ -2,7 +2,7 @@
 
 use shape::Vector3;
 
-use crate::Tool;
+use crate::{Contacts, Tool};
 
 /// How a tool is driven: the value at the end of the loading, reached in proportion to time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,23 @@ pub struct ToolState {
     pub moment: Vector3,
     /// Surface points in contact.
     pub active: usize,
+    /// Their undeformed area, m^2.
+    pub area: f64,
     /// Deepest penetration, m.
     pub penetration: f64,
+}
+
+impl ToolState {
+    /// At that closure (m) with these contacts; `None` where nothing is near.
+    pub fn new(closure: f64, contacts: Option<&Contacts>) -> ToolState {
+        let zero = Vector3::zeros;
+        ToolState {
+            closure,
+            force: contacts.map_or_else(zero, Contacts::force),
+            moment: contacts.map_or_else(zero, Contacts::moment),
+            active: contacts.map_or(0, |c| c.points().len()),
+            area: contacts.map_or(0.0, Contacts::area),
+            penetration: contacts.map_or(0.0, Contacts::max_penetration),
+        }
+    }
 }

@@ -21,6 +21,7 @@ pub struct Contacts {
     pressures: Vec<f64>,
     force: Vector3,
     moment: Vector3,
+    area: f64,
     max_penetration: f64,
     dissipated: f64,
 }
@@ -155,12 +156,13 @@ impl Contacts {
         stiffness: Vec<Matrix3>,
     ) -> Contacts {
         let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
-        let (mut max_penetration, mut dissipated) = (0.0f64, 0.0);
+        let (mut area, mut max_penetration, mut dissipated) = (0.0, 0.0f64, 0.0);
         for f in &found {
             let w = surface.rows().weights()[f.point as usize];
             let arm = surface.position(f.point as usize, u) - tool.place(closure);
             force -= f.traction * w;
             moment -= arm.cross(&f.traction) * w;
+            area += w;
             max_penetration = max_penetration.max(-f.gap);
             dissipated += f.dissipated * w;
         }
@@ -172,6 +174,7 @@ impl Contacts {
             pressures: found.iter().map(|f| f.pressure).collect(),
             force,
             moment,
+            area,
             max_penetration,
             dissipated,
         }
@@ -211,6 +214,12 @@ impl Contacts {
     /// Moment on the tool about its present [`Tool::place`], N m.
     pub fn moment(&self) -> Vector3 {
         self.moment
+    }
+
+    /// Undeformed area of the points in contact, m^2: `sum_q w`. A face is in contact point by point, so that the edge of the
+    /// contact is known to half a face's width.
+    pub fn area(&self) -> f64 {
+        self.area
     }
 
     /// Deepest penetration, m; 0 if no point is inside.

@@ -1,6 +1,6 @@
 //! Rigid tools in a dynamic relaxation: a closure that is led, or one more unknown that a force moves.
 
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Tool};
 use contact::{Drive, ToolState};
 use shape::Vector3;
 
@@ -42,13 +42,7 @@ impl<'a> Pressing<'a> {
                 tool.closure = closure;
             }
         }
-        let still = |tool: &PressingTool| ToolState {
-            closure: tool.closure,
-            force: Vector3::zeros(),
-            moment: Vector3::zeros(),
-            active: 0,
-            penetration: 0.0,
-        };
+        let still = |tool: &PressingTool| ToolState::new(tool.closure, None);
         Pressing {
             surface,
             moves: vec![0.0; tools.len()],
@@ -97,14 +91,7 @@ impl<'a> Pressing<'a> {
             if let Some(contacts) = &contacts {
                 contacts.add_force(self.surface.rows(), force);
             }
-            let zero = Vector3::zeros;
-            self.states[k] = ToolState {
-                closure: tool.closure,
-                force: contacts.as_ref().map_or_else(zero, Contacts::force),
-                moment: contacts.as_ref().map_or_else(zero, Contacts::moment),
-                active: contacts.as_ref().map_or(0, |c| c.points().len()),
-                penetration: contacts.as_ref().map_or(0.0, Contacts::max_penetration),
-            };
+            self.states[k] = ToolState::new(tool.closure, contacts.as_ref());
             self.pushed[k] = [-self.states[k].force.dot(&tool.tool.along()), self.pushed[k][0]];
         }
         Ok(())

@@ -186,16 +186,7 @@ impl<'a> Moving<'a> {
             touch,
             closure: 0.0,
             speed: 0.0,
-            motion: ToolMotion {
-                state: ToolState {
-                    closure: 0.0,
-                    force: Vector3::zeros(),
-                    moment: Vector3::zeros(),
-                    active: 0,
-                    penetration: 0.0,
-                },
-                speed: 0.0,
-            },
+            motion: ToolMotion { state: ToolState::new(0.0, None), speed: 0.0 },
             worked: 0.0,
             energies: ToolEnergies::default(),
             pending: 0.0,
@@ -228,17 +219,7 @@ impl<'a> Moving<'a> {
 
     /// Force, penetration and stored energy of the contacts found.
     fn settle(&mut self, contacts: Option<&Contacts>, surface: &ContactSurface) {
-        let zero = Vector3::zeros;
-        self.motion = ToolMotion {
-            state: ToolState {
-                closure: self.closure,
-                force: contacts.map_or_else(zero, Contacts::force),
-                moment: contacts.map_or_else(zero, Contacts::moment),
-                active: contacts.map_or(0, |c| c.points().len()),
-                penetration: contacts.map_or(0.0, Contacts::max_penetration),
-            },
-            speed: self.speed,
-        };
+        self.motion = ToolMotion { state: ToolState::new(self.closure, contacts), speed: self.speed };
         let law = self.of.tool.law();
         self.energies.stored = contacts.map_or(0.0, |c| {
             let each = c.points().iter().zip(c.pressures()).zip(c.slip());

@@ -141,6 +141,10 @@ metrics! {
         "surface points in contact with the tool";
     TOOL_FORCE_ERROR: "tool-force-error", "relative force error", None, Tool, ToolReference,
         "relative error of the tool's force against the reference method, at the same part of the load";
+    // ANCHOR: contact_radius_error
+    CONTACT_RADIUS_ERROR: "contact-radius-error", "relative error of the contact's radius", None, Error, ExactContact,
+        "relative error of the contact's radius, sqrt(A / A exact) - 1, A the area of the points in contact: its edge is known to half a cell's width";
+    // ANCHOR_END: contact_radius_error
     PENETRATION: "penetration", "deepest penetration", Length, Value, Tool,
         "deepest penetration of a tool";
     LIMIT_CLOSURE: "limit-closure", "tool displacement at the limit", Length, Tool, Tool,

@@ -71,6 +71,8 @@ pub enum Needs {
     Tool,
     /// A tool, and a method as `[reference]`.
     ToolReference,
+    /// A tool, and an exact solution of its contact.
+    ExactContact,
     /// Probes, and a method as `[reference]`.
     ProbesReference,
     /// A static procedure or dynamics, and a method as `[reference]`.

@@ -340,22 +340,7 @@ impl<'a> Newton<'a> {
         self.reached = balance.scale;
         self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))
-            .map(|(contacts, &closure)| match contacts {
-                Some(c) => ToolState {
-                    closure,
-                    force: c.force(),
-                    moment: c.moment(),
-                    active: c.points().len(),
-                    penetration: c.max_penetration(),
-                },
-                None => ToolState {
-                    closure,
-                    force: Vector3::zeros(),
-                    moment: Vector3::zeros(),
-                    active: 0,
-                    penetration: 0.0,
-                },
-            })
+            .map(|(contacts, &closure)| ToolState::new(closure, contacts.as_ref()))
             .collect();
         let step = Step {
             time,
