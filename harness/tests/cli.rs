@@ -42,6 +42,9 @@ fn run_prints_one_object_per_method_and_nothing_else() {
         // 1 kPa on 40 x 40 mm, pushing down.
         let load = &object["metrics"]["load-z"];
         assert!((load["value"].as_f64().unwrap() + 1.6).abs() < 1e-12 && load["unit"] == "N");
+        // A few thousand numbers; buffers that a library keeps for good are no method's.
+        let memory = object["metrics"]["memory"]["value"].as_f64().unwrap();
+        assert!(memory > 1e4 && memory < 2e8, "{memory} B");
         for phase in ["prepare", "assemble", "factor", "solve", "total"] {
             assert!(object["phases"][phase].as_f64().unwrap() > 0.0, "{phase}");
         }

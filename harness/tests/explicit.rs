@@ -2,12 +2,8 @@
 
 mod common;
 
-use common::{BLOCK, Done, PRESSED, assert_fails, inside, moving, tissuebench, write};
+use common::{BLOCK, Done, PRESSED, assert_fails, inside, moving, objects, tissuebench, write};
 use serde_json::Value;
-
-fn objects(stdout: &str) -> Vec<Value> {
-    stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
-}
 
 fn metric(object: &Value, name: &str) -> f64 {
     object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))

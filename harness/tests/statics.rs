@@ -2,13 +2,9 @@
 
 mod common;
 
-use common::{PRESSED, assert_fails, inside, tissuebench, write};
+use common::{PRESSED, assert_fails, inside, objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
-
-fn objects(stdout: &str) -> Vec<Value> {
-    stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
-}
 
 fn metric(object: &Value, name: &str) -> f64 {
     object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))

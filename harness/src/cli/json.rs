@@ -84,6 +84,8 @@ struct ProbeObject {
     u: [f64; 3],
     /// xx, yy, zz, xy, yz, zx.
     stress: Option<[f64; 6]>,
+    /// Distance from the mesh, m; 0 inside.
+    outside: f64,
 }
 
 impl<'a> RunObject<'a> {
@@ -118,6 +120,7 @@ impl<'a> RunObject<'a> {
                 .map(|p| ProbeObject {
                     x: p.x.coords.into(),
                     u: p.u.into(),
+                    outside: p.outside,
                     stress: p
                         .stress
                         .map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]),

@@ -59,12 +59,12 @@ fn projected<'l>(
 }
 
 /// `J - 1`; `tr H` at small strain.
-fn dilation(law: &Law, h: &Matrix3) -> f64 {
+pub(super) fn dilation(law: &Law, h: &Matrix3) -> f64 {
     if law.is_small_strain() { h.trace() } else { volume_change(h) }
 }
 
 /// The displacement gradient of `F_bar = ((1 + theta) / J)^(1/3) F`; of the strain with the trace `theta` at small strain.
-fn dilated(law: &Law, h: &Matrix3, theta: f64) -> Matrix3 {
+pub(super) fn dilated(law: &Law, h: &Matrix3, theta: f64) -> Matrix3 {
     let j = dilation(law, h);
     if law.is_small_strain() {
         return h + Matrix3::identity() * ((theta - j) / 3.0);

@@ -6,29 +6,30 @@ mod modes;
 pub(crate) mod norms;
 mod picture;
 mod probe_history;
+mod probes;
 mod request;
 mod step_history;
 mod transfer;
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::{Matrix3, Point3, Vector3};
+use geometry::Vector3;
 use material::{Law, Material as _};
 use statics::Body;
 
 use crate::Failure;
 use crate::discretise::{Discretisation, Essential};
-use crate::outcome::{Metric, Probe, push};
+use crate::outcome::{Metric, push};
 use crate::prepare::Prepared;
 use crate::procedure::Solution;
 use crate::scenario::setup::Setup;
-use mean_pressure::cauchy;
 use norms::{difference, exact_at, norms, relative};
 
 pub(crate) use displacement::displacement;
 pub(crate) use modes::report as report_modes;
 pub(crate) use picture::picture;
 pub(crate) use probe_history::metrics as probe_history;
+pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;
 pub use request::{Reference, Repeats};
 pub(crate) use step_history::report as report_steps;
@@ -168,22 +169,6 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
     }
 }
 
-/// Errors of probes against an exact solution.
-pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &dyn Exact) {
-    let Some(first) = probes.first() else { return };
-    let e = exact.displacement(&first.x);
-    if e.norm() > 0.0 {
-        push(metrics, &metric::TIP, first.u.dot(&e) / e.norm_squared());
-    }
-    let error = |p: &Probe| {
-        let e = exact.displacement(&p.x);
-        (e.norm() > 0.0).then(|| (p.u - e).norm() / e.norm())
-    };
-    if let Some(worst) = probes.iter().filter_map(error).reduce(f64::max) {
-        push(metrics, &metric::PROBE_ERROR, worst);
-    }
-}
-
 /// What the rows of a method are like: the volume they integrate, neighbours, conditioning, fallbacks.
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     push(metrics, &metric::VOLUME, prepared.volume.rows.weights().iter().sum());
@@ -217,24 +202,4 @@ fn push_difference(metrics: &mut Vec<Metric>, entries: Difference, field: &[Vect
     for (entry, value) in entries.into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {
         push(metrics, entry, value);
     }
-}
-
-/// Displacement and stress at the probes.
-pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Failure> {
-    let Solved { setup, prepared, solution, .. } = *run;
-    let u = &solution.u;
-    if points.is_empty() {
-        return Ok(Vec::new());
-    }
-    let rows = prepared.source.gradients_at(points)?;
-    // Stresses at probes are pointwise, of the first region's law unless the body has one only. What relaxes has them of
-    // its past, which is followed at quadrature points only.
-    let stress: Vec<Option<Matrix3>> = if setup.is_linear() {
-        statics::stress(&rows, u, &setup.materials, &[])?.into_iter().map(Some).collect()
-    } else {
-        let known = |h: &Matrix3| (!setup.relaxes()).then(|| cauchy(&setup.laws[0], h));
-        rows.displacement_gradients(u).iter().map(known).collect()
-    };
-    let field = rows.rows().apply(u);
-    Ok(points.iter().zip(field).zip(stress).map(|((&x, u), stress)| Probe { x, u, stress }).collect())
 }

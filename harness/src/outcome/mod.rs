@@ -118,6 +118,8 @@ pub struct Probe {
     pub u: Vector3,
     /// Stress, Pa; unknown in tissue that relaxes.
     pub stress: Option<Matrix3>,
+    /// Distance from the mesh (m), 0 inside: values outside are those of its nearest point.
+    pub outside: f64,
 }
 
 /// A scheme's transfer of this run's displacement to the reference nodes.

@@ -13,8 +13,8 @@ use geometry::{Point3, Vector3};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
-    self, Field, Reference, Request, displacement, measure, of_tables, picture, probe_errors, probe_history,
-    probes, report_modes, report_steps, transfers,
+    self, Field, Reference, Request, check_probes, displacement, measure, of_tables, picture, probe_errors,
+    probe_history, probes, report_modes, report_steps, transfers,
 };
 use crate::outcome::timing::Timed;
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
@@ -47,6 +47,7 @@ pub(crate) fn run(
     setup: &Setup,
     request: &Request,
 ) -> Result<Finished, Failure> {
+    check_probes(method.mesh(), request.probes)?;
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
 }
 

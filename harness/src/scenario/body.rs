@@ -11,6 +11,7 @@ use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, msh, quality};
 
+use super::same_body;
 use crate::Failure;
 use crate::error::Key;
 
@@ -21,6 +22,9 @@ const MOST_NODES: usize = 3_000_000;
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     let mesh = unchecked(body, kind, size, jitter)?;
     quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
+    if let Size::File(file) = size {
+        same_body::check(body, file, &mesh)?;
+    }
     Ok(mesh)
 }
 
@@ -36,7 +40,12 @@ pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     }
 }
 
-fn unchecked(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
+pub(super) fn unchecked(
+    body: &Body,
+    kind: CellKind,
+    size: &Size,
+    jitter: Option<Jitter>,
+) -> Result<Mesh, Failure> {
     if let Size::File(file) = size {
         return from_file(file, kind);
     }
@@ -175,12 +184,15 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
     Ok(best)
 }
 
+/// A mesh file as it is.
+pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
+    msh::read(&file.path, file.unit)
+        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file"))
+}
+
 /// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.
 fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
-    let unread = |bad: msh::MshError| {
-        Failure::input(Key::Size("file"), format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file")
-    };
-    let mesh = msh::read(&file.path, file.unit).map_err(unread)?;
+    let mesh = read(file, Key::Size("file"))?;
     let fits = |mesh: &Mesh, kind| (0..mesh.cell_count()).all(|c| mesh.kind(c) == kind);
     match kind {
         _ if fits(&mesh, kind) => Ok(mesh),

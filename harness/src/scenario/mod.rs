@@ -8,6 +8,7 @@ mod grading;
 mod identity;
 mod law;
 mod locate;
+mod same_body;
 pub(crate) mod setup;
 mod tools;
 

@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use serde_json::Value;
 use tempfile::TempDir;
 
 /// A block on its base under pressure; the smallest scene that runs.
@@ -69,6 +70,11 @@ pub fn tissuebench(args: &[&str]) -> Done {
 pub fn assert_fails(done: &Done, code: i32, says: &str) {
     assert_eq!(done.code, code, "{says}: {}", done.stderr);
     assert!(done.stderr.contains(says), "no '{says}' in: {}", done.stderr);
+}
+
+/// The objects of a run, one a line.
+pub fn objects(stdout: &str) -> Vec<Value> {
+    stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
 /// A scene of the project by the name of its file, whichever folder it is in.

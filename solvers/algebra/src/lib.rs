@@ -32,7 +32,7 @@ pub use error::AlgebraError;
 pub use linear_solver::eigen;
 pub use linear_solver::{
     Border, DENSE_LIMIT, FactorError, Factorization, Kind, SolverPath, Symbolic, Symmetric, Unsymmetric,
-    analyse, factor, factor_as,
+    analyse, factor, factor_as, reserve_workspaces,
 };
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

@@ -35,7 +35,7 @@ mod surface;
 mod volume;
 
 pub use error::FemError;
-pub use points::{Outside, grad_rows, nearest_grad_rows, nearest_point_rows, point_rows};
+pub use points::{Outside, grad_rows, nearest_cells, nearest_grad_rows, nearest_point_rows, point_rows};
 pub use rule::{SurfaceRule, VolumeRule};
 pub use source::Elements;
 pub use surface::{flux_rows, surface_rows};

@@ -50,6 +50,15 @@ pub fn nearest_grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<(GradRows, Ou
     Ok((gradients(mesh, points, &places)?, outside))
 }
 
+/// The cell that holds each point, or of which the nearest point of the surface is, with the distance to the mesh (m, 0
+/// inside).
+pub fn nearest_cells(mesh: &Mesh, points: &[Point3]) -> Result<Vec<(usize, f64)>, FemError> {
+    let (places, outside) = nearest(mesh, points)?;
+    let mut found: Vec<(usize, f64)> = places.iter().map(|place| (place.cell, 0.0)).collect();
+    outside.points.iter().for_each(|&(point, distance)| found[point].1 = distance);
+    Ok(found)
+}
+
 fn inside(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Place>, FemError> {
     let found = find(mesh, points)?;
     if let Some(point) = found.iter().position(Option::is_none) {

@@ -8,6 +8,7 @@ pub mod eigen;
 mod ordering;
 mod sparse;
 mod unsymmetric;
+mod workspace;
 
 use std::mem::MaybeUninit;
 use std::sync::Arc;
@@ -18,6 +19,7 @@ use crate::{AlgebraError, Stiffness};
 
 pub use sparse::Symbolic;
 pub use unsymmetric::{Border, Unsymmetric};
+pub use workspace::reserve_workspaces;
 
 /// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
 /// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless

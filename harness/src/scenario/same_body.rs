@@ -1,0 +1,78 @@
+//! Whether the mesh file of a method is of the scene's body: of the same place, extent and volume.
+
+use cases::scene::{Body, MeshFile, Size};
+use geometry::{CellKind, Mesh, Point3, Vector3, quality};
+
+use super::body;
+use crate::Failure;
+use crate::error::Key;
+
+/// Meshes of one curved body differ by more than rounding: they cut its corners. An outline may be off by this part of
+/// the body's size, or by this part of a cell's edge on coarse meshes; a volume by this part of itself.
+const OUTLINE: f64 = 0.02;
+const OF_EDGE: f64 = 0.25;
+const VOLUME: f64 = 0.05;
+
+/// Nodes of the mesh that stands for a body in closed form.
+const NODES: usize = 1000;
+
+/// Where a mesh is and how large, SI units.
+struct Extent {
+    min: Point3,
+    max: Point3,
+    volume: f64,
+    /// Of a regular cell of the mean volume.
+    edge: f64,
+}
+
+impl Extent {
+    fn of(mesh: &Mesh) -> Extent {
+        let volume: f64 = quality::volumes(mesh).iter().sum();
+        let first = mesh.points()[0];
+        let (min, max) = mesh.points().iter().fold((first, first), |(min, max), x| (min.inf(x), max.sup(x)));
+        let cubes = if mesh.kind(0).is_tet() { 6.0 * 2f64.sqrt() } else { 1.0 };
+        Extent { min, max, volume, edge: (cubes * volume / mesh.cell_count() as f64).cbrt() }
+    }
+
+    fn size(&self) -> Vector3 {
+        self.max - self.min
+    }
+}
+
+/// Refuses the mesh of a file that is another body than the scene's, or the same in another unit of length.
+pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
+    let of_body = match body {
+        Body::File(of_body) if of_body == file => return Ok(()),
+        Body::File(of_body) => body::read(of_body, Key::Scene("body.path".into()))?,
+        shape => body::unchecked(shape, CellKind::Tet4, &Size::Nodes(NODES), None)?,
+    };
+    let (own, whole) = (Extent::of(mesh), Extent::of(&of_body));
+    let edge = own.edge.max(whole.edge);
+    let allowed = (OUTLINE * whole.size().max()).max(OF_EDGE * edge);
+    let off = (own.min - whole.min).amax().max((own.max - whole.max).amax());
+    // A cell that spans a curved surface of radius R cuts off h^2 / (8 R) of it, R = 3 V / A, A as that of a ball.
+    let radius = (whole.volume * 0.75 / std::f64::consts::PI).cbrt();
+    let cut = 3.0 * edge.powi(2) / (8.0 * radius.powi(2));
+    let lost = (own.volume / whole.volume - 1.0).abs();
+    if off <= allowed && lost <= VOLUME.max(cut) {
+        return Ok(());
+    }
+    let problem = format!("is of {}; the scene's body is of {}", describe(&own), describe(&whole));
+    Err(Failure::input(Key::Size("file"), problem, &help(own.size().max() / whole.size().max())))
+}
+
+fn describe(extent: &Extent) -> String {
+    let range = |axis: usize| {
+        format!("{} = {:.4} to {:.4}", ["x", "y", "z"][axis], 1e3 * extent.min[axis], 1e3 * extent.max[axis])
+    };
+    format!("{}, {}, {} mm and {:.4} cm^3", range(0), range(1), range(2), 1e6 * extent.volume)
+}
+
+/// What to do about a mesh that is so many times as large as the body.
+fn help(ratio: f64) -> String {
+    let units = [("m", 1e3), ("cm", 10.0), ("um", 1e-3)];
+    match units.iter().find(|(_, metres)| (ratio * metres - 1.0).abs() < 0.1) {
+        Some((unit, _)) => format!("is the file in {unit}? Then write unit = \"{unit}\" beside it"),
+        None => "give a mesh of the same body, in the same place".into(),
+    }
+}
