@@ -305,3 +305,22 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
         assert!(plan.stdout.contains("not for clouds, whose path ends where it stalls"), "{}", plan.stdout);
     }
 }
+
+/// Frictionless plates leave the body free to slide between them: where it went would be chance. Friction holds it.
+#[test]
+fn a_motion_that_nothing_prevents_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = PRESSED.lines().find(|line| line.starts_with("support")).unwrap();
+    let free = PRESSED.replace(line, "");
+    let run = |text: &str| tissuebench(&["run", &write(&dir, "free.toml", text), "--method", "hex8"]);
+    let says = "key 'body': is held by no [[support]]: rigid motion is left free: translation along x, \
+                translation along y, rotation about z";
+    assert_fails(&run(&free), 3, says);
+    let sticks = "penalty = \"5 MPa/mm\", friction = 0.5, stick = \"5 MPa/mm\"";
+    let held = run(&free.replace("penalty = \"5 MPa/mm\"", sticks));
+    assert_eq!(held.code, 0, "{}", held.stderr);
+    // Without tools before anything is solved.
+    let tools = &free[free.find("tool = [").unwrap()..=free.find("\n]\n").unwrap() + 2];
+    let alone = free.replace(tools, "load = [{ on = \"z-max\", pressure = \"1 kPa\" }]\n");
+    assert_fails(&run(&alone), 3, "rotation about x");
+}

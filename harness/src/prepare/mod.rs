@@ -1,5 +1,6 @@
 //! The prepare phase: every table that assembly reads, for one method on one body under one setup.
 
+mod agreement;
 mod nodal_patch;
 pub(crate) mod reach;
 
@@ -89,6 +90,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
     for load in &setup.loads {
         prepared.load(method, load)?;
     }
+    agreement::check(&setup.supports, method.mesh())?;
     for support in &setup.supports {
         match &method.essential {
             Essential::Nodal => prepared.constrain_nodes(method.mesh(), support, |vertex| vertex)?,

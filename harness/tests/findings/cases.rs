@@ -175,11 +175,11 @@ pub const CASES: &[Case] = &[
         name: "supports that contradict each other",
         edit: (
             "[[support]]\nwhere = \"z == 0 mm\"\nfix = \"xyz\"",
-            "[[support]] #<\nwhere = \"z == 0 mm\"\nfix = \"xyz\"\n\n[[support]]\nwhere = \"x == 0 mm\"\nmove = { x = \"1 mm\" }",
+            "[[support]]\nwhere = \"z == 0 mm\"\nfix = \"xyz\"\n\n[[support]] #<\nwhere = \"x == 0 mm\"\nmove = { x = \"1 mm\" }",
         ),
-        key: "support",
-        says: &["fixed along axis 0 at", "values agree"],
-        stops: &["tet4"],
+        key: "support[1]",
+        says: &["1.000000 mm along x at (0.0000, 0.0000, 0.0000) mm, where support[0]", "values agree"],
+        stops: &["tet4", "efg"],
         ..SOUND
     },
     Case {

@@ -6,7 +6,7 @@
 
 use algebra::Connectivity;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use shape::{Point3, Vector3};
+use shape::{Point3, Rows, Vector3};
 
 use crate::constraint::Row;
 use crate::{Body, SolveError, WeakSupport};
@@ -82,6 +82,9 @@ struct Piece {
     place: usize,
 }
 
+/// Takes the terms (node, axis, factor) of a row that a support keeps at a value.
+pub(crate) type AddRow<'a> = &'a mut dyn FnMut(&mut dyn Iterator<Item = (usize, usize, f64)>);
+
 /// Fails with the free motions of the first cluster that has any.
 pub(crate) fn check(
     body: &Body,
@@ -90,7 +93,42 @@ pub(crate) fn check(
     rows: &[Row],
     weak: &[WeakSupport],
 ) -> Result<(), SolveError> {
-    let (pieces, piece_of, clusters) = pieces(body.nodes, points, rows);
+    check_rows(body.nodes, points, rows, |add| {
+        add_prescribed(prescribed, add);
+        for r in rows {
+            add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
+        }
+        for support in weak {
+            add_surface(support.flux.at().rows(), support.axes, add);
+        }
+    })
+}
+
+/// The rows of prescribed degrees of freedom.
+pub(crate) fn add_prescribed(prescribed: &[Option<f64>], add: AddRow) {
+    for dof in (0..prescribed.len()).filter(|&dof| prescribed[dof].is_some()) {
+        add(&mut std::iter::once((dof / 3, dof % 3, 1.0)));
+    }
+}
+
+/// The rows of displacements along `axes` at the points of a table.
+pub(crate) fn add_surface(table: &Rows, axes: [bool; 3], add: AddRow) {
+    for q in 0..table.len() {
+        let (nodes, values) = table.row(q);
+        for axis in (0..3).filter(|&a| axes[a]) {
+            add(&mut nodes.iter().zip(values).map(|(&n, &v)| (n as usize, axis, v)));
+        }
+    }
+}
+
+/// As [`check`], with the rows that `supports` adds; `joints` join pieces to clusters.
+pub(crate) fn check_rows(
+    positions: &[Point3],
+    points: Connectivity,
+    joints: &[Row],
+    supports: impl FnOnce(AddRow),
+) -> Result<(), SolveError> {
+    let (pieces, piece_of, clusters) = pieces(positions, points, joints);
     // Gram matrix of the support rows over each cluster's modes.
     let mut gram: Vec<DMatrix<f64>> =
         clusters.iter().map(|c| DMatrix::zeros(6 * c.len(), 6 * c.len())).collect();
@@ -104,7 +142,7 @@ pub(crate) fn check(
                 continue;
             }
             let piece = &pieces[id];
-            let m = modes_at(&body.nodes[node], &piece.centre, piece.size, axis).map(|m| c * m);
+            let m = modes_at(&positions[node], &piece.centre, piece.size, axis).map(|m| c * m);
             scale += c.abs();
             match row.iter_mut().find(|r| r.0 == id) {
                 Some((_, sum)) => (0..6).for_each(|k| sum[k] += m[k]),
@@ -126,21 +164,7 @@ pub(crate) fn check(
             }
         }
     };
-    for dof in (0..prescribed.len()).filter(|&dof| prescribed[dof].is_some()) {
-        add(&mut std::iter::once((dof / 3, dof % 3, 1.0)));
-    }
-    for r in rows {
-        add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
-    }
-    for support in weak {
-        let table = support.flux.at().rows();
-        for q in 0..table.len() {
-            let (nodes, values) = table.row(q);
-            for axis in (0..3).filter(|&a| support.axes[a]) {
-                add(&mut nodes.iter().zip(values).map(|(&n, &v)| (n as usize, axis, v)));
-            }
-        }
-    }
+    supports(&mut add);
     for (members, gram) in clusters.iter().zip(gram) {
         let eigen = SymmetricEigen::new(gram);
         let limit = FREE * eigen.eigenvalues.max();
@@ -158,7 +182,7 @@ pub(crate) fn check(
             let piece = &pieces[members[place]];
             let null = DMatrix::from_fn(6, free.len(), |i, j| free[j][6 * place + i]);
             let modes = name(&null);
-            let nodes = body.nodes.len();
+            let nodes = positions.len();
             return Err(SolveError::RigidMotion {
                 modes,
                 node: piece.first,

@@ -124,6 +124,7 @@ impl StaticPath {
 
 /// Solves; `observe` is called after every converged step with the step, the nodal parameters and the pressures.
 /// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
+/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,
@@ -133,6 +134,9 @@ pub fn solve_static(
     let longest = 1.0 / count as f64;
     let mut newton = Newton::new(problem, &params.newton)?;
     let mut state = State::start(problem);
+    if problem.tools.is_empty() {
+        newton.check_rigid(&state)?;
+    }
     let mut before: Option<State> = None;
     let mut path = StaticPath {
         steps: Vec::new(),
@@ -199,6 +203,9 @@ pub fn solve_static(
     }
     path.counts = newton.counts();
     path.work = newton.work();
+    if path.failure.is_none() && !problem.tools.is_empty() {
+        newton.check_rigid(&state)?;
+    }
     path.u = state.u;
     path.pressure = state.pressure;
     path.history = state.history;

@@ -2,6 +2,7 @@
 
 mod balance;
 mod drive;
+mod rigid;
 mod search;
 mod tangent;
 #[cfg(test)]

@@ -1,0 +1,44 @@
+//! Whether supports that meet prescribe the same displacement there, whatever the method makes of them: weak and averaged
+//! conditions would end in between without a word.
+
+use std::collections::HashMap;
+
+use geometry::Mesh;
+
+use super::at;
+use crate::Failure;
+use crate::discretise::place;
+use crate::error::Key;
+use crate::scenario::setup::Support;
+
+/// Differences of prescribed values up to this part of the larger are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Refuses supports that prescribe different values at a vertex of the mesh.
+pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
+    // By vertex and axis: the support and its value, m.
+    let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
+    for (index, support) in supports.iter().enumerate() {
+        let vertices = place::nodes(&support.key, &support.place, mesh)?;
+        let points: Vec<_> = vertices.iter().map(|&vertex| mesh.points()[vertex as usize]).collect();
+        for (vertex, (x, value)) in vertices.into_iter().zip(points.iter().zip(at(support, &points)?)) {
+            for axis in (0..3).filter(|&axis| support.axes[axis]) {
+                let second = value[axis];
+                let &mut (other, first) = prescribed.entry((vertex, axis)).or_insert((index, second));
+                if (first - second).abs() > ROUNDING * first.abs().max(second.abs()) {
+                    let axis = ["x", "y", "z"][axis];
+                    let [x, y, z] = [x.x, x.y, x.z].map(|x| 1e3 * x);
+                    let problem = format!(
+                        "prescribes {:.6} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} prescribes {:.6} mm",
+                        1e3 * second,
+                        supports[other].key,
+                        1e3 * first
+                    );
+                    let help = "let the places of the supports meet only where their values agree";
+                    return Err(Failure::input(Key::Scene(support.key.clone()), problem, help));
+                }
+            }
+        }
+    }
+    Ok(())
+}
