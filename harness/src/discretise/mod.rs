@@ -13,7 +13,7 @@ pub(crate) mod place;
 
 use crate::Failure;
 use crate::error::Key;
-use crate::outcome::Counters;
+use crate::outcome::{Counters, Plan, StageName};
 
 /// Which quadrature points share a dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,21 +147,25 @@ impl Discretisation {
         self.mesh.region_names().len() > 1
     }
 
-    /// Finds the supports and fills the volume tables.
-    pub(crate) fn volume(&self, counters: &mut Counters) -> Result<(Box<dyn RowSource>, Volume), Failure> {
+    /// Finds the supports and fills the volume tables that the plan has.
+    pub(crate) fn volume(
+        &self,
+        plan: &Plan,
+        counters: &mut Counters,
+    ) -> Result<(Box<dyn RowSource>, Volume), Failure> {
         let source = (self.source)()?;
         let quadrature = source.volume()?;
         let (rows, diagnostics) = (quadrature.rows, quadrature.diagnostics);
-        let groups = match self.dilation {
-            Dilation::Standard | Dilation::Mixed => None,
-            Dilation::Element => Some(source.cell_dilation()?.ok_or_else(no_cells)?),
-            Dilation::Nodal => Some(DilationGroups::nodal(&rows)?),
-        };
-        let pressure = match self.dilation {
-            Dilation::Mixed => Some(source.pressure()?.ok_or_else(no_pressure)?),
-            _ => None,
-        };
-        let region = if self.has_regions() { source.regions() } else { Vec::new() };
+        let (mut groups, mut pressure) = (None, None);
+        if plan.runs(StageName::Projection) {
+            match self.dilation {
+                Dilation::Standard => {}
+                Dilation::Element => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
+                Dilation::Nodal => groups = Some(DilationGroups::nodal(&rows)?),
+                Dilation::Mixed => pressure = Some(source.pressure()?.ok_or_else(no_pressure)?),
+            }
+        }
+        let region = if plan.runs(StageName::Tensors) { source.regions() } else { Vec::new() };
         counters.support_radii += source.supports() as u64;
         counters.volume_rows += rows.weights().len() as u64;
         counters.pressure_parameters += pressure.as_ref().map_or(0, Rows::node_count) as u64;

@@ -1,6 +1,7 @@
-//! The plan of a run: its stages in order, whether each runs, and why. The run asks [`Plan::runs`] before
-//! refinement, relaxation, transfer and schemes; what a procedure does inside its solver follows from the values that its stages
-//! are made of, and is compared with the counters by a test.
+//! The plan of a run: its stages in order, whether each runs, and why. The run asks [`Plan::runs`] before it refines a cloud,
+//! fills tables of projections, regions, supports and contact, relaxes, transfers, or compares schemes: what is not in the
+//! plan is not there for a solver to use. What a solver does with its tables (factors, iterations) follows from the procedure,
+//! and is compared with the counters by a test.
 
 use serde::Serialize;
 

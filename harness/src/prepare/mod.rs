@@ -19,7 +19,7 @@ use crate::Failure;
 use crate::discretise::place::{self, CutTriangle, Place, tolerance};
 use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
-use crate::outcome::Counters;
+use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{self, Applied, Setup, Support};
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
 
@@ -70,9 +70,14 @@ pub struct Prepared {
     pub contact: Option<SurfaceRows>,
 }
 
-/// Fills every table.
-pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) -> Result<Prepared, Failure> {
-    let (source, volume) = method.volume(counters)?;
+/// Fills every table that the plan has.
+pub fn prepare(
+    method: &Discretisation,
+    setup: &Setup,
+    plan: &Plan,
+    counters: &mut Counters,
+) -> Result<Prepared, Failure> {
+    let (source, volume) = method.volume(plan, counters)?;
     let spacing = source.spacing(&volume.rows);
     let mut prepared = Prepared {
         source,
@@ -90,15 +95,8 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
     for load in &setup.loads {
         prepared.load(method, load)?;
     }
-    agreement::check(&setup.supports, method.mesh())?;
-    for support in &setup.supports {
-        match &method.essential {
-            Essential::Nodal => prepared.constrain_nodes(method.mesh(), support, |vertex| vertex)?,
-            Essential::Coupling(coupled) => {
-                prepared.constrain_nodes(method.mesh(), support, |vertex| coupled.node(vertex))?;
-            }
-            _ => prepared.constrain_cloud(method, support)?,
-        }
+    if plan.runs(StageName::Elimination) || plan.runs(StageName::WeakSupports) {
+        prepared.constrain(method, &setup.supports)?;
     }
     counters.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
     counters.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
@@ -109,7 +107,7 @@ pub fn prepare(method: &Discretisation, setup: &Setup, counters: &mut Counters) 
     if setup.solves_by_newton() {
         prepared.penalise(setup)?;
     }
-    if !setup.tools.is_empty() {
+    if plan.runs(StageName::Contact) {
         let surface = prepared.source.contact_surface()?;
         let points = surface.weights().len() as u64;
         counters.contact_points += points;
@@ -255,6 +253,21 @@ impl Prepared {
         }
         if self.surfaces.len() == before {
             return Err(place::empty(&load.key, &load.place, method.mesh()));
+        }
+        Ok(())
+    }
+
+    /// Constrains the body as all supports say.
+    fn constrain(&mut self, method: &Discretisation, supports: &[Support]) -> Result<(), Failure> {
+        agreement::check(supports, method.mesh())?;
+        for support in supports {
+            match &method.essential {
+                Essential::Nodal => self.constrain_nodes(method.mesh(), support, |vertex| vertex)?,
+                Essential::Coupling(coupled) => {
+                    self.constrain_nodes(method.mesh(), support, |vertex| coupled.node(vertex))?;
+                }
+                _ => self.constrain_cloud(method, support)?,
+            }
         }
         Ok(())
     }

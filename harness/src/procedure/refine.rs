@@ -24,7 +24,7 @@ pub(crate) fn refined(
     let mut refine = first.clone();
     for _ in 0..first.steps {
         let mut own = Meters::default();
-        let prepared = prepare(&current, setup, &mut own.counters)?;
+        let prepared = prepare(&current, setup, plan, &mut own.counters)?;
         let problem = Problem { method: &current, setup, prepared: &prepared, plan, watch: None };
         let solution = linear::solve(&problem, &mut own)?;
         let error = gradient_error(&prepared.volume.rows, &solution.u, &refine.cloud.points);

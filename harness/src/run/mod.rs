@@ -119,7 +119,7 @@ fn once(
         None
     };
     let current = refined.as_ref().unwrap_or(method);
-    let prepared = timings.time("prepare", || prepare(current, setup, counters))?;
+    let prepared = timings.time("prepare", || prepare(current, setup, plan, counters))?;
     let problem = Problem { method: current, setup, prepared: &prepared, plan, watch: request.watch };
     let solution = procedure::solve(&problem, meters)?;
     Ok(Pass { refined, prepared, solution })
