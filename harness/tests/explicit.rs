@@ -223,6 +223,12 @@ fn bad_explicit_scenes_name_the_key() {
         ("duration = \"20 ms\", ", "", 2, "'procedure.duration': is missing"),
         ("steps = 4", "steps = 4, safety = 1.5", 2, "'procedure.safety'"),
         ("steps = 4", "steps = 4, safety = 0.5, step = \"1 us\"", 2, "give step or safety"),
+        (
+            "steps = 4",
+            "steps = 4, step = \"1e-15 s\"",
+            2,
+            "'procedure.step': '1e-15 s' takes 2.00e13 time steps of 1.00e-15 s",
+        ),
         ("steps = 4", "steps = 4, damping = 5", 2, "needs a unit: /s"),
         ("steps = 4", "steps = 4, damping = \"-5 /s\"", 2, "'procedure.damping'"),
         ("steps = 4", "steps = 4, tool-mass = 0", 2, "'procedure.tool-mass'"),

@@ -153,6 +153,15 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     each("nodes", sound, "are too few for a cloud", "give 4 nodes or more");
     let sound = keys.support_scales.iter().map(|d| (1.0..=10.0).contains(d)).collect();
     each("support_scales", sound, "is no support scale", "1 to 10, as in a method; 1.2 to 3 is usual");
+    for (name, once) in [
+        ("methods", first_times(&keys.methods)),
+        ("levels", first_times(&keys.levels)),
+        ("poisson", first_times(&keys.poisson)),
+        ("nodes", first_times(&keys.nodes)),
+        ("support_scales", first_times(&keys.support_scales)),
+    ] {
+        each(name, once, "is there already", "name each once");
+    }
     let sound = keys.seeds != 1 && keys.seeds <= 10_000;
     report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
     let alone = keys.levels.is_empty() || keys.nodes.is_empty();
@@ -178,6 +187,11 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         quick: keys.quick,
         checks: checks(keys.check, &at("check"), report),
     }
+}
+
+/// Whether each value is not among those before it.
+fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
+    list.iter().enumerate().map(|(i, value)| !list[..i].contains(value)).collect()
 }
 
 /// What a run demands of its scene.

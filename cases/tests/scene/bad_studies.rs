@@ -8,6 +8,11 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("title = \"t\"\n[[runs]] #<\nscene = \"scenes/first.toml\"", "runs", &["did you mean 'run'?"]),
     ("title = \"t\"\n[[run]] #<\nlevels = [1]", "run[0].scene", &["is missing"]),
     (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [1, 2, 1] #<",
+        "run[0].levels[2]",
+        &["is there already"],
+    ),
+    (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [0] #<",
         "run[0].levels[0]",
         &["no level"],

@@ -16,6 +16,7 @@ use statics::{SolveError, nodal_forces};
 
 use super::{Problem, Solution, Stages, StepHistory};
 use crate::Failure;
+use crate::error::Key;
 use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
 use crate::prepare::Prepared;
 use crate::scenario::setup::Setup;
@@ -25,6 +26,8 @@ const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
 
 /// Most time steps between two estimates of the critical step: 30 evaluations of the internal forces each, 3 % of these steps.
 const RECHECK: usize = 1000;
+/// Time steps of a run at most: hours for a body of ten thousand cells; a thousand to a million are usual.
+const MOST_STEPS: f64 = 1e7;
 
 pub(super) fn stages(asked: &Explicit) -> Stages {
     let duration = asked.ramp.duration;
@@ -117,12 +120,9 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS)?;
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
     let longest = asked.step.unwrap_or(asked.safety * first.dt);
-    let params = DynamicsParams {
-        dt: divided(interval, longest).0,
-        damping: asked.ramp.damping,
-        critical: LANCZOS,
-        recheck: 0,
-    };
+    let dt = divided(interval, longest).0;
+    affordable(asked, dt, first.dt)?;
+    let params = DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0 };
     let motion =
         Dynamics::new(&mut force, &mass, &prescribed, params, zeros.clone(), zeros).and_then(|motion| {
             match tools {
@@ -165,6 +165,22 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         forces: Some(kernel),
         ..Solution::default()
     })
+}
+
+/// Refuses more time steps than anyone waits for, before the first.
+fn affordable(asked: &Explicit, dt: f64, critical: f64) -> Result<(), Failure> {
+    let count = asked.ramp.duration / dt;
+    if count <= MOST_STEPS {
+        return Ok(());
+    }
+    let problem = format!(
+        "takes {count:.2e} time steps of {dt:.2e} s; {MOST_STEPS:.0e} are made at most, and {critical:.2e} s is stable"
+    );
+    let (key, help) = match asked.step {
+        Some(_) => ("step", "make it longer, or leave it out"),
+        None => ("duration", "make it shorter, the cells larger, or the tissue softer or heavier"),
+    };
+    Err(Failure::input(Key::Scene(format!("procedure.{key}")), problem, help))
 }
 
 fn moving_tools<'a>(setup: &'a Setup, asked: &Explicit, mass: f64) -> Vec<MovingTool<'a>> {
