@@ -93,6 +93,18 @@ const KEYS: &[Bad] = &[
     ("seed = 7 }", "sed = 7 } #<", "method[0].jitter.sed", &["did you mean 'seed'?"]),
     ("[material]\n", "[material]\nyoung = 1\nyoung = 2 #<\n", "", &["not valid TOML", "duplicate key"]),
     ("[material]\n", "[material #<\n", "", &["not valid TOML"]),
+    (
+        "poisson = 0.45",
+        "poisson = 0,45 #<",
+        "",
+        &["not valid TOML at column", "a decimal needs a point: 0.45"],
+    ),
+    (
+        "law = \"linear\", young = \"0.04 N/mm^2\", poisson = 0.3 }",
+        "law = \"linear\", young = \"0.04 N/mm^2\", poisson = 0,3 } #<",
+        "",
+        &["a decimal needs a point: 0.3"],
+    ),
     ("young = \"20 kPa\"", "young = 20 kPa #<", "", &["not valid TOML"]),
     ("young = \"20 kPa\"", "young = \"20 kPa #<", "", &["not valid TOML"]),
     ("[material]\nlaw = \"linear\"", "[material] #<", "material.law", &["is missing", "linear", "ogden"]),
@@ -205,6 +217,29 @@ const KEYS: &[Bad] = &[
 ];
 
 const CONDITIONS: &[Bad] = &[
+    (
+        "traction = [\"0 Pa\", \"1 kPa\", { unit = \"kPa\", of = \"x\" }]",
+        "traction = \"1 kPa\" #<",
+        "load[1].traction",
+        &[
+            "'1 kPa' is text, where \"exact\" or a list of 3 such as [\"0 kPa\", \"0 kPa\", \"1 kPa\"] or a table",
+            "for one along the inner normal take pressure = \"1 kPa\"",
+        ],
+    ),
+    (
+        "move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }",
+        "move = \"6 mm\" #<",
+        "support[1].move",
+        &[
+            "'6 mm' is text, where \"exact\" or a list of 3 such as [\"0 mm\", \"0 mm\", \"1 mm\"] or a table { x, y, z }",
+        ],
+    ),
+    (
+        "fix = \"xyz\"",
+        "fix = \"z\"\nmove = [\"0 mm\", \"0 mm\", \"1 mm\"] #<",
+        "support[0].move[2]",
+        &["moves an axis that 'fix' holds"],
+    ),
     ("\"z == 0 mm\"", "\"z = 0 mm\" #<", "support[0].where", &["'==' compares"]),
     ("\"z == 0 mm\"", "\"z == 0\" #<", "support[0].where", &["'z == 0' has no unit", "\"0 mm\""]),
     ("\"z == 0 mm\"", "\"z == 1 Pa\" #<", "support[0].where", &["a pressure, where a length belongs"]),
@@ -461,6 +496,20 @@ fn all_mistakes_of_a_file_are_told_in_the_order_of_its_lines() {
 }
 
 #[test]
+fn a_mistake_in_one_part_hides_none_in_another() {
+    let beside = |text: String| {
+        let text = text.replace("where = \"z == 0 mm\"", "on = \"zmin\"");
+        let errors = parse(&text, "s.toml").expect_err("several mistakes");
+        errors.into_iter().map(|e| e.key).collect::<Vec<_>>()
+    };
+    // A number out of range, a number without unit, a key that is not known.
+    assert_eq!(beside(edited("poisson = 0.45", "poisson = 0.7")), ["material.poisson", "support[0].on"]);
+    assert_eq!(beside(edited("young = \"20 kPa\"", "young = 20")), ["material.young", "support[0].on"]);
+    let shared = edited("poisson = 0.45", "poisson = 0.7").replace("element = \"tet4\"", "elemen = \"tet4\"");
+    assert_eq!(beside(shared), ["material.poisson", "support[0].on", "method[0].elemen"]);
+}
+
+#[test]
 fn parts_that_are_missing_altogether_are_told() {
     for (text, key) in [("", "title"), ("", "body"), ("", "material"), ("title = \"t\"", "body")] {
         let errors = parse(text, "s.toml").expect_err("no scene");
@@ -474,5 +523,12 @@ fn parts_that_are_missing_altogether_are_told() {
 #[test]
 fn a_file_that_is_not_there_is_named() {
     let errors = cases::scene::load(std::path::Path::new("no/such.toml")).expect_err("no file");
-    assert!(errors[0].to_string().starts_with("no/such.toml: can't be read"), "{}", errors[0]);
+    assert_eq!(errors[0].to_string(), "no/such.toml: can't be read: there is no such file");
+}
+
+#[test]
+fn a_mesh_file_is_no_scene() {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/kidney/kidney-1331.msh");
+    let errors = cases::scene::load(std::path::Path::new(mesh)).expect_err("a mesh");
+    assert!(errors[0].to_string().contains("is a mesh file, not a scene; a scene names it"), "{}", errors[0]);
 }
