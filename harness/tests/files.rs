@@ -51,6 +51,18 @@ fn a_run_says_what_it_replaces() {
 }
 
 #[test]
+fn a_baseline_that_is_not_there_is_bad_input() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
+    assert_eq!(tissuebench(&["run", &scene, "--out", &out]).code, 0);
+    let file = inside(&dir, "accepted.toml");
+    let done = tissuebench(&["baseline", &out, "--file", &file, "--check"]);
+    assert_fails(&done, 2, "accepted.toml does not exist; `--accept` makes it");
+    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--accept"]).code, 0);
+    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
+}
+
+#[test]
 fn a_body_that_nothing_moves_is_warned_of() {
     let dir = tempfile::tempdir().unwrap();
     let done = tissuebench(&["run", &write(&dir, "still.toml", &common::without(BLOCK, "load"))]);
@@ -78,7 +90,7 @@ fn a_mesh_file_is_described_in_its_own_unit() {
             "  extent      x = 0 to 40.000, y = 0 to 40.000, z = 0 to 20.000 mm",
             "  volume      16.000 cm^3; of a cell 5.333 to 10.667 cm^3",
             "  angles      35.3 to 109.5 degrees between two faces of a cell",
-            "  worst cell  aspect 2.92 (a regular cell has 1), line 15, tag 8",
+            "  worst cell  aspect 1.86 (a regular cell has 1), line 14, tag 7",
         ]
     );
 }

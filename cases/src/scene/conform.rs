@@ -53,7 +53,7 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
         {
             let problem = wrong_type(value, &forms);
             add(match schema.get("description").and_then(Value::as_str) {
-                Some(meaning) => problem.help(meaning),
+                Some(meaning) => problem.help(clause(meaning)),
                 None => problem,
             });
         }
@@ -172,6 +172,12 @@ fn describe(form: &Map<String, Value>) -> String {
         Some(&"object") => describe_table(form),
         _ => "something else".into(),
     }
+}
+
+/// A sentence as the second half of another one.
+fn clause(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect()
 }
 
 /// What a list of quantities looks like; nothing for other lists.

@@ -56,8 +56,8 @@ pub enum Command {
     },
     /// Print the JSON schema of scene files, or of study files
     ///
-    /// Editors complete and check a scene by it: store it by `tissuebench schema > scene.schema.json` and let the first
-    /// line of the scene be `#:schema scene.schema.json` (Even Better TOML, Taplo).
+    /// An editor completes and checks a scene with it: run `tissuebench schema > scene.schema.json`, and begin the scene
+    /// with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
     Schema {
         /// The schema of study files
         #[arg(long)]

@@ -56,3 +56,16 @@ fn sentence(reason: &str) -> String {
         None => String::new(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_file_keeps_its_letters() {
+        assert_eq!(sentence("sphere.toml:13: key 'body': bad."), "sphere.toml:13: key 'body': bad.");
+        assert_eq!(sentence("scenes/a.toml: bad"), "scenes/a.toml: bad.");
+        assert_eq!(sentence("1 is not at least 2"), "1 is not at least 2.");
+        assert_eq!(sentence("inverted: cell 3"), "Inverted: cell 3.");
+    }
+}

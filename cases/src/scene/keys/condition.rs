@@ -100,7 +100,7 @@ pub(crate) struct LoadKeys {
     pub on: Option<Names>,
     #[serde(rename = "where")]
     pub place: Option<Region>,
-    /// Force per area; for one along the inner normal take pressure = "1 kPa"
+    /// Force per area: for one along the inner normal take pressure = "1 kPa"
     pub traction: Option<VectorKeys<Pressure>>,
     /// Force per area along the inner normal
     pub pressure: Option<FieldKeys<Pressure>>,
