@@ -1,7 +1,7 @@
 use cases::scene::{ErrorKind, parse};
 
 use crate::bad_methods::METHODS;
-use crate::{SCENE, edited, marked_line};
+use crate::{edited, marked_line};
 
 /// What is replaced in the sound scene, by what (the line to be blamed ends in `#<`), the key blamed, and what the
 /// message must say.
