@@ -152,7 +152,8 @@ fn sound_scenes_ahead_of_the_solvers_are_3() {
 fn a_plan_says_what_is_skipped_and_why() {
     let done = tissuebench(&["plan", &cases("first.toml")]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let (elements, cloud) = done.stdout.split_once("\nefg\n").unwrap();
+    let (elements, cloud) =
+        done.stdout.split_once("\nefg: 300 nodes, 900 displacement unknowns before supports\n").unwrap();
     for (method, word, stage, why) in [
         (elements, "skip", "contact search", "no tool in the scene"),
         (elements, "skip", "mass", "static"),
@@ -165,7 +166,8 @@ fn a_plan_says_what_is_skipped_and_why() {
         (cloud, "skip", "mass", "static"),
         (cloud, "skip", "Newton iterations", "linear"),
         (cloud, "run", "transfer", "own shape functions"),
-        (cloud, "run", "supports", "300 nodes"),
+        (elements, "skip", "neighbour search", "the elements' nodes are the neighbours"),
+        (cloud, "run", "neighbour search", "300 nodes"),
         (cloud, "run", "weak supports", "Nitsche"),
         (cloud, "skip", "supports by elimination", "nodal parameters are not displacements"),
     ] {

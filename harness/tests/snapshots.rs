@@ -106,7 +106,7 @@ fn rounded(value: &mut Value) {
 }
 
 /// What is wrong with a scene, and how a sound one becomes it.
-const SCENES: [(&str, &str, &str); 20] = [
+const SCENES: [(&str, &str, &str); 24] = [
     ("a key that is not known", "poisson", "poison"),
     ("a key that is missing", "young = \"20 kPa\", ", ""),
     ("a key of another law", "poisson = 0.3", "poisson = 0.3, alpha = [1]"),
@@ -131,6 +131,14 @@ const SCENES: [(&str, &str, &str); 20] = [
         "check = [{ metric = \"rmss\", at_most = \"1 mm\" }]\ntitle",
     ),
     ("a text that is not TOML", "material =", "material"),
+    ("a decimal comma", "poisson = 0.3", "poisson = 0,3"),
+    ("a traction that is a number", "pressure = \"1 kPa\"", "traction = \"1 kPa\""),
+    ("a size that is missing", ", size = { cells = [2, 2, 1] }", ""),
+    (
+        "mistakes in several parts",
+        "young = \"20 kPa\", poisson = 0.3 }\nsupport = [{ where = \"z == 0 mm\"",
+        "young = 20, poisson = 0.3 }\nsupport = [{ on = \"zmin\"",
+    ),
 ];
 
 #[test]
@@ -179,7 +187,7 @@ fn mistakes_in_a_study_are_explained() {
 
 #[test]
 fn mistakes_on_the_command_line_are_explained() {
-    let dir = folder(&[("block.toml", BLOCK)]);
+    let dir = folder(&[("block.toml", BLOCK), ("organ.msh", "$MeshFormat\n")]);
     let mut text = String::new();
     for line in [
         "",
@@ -189,6 +197,9 @@ fn mistakes_on_the_command_line_are_explained() {
         "run block.toml --method tet5",
         "run no-such-scene.toml",
         "run block.toml --threads 0",
+        "run block.toml --out block.toml",
+        "run organ.msh",
+        "list files",
         "verify no-such-study.toml",
         "verify --shard 3/2",
         "report no-such-results",

@@ -245,17 +245,17 @@ fn bad_static_scenes_name_file_line_and_key() {
             "multipliers",
             "essential = \"penalty\"",
             "essential = \"multipliers\"",
-            3,
+            2,
             15,
-            "'method[4].essential': 'multipliers' a support by multipliers in a static procedure is not available",
+            "'method[4].essential': 'multipliers' serves linear procedures and modes, not kind = \"static\"",
         ),
         (
             "nitsche",
             "essential = \"penalty\"",
             "essential = \"nitsche\"",
-            3,
+            2,
             15,
-            "'method[4].essential': 'nitsche' Nitsche's method in a static",
+            "'method[4].essential': 'nitsche' serves linear procedures and modes",
         ),
     ] {
         let text = PRESSED.replacen(from, to, 1);

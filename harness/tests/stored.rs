@@ -175,9 +175,9 @@ fn bad_records_are_named() {
         assert_fails(&done, 2, "key 'reference.record'");
         assert_fails(&done, 2, says);
     };
-    fails("r.json: can't be read");
+    fails("'r.json' can't be read: there is no file ");
     write(&dir, "r.json", "{}");
-    fails("r.json: is no reference: missing field");
+    fails("'r.json' is no reference: missing field");
     write(&dir, "r.json", &good.replace("\"probes\":[[0.02,", "\"probes\":[[0.03,"));
-    fails("r.json: was made for other probes");
+    fails("'r.json' was made for other probes");
 }

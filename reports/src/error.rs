@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum ReportError {
     /// A folder without results.
-    #[error("{path} holds no results (no provenance.json); `tissuebench verify --out {path}` writes some", path = .0.display())]
+    #[error("{path} holds no results (no provenance.json); `tissuebench run SCENE --out {path}` or `tissuebench verify --out {path}` writes some", path = .0.display())]
     NoResults(PathBuf),
     /// A record holds a number that isn't finite.
     #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]

@@ -3,27 +3,9 @@
 use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
-use super::method::{Dilation, Essential, Family};
+use super::method::{Dilation, Family};
 use super::model::Scene;
 use super::procedure::{Procedure, ProcedureKind};
-
-/// What holds a cloud in every procedure.
-pub(super) const HELD: &str = "essential = \"penalty\" and \"coupling\" are";
-
-/// A way to hold a cloud that a procedure has not, in words.
-pub(super) fn unheld(essential: &Essential, kind: ProcedureKind) -> Option<String> {
-    if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare) {
-        return None;
-    }
-    let what = match essential {
-        Essential::Penalty { .. } | Essential::Coupling => return None,
-        Essential::Nitsche { .. } => "Nitsche's method",
-        Essential::Multipliers => "a support by multipliers",
-        Essential::Elimination { .. } => "a support of a cloud by elimination",
-    };
-    let article = if kind == ProcedureKind::ImplicitDynamic { "an" } else { "a" };
-    Some(format!("{what} in {article} {} procedure", kind.name()))
-}
 
 impl Scene {
     /// Every part of the scene that no solver here runs yet; empty if all of it runs.
@@ -85,14 +67,11 @@ impl Scene {
                                 parameters at supports are not displacements";
                     add(&at("family"), "a cloud in explicit dynamics".into(), help);
                 }
-                Family::Efg(efg) => {
-                    if efg.dilation == Dilation::Mixed {
-                        let help = "\"element-mean\" and \"nodal-mean\" are";
-                        add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
-                    }
-                    let Some(what) = unheld(&efg.essential, kind) else { continue };
-                    add(&at("essential"), what, HELD);
+                Family::Efg(efg) if efg.dilation == Dilation::Mixed => {
+                    let help = "\"element-mean\" and \"nodal-mean\" are";
+                    add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                 }
+                Family::Efg(_) => {}
             }
         }
         if explicit {

@@ -47,6 +47,16 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
     match (value, fitting.as_slice()) {
         (_, []) if forms.is_empty() => {}
         (_, []) => add(wrong_type(value, &forms)),
+        // A text where the only text is a word, as "1 kPa" where [x, y, z] or "exact" belongs: the other forms say more.
+        (DeValue::String(text), [form])
+            if forms.len() > 1 && words_of(form).is_some_and(|words| nearest(text, words).is_none()) =>
+        {
+            let problem = wrong_type(value, &forms);
+            add(match schema.get("description").and_then(Value::as_str) {
+                Some(meaning) => problem.help(clause(meaning)),
+                None => problem,
+            });
+        }
         (_, [form]) => one(value, span, path, form, findings),
         (DeValue::Table(table), several) => match tagged(table, span.clone(), path, several) {
             Ok(form) => keys(table, span, path, form, several, findings),
@@ -156,14 +166,43 @@ fn describe(form: &Map<String, Value>) -> String {
         Some(&"number") => "a number without quotes".into(),
         Some(&"boolean") => "true or false".into(),
         Some(&"array") => match form.get("minItems").and_then(Value::as_u64) {
-            Some(n) => format!("a list of {n}"),
+            Some(n) => format!("a list of {n}{}", example(form, n)),
             None => "a list".into(),
         },
-        Some(&"object") => match form.get("properties").and_then(Value::as_object) {
-            Some(keys) => format!("a table {{ {} }}", keys.keys().cloned().collect::<Vec<_>>().join(", ")),
-            None => "a table".into(),
-        },
+        Some(&"object") => describe_table(form),
         _ => "something else".into(),
+    }
+}
+
+/// A sentence as the second half of another one.
+fn clause(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect()
+}
+
+/// What a list of quantities looks like; nothing for other lists.
+fn example(list: &Map<String, Value>, count: u64) -> String {
+    let mut forms = Vec::new();
+    list.get("items").into_iter().for_each(|items| flatten(items, &mut forms));
+    let dimension = forms.iter().find_map(|form| Dimension::from_name(form.get("x-quantity")?.as_str()?));
+    let Some(unit) = dimension.and_then(|dimension| dimension.offered().first().copied()) else {
+        return String::new();
+    };
+    let items = (1..=count).map(|item| format!("\"{} {unit}\"", u8::from(item == count)));
+    format!(" such as [{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+/// A table by the keys of which it has one, or else by all of them.
+fn describe_table(form: &Map<String, Value>) -> String {
+    let names = |list: &Value| -> Option<Vec<String>> {
+        list.as_array()?.iter().map(|name| Some(name.as_str()?.to_string())).collect()
+    };
+    if let Some(names) = form.get("x-one-of").and_then(names) {
+        return format!("a table with one of {}", names.join(", "));
+    }
+    match form.get("properties").and_then(Value::as_object) {
+        Some(keys) => format!("a table {{ {} }}", keys.keys().cloned().collect::<Vec<_>>().join(", ")),
+        None => "a table".into(),
     }
 }
 

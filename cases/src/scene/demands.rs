@@ -1,7 +1,7 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
 use super::field::{Prescribed, ScalarField};
-use super::method::{Cloud, Dilation, Efg, Element, Family};
+use super::method::{Cloud, Dilation, Efg, Element, Essential, Family};
 use super::model::Scene;
 use super::output::Reference;
 use super::procedure::{Procedure, ProcedureKind};
@@ -15,6 +15,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     laws(scene, report);
     tools(scene, report);
     mixed(scene, report);
+    held(scene, report);
     unsolved(scene, report);
     refined(scene, report);
     vibrating(scene, report);
@@ -41,6 +42,31 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             let help = "a mass can't jump: give the time it takes";
             let problem = format!("is no time for support[{i}] to move in");
             report.add("procedure.over", Problem::new(problem).help(help));
+        }
+    }
+}
+
+/// Whether a procedure knows this way to constrain a cloud; if not, what is wrong.
+pub(super) fn unheld(essential: &Essential, kind: ProcedureKind) -> Option<Problem> {
+    let linear = matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare);
+    let (Essential::Nitsche { .. } | Essential::Multipliers | Essential::Elimination { .. }) = essential
+    else {
+        return None;
+    };
+    let problem = format!("serves linear procedures and modes, not kind = \"{}\"", kind.name());
+    (!linear).then(|| Problem::new(problem).help("take \"penalty\" or \"coupling\""))
+}
+
+/// How clouds are constrained.
+fn held(scene: &Scene, report: &mut Report) {
+    let kind = scene.procedure.kind();
+    // A cloud in explicit dynamics is refused as such.
+    for (i, method) in scene.methods.iter().enumerate().filter(|_| kind != ProcedureKind::Explicit) {
+        let Family::Efg(efg) = &method.family else { continue };
+        if let Some(problem) = unheld(&efg.essential, kind) {
+            let table = format!("method[{i}].essential.method");
+            let key = if report.origin().has(&table) { table } else { format!("method[{i}].essential") };
+            report.add(&key, problem);
         }
     }
 }

@@ -81,9 +81,21 @@ impl<'t> Document<'t> {
         match DeTable::parse(text) {
             Ok(root) => Ok(Document { root, sources, files }),
             Err(bad) => {
-                let help = "see https://toml.io for the format; text values stand in quotes";
-                let problem = Problem::new(format!("not valid TOML: {}", clip(bad.message()))).help(help);
-                Err(vec![files.error(ErrorKind::Invalid, sources.place(bad.span()), "", problem)])
+                let place = sources.place(bad.span());
+                let line = text.lines().nth(place.line - 1).unwrap_or_default();
+                let (what, help) = match decimal_comma(line, place.column) {
+                    Some(number) => {
+                        let help = format!("a decimal needs a point: {}", number.replace(',', "."));
+                        (format!("{number} is no number"), help)
+                    }
+                    None => {
+                        let help = "see https://toml.io for the format; text values stand in quotes";
+                        (clip(bad.message()), help.into())
+                    }
+                };
+                let problem = format!("not valid TOML at column {}: {what}", place.column);
+                let problem = Problem::new(problem).help(help);
+                Err(vec![files.error(ErrorKind::Invalid, place, "", problem)])
             }
         }
     }
@@ -102,9 +114,25 @@ impl<'t> Document<'t> {
         if errors.is_empty() { Ok(()) } else { Err(sorted(errors)) }
     }
 
+    /// Without the keys at the top that are wrong or have something wrong below them.
+    pub fn sound<T: DeserializeOwned>(&self, errors: &[SceneError]) -> Option<(T, Origin)> {
+        let top = |error: &SceneError| error.key.split(['.', '[']).next().unwrap_or_default().to_string();
+        let wrong: Vec<String> = errors.iter().map(top).collect();
+        let is_sound = |key: &str| !wrong.iter().any(|top| top == key);
+        let sound = self.root.get_ref().iter().filter(|(key, _)| is_sound(key.get_ref()));
+        let sound: DeTable<'t> = sound.map(|(key, value)| (key.clone(), value.clone())).collect();
+        let keys = T::deserialize(Deserializer::from(Spanned::new(self.root.span(), sound))).ok()?;
+        Some((keys, self.origin(String::new())))
+    }
+
     /// Every key against the schema of `T`, then the values.
     pub fn read<T: JsonSchema + DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
         self.check(&schema::<T>())?;
+        self.values()
+    }
+
+    /// The values of keys that are sound.
+    pub fn values<T: DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
         let values = || Deserializer::from(self.root.clone());
         let wrong =
             |bad: toml::de::Error| vec![self.error(bad.span(), "", Problem::new(clip(bad.message())))];
@@ -116,10 +144,31 @@ impl<'t> Document<'t> {
         } else {
             self.sources.own().to_string()
         };
+        let origin = self.origin(text);
+        Ok((keys, origin))
+    }
+
+    fn origin(&self, text: String) -> Origin {
         let mut places = BTreeMap::new();
         note(&DeValue::Table(self.root.get_ref().clone()), "", &self.sources, &mut places);
-        Ok((keys, Origin { files: self.files, text, places }))
+        Origin { files: self.files.clone(), text, places }
     }
+}
+
+/// The number with a decimal comma that a parser stops at or behind; `column` counts from 1.
+fn decimal_comma(line: &str, column: usize) -> Option<String> {
+    let letters: Vec<char> = line.chars().collect();
+    let is = |at: usize, fits: fn(&char) -> bool| letters.get(at).is_some_and(fits);
+    // What follows the comma may be read as a key, whose '=' is missed behind it.
+    let mut at = column - 1;
+    while at > 0 && is(at - 1, |c| c.is_ascii_digit() || *c == ' ') {
+        at -= 1;
+    }
+    let comma = [at.wrapping_sub(1), column - 1].into_iter().find(|&at| is(at, |c| *c == ','))?;
+    let before = (0..comma).rev().take_while(|&at| is(at, char::is_ascii_digit)).count();
+    let after = (comma + 1..letters.len()).take_while(|&at| is(at, char::is_ascii_digit)).count();
+    let number = letters[comma - before..=comma + after].iter().collect();
+    (before > 0 && after > 0).then_some(number)
 }
 
 /// Reads `text` as a `T`: syntax, then every key against the schema of `T`, then the values.

@@ -13,6 +13,17 @@ pub enum ErrorKind {
     NotRun,
 }
 
+/// Why a file can't be read, in words.
+pub(crate) fn unread(bad: &std::io::Error) -> String {
+    match bad.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".into(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".into(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
+        std::io::ErrorKind::InvalidData => "it is no text".into(),
+        _ => bad.to_string(),
+    }
+}
+
 /// One finding about an input file. Prints as `file:line: key 'path': 'found' problem; help`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {

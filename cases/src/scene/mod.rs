@@ -84,7 +84,7 @@ pub fn study_schema() -> serde_json::Value {
 }
 
 fn text_of(path: &Path) -> Result<String, Vec<SceneError>> {
-    std::fs::read_to_string(path).map_err(|bad| {
+    let wrong = |problem: String, help: Option<&str>| {
         vec![SceneError {
             kind: ErrorKind::Invalid,
             file: path.display().to_string(),
@@ -92,8 +92,15 @@ fn text_of(path: &Path) -> Result<String, Vec<SceneError>> {
             column: 0,
             key: String::new(),
             found: None,
-            problem: format!("can't be read: {bad}"),
-            help: None,
+            problem,
+            help: help.map(Into::into),
         }]
-    })
+    };
+    let text = std::fs::read_to_string(path)
+        .map_err(|bad| wrong(format!("can't be read: {}", error::unread(&bad)), None))?;
+    if text.starts_with("$MeshFormat") {
+        let help = "a scene names it: body = { shape = \"file\", path = \"...\", unit = \"mm\" }";
+        return Err(wrong("is a mesh file, not a scene".into(), Some(help)));
+    }
+    Ok(text)
 }

@@ -74,6 +74,15 @@ impl Scene {
         self.methods.iter().find(|method| method.id == id)
     }
 
+    /// Whether something moves the body: a load, a tool or a support that is not held still. Vibrations are free, and a
+    /// scene that only prepares moves nothing.
+    pub fn is_moved(&self) -> bool {
+        let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
+        let moves = |support: &Support| !support.motion.iter().flatten().all(still);
+        let unsolved = matches!(self.procedure, Procedure::Modes { .. } | Procedure::Prepare);
+        unsolved || !self.loads.is_empty() || !self.tools.is_empty() || self.supports.iter().any(moves)
+    }
+
     /// Whether the file has `key`.
     pub fn has(&self, key: &str) -> bool {
         self.origin.has(key)

@@ -202,19 +202,19 @@ impl Newton {
 pub(crate) enum ProcedureKeys {
     /// Shape functions and integration rows only: what a method costs before anything is solved
     Prepare {
-        /// Read and not used, so that one word changes the kind
+        /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
     },
     /// One linear solve
     Linear {
-        /// Read and not used, so that one word changes the kind
+        /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
     },
     /// Small free vibrations: the lowest modes and every frequency
     Modes {
         /// Lowest modes of vibration that are reported and compared; 24 unless given
         modes: Option<u32>,
-        /// Read and not used, so that one word changes the kind
+        /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
     },
     /// Quasi-static load steps, each by Newton's method; large-strain laws and tools

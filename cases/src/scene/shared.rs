@@ -19,9 +19,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::document::{Document, Origin, schema, sorted, written};
-use super::error::SceneError;
+use super::error::{SceneError, unread};
 use super::keys::{MethodKeys, SceneKeys};
-use super::report::{beside, which};
+use super::report::{Report, beside, which};
+use super::resolve;
 use super::sources::Taken;
 use catalogue::Problem;
 
@@ -38,7 +39,7 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
     let mut document = Document::parse(text, file)?;
     let Some(from) = document.root.get_ref().get("methods_from") else {
         unshared(&document)?;
-        return document.read();
+        return keys(document);
     };
     let wrong = |problem| vec![document.error(Some(from.span()), "methods_from", problem)];
     let DeValue::String(path) = from.get_ref() else {
@@ -49,14 +50,25 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
     let path = beside(file, path);
     let shared_file = path.display().to_string();
     let shared_text = std::fs::read_to_string(&path).map_err(|bad| {
-        let help = format!("{shared_file}: {bad}; paths are relative to the folder of the file they are in");
+        let help = format!("{}; paths are relative to the folder of the file they are in", unread(&bad));
         wrong(Problem::new("can't be read").found(shared_file.as_str()).help(help))
     })?;
     let shared = Document::parse(&shared_text, &shared_file)?;
     shared.check(&unfinished(schema::<SharedKeys>()))?;
     unique(&shared)?;
     take(&mut document, shared)?;
-    document.read()
+    keys(document)
+}
+
+/// The keys of a scene; or what is wrong with them, and with the values of the parts whose keys are sound.
+fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+    let Err(mut errors) = document.check(&schema::<SceneKeys>()) else { return document.values() };
+    if let Some((parts, origin)) = document.sound(&errors) {
+        let mut report = Report::new(&origin);
+        resolve::parts(parts, &mut report);
+        errors.extend(report.finish());
+    }
+    Err(sorted(errors))
 }
 
 /// The schema of a scene, in which a method may be a shared one.

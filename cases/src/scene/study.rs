@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::available::{HELD, unheld};
+use super::demands::unheld;
 use catalogue::{Problem, Values};
 
 use super::error::SceneError;
@@ -229,8 +229,8 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     }
     for (i, essential) in run.essentials.iter().enumerate() {
         let key = format!("{key}.essentials[{i}]");
-        if let Some(what) = unheld(essential, scene.procedure.kind()) {
-            report.add(&key, Problem::new(format!("{what} is not available yet")).help(HELD));
+        if let Some(problem) = unheld(essential, scene.procedure.kind()) {
+            report.add(&key, problem);
         }
         let linear = |efg: &&Efg| {
             matches!(efg.functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. })

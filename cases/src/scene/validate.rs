@@ -6,7 +6,7 @@ use material::Material as _;
 
 use super::field::{Prescribed, VectorField};
 use super::material::medium;
-use super::model::{LoadKind, Place, Scene};
+use super::model::{Body, Load, LoadKind, Place, Scene, Support};
 use super::output::{Check, Reference, Target};
 use super::procedure::ProcedureKind;
 use super::purpose::Purpose;
@@ -69,7 +69,6 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
         _ => {}
     }
     exact_words(scene, report);
-    surfaces(scene, report);
     targets(scene, report);
 }
 
@@ -247,15 +246,16 @@ fn exact_words(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Names of surfaces are those of the shape.
-fn surfaces(scene: &Scene, report: &mut Report) {
-    let Some(known) = scene.body.surfaces() else { return };
-    let supports = scene.supports.iter().enumerate().map(|(i, s)| (format!("support[{i}].on"), &s.place));
-    let loads = scene.loads.iter().enumerate().map(|(i, l)| (format!("load[{i}].on"), &l.place));
+/// Names of surfaces are those of the shape; judged before the rest of the scene is known to be sound.
+pub(crate) fn surfaces(body: &Body, supports: &[Support], loads: &[Option<Load>], report: &mut Report) {
+    let Some(known) = body.surfaces() else { return };
+    let supports = supports.iter().enumerate().map(|(i, s)| (format!("support[{i}].on"), &s.place));
+    let loads = loads.iter().enumerate();
+    let loads = loads.filter_map(|(i, load)| Some((format!("load[{i}].on"), &load.as_ref()?.place)));
     for (key, place) in supports.chain(loads) {
         let Place::On(names) = place else { continue };
         for name in names.iter().filter(|n| !known.contains(&n.as_str())) {
-            let problem = format!("is not a surface of a {}", scene.body.name());
+            let problem = format!("is not a surface of a {}", body.name());
             report.add(&key, Problem::new(problem).found(name).help(suggest(name, &known)));
         }
     }

@@ -1,7 +1,7 @@
 use cases::scene::{ErrorKind, parse};
 
 use crate::bad_methods::METHODS;
-use crate::{SCENE, edited, marked_line};
+use crate::{edited, marked_line};
 
 /// What is replaced in the sound scene, by what (the line to be blamed ends in `#<`), the key blamed, and what the
 /// message must say.
@@ -93,6 +93,18 @@ const KEYS: &[Bad] = &[
     ("seed = 7 }", "sed = 7 } #<", "method[0].jitter.sed", &["did you mean 'seed'?"]),
     ("[material]\n", "[material]\nyoung = 1\nyoung = 2 #<\n", "", &["not valid TOML", "duplicate key"]),
     ("[material]\n", "[material #<\n", "", &["not valid TOML"]),
+    (
+        "poisson = 0.45",
+        "poisson = 0,45 #<",
+        "",
+        &["not valid TOML at column", "a decimal needs a point: 0.45"],
+    ),
+    (
+        "law = \"linear\", young = \"0.04 N/mm^2\", poisson = 0.3 }",
+        "law = \"linear\", young = \"0.04 N/mm^2\", poisson = 0,3 } #<",
+        "",
+        &["a decimal needs a point: 0.3"],
+    ),
     ("young = \"20 kPa\"", "young = 20 kPa #<", "", &["not valid TOML"]),
     ("young = \"20 kPa\"", "young = \"20 kPa #<", "", &["not valid TOML"]),
     ("[material]\nlaw = \"linear\"", "[material] #<", "material.law", &["is missing", "linear", "ogden"]),
@@ -205,6 +217,29 @@ const KEYS: &[Bad] = &[
 ];
 
 const CONDITIONS: &[Bad] = &[
+    (
+        "traction = [\"0 Pa\", \"1 kPa\", { unit = \"kPa\", of = \"x\" }]",
+        "traction = \"1 kPa\" #<",
+        "load[1].traction",
+        &[
+            "'1 kPa' is text, where \"exact\" or a list of 3 such as [\"0 kPa\", \"0 kPa\", \"1 kPa\"] or a table",
+            "for one along the inner normal take pressure = \"1 kPa\"",
+        ],
+    ),
+    (
+        "move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }",
+        "move = \"6 mm\" #<",
+        "support[1].move",
+        &[
+            "'6 mm' is text, where \"exact\" or a list of 3 such as [\"0 mm\", \"0 mm\", \"1 mm\"] or a table { x, y, z }",
+        ],
+    ),
+    (
+        "fix = \"xyz\"",
+        "fix = \"z\"\nmove = [\"0 mm\", \"0 mm\", \"1 mm\"] #<",
+        "support[0].move[2]",
+        &["moves an axis that 'fix' holds"],
+    ),
     ("\"z == 0 mm\"", "\"z = 0 mm\" #<", "support[0].where", &["'==' compares"]),
     ("\"z == 0 mm\"", "\"z == 0\" #<", "support[0].where", &["'z == 0' has no unit", "\"0 mm\""]),
     ("\"z == 0 mm\"", "\"z == 1 Pa\" #<", "support[0].where", &["a pressure, where a length belongs"]),
@@ -437,42 +472,4 @@ fn every_mistake_is_named_with_its_line_its_key_and_the_fix() {
     assert!(wrong.is_empty(), "{} findings:\n{}", wrong.len(), wrong.join("\n"));
     let count: usize = lists.iter().map(|list| list.len()).sum();
     assert!(count >= 120, "{count} bad inputs");
-}
-
-#[test]
-fn one_mistake_gives_one_message() {
-    for (from, to) in [
-        ("young = \"20 kPa\"", "young = 20"),
-        ("fix = \"xyz\"", "fix = \"abc\""),
-        ("nodes = 83", "nodes = 0"),
-        ("curvature = \"0.5 /m\"", "curvature = 1"),
-    ] {
-        let errors = parse(&edited(from, to), "s.toml").expect_err(to);
-        assert_eq!(errors.len(), 1, "{errors:?}");
-    }
-}
-
-#[test]
-fn all_mistakes_of_a_file_are_told_in_the_order_of_its_lines() {
-    let text = edited("young = \"20 kPa\"", "young = 20\ncolour = 1").replace("fix = \"xyz\"", "fix = 3");
-    let errors = parse(&text, "s.toml").expect_err("three mistakes");
-    let keys: Vec<&str> = errors.iter().map(|e| e.key.as_str()).collect();
-    assert_eq!(keys, ["material.young", "material.colour", "support[0].fix"]);
-}
-
-#[test]
-fn parts_that_are_missing_altogether_are_told() {
-    for (text, key) in [("", "title"), ("", "body"), ("", "material"), ("title = \"t\"", "body")] {
-        let errors = parse(text, "s.toml").expect_err("no scene");
-        assert!(errors.iter().any(|e| e.key == key && e.line == 1), "{key}: {errors:?}");
-    }
-    let cut = &SCENE[..SCENE.find("[[method]]").expect("methods")];
-    let errors = parse(cut, "s.toml").expect_err("no method");
-    assert!(errors[0].to_string().contains("key 'method': is missing; add a [[method]]"), "{}", errors[0]);
-}
-
-#[test]
-fn a_file_that_is_not_there_is_named() {
-    let errors = cases::scene::load(std::path::Path::new("no/such.toml")).expect_err("no file");
-    assert!(errors[0].to_string().starts_with("no/such.toml: can't be read"), "{}", errors[0]);
 }

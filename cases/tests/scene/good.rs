@@ -141,24 +141,6 @@ fn what_waits_for_later_is_read_and_then_named() {
             "dilation = \"mixed\" in a linear procedure is not available yet",
         ),
         (
-            static_and("essential = \"penalty\"", "essential = \"nitsche\""),
-            "nitsche",
-            "method[2].essential",
-            "Nitsche's method in a static procedure is not available yet",
-        ),
-        (
-            static_and("essential = \"penalty\"", "essential = \"multipliers\""),
-            "multipliers",
-            "method[2].essential",
-            "a support by multipliers in a static procedure is not available yet",
-        ),
-        (
-            static_and("essential = \"penalty\"", "essential = \"elimination\""),
-            "elimination",
-            "method[2].essential",
-            "a support of a cloud by elimination in a static procedure is not available yet",
-        ),
-        (
             static_and(
                 "integration = { rule = \"cell-smoothed\" }",
                 "integration = { rule = \"cell-smoothed\" }\ndilation = \"mixed\"",
@@ -177,6 +159,41 @@ fn what_waits_for_later_is_read_and_then_named() {
         let line = 1 + text[..text.find(to).expect("replaced")].matches('\n').count();
         assert_eq!(ahead[0].line, line, "{}", ahead[0]);
     }
+}
+
+#[test]
+fn what_moves_a_body_is_known() {
+    let still = without_sections(SCENE, &["[[load]]", "[[check]]", "[reference]", "[output]"])
+        .replace("move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }", "fix = \"x\"");
+    let moved = |text: &str| parse(text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0])).is_moved();
+    assert!(moved(SCENE) && !moved(&still));
+    assert!(!moved(&still.replace("fix = \"x\"\n", "move = { x = \"0 mm\" }\n")));
+    assert!(moved(&still.replace("fix = \"x\"\n", "move = { x = \"1 mm\" }\n")));
+    // Nothing is solved: nothing is missed.
+    assert!(moved(&still.replace("kind = \"linear\"", "kind = \"prepare\"")));
+}
+
+/// A scene without the tables of these heads.
+fn without_sections(text: &str, heads: &[&str]) -> String {
+    let mut kept = true;
+    let lines = text.lines().filter(|line| {
+        if line.starts_with('[') {
+            kept = !heads.contains(line);
+        }
+        kept
+    });
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn a_support_can_be_moved_by_a_list() {
+    let motion = |given: &str| {
+        let text = edited("move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }", given);
+        let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+        format!("{:?}", scene.supports[1].motion)
+    };
+    let by_axes = motion("move = { x = \"exact\", y = \"0 mm\", z = \"6 mm\" }");
+    assert_eq!(motion("move = [\"exact\", \"0 mm\", \"6 mm\"]"), by_axes);
 }
 
 #[test]
@@ -251,6 +268,30 @@ fn contradictions_of_a_static_scene_name_their_key() {
         ["penalty = \"0.5 MPa/mm\"", "penalty = 5e8", "tool[0].penalty", "has no unit"],
         ["stick = \"100 N/mm^3\"\n", "", "tool[0].stick", "is missing; friction needs"],
         ["friction = 0.15\n", "", "tool[0].stick", "goes with friction only"],
+        [
+            "essential = \"penalty\"",
+            "essential = \"nitsche\"",
+            "method[2].essential",
+            "'nitsche' serves linear procedures and modes, not kind = \"static\"; take \"penalty\" or \"coupling\"",
+        ],
+        [
+            "essential = \"penalty\"",
+            "essential = \"multipliers\"",
+            "method[2].essential",
+            "'multipliers' serves linear procedures",
+        ],
+        [
+            "essential = { method = \"penalty\", factor = 1e4 }",
+            "essential = { method = \"nitsche\", factor = 10 }",
+            "method[1].essential.method",
+            "'nitsche' serves linear procedures",
+        ],
+        [
+            "essential = \"penalty\"",
+            "essential = \"elimination\"",
+            "method[2].essential",
+            "'elimination' serves linear procedures",
+        ],
         ["friction = 0.15", "friction = -1", "tool[0].friction", "is negative"],
         [
             "friction = 0.15",

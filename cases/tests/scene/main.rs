@@ -1,6 +1,7 @@
 //! Scene and study files through the public interface: what is read, what is refused and how, and that nothing panics.
 
 mod bad_methods;
+mod bad_parts;
 mod bad_scenes;
 mod bad_studies;
 mod expressions;

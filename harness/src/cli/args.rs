@@ -39,7 +39,7 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Render tables, figures and the report of stored results
     Report {
-        /// A folder that `verify` wrote
+        /// A folder that `verify` or `run --out` wrote
         results: PathBuf,
         /// Where to put the report (default: RESULTS/report)
         #[arg(long)]
@@ -55,6 +55,9 @@ pub enum Command {
         what: Option<String>,
     },
     /// Print the JSON schema of scene files, or of study files
+    ///
+    /// An editor completes and checks a scene with it: run `tissuebench schema > scene.schema.json`, and begin the scene
+    /// with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
     Schema {
         /// The schema of study files
         #[arg(long)]
@@ -79,7 +82,7 @@ pub struct RunArgs {
     /// What to print on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-    /// Also write records, tables and figures to this folder
+    /// Also write records, tables and figures to this folder, in place of the results of an earlier run of the scene
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -103,7 +106,7 @@ pub struct ReferenceArgs {
     pub points: PathBuf,
     /// Length unit of that file
     #[arg(long, default_value = "mm", value_parser = length_unit)]
-    pub unit: f64,
+    pub unit: LengthUnit,
     /// The file to write (JSON)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -112,7 +115,7 @@ pub struct ReferenceArgs {
 /// Arguments of `baseline`.
 #[derive(Args)]
 pub struct BaselineArgs {
-    /// A folder that `verify` wrote
+    /// A folder that `verify` or `run --out` wrote
     pub results: PathBuf,
     /// The accepted numbers
     #[arg(long, value_name = "FILE", default_value = "tests/baseline/quick.toml")]
@@ -140,20 +143,20 @@ pub enum Format {
 /// What to do with mesh files.
 #[derive(Subcommand)]
 pub enum MeshAction {
-    /// Print counts, volume and quality
+    /// Print counts, surfaces, extent, volume and quality
     Info {
         /// Gmsh 2.2 files
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
         #[arg(long, default_value = "mm", value_parser = length_unit)]
-        unit: f64,
+        unit: LengthUnit,
     },
     /// Read one mesh file, write it as another kind of cells
     Convert {
         /// The file to read (Gmsh 2.2)
         from: PathBuf,
-        /// The file to write (Gmsh 2.2)
+        /// The file to write (Gmsh 2.2), another one than FROM
         to: PathBuf,
         /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
         #[arg(long)]
@@ -161,12 +164,18 @@ pub enum MeshAction {
     },
 }
 
-fn length_unit(text: &str) -> Result<f64, String> {
-    match text {
-        "m" => Ok(1.0),
-        "cm" => Ok(1e-2),
-        "mm" => Ok(1e-3),
-        "um" => Ok(1e-6),
-        _ => Err("a length unit: m, cm, mm or um".into()),
-    }
+/// A unit of the coordinates in a file.
+#[derive(Clone, Copy, Debug)]
+pub struct LengthUnit {
+    /// As files and messages have it.
+    pub name: &'static str,
+    /// Its length in metres.
+    pub metres: f64,
+}
+
+fn length_unit(text: &str) -> Result<LengthUnit, String> {
+    let known = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)];
+    let found = known.into_iter().find(|(name, _)| *name == text);
+    let (name, metres) = found.ok_or("a length unit: m, cm, mm or um")?;
+    Ok(LengthUnit { name, metres })
 }

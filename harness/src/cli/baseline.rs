@@ -11,7 +11,7 @@ use crate::outcome::provenance::processor;
 /// Differences printed before the rest is only counted.
 const SHOWN: usize = 40;
 
-/// Compares, and accepts what is asked for; the exit code: 0 if no difference is left, else 1.
+/// Compares, and accepts what is asked for; the exit code: 0 if no difference is left, else 1; 2 without accepted numbers.
 pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
     let now = Baseline::of(&reports::read_run(&args.results)?.records, &processor());
     if !args.file.exists() {
@@ -48,7 +48,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
 fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
     if args.accept.as_deref() != Some("") {
         eprintln!("tissuebench: {} does not exist; `--accept` makes it", args.file.display());
-        return Ok(1);
+        return Ok(2);
     }
     now.save(&args.file)?;
     println!("{}: {} numbers of {} runs", args.file.display(), now.count(), now.runs.len());

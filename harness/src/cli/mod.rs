@@ -18,6 +18,7 @@ use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
 
 use crate::Failure;
+use crate::study::folder;
 use baseline::baseline;
 use list::list;
 use plan::plan;
@@ -77,12 +78,28 @@ fn refuse(errors: &[SceneError]) -> u8 {
     if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
 }
 
+/// Makes the folder of results ready for those of a scene or study, and says what they replace; 2 if it can't take them.
+fn take(file: &Path, out: &Path) -> Result<(), u8> {
+    folder::ready(file, out).map_err(|problem| {
+        eprintln!("tissuebench: {problem}");
+        2
+    })?;
+    if let Some(what) = folder::replaced(out) {
+        eprintln!("{}: replaces the results of {what}", out.display());
+    }
+    Ok(())
+}
+
 /// The scene, and the indices of the methods asked for.
 fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
     let scene = scene::load(path).map_err(|errors| refuse(&errors))?;
     let ahead = scene.unavailable();
     if !ahead.is_empty() {
         return Err(refuse(&ahead));
+    }
+    if !scene.is_moved() {
+        let why = "it has no load, no tool and no support that moves";
+        eprintln!("{}: warning: nothing moves this body: {why}", path.display());
     }
     let mut chosen = Vec::new();
     for id in methods {
@@ -106,7 +123,7 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
 fn report(results: &Path, out: &Path) -> u8 {
     match reports::render(results, out) {
         Ok(rendered) => {
-            eprintln!("{} files in {}", rendered.files.len(), out.display());
+            eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
             0
         }
         Err(bad) => {

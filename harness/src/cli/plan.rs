@@ -18,7 +18,7 @@ pub(super) fn plan(path: &Path, methods: &[String]) -> u8 {
         let stages = Group::unreferenced(&scene, Repeats::ONCE)
             .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
         match stages {
-            Ok((stages, _)) => print!("{}", text::stages(&method.id, &stages)),
+            Ok((stages, size)) => print!("{}", text::stages(&method.id, size.nodes, &stages)),
             Err(failure) => {
                 eprintln!("{failure} (method '{}')", method.id);
                 code = code.max(failure.exit_code());

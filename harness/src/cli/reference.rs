@@ -6,13 +6,15 @@ use crate::Failure;
 use crate::cli::args::ReferenceArgs;
 use crate::cli::{fail, open, text};
 use crate::run::stored::Stored;
+use crate::study::folder;
 use crate::study::make_reference::make;
 
 /// Runs every method of a scene and writes what they agree on.
 pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, _) = open(&args.scene, &args.methods)?;
+    folder::ready_file(&args.out).map_err(|problem| fail(&Failure::Input(problem)))?;
     let text = scene.text().to_string();
-    let mesh = geometry::msh::read(&args.points, args.unit)
+    let mesh = geometry::msh::read(&args.points, args.unit.metres)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     let read = |path: &PathBuf| -> Result<Stored, u8> {
         let of_file = |problem| fail(&Failure::Input(format!("{}: {problem}", path.display())));

@@ -8,7 +8,7 @@ use reports::{RunSet, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{open, report, text};
+use crate::cli::{open, report, take, text};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, check, folder, stalled};
@@ -23,9 +23,10 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Err(code) => return code,
     };
     let machine = provenance::machine();
-    if let Some(Err(taken)) = args.out.as_deref().map(|out| folder::free_for(&args.scene, out)) {
-        eprintln!("tissuebench: {taken}");
-        return 2;
+    if let Some(out) = &args.out
+        && let Err(code) = take(&args.scene, out)
+    {
+        return code;
     }
     let mut made = Made {
         args,

@@ -8,12 +8,12 @@ use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
 use crate::run::stored::Stored;
 
-/// The plan of one method.
-pub fn stages(method: &str, plan: &Plan) -> String {
-    let mut text = format!("{method}\n");
+/// The plan of one method of `nodes` nodes with their unknowns, those at supports included.
+pub fn stages(method: &str, nodes: u64, plan: &Plan) -> String {
+    let mut text = format!("{method}: {nodes} nodes, {} displacement unknowns before supports\n", 3 * nodes);
     for stage in plan.stages() {
         let word = if stage.ran { "run " } else { "skip" };
-        writeln!(text, "  {word}  {:28}  {}", stage.stage.name(), stage.why).expect("a string");
+        writeln!(text, "  {word}  {:28}  {}", stage.stage.label(), stage.why).expect("a string");
     }
     text
 }
@@ -106,7 +106,7 @@ fn phase(outcome: &Outcome, name: &str) -> Option<f64> {
 }
 
 /// Four significant digits, in exponents where plain digits would hide them.
-fn digits(value: f64) -> String {
+pub fn digits(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         v if !(1e-3..1e5).contains(&v) => format!("{value:.3e}"),

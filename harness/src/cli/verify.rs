@@ -3,7 +3,7 @@
 use cases::scene;
 use reports::Status;
 
-use crate::cli::{refuse, report, text};
+use crate::cli::{refuse, report, take, text};
 use crate::study::{Plan, VerifyArgs, folder};
 
 /// Runs the study, writes its results and the report; returns the exit code.
@@ -25,13 +25,12 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         Err(errors) => return refuse(&errors),
     };
     plan.select(args);
-    if let Err(taken) = folder::free_for(&path, &args.out) {
-        eprintln!("tissuebench: {taken}");
-        return 2;
-    }
     if plan.is_empty() {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
+    }
+    if let Err(code) = take(&path, &args.out) {
+        return code;
     }
     eprintln!("{}: {} runs", path.display(), plan.len());
     let finished = plan.execute(args);

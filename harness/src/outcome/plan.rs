@@ -15,7 +15,7 @@ macro_rules! stages {
         }
 
         impl StageName {
-            /// The name in plans, JSON and the report.
+            /// The name in JSON and in records.
             pub fn name(self) -> &'static str {
                 match self {
                     $(StageName::$stage => $name,)*
@@ -23,6 +23,16 @@ macro_rules! stages {
             }
         }
     };
+}
+
+impl StageName {
+    /// The name in plans that people read: the nodal supports of a cloud are not the supports of the body.
+    pub fn label(self) -> &'static str {
+        match self {
+            StageName::Supports => "neighbour search",
+            other => other.name(),
+        }
+    }
 }
 
 stages! {

@@ -154,15 +154,20 @@ impl Stored {
 
     /// Reads a file; says what is wrong with it.
     pub fn read(path: &Path) -> Result<Stored, String> {
-        let file = path.display();
-        let text = std::fs::read_to_string(path).map_err(|bad| format!("{file}: can't be read: {bad}"))?;
-        let stored: Stored =
-            serde_json::from_str(&text).map_err(|bad| format!("{file}: is no reference: {bad}"))?;
+        Stored::parsed(path).map_err(|problem| format!("{}: {problem}", path.display()))
+    }
+
+    fn parsed(path: &Path) -> Result<Stored, String> {
+        let text = std::fs::read_to_string(path).map_err(|bad| match bad.kind() {
+            std::io::ErrorKind::NotFound => format!("can't be read: there is no file {}", path.display()),
+            _ => format!("can't be read: {bad}"),
+        })?;
+        let stored: Stored = serde_json::from_str(&text).map_err(|bad| format!("is no reference: {bad}"))?;
         let (points, values) = (stored.points.len(), stored.displacement.len());
         if points == values {
             Ok(stored)
         } else {
-            Err(format!("{file}: {points} points but {values} displacements"))
+            Err(format!("has {points} points but {values} displacements"))
         }
     }
 
@@ -172,12 +177,15 @@ impl Stored {
             Failure::of_scene(scene, ErrorKind::Invalid, "reference.record", &problem, help)
         };
         let remake = "make it with tissuebench reference SCENE";
-        let stored = Stored::read(path).map_err(|problem| wrong(problem, remake))?;
+        // The message has the file's name as the value of the key.
+        let stored = Stored::parsed(path).map_err(|problem| wrong(problem, remake))?;
         let probes = &scene.output.probes;
         let far = |(a, b): (&[f64; 3], &[f64; 3])| (Point3::from(*a) - Point3::from(*b)).norm() > 1e-9;
         if stored.probes.len() != probes.len() || stored.probes.iter().zip(probes).any(far) {
-            let problem = format!("{}: was made for other probes", path.display());
-            return Err(wrong(problem, "give output.probes as in the scene it was made from"));
+            return Err(wrong(
+                "was made for other probes".into(),
+                "give output.probes as in the scene it was made from",
+            ));
         }
         Ok(stored)
     }

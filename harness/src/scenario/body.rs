@@ -124,7 +124,11 @@ fn cuboid(
 /// A cell turned inside out, by the file that holds it, by jitter, or by the size asked for.
 fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
     let (key, help) = match (size, jitter) {
-        (Size::File(_), _) => (Key::Size("file"), "its corners have to be in the order of the format"),
+        (Size::File(file), _) => {
+            let problem = format!("gives a mesh in which {}", msh::inverted(&file.path, &bad));
+            let help = "corners have to be in the order of the format";
+            return Failure::input(Key::Size("file"), problem, help);
+        }
         (_, Some(_)) => (Key::Method("jitter.fraction"), "make it smaller"),
         _ => (Key::Size(""), "make the grading closer to 1, or the mesh finer"),
     };

@@ -107,7 +107,7 @@ impl Scenario<'_> {
         };
         let need_shape = || {
             shape.map(|shape| &**shape).ok_or_else(|| {
-                Failure::unavailable(
+                Failure::input(
                     Key::Method("nodes"),
                     "makes a cloud of an exact count, which needs a body in closed form (box, cylinder, ball, \
                      whole sphere-shell, kidney)",
@@ -228,7 +228,9 @@ impl CloudMethod {
             Functions::MaximumEntropy { .. } => "maximum entropy",
         };
         let points = match &self.integration {
+            Integration::Gauss { points: 1 } => "1 point per background cell".into(),
             Integration::Gauss { points } => format!("{points} points per background cell"),
+            Integration::Grid { points: 1, .. } => "1 point per grid cell".into(),
             Integration::Grid { points, .. } => format!("{points}^3 points per grid cell"),
             Integration::CellSmoothed { smoothing, face_points } => {
                 let gradients = match smoothing {
@@ -275,14 +277,13 @@ fn integration(
     Ok(match rule {
         scene::Integration::Gauss { points } => Integration::Gauss { points },
         scene::Integration::Grid { points, spacing: given } => {
-            let refused = |problem| {
-                let help = "take rule = \"gauss\" or \"cell-smoothed\"";
-                Failure::unavailable(Key::Method("integration.rule"), problem, help)
-            };
+            let key = || Key::Method("integration.rule");
+            let help = "take rule = \"gauss\" or \"cell-smoothed\"";
             let clips = "clips a grid by a body in closed form; a mesh and an octant have no inside test";
-            let shape = shape.ok_or_else(|| refused(clips))?;
+            let shape = shape.ok_or_else(|| Failure::input(key(), clips, help))?;
             if background.region_names().len() > 1 {
-                return Err(refused("does not know the region of a grid's points, and the body has several"));
+                let problem = "does not know the region of a grid's points, and the body has several";
+                return Err(Failure::unavailable(key(), problem, help));
             }
             let points = (points as f64).cbrt().round() as usize;
             Integration::Grid { spacing: given.unwrap_or(spacing), points, shape }

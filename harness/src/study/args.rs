@@ -24,7 +24,7 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
-    /// Where to put records, tables, figures and the report
+    /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
 }

@@ -319,7 +319,19 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("2 4 2 2 1 1 2 3 4", "2 4 2 2 1 1 3 2 4"),
         key: "method[0].size.file",
-        says: &["'two.msh' gives a mesh in which element 0 is inverted: det J = -3.2", "order"],
+        says: &["'two.msh' gives a mesh in which 1 of 2 cells is inverted (line 20, tag 2)", "order"],
+        ..SOUND
+    },
+    Case {
+        name: "a mesh file of mirrored cells",
+        base: OF_FILE,
+        edit: (
+            "size = { file = \"two.msh\", unit = \"mm\" }\n\n",
+            "size = { file = \"two.msh\", unit = \"mm\" } #<\n\n",
+        ),
+        mesh: ("2 4 2 2 1 1 2 3 4\n3 4 2 2 1 2 3 4 5", "2 4 2 2 1 1 3 2 4\n3 4 2 2 1 3 2 4 5"),
+        key: "method[0].size.file",
+        says: &["all 2 cells are inverted (first: line 20, tag 2): the order of their corners is mirrored"],
         ..SOUND
     },
     Case {
@@ -341,7 +353,6 @@ pub const CASES: &[Case] = &[
             "integration = { rule = \"gauss\", points = 4 }",
             "integration = { rule = \"grid\", points = 8 } #<",
         ),
-        code: 3,
         key: "method[1].integration.rule",
         says: &["'grid' clips a grid", "\"gauss\" or \"cell-smoothed\""],
         stops: &["efg"],
@@ -381,7 +392,6 @@ pub const CASES: &[Case] = &[
         name: "a cloud of an exact count in a mesh file",
         base: &[OF_FILE[0], OF_FILE[1], OF_FILE[3]],
         edit: ("nodes = 60", "nodes = 60 #<"),
-        code: 3,
         key: "method[1].nodes",
         says: &["'60' makes a cloud of an exact count", "the nodes of a mesh"],
         stops: &["efg"],

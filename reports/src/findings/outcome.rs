@@ -44,11 +44,28 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
     out
 }
 
-/// Begins with a capital and ends with a stop.
+/// Begins with a capital and ends with a stop; a file and line that it begins with stays as it is.
 fn sentence(reason: &str) -> String {
-    let mut letters = reason.trim_end_matches('.').chars();
+    let reason = reason.trim_end_matches('.');
+    if reason.split_whitespace().next().is_some_and(|word| word.contains(['.', '/']) && word.ends_with(':')) {
+        return format!("{reason}.");
+    }
+    let mut letters = reason.chars();
     match letters.next() {
         Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
         None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_file_keeps_its_letters() {
+        assert_eq!(sentence("sphere.toml:13: key 'body': bad."), "sphere.toml:13: key 'body': bad.");
+        assert_eq!(sentence("scenes/a.toml: bad"), "scenes/a.toml: bad.");
+        assert_eq!(sentence("1 is not at least 2"), "1 is not at least 2.");
+        assert_eq!(sentence("inverted: cell 3"), "Inverted: cell 3.");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{CellKind, Mesh, Point3, Vector3, element, quadrature};
 
-/// A cell whose map folds over itself.
+/// A mesh with cells whose map folds over itself, by the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("element {element} is inverted: det J = {det_j:e} m^3 (it has to be positive)")]
 pub struct InvertedElement {
@@ -10,6 +10,10 @@ pub struct InvertedElement {
     pub element: usize,
     /// Smallest Jacobian determinant found in it, in m^3.
     pub det_j: f64,
+    /// Number of such cells.
+    pub inverted: usize,
+    /// Number of all cells.
+    pub cells: usize,
 }
 
 /// An extreme value and the element it occurs in.
@@ -42,9 +46,10 @@ pub struct Quality {
     pub max_aspect: Extreme,
 }
 
-/// Measures a mesh; fails on the first element with `det J <= 0` at any node or quadrature point.
+/// Measures a mesh; fails on elements with `det J <= 0` at any node or quadrature point.
 pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     let mut quality: Option<Quality> = None;
+    let mut folded: Option<InvertedElement> = None;
     let probes = CellKind::ALL.map(probe_points);
     for element in 0..mesh.cell_count() {
         let kind = mesh.kind(element);
@@ -64,7 +69,9 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
         // Rounding leaves a flat cell a determinant of 1e-17 rather than 0: compare with the cell's own size.
         let longest = longest_edge(kind, &points);
         if low.is_nan() || low <= 1e-12 * longest.powi(3) {
-            return Err(InvertedElement { element, det_j: low });
+            let first = InvertedElement { element, det_j: low, inverted: 0, cells: mesh.cell_count() };
+            folded.get_or_insert(first).inverted += 1;
+            continue;
         }
         let (sharp, blunt) = dihedrals(kind, &points);
         let aspect =
@@ -85,7 +92,10 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
             Some(so_far) => so_far.joined(here),
         });
     }
-    Ok(quality.expect("a mesh has at least one cell"))
+    match folded {
+        Some(bad) => Err(bad),
+        None => Ok(quality.expect("a mesh has at least one cell")),
+    }
 }
 
 /// Volume of every cell (m^3), curved cells included; negative where a cell is inverted.

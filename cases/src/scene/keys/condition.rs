@@ -69,11 +69,12 @@ pub(crate) struct AxesKeys {
     pub z: Option<AxisKeys>,
 }
 
-/// Prescribed displacement
+/// Prescribed displacement: of some axes, of all three as [x, y, z], or "exact"
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum MoveKeys {
     Exact(ExactWord),
+    All([AxisKeys; 3]),
     Axes(AxesKeys),
 }
 
@@ -99,8 +100,11 @@ pub(crate) struct LoadKeys {
     pub on: Option<Names>,
     #[serde(rename = "where")]
     pub place: Option<Region>,
+    /// Force per area: for one along the inner normal take pressure = "1 kPa"
     pub traction: Option<VectorKeys<Pressure>>,
+    /// Force per area along the inner normal
     pub pressure: Option<FieldKeys<Pressure>>,
+    /// Force per volume, everywhere
     pub body: Option<VectorKeys<BodyForce>>,
 }
 
@@ -143,6 +147,7 @@ impl JsonSchema for ToolKeys {
 /// How a tool is driven: one of closure, force along its way, and mean pressure on its face
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-one-of" = ["closure", "force", "pressure"]))]
 pub(crate) struct DriveKeys {
     pub closure: Option<Q<Length>>,
     pub force: Option<Q<Force>>,

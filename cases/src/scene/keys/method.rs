@@ -18,6 +18,7 @@ use crate::scene::words::words;
 /// How fine: one of nodes, spacing, level, cells and file
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("x-one-of" = ["level", "nodes", "spacing", "cells", "file"]))]
 pub(crate) struct SizeKeys {
     pub nodes: Option<u32>,
     pub spacing: Option<Q<Length>>,

@@ -67,18 +67,12 @@ pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> S
             motion = std::array::from_fn(|_| Some(Prescribed::Exact));
         }
         Some(MoveKeys::Axes(axes)) => {
-            for (axis, given) in [axes.x, axes.y, axes.z].into_iter().enumerate() {
-                let Some(given) = given else { continue };
-                if motion[axis].is_some() {
-                    let name = ["x", "y", "z"][axis];
-                    let problem = Problem::new("moves an axis that 'fix' holds").help("name each axis once");
-                    report.add(&format!("{key}.move.{name}"), problem);
-                }
-                motion[axis] = Some(match given {
-                    AxisKeys::Exact(_) => Prescribed::Exact,
-                    AxisKeys::Field(field) => Prescribed::Field(scalar(field)),
-                });
-            }
+            let names = ["x", "y", "z"].map(|name| format!("{key}.move.{name}"));
+            moved(&mut motion, [axes.x, axes.y, axes.z], &names, report);
+        }
+        Some(MoveKeys::All(axes)) => {
+            let names = [0, 1, 2].map(|axis| format!("{key}.move[{axis}]"));
+            moved(&mut motion, axes.map(Some), &names, report);
         }
         None => {}
     }
@@ -86,6 +80,26 @@ pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> S
         report.missing(&format!("{key}.fix"), "write fix = \"xyz\", or move = { z = \"-1 mm\" }");
     }
     Support { place, motion }
+}
+
+/// Adds what is prescribed along the axes, each at its key.
+fn moved(
+    motion: &mut [Option<Prescribed>; 3],
+    axes: [Option<AxisKeys>; 3],
+    keys: &[String; 3],
+    report: &mut Report,
+) {
+    for (axis, given) in axes.into_iter().enumerate() {
+        let Some(given) = given else { continue };
+        if motion[axis].is_some() {
+            let problem = Problem::new("moves an axis that 'fix' holds").help("name each axis once");
+            report.add(&keys[axis], problem);
+        }
+        motion[axis] = Some(match given {
+            AxisKeys::Exact(_) => Prescribed::Exact,
+            AxisKeys::Field(field) => Prescribed::Field(scalar(field)),
+        });
+    }
 }
 
 fn scalar<D: Dim>(keys: FieldKeys<D>) -> ScalarField {

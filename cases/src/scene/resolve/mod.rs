@@ -6,13 +6,14 @@ mod method;
 mod output;
 mod tool;
 
-use super::keys::{BodyKeys, Names, SceneKeys};
+use super::keys::{BodyKeys, LoadKeys, MaterialKeys, Names, SceneKeys, SupportKeys};
 use super::method::{MeshFile, Method};
-use super::model::{Body, MaterialRegion, Scene};
+use super::model::{Body, Load, MaterialRegion, Scene, Support};
 use super::procedure::procedure;
 use super::purpose::Purpose;
 use super::report::Report;
 use super::units::{Dim, Q};
+use super::validate::surfaces;
 use catalogue::Problem;
 use condition::{load, place, support};
 use material::material;
@@ -20,6 +21,7 @@ use method::method;
 pub(crate) use method::{essential, integration, jitter, size};
 pub(crate) use output::checks;
 use output::{output, reference};
+use serde::Deserialize;
 use tool::tool;
 
 /// Unit of a mesh file's numbers unless the scene gives another: what CAD programs and Gmsh models of organs are in.
@@ -36,8 +38,7 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
         Some(MaterialRegion { name: r.name, place, material: material? })
     });
     let regions: Vec<Option<MaterialRegion>> = regions.collect();
-    let supports = keys.support.into_iter().enumerate().map(|(i, s)| support(s, i, report)).collect();
-    let loads = keys.load.into_iter().enumerate().filter_map(|(i, l)| load(l, i, report)).collect();
+    let (supports, loads) = conditions(body.as_ref(), keys.support, keys.load, report);
     let procedure = procedure(keys.procedure, !keys.tool.is_empty(), report);
     let tools = keys.tool.into_iter().enumerate().filter_map(|(i, t)| tool(t, i, report)).collect();
     let methods: Vec<Method> =
@@ -64,6 +65,40 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
         checks,
         origin: report.origin().clone(),
     })
+}
+
+/// What holds and loads the body, the names of its surfaces checked where the body is known.
+fn conditions(
+    body: Option<&Body>,
+    supports: Vec<SupportKeys>,
+    loads: Vec<LoadKeys>,
+    report: &mut Report,
+) -> (Vec<Support>, Vec<Load>) {
+    let supports: Vec<Support> =
+        supports.into_iter().enumerate().map(|(i, s)| support(s, i, report)).collect();
+    let loads: Vec<Option<Load>> = loads.into_iter().enumerate().map(|(i, l)| load(l, i, report)).collect();
+    if let Some(body) = body {
+        surfaces(body, &supports, &loads, report);
+    }
+    (supports, loads.into_iter().flatten().collect())
+}
+
+/// The parts of a scene whose keys are sound, where those of other parts are not.
+#[derive(Deserialize)]
+pub(crate) struct SoundParts {
+    body: Option<BodyKeys>,
+    material: Option<MaterialKeys>,
+    #[serde(default)]
+    support: Vec<SupportKeys>,
+    #[serde(default)]
+    load: Vec<LoadKeys>,
+}
+
+/// Notes what is wrong with them, so that a mistake in one part hides none in another.
+pub(crate) fn parts(keys: SoundParts, report: &mut Report) {
+    let body = keys.body.and_then(|keys| body(keys, report));
+    keys.material.and_then(|keys| material(keys, "material", report));
+    conditions(body.as_ref(), keys.support, keys.load, report);
 }
 
 pub(super) fn raw<D: Dim>(q: [Q<D>; 3]) -> [f64; 3] {

@@ -62,6 +62,13 @@ pub fn list(what: Option<&str>) -> u8 {
     let texts: Vec<String> =
         parts.map(|(part, items)| format!("{} ({})\n{}", part.name, part.key, print(&items))).collect();
     let text = texts.join("\n");
+    if text.is_empty() {
+        println!(
+            "{}: none; they are looked for in ./cases/scenes and ./cases/studies",
+            what.unwrap_or("list")
+        );
+        return 0;
+    }
     if text.contains("    [") {
         println!("Settings in [brackets] may be left out.\n");
     }

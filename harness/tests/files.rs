@@ -1,0 +1,123 @@
+//! Files that commands write and read: folders of results, mesh files.
+
+mod common;
+
+use common::{BLOCK, assert_fails, inside, tissuebench, write};
+
+/// [`BLOCK`] by two methods.
+fn two_methods() -> String {
+    let second = "{ id = \"hex8\", family = \"fem\", element = \"hex8\", size = { cells = [2, 2, 1] } }]";
+    BLOCK.replacen("} }]\n", &format!("}} }}, {second}\n"), 1)
+}
+
+#[test]
+fn a_folder_that_takes_no_results_is_refused_before_anything_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(&dir, "block.toml", BLOCK);
+    let study = write(&dir, "study.toml", "title = \"One\"\n[[run]]\nscene = \"block.toml\"\n");
+    let file = write(&dir, "afile", "");
+    let below = inside(&dir, "afile/results");
+    for (out, says) in
+        [(&file, "afile: is a file; give a folder"), (&below, "give a folder that can be written")]
+    {
+        for (verb, input) in [("run", &scene), ("verify", &study)] {
+            let done = tissuebench(&[verb, input, "--out", out]);
+            assert_fails(&done, 2, says);
+            assert!(done.stdout.is_empty(), "{}", done.stdout);
+        }
+    }
+    let points = write(&dir, "two.msh", MESH);
+    let made =
+        tissuebench(&["reference", &scene, "--points", &points, "--out", &inside(&dir, "no/such.json")]);
+    assert_fails(&made, 2, "give a file that can be written");
+    assert!(made.stdout.is_empty());
+}
+
+#[test]
+fn a_run_says_what_it_replaces() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, out) = (write(&dir, "block.toml", &two_methods()), inside(&dir, "out"));
+    let first = tissuebench(&["run", &scene, "--out", &out]);
+    assert!(first.code == 0 && !first.stderr.contains("replaces"), "{}", first.stderr);
+    assert!(first.stderr.contains(&format!("open {out}/report/report.html")), "{}", first.stderr);
+    let second = tissuebench(&["run", &scene, "--method", "tet4", "--out", &out]);
+    assert!(
+        second.stderr.contains(&format!("{out}: replaces the results of 2 methods")),
+        "{}",
+        second.stderr
+    );
+    let third = tissuebench(&["run", &scene, "--out", &out]);
+    assert!(third.stderr.contains("replaces the results of 1 method\n"), "{}", third.stderr);
+}
+
+#[test]
+fn a_baseline_that_is_not_there_is_bad_input() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
+    assert_eq!(tissuebench(&["run", &scene, "--out", &out]).code, 0);
+    let file = inside(&dir, "accepted.toml");
+    let done = tissuebench(&["baseline", &out, "--file", &file, "--check"]);
+    assert_fails(&done, 2, "accepted.toml does not exist; `--accept` makes it");
+    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--accept"]).code, 0);
+    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
+}
+
+#[test]
+fn a_body_that_nothing_moves_is_warned_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = tissuebench(&["run", &write(&dir, "still.toml", &common::without(BLOCK, "load"))]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(done.stderr.contains("still.toml: warning: nothing moves this body"), "{}", done.stderr);
+    assert!(!tissuebench(&["plan", &write(&dir, "block.toml", BLOCK)]).stderr.contains("warning"));
+}
+
+/// Two tetrahedra on a common face, millimetres; no named surface.
+const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 40 0 0\n3 0 40 0\n4 0 0 20\n\
+    5 40 40 20\n$EndNodes\n$Elements\n2\n7 4 2 0 1 1 2 3 4\n8 4 2 0 1 2 3 4 5\n$EndElements\n";
+
+#[test]
+fn a_mesh_file_is_described_in_its_own_unit() {
+    let dir = tempfile::tempdir().unwrap();
+    let done = tissuebench(&["mesh", "info", &write(&dir, "two.msh", MESH)]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let rows: Vec<&str> = done.stdout.lines().skip(1).collect();
+    assert_eq!(
+        rows,
+        [
+            "  cells       2 tet4",
+            "  regions     body",
+            "  surfaces    none (select with where)",
+            "  extent      x = 0 to 40.000, y = 0 to 40.000, z = 0 to 20.000 mm",
+            "  volume      16.000 cm^3; of a cell 5.333 to 10.667 cm^3",
+            "  angles      35.3 to 109.5 degrees between two faces of a cell",
+            "  worst cell  aspect 1.86 (a regular cell has 1), line 14, tag 7",
+        ]
+    );
+}
+
+#[test]
+fn inverted_cells_are_counted_and_the_rest_of_the_mesh_is_described() {
+    let dir = tempfile::tempdir().unwrap();
+    let one = MESH.replace("1 2 3 4\n", "1 3 2 4\n");
+    for (text, says) in [
+        (one.clone(), "1 of 2 cells is inverted (line 14, tag 7)"),
+        (one.replace("2 3 4 5\n", "3 2 4 5\n"), "all 2 cells are inverted (first: line 14, tag 7)"),
+    ] {
+        let done = tissuebench(&["mesh", "info", &write(&dir, "bad.msh", &text)]);
+        assert_fails(&done, 2, says);
+        assert!(done.stdout.contains("extent      x = 0 to 40.000"), "{}", done.stdout);
+    }
+}
+
+#[test]
+fn a_mesh_is_not_converted_onto_itself() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to) = (write(&dir, "two.msh", MESH), inside(&dir, "ten.msh"));
+    assert_fails(
+        &tissuebench(&["mesh", "convert", &from, &from, "--element", "tet10"]),
+        2,
+        "give another name",
+    );
+    assert_eq!(std::fs::read_to_string(&from).unwrap(), MESH);
+    assert_eq!(tissuebench(&["mesh", "convert", &from, &to, "--element", "tet10"]).code, 0);
+}
