@@ -89,6 +89,7 @@ fn rows(
         cells.extend(filled.iter().zip(&values).map(|((_, quantity), v)| match *quantity {
             // A ratio near one reads best plain.
             "tip" => Cell::Digits(*v, 4),
+            _ if name == "rms" && run.is_reference() => Cell::Named("reference", 0.0),
             _ => cell(v.map(|v| v * scale)),
         }));
         table.row(&cells);
