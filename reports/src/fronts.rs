@@ -22,7 +22,7 @@ pub(crate) struct Question {
 pub(crate) const QUESTIONS: [Question; 4] = [
     Question { ending: "", name: "displacement", errors: &["l2", "relative-rms"], scalar: false },
     Question { ending: "-pressure", name: "pressure", errors: &["pressure"], scalar: false },
-    Question { ending: "-force", name: "jaw force", errors: &["tool-force-error"], scalar: true },
+    Question { ending: "-force", name: "tool force", errors: &["tool-force-error"], scalar: true },
     Question { ending: "-peak", name: "peak displacement", errors: &["peak-error"], scalar: true },
 ];
 

@@ -281,9 +281,16 @@ fn histories_become_figures_and_nothing_else() {
         ]
     );
     let force = text(&dir.path().join("figures/tool-force.svg"));
-    for words in
-        ["closure [mm]", "tool force [N]", "hex8", "efg", "measured", "Grey band: uncertainty", "#D6D6D6"]
-    {
+    for words in [
+        "closure [mm]",
+        "tool force [N]",
+        "hex8",
+        "efg",
+        "measured",
+        "Filled: elements",
+        "Grey band",
+        "#D6D6D6",
+    ] {
         assert!(force.contains(words), "{words}");
     }
     let energy = text(&dir.path().join("figures/energy-time.svg"));

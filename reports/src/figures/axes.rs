@@ -88,11 +88,12 @@ impl Axis {
 
 /// The coarsest of decades, 1-3, 1-2-5 and ever finer steps that gives three ticks; at most seven decades are named.
 fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
-    const STEPS: [&[f64]; 5] = [
+    const STEPS: [&[f64]; 6] = [
         &[1.0],
         &[1.0, 3.0],
         &[1.0, 2.0, 5.0],
         &[1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0],
+        &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0],
         &[1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
     ];
     let stride = ((high / low).log10() / 6.0).ceil().max(1.0) as i32;
@@ -217,6 +218,7 @@ mod tests {
         assert_eq!(texts(0.025, 1.4), ["0.03", "0.1", "0.3", "1"]);
         assert_eq!(texts(2.3, 13.0), ["3", "4", "6", "8", "10"]);
         assert_eq!(texts(230.0, 650.0), ["300", "400", "600"]);
+        assert_eq!(texts(2.1, 5.8), ["2.5", "3", "4", "5"]);
         assert_eq!(texts(4.0, 9.0), ["4", "6", "8"]);
     }
 

@@ -188,7 +188,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     let corners = seen.iter().flatten().flat_map(|t| t.corners);
     let pose = Pose::new(fields.len(), corners.chain(outlines.iter().flatten().flatten().copied()));
     let bottom = pose.bottom();
-    let mut canvas = Canvas::new(WIDTH, bottom + 34.0);
+    let mut canvas = Canvas::new(WIDTH, bottom + 46.0);
     for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
         let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
         let text = format!("max |u| {} mm", significant(own * 1e3, 3));
@@ -201,7 +201,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
         }
         outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
     }
-    axes(&mut canvas, (36.0, bottom + 6.0), &view);
+    axes(&mut canvas, (36.0, bottom + 24.0), &view);
     let note = match tools {
         true => {
             "True deformation, orthographic view; one colour scale. Outlines: the tools, also where the body hides them."
@@ -209,7 +209,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
         false => "True deformation, orthographic view; one colour scale.",
     };
     for (i, line) in wrapped(note, WIDTH - 84.0).iter().enumerate() {
-        canvas.text((74.0, bottom + 10.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
+        canvas.text((74.0, bottom + 22.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
     }
     let (at, height) = pose.bar();
     scale.bar(&mut canvas, at, height, "|u| [mm]");

@@ -28,7 +28,7 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
             if after > LOCKS * before && after > 1e-3 {
                 let tip = last
                     .value("tip")
-                    .map(|t| format!(", tip at {} of exact", percent(t)))
+                    .map(|t| format!(", tip at {} of the exact deflection", percent(t)))
                     .unwrap_or_default();
                 let pressure = last
                     .value("pressure")
@@ -141,7 +141,7 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
         out.push(format!("Below theory: {}{tail}.", below.join("; ")));
     }
     if short > 0 {
-        out.push(format!("{short} more order{} from two levels only: too few to judge.", plural(short)));
+        out.push(format!("{short} more order{} can't be judged: two levels are too few.", plural(short)));
     }
     out
 }
