@@ -87,7 +87,9 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         ];
         row.extend(shown.iter().map(|(name, _, scale)| match *name {
             "rms" if is_reference(outcome) => "reference".into(),
-            "relative-rms" if is_reference(outcome) => "-".into(),
+            "relative-rms" | "strain-energy-error" | "tool-force-error" if is_reference(outcome) => {
+                "-".into()
+            }
             _ => outcome.metric(name).map_or("-".into(), |v| digits(v * scale)),
         }));
         row.extend(phases.iter().map(|p| phase(outcome, p).map_or("-".into(), |s| digits(s * 1e3))));

@@ -204,3 +204,30 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
     path.push((right, last.1));
     canvas.line(&path, [0xb8, 0xb8, 0xb8], 3.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::run;
+    use crate::select::runs;
+
+    #[test]
+    fn the_note_names_the_reference() {
+        let of = |name, family, error| run((name, family), 100, 1.0, &[("relative-rms", error)]);
+        let (elements, clouds) = (Family::Fem, Family::Efg);
+        let mut records = [of("tet4", elements, 0.2), of("efg", clouds, 0.1)].concat();
+        let noted = |records: &[_]| {
+            let runs = runs(records);
+            let panels = panels(&runs, &QUESTIONS[0], Clock::First);
+            assert_eq!(panels[0].clusters.len(), 2);
+            note(&QUESTIONS[0], Clock::First, &panels)
+        };
+        assert!(!noted(&records).contains("reference"));
+        records.extend(of("tet10", elements, 0.0));
+        let note = noted(&records);
+        assert!(
+            note.ends_with(" The reference has no error and is not drawn: tet10 with 100 nodes."),
+            "{note}"
+        );
+    }
+}

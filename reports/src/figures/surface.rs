@@ -342,3 +342,62 @@ fn axes(canvas: &mut Canvas, at: (f64, f64), [right, up, _]: &View) {
         canvas.text((at.0 + dx * beyond, at.1 + dy * beyond), name, TEXT, BLACK_INK, Anchor::Middle);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::run;
+    use crate::select::runs;
+
+    fn field(method: &str, family: Family, far: [f64; 3]) -> SurfaceField {
+        SurfaceField {
+            case: "jaws".into(),
+            method: method.into(),
+            family,
+            title: format!("{method} (100 nodes)"),
+            points: vec![[0.0; 3], far],
+            triangles: vec![[0, 1, 1]],
+            displacement: vec![[0.0; 3]; 2],
+            tools: Vec::new(),
+            section: None,
+        }
+    }
+
+    #[test]
+    fn a_panel_says_why_it_was_chosen_where_there_is_no_room_for_all() {
+        let methods = [
+            ("tet10", Family::Fem, 0.0),
+            ("efg", Family::Efg, 0.1),
+            ("tet4", Family::Fem, 0.4),
+            ("hex8", Family::Fem, 0.2),
+            ("efg-smoothed", Family::Efg, 0.3),
+        ];
+        let records: Vec<_> = methods
+            .iter()
+            .flat_map(|&(id, family, error)| run((id, family), 100, 1.0, &[("rms", error)]))
+            .collect();
+        let fields: Vec<_> = methods.iter().map(|m| field(m.0, m.1, [1.0; 3])).collect();
+        let titles = |room| -> Vec<String> {
+            pictured(fields.iter().collect(), &runs(&records), room).iter().map(titled).collect()
+        };
+        assert_eq!(
+            titles(4),
+            [
+                "tet4 (100 nodes, farthest)",
+                "efg-smoothed (100 nodes, farthest)",
+                "tet10 (100 nodes, reference)",
+                "efg (100 nodes, nearest)"
+            ]
+        );
+        // As in the tables.
+        let names = ["tet4", "tet10", "hex8", "efg", "efg-smoothed"];
+        assert_eq!(titles(5), names.map(|name| format!("{name} (100 nodes)")));
+    }
+
+    #[test]
+    fn z_is_upright_unless_the_body_is_longest_along_y() {
+        let up = |far| view(&[&field("tet4", Family::Fem, far)])[1];
+        let [flat, long] = [up([2.0, 2.0, 1.0]), up([1.0, 2.0, 1.0])];
+        assert!(flat[2] > 0.9 && long[1] > 0.9, "{flat:?} {long:?}");
+    }
+}
