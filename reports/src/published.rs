@@ -50,7 +50,7 @@ const PUBLICATIONS: [Publication; 1] = [Publication {
     efg_nodes: 83,
     kernel: "cubic-spline",
     scheme: "inverse-distance",
-    caveat: "Geometry, supports and the jaws' place are fitted to the publication's pictures, not identified: only times and orders of magnitude compare with it.",
+    caveat: "Geometry, supports and the position of the jaws are estimated from the publication's pictures: only times and orders of magnitude can be compared.",
 }];
 
 /// One published number.

@@ -124,6 +124,7 @@ struct Counts {
 
 #[derive(Serialize)]
 struct PageView<'a> {
+    heading: &'static str,
     program: &'a Program,
     machine: &'a Machine,
     scenes: &'a [SceneHash],
@@ -164,7 +165,9 @@ fn page_text(
     cases.dedup();
     let mut environment = Environment::new();
     environment.add_template("report.html", PAGE)?;
+    let fronts = figures.iter().any(|f| f.name.starts_with("efficiency"));
     let view = PageView {
+        heading: if fronts { "Run time against error" } else { "Results" },
         program: &set.provenance.program,
         machine: &set.provenance.machine,
         scenes: &set.provenance.scenes,

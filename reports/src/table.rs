@@ -13,6 +13,8 @@ pub(crate) enum Cell<'a> {
     Scientific(Option<f64>),
     /// So many significant digits, plain where that reads well.
     Digits(Option<f64>, usize),
+    /// A number that a word says better; CSV has the number.
+    Named(&'a str, f64),
     /// Median and spread, `1.23 ± 0.04`; two columns in CSV.
     Spread(Option<f64>, Option<f64>),
 }
@@ -83,6 +85,7 @@ impl Table {
                 Cell::Count(count) => (Some(count.to_string()), vec![count.to_string()]),
                 Cell::Scientific(v) => (finite(v).map(scientific), vec![exact(v)]),
                 Cell::Digits(v, digits) => (finite(v).map(|v| significant(v, digits)), vec![exact(v)]),
+                Cell::Named(word, v) => (Some(word.to_string()), vec![exact(Some(v))]),
                 Cell::Spread(v, around) => {
                     // A spread of exactly nothing comes from a single repeat: it says nothing.
                     let around = around.filter(|s| *s > 0.0);

@@ -25,24 +25,42 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A power of ten on an axis: plain from 0.01 to 1000, `10⁻³` or `2×10⁻³` elsewhere.
+/// A number on an axis: plain from 0.001 to 1000, a [`power`] of ten elsewhere.
 pub(crate) fn tick(value: f64) -> String {
-    let exponent = (value.abs().log10() + 1e-9).floor();
-    let mantissa = value / 10f64.powf(exponent);
+    let exponent = exponent(value);
     if value == 0.0 {
         "0".into()
-    } else if (-2.0..=3.0).contains(&exponent) {
+    } else if (-3..=3).contains(&exponent) {
         // 0.015 and 1.5 need one place more than 0.01 and 1.
-        let finer = usize::from((mantissa - mantissa.round()).abs() > 1e-6);
-        let decimals = ((-exponent).max(0.0) as usize + finer).saturating_sub(exponent.max(0.0) as usize);
+        let mantissa = value / 10f64.powi(exponent);
+        let finer = i32::from((mantissa - mantissa.round()).abs() > 1e-6);
+        let decimals = (finer - exponent).max(0) as usize;
         format!("{value:.decimals$}")
-    } else if (mantissa - 1.0).abs() < 1e-6 {
-        format!("10{}", superscript(&exponent.to_string()))
-    } else if (mantissa - mantissa.round()).abs() < 1e-6 {
-        format!("{mantissa:.0}×10{}", superscript(&exponent.to_string()))
     } else {
-        format!("{mantissa:.1}×10{}", superscript(&exponent.to_string()))
+        power(value)
     }
+}
+
+/// `10⁻³`, `2×10⁻³` or `1.5×10⁻³`; plain from 1 to 100.
+pub(crate) fn power(value: f64) -> String {
+    let exponent = exponent(value);
+    if value == 0.0 || (0..=1).contains(&exponent) {
+        return tick(value);
+    }
+    let mantissa = value / 10f64.powi(exponent);
+    let ten = format!("10{}", superscript(&exponent.to_string()));
+    if (mantissa - 1.0).abs() < 1e-6 {
+        ten
+    } else if (mantissa - mantissa.round()).abs() < 1e-6 {
+        format!("{mantissa:.0}×{ten}")
+    } else {
+        format!("{mantissa:.1}×{ten}")
+    }
+}
+
+/// The power of ten at or below a number; what is one but for rounding counts as it.
+fn exponent(value: f64) -> i32 {
+    (value.abs().log10() + 1e-9).floor() as i32
 }
 
 /// A spread beside its median: one significant digit, plain wherever the median is plain.
@@ -118,6 +136,9 @@ mod tests {
         assert_eq!(tick(1000.0), "1000");
         assert_eq!((tick(1.5), tick(0.015), tick(15.0)), ("1.5".into(), "0.015".into(), "15".into()));
         assert_eq!(tick(1.5e-4), "1.5×10⁻⁴");
+        assert_eq!((tick(0.003), tick(300.0), tick(2e4)), ("0.003".into(), "300".into(), "2×10⁴".into()));
+        assert_eq!((power(0.3), power(1.0), power(2.0)), ("3×10⁻¹".into(), "1".into(), "2".into()));
+        assert_eq!((power(10.0), power(30.0)), ("10".into(), "30".into()));
         assert_eq!(spread(2e-4, 0.0315), "0.0002");
         assert_eq!(spread(0.05, 1.23), "0.05");
         assert_eq!(spread(2e-9, 3e-8), "2×10⁻⁹");

@@ -64,7 +64,7 @@ impl Scenario<'_> {
                 (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
             }
             EfgError::FlatCells { .. } => {
-                (ErrorKind::NotRun, Key::Method("support"), "take support = \"round\", or another mesh")
+                (ErrorKind::NotRun, Key::Method("neighbourhood"), "take neighbourhood = \"ball\", or another mesh")
             }
             EfgError::OutsideHull { .. } => (
                 ErrorKind::NotRun,

@@ -50,6 +50,29 @@ fn commands_do_what_the_pages_say() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
+/// What the README says to change for large strain.
+#[test]
+fn the_first_scene_of_the_readme_runs_at_large_strain() {
+    let readme = Page::read(root().join("README.md"));
+    let block = readme.blocks.iter().find(|b| b.file() == Some("block.toml")).expect("block.toml");
+    let large = [
+        ("law = \"linear\"", "law = \"neo-hookean\""),
+        ("\nreference = ", "\nprocedure = { kind = \"static\", steps = 2 }\nreference = "),
+    ];
+    let scene = large.iter().fold(block.text.clone(), |text, (from, to)| {
+        assert!(
+            text.contains(from) && readme.text.contains(to.trim_end_matches("\nreference = ").trim()),
+            "{to}"
+        );
+        text.replace(from, to)
+    });
+    let dir = tempfile::tempdir().expect("a folder");
+    std::fs::write(dir.path().join("block.toml"), scene).expect("written");
+    let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_tissuebench"));
+    let output = program.args(["run", "block.toml"]).current_dir(dir.path()).output().expect("runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn scenes_in_the_pages_are_toml() {
     for page in pages() {

@@ -48,8 +48,9 @@ impl Page {
                 let end = part.find([':', '}']).unwrap_or(part.len());
                 found.push(part[..end].trim().to_string());
             }
-            for part in line.split("](").skip(1).filter(|_| !fenced) {
-                let target = part.split([')', '#', ' ']).next().unwrap_or_default();
+            let links = line.split("](").skip(1).chain(line.split("src=\"").skip(1));
+            for part in links.filter(|_| !fenced) {
+                let target = part.split([')', '#', ' ', '"']).next().unwrap_or_default();
                 if !target.is_empty() && !target.contains("://") {
                     found.push(target.to_string());
                 }

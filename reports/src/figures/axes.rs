@@ -1,7 +1,7 @@
 //! Axes: where a value goes on paper, its ticks and its frame.
 
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
-use crate::text::tick;
+use crate::text::{power, tick};
 
 /// Size of every ordinary text, points.
 pub(crate) const TEXT: f64 = 9.0;
@@ -14,6 +14,8 @@ pub(crate) struct Axis {
     low: f64,
     high: f64,
     ticks: Vec<(f64, String)>,
+    /// Short marks between the ticks.
+    minor: Vec<f64>,
 }
 
 impl Axis {
@@ -22,7 +24,8 @@ impl Axis {
         let (mut low, mut high) = range(values.filter(|v| *v > 0.0 && v.is_finite())).unwrap_or((0.1, 1.0));
         let margin = (high / low).powf(0.06).max(1.15);
         (low, high) = (low / margin, high * margin);
-        Axis { label: label.into(), log: true, low, high, ticks: log_ticks(low, high) }
+        let (ticks, minor) = (log_ticks(low, high), minor(low, high));
+        Axis { label: label.into(), log: true, low, high, ticks, minor }
     }
 
     /// A linear axis around values; `from_zero` starts it at zero.
@@ -46,12 +49,12 @@ impl Axis {
         let ticks = ((low / step).ceil() as i64..=(high / step).floor() as i64)
             .map(|i| (i as f64 * step, format!("{:.*}", decimals as usize, i as f64 * step)))
             .collect();
-        Axis { label: label.into(), log: false, low, high, ticks }
+        Axis { label: label.into(), log: false, low, high, ticks, minor: Vec::new() }
     }
 
     /// Replaces the ticks.
     pub(crate) fn with_ticks(mut self, ticks: Vec<(f64, String)>) -> Axis {
-        self.ticks = ticks;
+        (self.ticks, self.minor) = (ticks, Vec::new());
         self
     }
 
@@ -85,11 +88,12 @@ impl Axis {
 
 /// The coarsest of decades, 1-3, 1-2-5 and ever finer steps that gives three ticks; at most seven decades are named.
 fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
-    const STEPS: [&[f64]; 5] = [
+    const STEPS: [&[f64]; 6] = [
         &[1.0],
         &[1.0, 3.0],
         &[1.0, 2.0, 5.0],
         &[1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0],
+        &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0],
         &[1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
     ];
     let stride = ((high / low).log10() / 6.0).ceil().max(1.0) as i32;
@@ -106,10 +110,20 @@ fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
             break;
         }
     }
-    ticks.into_iter().map(|v| (v, tick(v))).collect()
+    // One way of writing on an axis: plain numbers, or powers of ten where one of them would be long.
+    let plain = ticks.iter().all(|v| (0.9e-3..1.1e3).contains(v));
+    ticks.into_iter().map(|v| (v, if plain { tick(v) } else { power(v) })).collect()
 }
 
-/// Which of some texts on a line, by middle and width, are written: where two would touch, the longer gives way.
+/// Two to nine times every power of ten, or the powers themselves on an axis too long for that.
+fn minor(low: f64, high: f64) -> Vec<f64> {
+    let steps = if high < 1e5 * low { 1..10 } else { 1..2 };
+    let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let all = powers.flat_map(|p| steps.clone().map(move |s| f64::from(s) * 10f64.powi(p)));
+    all.filter(|v| (low..=high).contains(v)).collect()
+}
+
+/// Which of some texts on a line, by middle and width, have room: where two would touch, the longer gives way.
 fn apart(texts: &[(f64, f64)]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..texts.len()).collect();
     order.sort_by(|&a, &b| texts[a].1.total_cmp(&texts[b].1));
@@ -151,18 +165,26 @@ impl Panel {
         let (left, top, right, bottom) = self.frame;
         let across = |(value, text): &(f64, String)| (self.at(*value, self.y.low).0, text_width(text, TEXT));
         let places: Vec<(f64, f64)> = self.x.ticks.iter().map(across).collect();
-        for (((at, _), written), (_, text)) in places.iter().zip(apart(&places)).zip(&self.x.ticks) {
+        for (((at, _), _), (_, text)) in
+            places.iter().zip(apart(&places)).zip(&self.x.ticks).filter(|((_, has_room), _)| *has_room)
+        {
             canvas.line(&[(*at, top), (*at, bottom)], PALE, 0.5);
             canvas.line(&[(*at, bottom), (*at, bottom + 3.0)], BLACK_INK, 0.6);
-            if written {
-                canvas.text((*at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
-            }
+            canvas.text((*at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
+        }
+        for value in &self.x.minor {
+            let (at, _) = self.at(*value, self.y.low);
+            canvas.line(&[(at, bottom), (at, bottom + 1.5)], GREY, 0.4);
         }
         for (value, text) in &self.y.ticks {
             let (_, at) = self.at(self.x.low, *value);
             canvas.line(&[(left, at), (right, at)], PALE, 0.5);
             canvas.line(&[(left - 3.0, at), (left, at)], BLACK_INK, 0.6);
             canvas.text((left - 5.0, at), text, TEXT, BLACK_INK, Anchor::End);
+        }
+        for value in &self.y.minor {
+            let (_, at) = self.at(self.x.low, *value);
+            canvas.line(&[(left - 1.5, at), (left, at)], GREY, 0.4);
         }
         canvas.line(&[(left, top), (left, bottom), (right, bottom)], GREY, 0.8);
         canvas.text(((left + right) / 2.0, bottom + 22.0), &self.x.label, TEXT, BLACK_INK, Anchor::Middle);
@@ -175,7 +197,7 @@ impl Panel {
 
 #[cfg(test)]
 mod tests {
-    use super::{apart, log_ticks};
+    use super::{apart, log_ticks, minor};
 
     #[test]
     fn texts_that_would_touch_give_way_to_shorter_ones() {
@@ -189,11 +211,25 @@ mod tests {
     #[test]
     fn every_logarithmic_axis_has_three_ticks() {
         let texts = |low, high| log_ticks(low, high).into_iter().map(|t| t.1).collect::<Vec<_>>();
-        assert_eq!(texts(1e-4, 2.0), ["10⁻⁴", "10⁻³", "0.01", "0.1", "1"]);
+        assert_eq!(texts(1e-4, 2.0), ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "1"]);
+        assert_eq!(texts(2.5e-4, 0.02), ["3×10⁻⁴", "10⁻³", "3×10⁻³", "10⁻²"]);
+        assert_eq!(texts(9e-4, 0.2), ["0.001", "0.01", "0.1"]);
+        assert_eq!(texts(200.0, 2e6), ["10³", "10⁴", "10⁵", "10⁶"]);
         assert_eq!(texts(0.025, 1.4), ["0.03", "0.1", "0.3", "1"]);
         assert_eq!(texts(2.3, 13.0), ["3", "4", "6", "8", "10"]);
         assert_eq!(texts(230.0, 650.0), ["300", "400", "600"]);
+        assert_eq!(texts(2.1, 5.8), ["2.5", "3", "4", "5"]);
         assert_eq!(texts(4.0, 9.0), ["4", "6", "8"]);
+    }
+
+    #[test]
+    fn between_ticks_are_the_multiples_of_the_powers_of_ten() {
+        let near = |found: Vec<f64>, expected: &[f64]| {
+            found.len() == expected.len()
+                && found.iter().zip(expected).all(|(f, e)| (f / e - 1.0).abs() < 1e-12)
+        };
+        assert!(near(minor(0.045, 0.35), &[0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.2, 0.3]));
+        assert!(near(minor(0.9e-6, 1.1), &[1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0]));
     }
 
     #[test]

@@ -7,6 +7,8 @@
 use std::convert::Infallible;
 use std::fmt::Write as _;
 
+use plotters::element::{Drawable, PointCollection};
+use plotters::style::{Color, RGBColor};
 use plotters_backend::text_anchor::HPos;
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
@@ -17,6 +19,35 @@ use plotters_backend::{
 const FAMILIES: &str = "'DejaVu Sans', Verdana, sans-serif";
 /// SVG text is given its em size, plotters takes the line height.
 pub(super) const LINE_HEIGHT: f64 = 1.24;
+
+/// Width of the line around a facet, and of the one that closes a seam: half a point.
+const SEAM: u32 = 5;
+
+/// A part of a surface: filled, with a line of its own colour around it. (A polygon of plotters has no line.)
+pub(super) struct Facet {
+    pub(super) points: Vec<BackendCoord>,
+    pub(super) colour: RGBColor,
+}
+
+impl<'a> PointCollection<'a, BackendCoord> for &'a Facet {
+    type Point = &'a BackendCoord;
+    type IntoIter = std::slice::Iter<'a, BackendCoord>;
+
+    fn point_iter(self) -> Self::IntoIter {
+        self.points.iter()
+    }
+}
+
+impl Drawable<Paths<'_>> for Facet {
+    fn draw<I: Iterator<Item = BackendCoord>>(
+        &self,
+        points: I,
+        backend: &mut Paths<'_>,
+        _: (u32, u32),
+    ) -> Drawn {
+        backend.fill_polygon(points, &self.colour.filled().stroke_width(SEAM))
+    }
+}
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
@@ -47,8 +78,8 @@ impl<'a> Paths<'a> {
         if let Some((look, path)) = self.open.take() {
             // Chromium leaves hairlines between the parts of one path; a line of half a point closes them.
             let seam = match look.strip_prefix("fill=\"#") {
-                Some(colour) if path.matches('z').count() > 1 => {
-                    format!(" stroke=\"#{colour} stroke-width=\"5\"")
+                Some(colour) if !colour.contains(' ') && path.matches('z').count() > 1 => {
+                    format!(" stroke=\"#{colour} stroke-width=\"{SEAM}\"")
                 }
                 _ => String::new(),
             };
@@ -102,7 +133,13 @@ impl DrawingBackend for Paths<'_> {
     ) -> Drawn {
         let points: Vec<BackendCoord> = path.into_iter().collect();
         if points.len() > 1 {
-            self.shape(format!("fill=\"{}\"", hexadecimal(style.color())), &points, true);
+            let colour = hexadecimal(style.color());
+            // Round: at a sharp corner a mitre would stand out.
+            let line = match style.stroke_width() {
+                SEAM => format!(" stroke=\"{colour}\" stroke-width=\"{SEAM}\" stroke-linejoin=\"round\""),
+                _ => String::new(),
+            };
+            self.shape(format!("fill=\"{colour}\"{line}"), &points, true);
         }
         Ok(())
     }
@@ -183,7 +220,24 @@ fn area(points: &[BackendCoord]) -> i64 {
 mod tests {
     use plotters::prelude::*;
 
-    use super::Paths;
+    use super::{Facet, Paths};
+
+    #[test]
+    fn a_facet_has_a_line_of_its_own_colour() {
+        let mut out = String::new();
+        {
+            let area = Paths::new(&mut out, (100, 100)).into_drawing_area();
+            let colour = RGBColor(0x44, 0x01, 0x54);
+            area.draw(&Facet { points: vec![(1, 2), (3, 4), (5, 0)], colour }).unwrap();
+            area.draw(&Facet { points: vec![(9, 9), (8, 9), (8, 11)], colour }).unwrap();
+            area.present().unwrap();
+        }
+        assert_eq!(
+            out,
+            "<path fill=\"#440154\" stroke=\"#440154\" stroke-width=\"5\" stroke-linejoin=\"round\" \
+             d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n"
+        );
+    }
 
     #[test]
     fn neighbours_alike_become_one_path_and_texts_stay_between() {

@@ -62,6 +62,9 @@ fn figure(group: &[Run]) -> Option<Figure> {
     if usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24 {
         caption += "; the finest run of each method";
     }
+    if let Some(reference) = group.iter().find(|r| r.is_reference()) {
+        caption += &format!("; the reference, {}, has no error and no row", reference.name());
+    }
     if !compared.is_empty() {
         caption += "; other kernels are in the table";
     }

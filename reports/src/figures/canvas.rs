@@ -7,7 +7,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
 
-use super::backend::{LINE_HEIGHT, Paths, escaped};
+use super::backend::{Facet, LINE_HEIGHT, Paths, escaped};
 use crate::error::ReportError;
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
@@ -43,6 +43,8 @@ enum Shape {
     Fill {
         points: Vec<(f64, f64)>,
         colour: Colour,
+        /// Of a surface: no hairline may show beside its neighbours.
+        facet: bool,
     },
     Text {
         at: (f64, f64),
@@ -111,7 +113,12 @@ impl Canvas {
     }
 
     pub(crate) fn fill(&mut self, points: &[(f64, f64)], colour: Colour) {
-        self.shapes.push(Shape::Fill { points: points.to_vec(), colour });
+        self.shapes.push(Shape::Fill { points: points.to_vec(), colour, facet: false });
+    }
+
+    /// A part of a surface, with a line of its own colour around it: neighbours close up, and an outline is as smooth as the surface.
+    pub(crate) fn facet(&mut self, points: &[(f64, f64)], colour: Colour) {
+        self.shapes.push(Shape::Fill { points: points.to_vec(), colour, facet: true });
     }
 
     pub(crate) fn text(&mut self, at: (f64, f64), text: &str, size: f64, colour: Colour, anchor: Anchor) {
@@ -175,8 +182,11 @@ fn draw(area: &DrawingArea<Paths, plotters::coord::Shift>, shape: &Shape) -> Res
             let style = ink(*colour).stroke_width(unit(*width).max(1) as u32);
             area.draw(&PathElement::new(scaled(points), style)).map_err(|e| e.to_string())
         }
-        Shape::Fill { points, colour } => {
+        Shape::Fill { points, colour, facet: false } => {
             area.draw(&Polygon::new(scaled(points), ink(*colour).filled())).map_err(|e| e.to_string())
+        }
+        Shape::Fill { points, colour, facet: true } => {
+            area.draw(&Facet { points: scaled(points), colour: ink(*colour) }).map_err(|e| e.to_string())
         }
         Shape::Text { at, text, size, colour, anchor, bold, upright } => {
             let weight = if *bold { FontStyle::Bold } else { FontStyle::Normal };

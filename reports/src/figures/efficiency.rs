@@ -20,14 +20,20 @@ const KERNELS: &str = ": kernels";
 /// The error of the dashed line.
 const PERCENT: f64 = 0.01;
 
-/// A panel as `(title, error, clusters)`.
-type Paned = (String, &'static str, Vec<Cluster>);
+/// What a panel shows.
+struct Paned {
+    title: String,
+    error: &'static str,
+    clusters: Vec<Cluster>,
+    /// The method that the others are compared with: having no error, it has no place on the axes.
+    reference: Option<String>,
+}
 
 /// For each kind of time a figure per question, with a panel per case that answers it. A method looks the same in all of them.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let asked = Clock::ALL.into_iter().flat_map(|clock| QUESTIONS.iter().map(move |q| (clock, q)));
     let answered: Vec<_> = asked.map(|(clock, q)| (clock, q, panels(runs, q, clock))).collect();
-    let clusters = answered.iter().flat_map(|(_, _, panels)| panels).flat_map(|p| &p.2);
+    let clusters = answered.iter().flat_map(|(_, _, panels)| panels).flat_map(|p| &p.clusters);
     let styles = styles(&clusters.map(|c| (c.0.clone(), c.1)).collect::<Vec<_>>());
     let pages = answered.iter().flat_map(|(clock, question, panels)| {
         let pages = panels.chunks(PAGE).enumerate();
@@ -43,15 +49,19 @@ fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
         let Some(error) = question.error(group) else { continue };
         let (usual, every) = kernels(&series(group));
         let names = labels(usual.iter().map(|s| s.is()));
-        panels.push((title.clone(), error, clusters(&usual, &names, error, clock)));
+        let reference = group.iter().find(|r| r.is_reference());
+        let reference = reference.map(|r| format!("{} with {} nodes", r.name(), r.is.nodes));
+        let drawn = clusters(&usual, &names, error, clock);
+        panels.push(Paned { title: title.clone(), error, clusters: drawn, reference });
         if clock == Clock::First && question.ending.is_empty() {
             let names: Vec<String> = every.iter().map(|s| s.is().variant.clone()).collect();
-            compared.push((format!("{title}{KERNELS}"), error, clusters(&every, &names, error, clock)));
+            let clusters = clusters(&every, &names, error, clock);
+            compared.push(Paned { title: format!("{title}{KERNELS}"), error, clusters, reference: None });
         }
     }
     panels.extend(compared);
     // One run alone is neither faster nor better than another.
-    panels.retain(|p| p.2.iter().map(|c| c.2.len()).sum::<usize>() > 1);
+    panels.retain(|p| p.clusters.iter().map(|c| c.2.len()).sum::<usize>() > 1);
     panels
 }
 
@@ -64,7 +74,7 @@ fn clusters(all: &[Series], names: &[String], error: &str, clock: Clock) -> Vec<
 }
 
 fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styles: &[Style]) -> Figure {
-    let own = |s: &&Style| panels.iter().any(|p| p.2.iter().any(|c| c.0 == s.label));
+    let own = |s: &&Style| panels.iter().any(|p| p.clusters.iter().any(|c| c.0 == s.label));
     let styles: Vec<Style> = styles.iter().filter(own).cloned().collect();
     let contents = panels.iter().map(|panel| content(panel, clock, &styles)).collect();
     let (name, title, time) = match clock {
@@ -87,9 +97,9 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styl
     }
 }
 
-fn y_axis((_, error, clusters): &Paned) -> Axis {
-    let errors = clusters.iter().flat_map(|c| c.2.iter().map(|p| p.1));
-    Axis::log(&label(error), decade(errors.collect()).into_iter())
+fn y_axis(panel: &Paned) -> Axis {
+    let errors = panel.clusters.iter().flat_map(|c| c.2.iter().map(|p| p.1));
+    Axis::log(&label(panel.error), decade(errors.collect()).into_iter())
 }
 
 /// Whether the axis reaches an error of 1 %.
@@ -98,7 +108,7 @@ fn shows_percent(y: &Axis) -> bool {
 }
 
 fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'a> {
-    let (title, _, clusters) = panel;
+    let Paned { title, clusters, .. } = panel;
     let points = || clusters.iter().flat_map(|c| c.2.iter().copied());
     let (scale, x) = match clock {
         Clock::First => (1.0, Axis::log("run time, median [s]", points().map(|p| p.0))),
@@ -149,23 +159,30 @@ fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
     }
     if clock == Clock::Repeated {
         let all = DEADLINES.map(|d| format!("{} ({})", d.name, d.what));
-        note += &format!(" Upright: the periods of {}.", list(&all));
+        note += &format!(" Vertical lines: the periods of {}.", list(&all));
     }
     if question.scalar {
         note += " A single number can be right by chance, where its errors cancel.";
     }
-    let low = |p: &&Paned| p.2.iter().any(|c| c.2.iter().any(|at| at.1 <= FLOOR));
-    let floored: Vec<String> = panels.iter().filter(low).map(|p| p.0.clone()).collect();
+    let several = panels.len() > 1;
+    let place = |p: &Paned| if several { format!(" ({})", p.title) } else { String::new() };
+    let references: Vec<String> =
+        panels.iter().filter_map(|p| Some(format!("{}{}", p.reference.as_ref()?, place(p)))).collect();
+    if !references.is_empty() {
+        note += &format!(" The reference has no error and is not drawn: {}.", list(&references));
+    }
+    let low = |p: &&Paned| p.clusters.iter().any(|c| c.2.iter().any(|at| at.1 <= FLOOR));
+    let floored: Vec<String> = panels.iter().filter(low).map(|p| p.title.clone()).collect();
     if !floored.is_empty() {
         note += &format!(" Errors below 10⁻⁶ are drawn at 10⁻⁶ ({}).", list(&floored));
     }
-    if panels.iter().any(|p| p.0.ends_with(KERNELS)) {
+    if panels.iter().any(|p| p.title.ends_with(KERNELS)) {
         note += " Kernels: a marker for each size and rule of integration.";
     }
     note
 }
 
-/// Upright lines where a frame must be done.
+/// Vertical lines where a frame must be done.
 fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64) {
     let (_, top, _, bottom) = panel.frame;
     for deadline in DEADLINES {
@@ -186,4 +203,31 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
     }
     path.push((right, last.1));
     canvas.line(&path, [0xb8, 0xb8, 0xb8], 3.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::run;
+    use crate::select::runs;
+
+    #[test]
+    fn the_note_names_the_reference() {
+        let of = |name, family, error| run((name, family), 100, 1.0, &[("relative-rms", error)]);
+        let (elements, clouds) = (Family::Fem, Family::Efg);
+        let mut records = [of("tet4", elements, 0.2), of("efg", clouds, 0.1)].concat();
+        let noted = |records: &[_]| {
+            let runs = runs(records);
+            let panels = panels(&runs, &QUESTIONS[0], Clock::First);
+            assert_eq!(panels[0].clusters.len(), 2);
+            note(&QUESTIONS[0], Clock::First, &panels)
+        };
+        assert!(!noted(&records).contains("reference"));
+        records.extend(of("tet10", elements, 0.0));
+        let note = noted(&records);
+        assert!(
+            note.ends_with(" The reference has no error and is not drawn: tet10 with 100 nodes."),
+            "{note}"
+        );
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY, text_width};
-use super::style::{Style, legend, legend_height};
+use super::style::{Style, fillings, legend, legend_height};
 
 /// Full page width of a journal, 178 mm, in points.
 pub(crate) const WIDTH: f64 = 504.0;
@@ -42,7 +42,7 @@ fn drawn(panels: Vec<Content>, styles: &[Style], note: &str, lines: bool) -> Can
     let rows = panels.len().div_ceil(columns);
     let whole = if columns == 1 { COLUMN } else { WIDTH };
     let width = (whole - LEFT - RIGHT - GAP * (columns as f64 - 1.0)) / columns as f64;
-    let notes = wrapped(note, whole - 20.0);
+    let notes = wrapped(&format!("{}{note}", fillings(styles)), whole - 20.0);
     let below = legend_height(styles, whole - 20.0) + 12.0 * notes.len() as f64 + 6.0;
     let mut canvas = Canvas::new(whole, 20.0 + STEP * rows as f64 + below);
     for (i, content) in panels.into_iter().enumerate() {

@@ -7,7 +7,7 @@ use super::canvas::{Anchor, Canvas, GREY};
 use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
-use super::surface::{Pose, carried, grasped};
+use super::surface::{Chosen, GRASPED, Pose, carried, pictured, titled};
 use crate::run_set::{Section, SurfaceField};
 use crate::select::Run;
 use crate::store::slug;
@@ -21,10 +21,10 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
     let mut cases: Vec<&str> = fields.iter().map(|f| f.case.as_str()).collect();
     cases.sort();
     cases.dedup();
-    let of = |case: &str| -> Vec<&SurfaceField> {
+    let of = |case: &str| -> Vec<Chosen> {
         let cut =
             |f: &&SurfaceField| f.case == case && f.section.as_ref().is_some_and(|s| !s.cells.is_empty());
-        grasped(fields.iter().filter(cut).collect(), runs)
+        pictured(fields.iter().filter(cut).collect(), runs, GRASPED)
     };
     cases
         .into_iter()
@@ -49,8 +49,9 @@ fn percentile(section: &Section) -> f64 {
     all.get(at.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
-fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
-    let limit = limit(fields);
+fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
+    let fields: Vec<&SurfaceField> = chosen.iter().map(|c| c.0).collect();
+    let limit = limit(&fields);
     let scale = Scale::Signed(limit * 1e-3);
     let sections: Vec<(&SurfaceField, &Section)> =
         fields.iter().filter_map(|f| f.section.as_ref().map(|s| (*f, s))).collect();
@@ -66,9 +67,9 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
     let outlines = sections.iter().flat_map(|(f, _)| tools(f)).flatten();
     let pose = Pose::new(sections.len(), corners.chain(outlines));
     let note = format!(
-        "Orthographic view on the plane of the tools' way and the body's length; tools grey. Cells have straight edges. Pressure is the mean over each \
-         cell, positive in compression, not smoothed. Colours end at {} kPa: of each method the pressure that 98 % of the cells \
-         stay below, of these the middle one.",
+        "Orthographic view onto the plane of the tools' travel and the body's length; tools grey. Cells have straight edges. The pressure is the mean \
+         over each cell, positive in compression, not smoothed. The colours end at {} kPa: 98 % of the cells stay below their method's \
+         limit, and this is the middle one of these limits.",
         significant(limit * 1e-3, 3)
     );
     let notes = wrapped(&note, WIDTH - 20.0);
@@ -79,7 +80,7 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
             .iter()
             .fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c.pressure), high.max(c.pressure)));
         let range = format!("{} to {} kPa", significant(least * 1e-3, 2), significant(most * 1e-3, 2));
-        pose.title(&mut canvas, i, &field.title, &range, &carried(field, runs));
+        pose.title(&mut canvas, i, &titled(&chosen[i]), &range, &carried(field, runs));
         let outlines: Vec<Vec<(f64, f64)>> =
             tools(field).iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
         outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
@@ -100,7 +101,7 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
     Figure {
         name: format!("pressure-{}", slug(case)),
         title: format!("Pressure between the tools, {case}"),
-        caption: "Section through the deformed body in the plane of the tools' way, every cell coloured by its mean pressure as the method itself has it \
+        caption: "Section through the deformed body in the plane of the tools' travel, every cell coloured by its mean pressure as the method itself has it \
                   (of the projected dilation or the pressure field, where it has one), under one colour scale"
             .into(),
         canvas,

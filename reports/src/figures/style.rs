@@ -3,8 +3,8 @@
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, text_width};
 
-/// Okabe and Ito (2008) without yellow, which vanishes on white.
-const COLOURS: [Colour; 7] = [
+/// Okabe and Ito (2008) without yellow, which vanishes on white, then darker ones of Tol (2021).
+const COLOURS: [Colour; 12] = [
     [0xd5, 0x5e, 0x00],
     [0x00, 0x72, 0xb2],
     [0xe6, 0x9f, 0x00],
@@ -12,7 +12,15 @@ const COLOURS: [Colour; 7] = [
     [0x00, 0x9e, 0x73],
     [0xcc, 0x79, 0xa7],
     [0x00, 0x00, 0x00],
+    [0x88, 0x22, 0x55],
+    [0x99, 0x99, 0x33],
+    [0x33, 0x22, 0x88],
+    [0x8c, 0x51, 0x0a],
+    [0x7f, 0x7f, 0x7f],
 ];
+
+/// Markers told apart by their shape.
+const MARKERS: usize = 7;
 
 const DASHES: [&[f64]; 4] = [&[], &[5.0, 2.0], &[1.5, 1.8], &[6.0, 1.8, 1.5, 1.8]];
 
@@ -48,8 +56,8 @@ pub(crate) fn styles(labels: &[(String, bool)]) -> Vec<Style> {
             label: label.clone(),
             colour: COLOURS[index % COLOURS.len()],
             dash,
-            // Shifted by the round: where colours repeat, shapes don't.
-            marker: (index + round) % COLOURS.len(),
+            // Seven and twelve have no common divisor: where colours repeat, shapes don't.
+            marker: index % MARKERS,
             open: *meshfree,
         });
     }
@@ -103,6 +111,12 @@ fn layout(styles: &[Style], width: f64) -> (usize, f64) {
     let widest = styles.iter().map(|s| text_width(&s.label, TEXT)).fold(0.0, f64::max) + 44.0;
     let columns = ((width / widest).floor() as usize).clamp(1, styles.len().max(1));
     (columns, widest)
+}
+
+/// What filled and open markers mean, where a legend has both.
+pub(crate) fn fillings(styles: &[Style]) -> &'static str {
+    let both = styles.iter().any(|s| s.open) && styles.iter().any(|s| !s.open);
+    if both { "Filled: elements, open: clouds. " } else { "" }
 }
 
 /// Height a legend needs, points.

@@ -15,7 +15,7 @@ use crate::text::significant;
 /// Bodies in one figure, and in a row of one.
 const SHOWN: usize = 4;
 /// Bodies between tools in one figure: what they do there is what such a case is about.
-const GRASPED: usize = 8;
+pub(super) const GRASPED: usize = 8;
 
 /// One figure per case: fields side by side under one colour scale, true deformation.
 pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
@@ -25,23 +25,23 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
     cases
         .into_iter()
         .map(|case| {
-            let mut own: Vec<&SurfaceField> =
+            let own: Vec<&SurfaceField> =
                 fields.iter().filter(|f| f.case == case && !f.triangles.is_empty()).collect();
-            own.sort_by_key(|f| (f.family, &f.method));
-            (
-                case,
-                if own.iter().any(|f| !f.tools.is_empty()) { grasped(own, runs) } else { chosen(own, runs) },
-            )
+            let room = if own.iter().any(|f| !f.tools.is_empty()) { GRASPED } else { SHOWN };
+            (case, pictured(own, runs, room))
         })
         .filter(|(_, own)| !own.is_empty())
         .map(|(case, own)| figure(case, &own, runs))
         .collect()
 }
 
-/// All of them in the order of the report, as long as they are few.
-pub(super) fn grasped<'f>(mut fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceField> {
+/// A body in a figure, and why it was chosen where there is no room for all.
+pub(super) type Chosen<'f> = (&'f SurfaceField, &'static str);
+
+/// All bodies in the order of the report if there is room for so many, else some of them.
+pub(super) fn pictured<'f>(mut fields: Vec<&'f SurfaceField>, runs: &[Run], room: usize) -> Vec<Chosen<'f>> {
     fields.sort_by_key(|f| runs.iter().position(|r| r.is.case == f.case && r.is.method == f.method));
-    if fields.len() <= GRASPED { fields } else { chosen(fields, runs) }
+    if fields.len() <= room { fields.into_iter().map(|f| (f, "")).collect() } else { chosen(fields, runs) }
 }
 
 /// What a method that ended early had carried, in words; nothing of one that came to the end.
@@ -53,30 +53,39 @@ pub(super) fn carried(field: &SurfaceField, runs: &[Run]) -> String {
     }
 }
 
-/// Elements beside clouds, as far from the reference as any, then as near: what is between them can't be told from either by eye.
-fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<&'f SurfaceField> {
-    if fields.len() <= SHOWN {
-        return fields;
-    }
-    let mut picked: Vec<&SurfaceField> = Vec::new();
-    let of = |family: Family| -> Vec<&'f SurfaceField> {
-        let error = |f: &&SurfaceField| {
-            let run = |r: &&Run| r.is.case == f.case && r.is.method == f.method && r.is.family == family;
-            runs.iter().find(run).and_then(|r| r.value("rms"))
+/// Elements beside clouds: of each family the run farthest from the reference, then the nearest. What lies between them can't be
+/// told from either by eye.
+fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<Chosen<'f>> {
+    let of = |family: Family| -> Vec<(&'f SurfaceField, f64)> {
+        let error = |f: &SurfaceField| {
+            let own = |r: &&Run| r.is.case == f.case && r.is.method == f.method && r.is.family == family;
+            runs.iter().find(own).and_then(|r| r.value("rms"))
         };
-        let mut known: Vec<_> = fields.iter().filter_map(|f| Some((error(f)?, *f))).collect();
-        known.sort_by(|a, b| b.0.total_cmp(&a.0));
-        known.into_iter().map(|k| k.1).collect()
+        let mut known: Vec<_> = fields.iter().filter_map(|f| Some((*f, error(f)?))).collect();
+        known.sort_by(|a, b| b.1.total_cmp(&a.1));
+        known
     };
     let families = [of(Family::Fem), of(Family::Efg)];
-    picked.extend(families.iter().filter_map(|f| f.first()));
-    picked.extend(families.iter().filter(|f| f.len() > 1).filter_map(|f| f.last()));
+    let mut picked: Vec<Chosen> =
+        families.iter().filter_map(|f| f.first()).map(|(f, _)| (*f, "farthest")).collect();
+    for (field, error) in families.iter().filter(|f| f.len() > 1).filter_map(|f| f.last()) {
+        picked.push((field, if *error == 0.0 { "reference" } else { "nearest" }));
+    }
+    // Without a reference there is no distance to choose by.
     for field in fields.iter().take(SHOWN) {
-        if picked.len() < 2 && !picked.iter().any(|p| p.method == field.method) {
-            picked.push(field);
+        if picked.len() < 2 && !picked.iter().any(|p| p.0.method == field.method) {
+            picked.push((field, ""));
         }
     }
     picked
+}
+
+/// A field's title, `tet4 (405 nodes)`, with why it was chosen.
+pub(super) fn titled((field, why): &Chosen) -> String {
+    match field.title.strip_suffix(')') {
+        Some(open) if !why.is_empty() => format!("{open}, {why})"),
+        _ => field.title.clone(),
+    }
 }
 
 fn magnitude(u: &[f64; 3]) -> f64 {
@@ -164,11 +173,12 @@ impl Pose {
     }
 }
 
-fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
+fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
+    let fields: Vec<&SurfaceField> = chosen.iter().map(|c| c.0).collect();
     let largest = fields.iter().flat_map(|f| f.displacement.iter()).map(magnitude).fold(0.0, f64::max) * 1e3;
     let scale = Scale::Rising(largest);
     let tools = fields.iter().any(|f| !f.tools.is_empty());
-    let view = if tools { beside(fields) } else { view() };
+    let view = if tools { beside(&fields) } else { view(&fields) };
     let outlines: Vec<Vec<Vec<[f64; 2]>>> = fields
         .iter()
         .map(|f| f.tools.iter().map(|t| silhouette::outline(t, &view[0], &view[1])).collect())
@@ -178,55 +188,66 @@ fn figure(case: &str, fields: &[&SurfaceField], runs: &[Run]) -> Figure {
     let corners = seen.iter().flatten().flat_map(|t| t.corners);
     let pose = Pose::new(fields.len(), corners.chain(outlines.iter().flatten().flatten().copied()));
     let bottom = pose.bottom();
-    let mut canvas = Canvas::new(WIDTH, bottom + 34.0);
+    let mut canvas = Canvas::new(WIDTH, bottom + 46.0);
     for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
         let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
         let text = format!("max |u| {} mm", significant(own * 1e3, 3));
-        pose.title(&mut canvas, i, &field.title, &text, &carried(field, runs));
+        pose.title(&mut canvas, i, &titled(&chosen[i]), &text, &carried(field, runs));
         let outlines: Vec<Vec<(f64, f64)>> =
             outlines[i].iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
         outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
         for t in triangles {
-            canvas.fill(&grown(t.corners.map(|c| pose.place(i, &c))), scale.colour(t.value * 1e3));
+            canvas.facet(&t.corners.map(|c| pose.place(i, &c)), scale.colour(t.value * 1e3));
         }
         outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
     }
-    axes(&mut canvas, (36.0, bottom + 6.0), &view);
+    axes(&mut canvas, (36.0, bottom + 24.0), &view);
     let note = match tools {
         true => {
-            "True deformation, orthographic view; one colour scale; outlines: the tools where they stand, also where the body hides them."
+            "True deformation, orthographic view; one colour scale. Outlines: the tools, also where the body hides them."
         }
         false => "True deformation, orthographic view; one colour scale.",
     };
     for (i, line) in wrapped(note, WIDTH - 84.0).iter().enumerate() {
-        canvas.text((74.0, bottom + 10.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
+        canvas.text((74.0, bottom + 22.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
     }
     let (at, height) = pose.bar();
     scale.bar(&mut canvas, at, height, "|u| [mm]");
-    let caption = match tools {
-        true => {
-            "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale, between the tools where they stand at the \
-                 end of each method's path"
-        }
-        false => {
-            "Surface coloured by the magnitude of its displacement, at true deformation under one colour scale: of either family the run \
-                  farthest from the reference, then the nearest"
-        }
-    };
     Figure {
         name: format!("surface-{}", slug(case)),
         title: format!("Surface displacement, {case}"),
-        caption: caption.into(),
+        caption: caption(tools, chosen),
         canvas,
     }
+}
+
+fn caption(tools: bool, chosen: &[Chosen]) -> String {
+    let mut text = "The deformed surface, coloured by the magnitude of its displacement; one colour scale for all panels".to_string();
+    if tools {
+        text += "; the tools stand where each run ended";
+    }
+    if chosen.iter().any(|c| !c.1.is_empty()) {
+        text +=
+            "; of each family the run farthest from the reference and the nearest, or the reference itself";
+    }
+    text
 }
 
 /// Right, up and towards the viewer.
 type View = [[f64; 3]; 3];
 
-/// The long axis upright, seen from the front and a little from the right and above.
-fn view() -> View {
-    turned([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 35.0, 18.0)
+/// Seen from the front and a little from the right and above: z upright, or y where the body is longest along it.
+fn view(fields: &[&SurfaceField]) -> View {
+    let extent = |axis: usize| {
+        let values = || fields.iter().flat_map(|f| f.points.iter().map(move |p| p[axis]));
+        values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
+    };
+    let [x, y, z] = [0, 1, 2].map(extent);
+    let front = match y > 1.05 * x.max(z) {
+        true => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        false => [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
+    };
+    turned(front, 35.0, 18.0)
 }
 
 /// Almost square to the section between the tools: they stand on either side of the body, not before it.
@@ -258,23 +279,6 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 fn dot(a: &[f64; 4], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// A triangle with every side a quarter of a point further out, or hairlines show between neighbours.
-fn grown(at: [(f64, f64); 3]) -> [(f64, f64); 3] {
-    let unit = |a: (f64, f64), b: (f64, f64)| {
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let length = dx.hypot(dy).max(1e-9);
-        (dx / length, dy / length)
-    };
-    std::array::from_fn(|i| {
-        let (here, next, last) = (at[i], at[(i + 1) % 3], at[(i + 2) % 3]);
-        let (to_next, to_last) = (unit(here, next), unit(here, last));
-        // Away from both neighbours; a mitre that would run far out at a sharp corner is cut short.
-        let sine = (to_next.0 * to_last.1 - to_next.1 * to_last.0).abs().max(0.3);
-        let reach = 0.25 / sine;
-        (here.0 - reach * (to_next.0 + to_last.0), here.1 - reach * (to_next.1 + to_last.1))
-    })
 }
 
 /// Slabs of depth that are drawn one after the other, the farthest first.
@@ -336,5 +340,64 @@ fn axes(canvas: &mut Canvas, at: (f64, f64), [right, up, _]: &View) {
         // Behind the arrow's head, also of an arrow that is short in this view.
         let beyond = 1.0 + 8.0 / dx.hypot(dy).max(1.0);
         canvas.text((at.0 + dx * beyond, at.1 + dy * beyond), name, TEXT, BLACK_INK, Anchor::Middle);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::run;
+    use crate::select::runs;
+
+    fn field(method: &str, family: Family, far: [f64; 3]) -> SurfaceField {
+        SurfaceField {
+            case: "jaws".into(),
+            method: method.into(),
+            family,
+            title: format!("{method} (100 nodes)"),
+            points: vec![[0.0; 3], far],
+            triangles: vec![[0, 1, 1]],
+            displacement: vec![[0.0; 3]; 2],
+            tools: Vec::new(),
+            section: None,
+        }
+    }
+
+    #[test]
+    fn a_panel_says_why_it_was_chosen_where_there_is_no_room_for_all() {
+        let methods = [
+            ("tet10", Family::Fem, 0.0),
+            ("efg", Family::Efg, 0.1),
+            ("tet4", Family::Fem, 0.4),
+            ("hex8", Family::Fem, 0.2),
+            ("efg-smoothed", Family::Efg, 0.3),
+        ];
+        let records: Vec<_> = methods
+            .iter()
+            .flat_map(|&(id, family, error)| run((id, family), 100, 1.0, &[("rms", error)]))
+            .collect();
+        let fields: Vec<_> = methods.iter().map(|m| field(m.0, m.1, [1.0; 3])).collect();
+        let titles = |room| -> Vec<String> {
+            pictured(fields.iter().collect(), &runs(&records), room).iter().map(titled).collect()
+        };
+        assert_eq!(
+            titles(4),
+            [
+                "tet4 (100 nodes, farthest)",
+                "efg-smoothed (100 nodes, farthest)",
+                "tet10 (100 nodes, reference)",
+                "efg (100 nodes, nearest)"
+            ]
+        );
+        // As in the tables.
+        let names = ["tet4", "tet10", "hex8", "efg", "efg-smoothed"];
+        assert_eq!(titles(5), names.map(|name| format!("{name} (100 nodes)")));
+    }
+
+    #[test]
+    fn z_is_upright_unless_the_body_is_longest_along_y() {
+        let up = |far| view(&[&field("tet4", Family::Fem, far)])[1];
+        let [flat, long] = [up([2.0, 2.0, 1.0]), up([1.0, 2.0, 1.0])];
+        assert!(flat[2] > 0.9 && long[1] > 0.9, "{flat:?} {long:?}");
     }
 }

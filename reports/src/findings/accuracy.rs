@@ -28,7 +28,7 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
             if after > LOCKS * before && after > 1e-3 {
                 let tip = last
                     .value("tip")
-                    .map(|t| format!(", tip at {} of exact", percent(t)))
+                    .map(|t| format!(", tip at {} of the exact deflection", percent(t)))
                     .unwrap_or_default();
                 let pressure = last
                     .value("pressure")
@@ -43,14 +43,14 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
         let name = &case[0].is.case;
         if !locked.is_empty() {
             out.push(format!(
-                "{name}: from ν = {from} to {to} the relative L2 error at the middle size more than doubles for {}.",
+                "{name}: from ν = {from} to {to}, at the middle size, the relative L2 error more than doubles with {}.",
                 list(&locked)
             ));
         }
         if !free.is_empty() {
             let many = free.len() > 8;
             let who = if many { format!("{} methods", free.len()) } else { list(&free) };
-            out.push(format!("{name}: from ν = {from} to {to} it doesn't for {who}."));
+            out.push(format!("{name}: from ν = {from} to {to} there is no locking with {who}."));
         }
     }
     out
@@ -76,7 +76,7 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
         }
         let missed: Vec<_> = worst.iter().filter(|(_, e)| **e > EXACT).collect();
         let mut text = format!(
-            "{}: {} of {} methods have the displacement right within 10⁻¹²",
+            "{}: {} of {} methods reproduce the displacement within 10⁻¹²",
             case[0].is.case,
             worst.len() - missed.len(),
             worst.len()
@@ -88,14 +88,11 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
             let more =
                 if missed.len() > 6 { format!(" and {} more", missed.len() - 6) } else { String::new() };
             let who = if more.is_empty() { list(&names) } else { names.join(", ") + &more };
-            text += &format!(
-                "; not {who}, relative error {}",
-                if low < high {
-                    format!("{} to {}", significant(low, 2), significant(high, 2))
-                } else {
-                    significant(high, 2)
-                }
-            );
+            let (low, high) = (significant(low, 2), significant(high, 2));
+            text += &match missed.len() {
+                1 => format!(". {who} does not: its relative error is {high}"),
+                _ => format!(". {who} do not: their relative errors are {low} to {high}"),
+            };
         }
         out.push(text + ".");
     }
@@ -123,7 +120,7 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
                     held += 1;
                 } else {
                     below.push(format!(
-                        "{label} in {name} ({quantity} {} of {theory})",
+                        "{label} in {name} ({quantity} {}, theory {theory})",
                         significant(finest, 2)
                     ));
                 }
@@ -133,7 +130,7 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     if held + below.len() > 0 {
         out.push(format!(
-            "Between the two finest levels {held} of {} observed orders are no more than {SLACK} below theory.",
+            "{held} of {} observed orders reach theory within {SLACK}, between the two finest levels.",
             held + below.len()
         ));
     }
@@ -144,7 +141,7 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
         out.push(format!("Below theory: {}{tail}.", below.join("; ")));
     }
     if short > 0 {
-        out.push(format!("{short} further pair{} of levels: too few to judge an order.", plural(short)));
+        out.push(format!("{short} more order{} can't be judged: two levels are too few.", plural(short)));
     }
     out
 }

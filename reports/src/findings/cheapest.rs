@@ -32,7 +32,7 @@ pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
     for (case, group) in chosen(runs) {
         let labels = labels(group.iter().map(|r| r.is));
         let displacement = QUESTIONS[0].error(group);
-        for (clock, after) in Clock::ALL.into_iter().zip(["", ", solved again and again"]) {
+        for (clock, after) in Clock::ALL.into_iter().zip(["", ", repeated solves"]) {
             for question in &QUESTIONS {
                 let Some(error) = question.error(group) else { continue };
                 let timed = |(run, label)| {
@@ -43,7 +43,7 @@ pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
                 let timed: Vec<Timed> = group.iter().zip(names).filter_map(timed).collect();
                 if timed.iter().any(|t| t.label != timed[0].label) {
                     let beside = displacement.filter(|_| question.scalar);
-                    out.push(format!("{case}, {}{after}: {}.", question.name, answers(&timed, beside)));
+                    out.push(format!("{case}, {}{after}: {}", question.name, answers(&timed, beside)));
                 }
             }
         }
@@ -51,7 +51,7 @@ pub(super) fn cheapest(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// What every tolerance takes, and which of them nobody reaches. `beside` is an error reported where it is far larger.
+/// What every tolerance takes, and which of them no run reaches. `beside` is an error reported where it is far larger.
 fn answers(timed: &[Timed], beside: Option<&str>) -> String {
     let mut answers: Vec<(Vec<String>, String)> = Vec::new();
     let mut missed = Vec::new();
@@ -64,18 +64,20 @@ fn answers(timed: &[Timed], beside: Option<&str>) -> String {
             },
         }
     }
-    let mut parts: Vec<String> =
-        answers.into_iter().map(|(reached, text)| format!("{} first by {text}", list(&reached))).collect();
+    let mut parts: Vec<String> = answers
+        .into_iter()
+        .map(|(reached, text)| format!("Within {} error, {text}.", list(&reached)))
+        .collect();
     let closest = timed.iter().min_by(|a, b| a.error.total_cmp(&b.error));
     if let (Some(closest), false) = (closest, missed.is_empty()) {
-        let phrase = phrase(closest, closest.error, beside);
         parts.push(format!(
-            "nobody reaches {}, the closest is {phrase} with {}",
-            list(&missed),
+            "No run reaches {}; the most accurate is {}, with {}.",
+            missed[0],
+            phrase(closest, closest.error, beside, ""),
             percent(closest.error)
         ));
     }
-    parts.join("; ")
+    parts.join(" ")
 }
 
 /// The cheapest within a tolerance, and where elements and clouds compete the best of the others.
@@ -85,26 +87,26 @@ fn answer(timed: &[Timed], tolerance: f64, beside: Option<&str>) -> Option<Strin
         good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     };
     let best = cheapest(&|_| true)?;
-    let mut text = phrase(best, tolerance, beside);
+    let mut text = format!("the fastest is {}", phrase(best, tolerance, beside, ""));
     let other = |t: &Timed| t.is_fem() != best.is_fem();
     if timed.iter().any(other) {
         let family = if best.is_fem() { "EFG" } else { "FEM" };
         text += &match cheapest(&other) {
-            None => format!(", by no {family}"),
-            Some(next) => format!(
-                ", by {family} with {}, {} times as long",
-                phrase(next, tolerance, beside),
-                significant(next.seconds / best.seconds, 2)
-            ),
+            None => format!("; no {family} run is that accurate"),
+            Some(next) => {
+                let longer = format!(", {} times as long", significant(next.seconds / best.seconds, 2));
+                format!("; the fastest {family} run is {}", phrase(next, tolerance, beside, &longer))
+            }
         };
     }
     Some(text)
 }
 
-fn phrase(timed: &Timed, tolerance: f64, beside: Option<&str>) -> String {
+/// `hex20 (2.00 ms, 100 nodes)`, with more between the brackets.
+fn phrase(timed: &Timed, tolerance: f64, beside: Option<&str>, more: &str) -> String {
     let off = beside.and_then(|error| timed.run.value(error)).filter(|e| *e > CHANCE * tolerance);
-    let off = off.map_or(String::new(), |e| format!(", displacement off by {}", percent(e)));
-    format!("{} in {} ({} nodes{off})", timed.label, duration(timed.seconds), timed.run.is.nodes)
+    let off = off.map_or(String::new(), |e| format!(", but {} displacement error", percent(e)));
+    format!("{} ({}{more}, {} nodes{off})", timed.label, duration(timed.seconds), timed.run.is.nodes)
 }
 
 /// A tolerance has no digits to spare.
@@ -127,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn every_tolerance_has_the_best_of_both_families_or_nobody() {
+    fn every_tolerance_has_the_best_of_both_families_or_no_run() {
         let records = jaws(
             &[
                 ("hex20", Family::Fem, 100, 0.002, 0.05),
@@ -142,9 +144,10 @@ mod tests {
         assert_eq!(
             cheapest(&runs(&records)),
             [
-                "jaws, displacement: 10 % first by hex20 in 2.00 ms (100 nodes), by EFG with efg in 20.0 ms (332 nodes), 10 times as \
-              long; 3 % first by hex20 in 40.0 ms (900 nodes), by EFG with efg in 500 ms (1331 nodes), 12 times as long; 1 % first by \
-              efg in 500 ms (1331 nodes), by no FEM; nobody reaches 0.3 %, the closest is efg in 500 ms (1331 nodes) with 0.600 %."
+                "jaws, displacement: Within 10 % error, the fastest is hex20 (2.00 ms, 100 nodes); the fastest EFG run is efg (20.0 ms, 10 times \
+              as long, 332 nodes). Within 3 % error, the fastest is hex20 (40.0 ms, 900 nodes); the fastest EFG run is efg (500 ms, 12 times as \
+              long, 1331 nodes). Within 1 % error, the fastest is efg (500 ms, 1331 nodes); no FEM run is that accurate. No run reaches \
+              0.3 %; the most accurate is efg (500 ms, 1331 nodes), with 0.600 %."
             ]
         );
     }
@@ -154,7 +157,9 @@ mod tests {
         let elements = [("hex20", Family::Fem, 100, 0.002, 0.001), ("tet4", Family::Fem, 100, 0.001, 0.2)];
         assert_eq!(
             cheapest(&runs(&jaws(&elements, "pressure"))),
-            ["jaws, pressure: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 2.00 ms (100 nodes)."]
+            [
+                "jaws, pressure: Within 10 %, 3 %, 1 % and 0.3 % error, the fastest is hex20 (2.00 ms, 100 nodes)."
+            ]
         );
         // One method has nothing to be cheaper than, and the reference itself is none.
         assert!(cheapest(&runs(&jaws(&elements[..1], "pressure"))).is_empty());
@@ -163,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_right_by_chance_is_told_with_its_field() {
+    fn a_number_right_by_chance_comes_with_the_error_of_its_field() {
         let both = |force, rms| [("tool-force-error", force), ("relative-rms", rms)];
         let records = [
             run(("efg", Family::Efg), 83, 1.0, &both(0.02, 0.4)),
@@ -174,14 +179,15 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert_eq!(
             found[1],
-            "jaws, jaw force: 10 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by FEM with tet4 in 2.00 s \
-             (100 nodes), 2.0 times as long; 3 % first by efg in 1.00 s (83 nodes, displacement off by 40.0 %), by no FEM; nobody \
-             reaches 1 % and 0.3 %, the closest is efg in 1.00 s (83 nodes, displacement off by 40.0 %) with 2.00 %."
+            "jaws, tool force: Within 10 % error, the fastest is efg (1.00 s, 83 nodes, but 40.0 % displacement error); the fastest FEM run is \
+             tet4 (2.00 s, 2.0 times as long, 100 nodes). Within 3 % error, the fastest is efg (1.00 s, 83 nodes, but 40.0 % displacement \
+             error); no FEM run is that accurate. No run reaches 1 %; the most accurate is efg (1.00 s, 83 nodes, \
+             but 40.0 % displacement error), with 2.00 %."
         );
     }
 
     #[test]
-    fn repeated_solves_are_told_apart_by_their_own_times() {
+    fn repeated_solves_have_their_own_times() {
         let methods = [("hex20", Family::Fem, 100, 0.002, 0.001), ("tet4", Family::Fem, 100, 0.001, 0.002)];
         let mut records = jaws(&methods, "l2");
         for (method, t) in [("hex20", 1e-4), ("tet4", 2e-4)] {
@@ -191,8 +197,8 @@ mod tests {
         assert_eq!(
             cheapest(&runs(&records)),
             [
-                "jaws, displacement: 10 %, 3 %, 1 % and 0.3 % first by tet4 in 1.00 ms (100 nodes).",
-                "jaws, displacement, solved again and again: 10 %, 3 %, 1 % and 0.3 % first by hex20 in 100 µs (100 nodes)."
+                "jaws, displacement: Within 10 %, 3 %, 1 % and 0.3 % error, the fastest is tet4 (1.00 ms, 100 nodes).",
+                "jaws, displacement, repeated solves: Within 10 %, 3 %, 1 % and 0.3 % error, the fastest is hex20 (100 µs, 100 nodes)."
             ]
         );
     }

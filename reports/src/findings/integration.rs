@@ -20,23 +20,23 @@ pub(super) fn integration(runs: &[Run]) -> Vec<String> {
                     .iter()
                     .map(|m| {
                         let nodes: Vec<String> = m.iter().map(|p| p.run.is.nodes.to_string()).collect();
-                        format!("{} at {} nodes", m[0].label, list(&nodes))
+                        format!("{} with {} nodes", m[0].label, list(&nodes))
                     })
                     .collect();
                 format!(": {}", phrases.join("; "))
             }
         };
         out.push(format!(
-            "{} at ν = {}: integration is the larger part of the error for {} of {} clouds{places}. It is {} times the discretisation's at most, for {} at {} \
-             nodes ({} cells per node).",
+            "{} at ν = {}: in {} of {} clouds the error of integration is larger than that of discretisation{places}. {} with {} nodes and {} cells \
+             per node has the largest ratio, {}.",
             most.run.is.case,
             ratio(most.run.is.poisson),
             worse.len(),
             case.len(),
-            significant(share(most), 2),
             most.label,
             most.run.is.nodes,
             significant(most.cells(), 2),
+            significant(share(most), 2),
         ));
     }
     out

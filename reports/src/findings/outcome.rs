@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::run_set::{RunSet, Status};
 use crate::text::significant;
 
-/// How many checks held, and every one that did not with its reason.
+/// How many checks passed, and every one that did not with its reason.
 pub(super) fn checks(set: &RunSet) -> Vec<String> {
     let mut out = Vec::new();
     if set.checks.is_empty() && set.failures.is_empty() {
@@ -13,12 +13,12 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
     }
     let with = |status: Status| set.checks.iter().filter(move |c| c.status == status);
     if !set.checks.is_empty() {
-        out.push(format!("{} of {} checks held.", with(Status::Pass).count(), set.checks.len()));
+        out.push(format!("{} of {} checks passed.", with(Status::Pass).count(), set.checks.len()));
     }
     for c in with(Status::Fail) {
-        let value = c.value.map(|v| format!(" is {}", significant(v, 3))).unwrap_or_default();
+        let value = c.value.map(|v| format!(" is {} and", significant(v, 3))).unwrap_or_default();
         out.push(format!(
-            "Failed: {}, {}: {}{value}, bound {}. {}",
+            "Failed: {}, {}: {}{value} must be {}. {}",
             c.case,
             c.method,
             c.metric,
@@ -39,7 +39,7 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
         }
     }
     for f in &set.failures {
-        out.push(format!("No result: {}, {}. {}", f.case, f.method, sentence(&f.reason)));
+        out.push(format!("No result for {}, {}: {}.", f.case, f.method, f.reason.trim_end_matches('.')));
     }
     out
 }

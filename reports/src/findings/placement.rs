@@ -2,11 +2,11 @@
 
 use crate::clouds::{Clouds, Spread};
 use crate::record::Family;
-use crate::text::{list, significant};
+use crate::text::significant;
 
-/// What a sentence tells of a method, the first that it has an error by, with words, unit and factor.
+/// The error that a sentence is about, the first that a method has: with words, unit and factor.
 const ERRORS: [(&str, &str, &str, f64); 2] =
-    [("rms", "an RMS error", " mm", 1e3), ("l2", "a relative L2 error", " %", 1e2)];
+    [("rms", "the RMS error", " mm", 1e3), ("l2", "the relative L2 error", " %", 1e2)];
 
 /// A sentence for every method that ran on many clouds.
 pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
@@ -20,19 +20,19 @@ pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
         let Some((whole, error)) = error else { continue };
         let mut parts = vec![error];
         if let Some(force) = Spread::of(group, "tool-force").filter(|f| f.quantiles[0] != f.quantiles[4]) {
-            parts.push(phrase(force, "a tool force", " N", 1.0));
+            parts.push(phrase(force, "the tool force", " N", 1.0));
         }
         let failed = match group.len() - whole {
             0 => String::new(),
-            failed => format!("; {failed} of them don't carry the whole load"),
+            failed => format!("; {failed} of these runs do not reach the full load"),
         };
         out.push(format!(
-            "{}, {} on {} clouds of {} nodes: {}{failed}.",
+            "{}, {}, {} clouds of {} nodes: {}{failed}.",
             is.case,
             group[0].name(),
             group.len(),
             is.nodes,
-            list(&parts)
+            parts.join(", ")
         ));
     }
     out
@@ -40,5 +40,5 @@ pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
 
 fn phrase(spread: Spread, words: &str, unit: &str, scale: f64) -> String {
     let [least, _, median, _, most] = spread.quantiles.map(|q| significant(q * scale, 3));
-    format!("{words} of {median}{unit} in the median, {least} to {most}{unit} in all")
+    format!("{words} has a median of {median}{unit} and ranges from {least} to {most}{unit}")
 }

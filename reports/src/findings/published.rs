@@ -17,7 +17,7 @@ pub(super) fn published(runs: &[Run]) -> Vec<String> {
         for pair in pairs.iter().filter(|p| p.paper.family == family) {
             if let (Some(speed), Some(ours)) = (pair.speed_up(), pair.ours) {
                 by_method.entry((&pair.run.is.case, &pair.run.is.method)).or_default().push(format!(
-                    "{} takes {} here, {} in the publication, {} times as long",
+                    "{} takes {} here and {} in the publication, {} times as long",
                     pair.paper.what,
                     duration(ours),
                     duration(pair.paper.value),
@@ -70,7 +70,8 @@ fn maxima(pairs: &[Pair]) -> Vec<String> {
         let theirs = [pair.paper.value, y_theirs.paper.value, z_theirs.paper.value];
         let [a, b, c] = [x / theirs[0], y / theirs[1], z / theirs[2]].map(percent);
         out.push(format!(
-            "{}, {}: largest displacements {}, {} and {} mm in x, y and z, published {}, {} and {} mm: {a}, {b} and {c} of it.",
+            "{}, {}: the largest displacements are {}, {} and {} mm in x, y and z. The published ones are {}, {} and {} mm; ours are {a}, {b} and {c} \
+             of them.",
             pair.run.is.case,
             pair.run.is.method,
             mm(x),
@@ -92,7 +93,7 @@ fn parts(split: &Split) -> Option<String> {
     let three = |v: [f64; 4]| format!("{}, {} and {} mm", mm(v[0]), mm(v[1]), mm(v[2]));
     let largest = [
         ("the transfer", transfer),
-        ("the cloud's discretisation", cloud),
+        ("the discretisation of the cloud", cloud),
         ("the error of the elements", elements),
     ]
     .into_iter()
@@ -104,9 +105,9 @@ fn parts(split: &Split) -> Option<String> {
     let (name, fe) = (&split.cloud.is.method, &split.elements.is.method);
     let reference = split.reference.unwrap_or("the case's reference");
     Some(format!(
-        "{}: {name}, carried over by inverse distance, differs from {fe} by an RMS of {} in x, y and z; published are {} in the text and {} to {} mm \
-         in the abstract. Without the transfer it is {}. By themselves the transfer makes {}, the cloud's discretisation {} (from {reference}) and \
-         the error of {fe} {}: the largest part is {}, {} mm in magnitude, beside {} mm of the whole.",
+        "{}: {name}, transferred by inverse distance, differs from {fe} by an RMS of {} in x, y and z. The publication gives {} in its text and {} \
+         to {} mm in its abstract. Without the transfer the difference is {}. By itself, the transfer contributes {}, the discretisation of the \
+         cloud {} (against {reference}) and the error of {fe} {}. The largest part is {}, {} mm in magnitude; the whole difference is {} mm.",
         split.cloud.is.case,
         three(total),
         three(theirs),
@@ -133,11 +134,14 @@ fn limits(runs: &[Run]) -> Vec<String> {
         };
         let on = match (run.value("relaxation-steps"), run.value("load-carried")) {
             (Some(steps), Some(reached)) if reached > load => {
-                format!("; dynamic relaxation goes on to {} in {steps:.0} steps", percent(reached))
+                format!(
+                    " Dynamic relaxation then reaches {} of the load in {steps:.0} steps.",
+                    percent(reached)
+                )
             }
             (None, Some(reached)) if reached > load => {
                 format!(
-                    "; there the tissue gives way to another equilibrium, and goes on to {}",
+                    " There it loses stability; the solver finds another equilibrium and reaches {} of the load.",
                     percent(reached)
                 )
             }
@@ -145,9 +149,9 @@ fn limits(runs: &[Run]) -> Vec<String> {
         };
         let within = run
             .time("solve-to-limit", "median")
-            .map_or(String::new(), |s| format!(", within {}", duration(s)));
+            .map_or(String::new(), |s| format!(", computed in {}", duration(s)));
         out.push(format!(
-            "{}, {}: the body is stable up to {} of the load, {} N at a closure of {} mm{within}{on}.",
+            "{}, {}: the body is stable up to {} of the load ({} N at a closure of {} mm{within}).{on}",
             run.is.case,
             run.is.method,
             percent(load),
@@ -172,8 +176,8 @@ fn ramps(runs: &[Run]) -> Vec<String> {
         let (Some(moved), Some(rest)) = (directions(ramp, "max"), directions(still, "max")) else { continue };
         let change = (0..3).map(|a| (moved[a] / rest[a] - 1.0).abs()).fold(0.0, f64::max);
         out.push(format!(
-            "{}: at the end of a ramp of {} the largest displacements are {}, {} and {} mm in x, y and z, on the quasi-static path {}, {} and {} mm: \
-             at most {} apart.",
+            "{}: at the end of a ramp of {} the largest displacements are {}, {} and {} mm in x, y and z. The quasi-static solution has {}, {} and {} \
+             mm. They differ by at most {}.",
             ramp.is.method,
             duration(seconds),
             mm(moved[0]),

@@ -4,7 +4,7 @@ use crate::record::Family;
 use crate::select::{Run, by_case};
 use crate::text::significant;
 
-/// Best, worst and published transfer scheme for every field carried over.
+/// Best, worst and published transfer scheme for every field that is transferred.
 pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     let schemes: Vec<Run> = runs.iter().filter(|r| r.is.family == Family::Interp).cloned().collect();
@@ -32,7 +32,7 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
                 }
             };
             let mut text = format!(
-                "{}, {from}: least error after {} ({}), most after {} ({})",
+                "{}, {from}: {} has the smallest error ({}), {} the largest ({})",
                 best.0.is.case,
                 best.0.is.variant,
                 mm(best.1),
@@ -41,10 +41,10 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
             );
             let of = |variant: &str| own.iter().find(|(r, _)| r.is.variant == variant).map(|o| o.1);
             if let Some(v) = of("inverse-distance") {
-                text += &format!("; after inverse distance, the published scheme, {}", mm(v));
+                text += &format!("; inverse distance, the published scheme, has {}", mm(v));
             }
             if let Some(v) = of("own-rows") {
-                text += &format!("; with the method's own shape functions {}", mm(v));
+                text += &format!("; the method's own shape functions have {}", mm(v));
             }
             out.push(text + ".");
         }
@@ -52,7 +52,7 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// What was carried, in words.
+/// What was transferred, in words.
 pub(crate) fn source(run: &Run) -> String {
     run.is.from.as_ref().map_or_else(|| "transfer".into(), |method| format!("from {method}"))
 }

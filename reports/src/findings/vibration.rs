@@ -26,7 +26,10 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
                 }
             }
             if !parts.is_empty() {
-                out.push(format!("{case}: {called} miss the exact frequency by {}.", list(&parts)));
+                out.push(format!(
+                    "{case}: the first frequency of {called} differs from the exact one by {}.",
+                    list(&parts)
+                ));
             }
         }
         let names = labels(finest.iter().map(|r| r.is));
@@ -34,12 +37,15 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
             .iter()
             .zip(names)
             .filter_map(|(r, name)| Some((name, r.value("slow-modes").filter(|count| *count > 0.0)?)))
-            .map(|(name, count)| format!("{count} of {name}"))
+            .map(|(name, count)| format!("{name} has {count}"))
             .collect();
         if !slow.is_empty() {
-            out.push(format!("{case}: modes slower than any that the body has: {}.", list(&slow)));
+            out.push(format!(
+                "{case}: some methods have spurious modes below the first frequency of the body: {}.",
+                list(&slow)
+            ));
         } else if finest.iter().any(|r| r.value("slow-modes").is_some()) {
-            out.push(format!("{case}: no method has modes slower than the body's own."));
+            out.push(format!("{case}: no method has spurious modes below the first frequency of the body."));
         }
     }
     out

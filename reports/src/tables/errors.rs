@@ -89,9 +89,28 @@ fn rows(
         cells.extend(filled.iter().zip(&values).map(|((_, quantity), v)| match *quantity {
             // A ratio near one reads best plain.
             "tip" => Cell::Digits(*v, 4),
+            _ if name == "rms" && run.is_reference() => Cell::Named("reference", 0.0),
             _ => cell(v.map(|v| v * scale)),
         }));
         table.row(&cells);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fronts::tests::run;
+    use crate::record::Family;
+    use crate::select::runs;
+
+    #[test]
+    fn the_reference_has_its_name_in_place_of_an_error() {
+        let of = |name, error: f64| {
+            run((name, Family::Fem), 100, 1.0, &[("rms", 1e-3 * error), ("relative-rms", error)])
+        };
+        let table = super::rms(&runs(&[of("tet10", 0.0), of("tet4", 0.25)].concat()));
+        let last = |row: &Vec<&str>| row[row.len() - 1].to_string();
+        assert_eq!(table.shown().iter().map(last).collect::<Vec<_>>(), ["2.500e-1", "reference"]);
+        assert!(table.csv().ends_with(",0e0\n"), "{}", table.csv());
+    }
 }
