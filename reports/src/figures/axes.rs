@@ -36,9 +36,9 @@ impl Axis {
         }
         let span = if high > low { high - low } else { high.abs().max(1.0) };
         let raw = span / 4.0;
-        let power = 10f64.powf(raw.log10().floor());
+        let decade = 10f64.powf(raw.log10().floor());
         let step =
-            [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|s| s * power).find(|s| *s >= raw).unwrap_or(raw);
+            [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|s| s * decade).find(|s| *s >= raw).unwrap_or(raw);
         if !from_zero || low < 0.0 {
             low -= 0.06 * span;
         }
@@ -46,8 +46,10 @@ impl Axis {
         let decimals = (0..6)
             .find(|d| ((step * 10f64.powi(*d)).round() - step * 10f64.powi(*d)).abs() < 1e-6)
             .unwrap_or(6);
+        // Zeros behind the point take more room than an axis has.
+        let text = |v: f64| if decimals < 5 { format!("{v:.*}", decimals as usize) } else { power(v) };
         let ticks = ((low / step).ceil() as i64..=(high / step).floor() as i64)
-            .map(|i| (i as f64 * step, format!("{:.*}", decimals as usize, i as f64 * step)))
+            .map(|i| (i as f64 * step, text(i as f64 * step)))
             .collect();
         Axis { label: label.into(), log: false, low, high, ticks, minor: Vec::new() }
     }
@@ -189,7 +191,9 @@ impl Panel {
         canvas.line(&[(left, top), (left, bottom), (right, bottom)], GREY, 0.8);
         canvas.text(((left + right) / 2.0, bottom + 22.0), &self.x.label, TEXT, BLACK_INK, Anchor::Middle);
         if !self.y.label.is_empty() {
-            canvas.upright((left - 46.0, (top + bottom) / 2.0), &self.y.label, TEXT);
+            let widest = self.y.ticks.iter().map(|(_, text)| text_width(text, TEXT)).fold(0.0, f64::max);
+            let aside = (widest + 11.0).clamp(46.0, 54.0);
+            canvas.upright((left - aside, (top + bottom) / 2.0), &self.y.label, TEXT);
         }
         canvas.bold((left, top - 8.0), title, TEXT, Anchor::Start);
     }
@@ -197,7 +201,7 @@ impl Panel {
 
 #[cfg(test)]
 mod tests {
-    use super::{apart, log_ticks, minor};
+    use super::{Axis, apart, log_ticks, minor};
 
     #[test]
     fn texts_that_would_touch_give_way_to_shorter_ones() {
@@ -230,6 +234,16 @@ mod tests {
         };
         assert!(near(minor(0.045, 0.35), &[0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.2, 0.3]));
         assert!(near(minor(0.9e-6, 1.1), &[1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0]));
+    }
+
+    #[test]
+    fn a_linear_axis_of_tiny_values_has_short_texts() {
+        let texts = |high| {
+            let axis = Axis::linear("", [0.0, high].into_iter(), true);
+            axis.ticks().iter().map(|t| t.1.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(texts(2.4e-5), ["0", "10⁻⁵", "2×10⁻⁵"]);
+        assert_eq!(texts(0.01), ["0.0000", "0.0025", "0.0050", "0.0075", "0.0100"]);
     }
 
     #[test]
