@@ -63,9 +63,11 @@ impl Scenario<'_> {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
                 (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
             }
-            EfgError::FlatCells { .. } => {
-                (ErrorKind::NotRun, Key::Method("neighbourhood"), "take neighbourhood = \"ball\", or another mesh")
-            }
+            EfgError::FlatCells { .. } => (
+                ErrorKind::NotRun,
+                Key::Method("neighbourhood"),
+                "take neighbourhood = \"ball\", or another mesh",
+            ),
             EfgError::OutsideHull { .. } => (
                 ErrorKind::NotRun,
                 support,
