@@ -37,7 +37,8 @@ pub fn tolerance(mesh: &Mesh) -> f64 {
     Region::TOLERANCE * (high - low).norm()
 }
 
-fn bounds(mesh: &Mesh) -> (Point3, Point3) {
+/// The corners of the box around a mesh, m.
+pub fn bounds(mesh: &Mesh) -> (Point3, Point3) {
     let first = mesh.points()[0];
     mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }

@@ -44,11 +44,7 @@ fn projected<'l>(
     let mut pressure = vec![0.0; gradients.len()];
     for a in 0..groups.len() {
         let (points, shares) = groups.group(a);
-        let mean = |value: &dyn Fn(usize) -> f64| {
-            let each = points.iter().zip(shares).map(|(&q, s)| (q as usize, s * weights[q as usize]));
-            let (sum, measure) = each.fold((0.0, 0.0), |(s, m), (q, dv)| (s + dv * value(q), m + dv));
-            sum / measure
-        };
+        let mean = |value: &dyn Fn(usize) -> f64| mean(points, shares, weights, value);
         let theta = mean(&|q| dilation(law(q), &gradients[q]));
         let of_group = mean(&|q| -cauchy(law(q), &dilated(law(q), &gradients[q], theta)).trace() / 3.0);
         for (&q, share) in points.iter().zip(shares) {
@@ -56,6 +52,13 @@ fn projected<'l>(
         }
     }
     pressure
+}
+
+/// Mean over a group of points, by volume and share.
+pub(super) fn mean(points: &[u32], shares: &[f64], weights: &[f64], value: &dyn Fn(usize) -> f64) -> f64 {
+    let each = points.iter().zip(shares).map(|(&q, s)| (q as usize, s * weights[q as usize]));
+    let (sum, measure) = each.fold((0.0, 0.0), |(s, m), (q, dv)| (s + dv * value(q), m + dv));
+    sum / measure
 }
 
 /// `J - 1`; `tr H` at small strain.

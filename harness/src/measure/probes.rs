@@ -7,7 +7,7 @@ use material::Law;
 use shape::Matrix3;
 
 use super::Solved;
-use super::mean_pressure::{self, cauchy, dilated, dilation};
+use super::mean_pressure::{self, cauchy, dilated, dilation, mean};
 use crate::Failure;
 use crate::error::Key;
 use crate::outcome::{Metric, Probe, push};
@@ -140,11 +140,6 @@ impl<'a> Own<'a> {
     /// Mean of `J - 1` over a group.
     fn dilation(&self, points: &[u32], shares: &[f64]) -> f64 {
         let weights = self.prepared.volume.rows.weights();
-        let (sum, volume) = points.iter().zip(shares).fold((0.0, 0.0), |(sum, volume), (&q, share)| {
-            let q = q as usize;
-            let dv = share * weights[q];
-            (sum + dv * dilation(self.law(q), &self.gradients[q]), volume + dv)
-        });
-        sum / volume
+        mean(points, shares, weights, &|q| dilation(self.law(q), &self.gradients[q]))
     }
 }

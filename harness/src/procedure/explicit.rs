@@ -12,7 +12,7 @@ use explicit::{
 use geometry::Vector3;
 use lanes::LanePath;
 use shape::Matrix3;
-use statics::{SolveError, nodal_forces};
+use statics::nodal_forces;
 
 use super::{Problem, Solution, Stages, StepHistory};
 use crate::Failure;
@@ -71,7 +71,7 @@ impl Loading {
     fn new(problem: &Problem, asked: &Explicit) -> Result<Loading, Failure> {
         let Problem { prepared, .. } = *problem;
         let loads = nodal_forces(&prepared.volume.rows, &prepared.loads())?;
-        Ok(Loading { loads, led: led(prepared)?, over: asked.ramp.growth() })
+        Ok(Loading { loads, led: led(prepared), over: asked.ramp.growth() })
     }
 }
 
@@ -199,17 +199,10 @@ fn stiffest(setup: &Setup) -> f64 {
     setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
 }
 
-/// Prescribed degrees of freedom, with their displacement (m) at the end. A node on two supports has one value or none.
-pub(crate) fn led(prepared: &Prepared) -> Result<BTreeMap<(u32, u8), f64>, Failure> {
-    let mut led = BTreeMap::new();
-    for fixed in prepared.fixed() {
-        let first = *led.entry((fixed.node, fixed.axis)).or_insert(fixed.value);
-        if (first - fixed.value).abs() > 1e-12 * first.abs().max(fixed.value.abs()) {
-            let (node, axis, second) = (fixed.node as usize, fixed.axis, fixed.value);
-            return Err(SolveError::Conflict { node, axis, first, second }.into());
-        }
-    }
-    Ok(led)
+/// Prescribed degrees of freedom, with their displacement (m) at the end. Supports that meet agree: `prepare` refuses others.
+pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), f64> {
+    // Of values that differ by rounding the first stays.
+    prepared.fixed().iter().rev().map(|fixed| ((fixed.node, fixed.axis), fixed.value)).collect()
 }
 
 /// Smallest volume ratio of all quadrature points.

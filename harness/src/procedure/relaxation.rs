@@ -90,7 +90,7 @@ pub(super) fn continue_from(
     let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
     let mut force = InternalForce::new(body, LanePath::best())?;
     let loads = nodal_forces(rows, &prepared.loads())?;
-    let constrained = led(prepared)?;
+    let constrained = led(prepared);
     let surface = prepared.contact.as_ref().map(ContactSurface::new);
     let part_of = |drive: Drive, load: f64| match drive {
         Drive::Closure(full) => Drive::Closure(full * load),

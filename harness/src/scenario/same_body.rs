@@ -5,6 +5,7 @@ use geometry::{CellKind, Mesh, Point3, Vector3, quality};
 
 use super::body;
 use crate::Failure;
+use crate::discretise::place;
 use crate::error::Key;
 
 /// Meshes of one curved body differ by more than rounding: they cut its corners. An outline may be off by this part of
@@ -28,8 +29,7 @@ struct Extent {
 impl Extent {
     fn of(mesh: &Mesh) -> Extent {
         let volume: f64 = quality::volumes(mesh).iter().sum();
-        let first = mesh.points()[0];
-        let (min, max) = mesh.points().iter().fold((first, first), |(min, max), x| (min.inf(x), max.sup(x)));
+        let (min, max) = place::bounds(mesh);
         let cubes = if mesh.kind(0).is_tet() { 6.0 * 2f64.sqrt() } else { 1.0 };
         Extent { min, max, volume, edge: (cubes * volume / mesh.cell_count() as f64).cbrt() }
     }
