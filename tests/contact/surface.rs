@@ -69,7 +69,7 @@ fn the_same_as_point_by_point_and_in_balance() {
         let surface = ContactSurface::new(&rows);
         let u = wave(&block, 1e-4);
         for shape in SHAPES {
-            // The plate faces down; the others stand with their z axis upright.
+            // The plate faces down; the others stand with their z axis up.
             let turn = if shape == ToolShape::Plate(Plate) {
                 Tool::turned_to(&-Vector3::z())
             } else {

@@ -193,7 +193,7 @@ impl Panel {
         if !self.y.label.is_empty() {
             let widest = self.y.ticks.iter().map(|(_, text)| text_width(text, TEXT)).fold(0.0, f64::max);
             let aside = (widest + 11.0).clamp(46.0, 54.0);
-            canvas.upright((left - aside, (top + bottom) / 2.0), &self.y.label, TEXT);
+            canvas.vertical((left - aside, (top + bottom) / 2.0), &self.y.label, TEXT);
         }
         canvas.bold((left, top - 8.0), title, TEXT, Anchor::Start);
     }

@@ -53,7 +53,7 @@ enum Shape {
         colour: Colour,
         anchor: Anchor,
         bold: bool,
-        upright: bool,
+        vertical: bool,
     },
 }
 
@@ -130,7 +130,7 @@ impl Canvas {
     }
 
     /// Text that reads upwards, centred.
-    pub(crate) fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
+    pub(crate) fn vertical(&mut self, at: (f64, f64), text: &str, size: f64) {
         self.push_text(at, text, size, BLACK_INK, Anchor::Middle, false, true);
     }
 
@@ -142,10 +142,10 @@ impl Canvas {
         colour: Colour,
         anchor: Anchor,
         bold: bool,
-        upright: bool,
+        vertical: bool,
     ) {
         let text = text.to_string();
-        self.shapes.push(Shape::Text { at, text, size, colour, anchor, bold, upright });
+        self.shapes.push(Shape::Text { at, text, size, colour, anchor, bold, vertical });
     }
 
     /// The SVG text; `title` names it for those who can't see it.
@@ -188,7 +188,7 @@ fn draw(area: &DrawingArea<Paths, plotters::coord::Shift>, shape: &Shape) -> Res
         Shape::Fill { points, colour, facet: true } => {
             area.draw(&Facet { points: scaled(points), colour: ink(*colour) }).map_err(|e| e.to_string())
         }
-        Shape::Text { at, text, size, colour, anchor, bold, upright } => {
+        Shape::Text { at, text, size, colour, anchor, bold, vertical } => {
             let weight = if *bold { FontStyle::Bold } else { FontStyle::Normal };
             let side = match anchor {
                 Anchor::Start => HPos::Left,
@@ -200,7 +200,7 @@ fn draw(area: &DrawingArea<Paths, plotters::coord::Shift>, shape: &Shape) -> Res
                 .into_text_style(area)
                 .color(&colour)
                 .pos(Pos::new(side, VPos::Center));
-            if *upright {
+            if *vertical {
                 style = style.transform(FontTransform::Rotate270);
             }
             area.draw_text(text, &style, (unit(at.0), unit(at.1))).map_err(|e| e.to_string())

@@ -189,7 +189,7 @@ fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64) {
         let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
         canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
         // Along its line: beside it there is no room where that is near an end of the axis.
-        canvas.upright((x + 6.0, bottom - 18.0), deadline.name, TEXT);
+        canvas.vertical((x + 6.0, bottom - 18.0), deadline.name, TEXT);
     }
 }
 

@@ -236,7 +236,7 @@ fn caption(tools: bool, chosen: &[Chosen]) -> String {
 /// Right, up and towards the viewer.
 type View = [[f64; 3]; 3];
 
-/// Seen from the front and a little from the right and above: z upright, or y where the body is longest along it.
+/// Seen from the front and a little from the right and above: z points up, or y where the body is longest along it.
 fn view(fields: &[&SurfaceField]) -> View {
     let extent = |axis: usize| {
         let values = || fields.iter().flat_map(|f| f.points.iter().map(move |p| p[axis]));
@@ -259,7 +259,7 @@ fn beside(fields: &[&SurfaceField]) -> View {
     turned([right, up, cross(right, up)], -12.0, 10.0)
 }
 
-/// A view turned to the right about its upright axis and then tilted upwards, degrees.
+/// A view turned to the right about its vertical axis and then tilted upwards, degrees.
 fn turned([right, up, towards]: View, turn: f64, tilt: f64) -> View {
     let (turn, tilt) = (turn.to_radians(), tilt.to_radians());
     let mixed = |a: [f64; 3], c: f64, b: [f64; 3], s: f64| -> [f64; 3] {

@@ -72,7 +72,7 @@ pub(crate) enum BodyKeys {
         /// Edge lengths
         size: Option<[Q<Length>; 3]>,
     },
-    /// An upright cylinder about the z axis with its base at z = 0
+    /// A cylinder about the z axis with its base at z = 0
     #[schemars(extend("x-surfaces" = with_all(&surfaces::CYLINDER)))]
     Cylinder {
         /// Radius

@@ -9,7 +9,7 @@ const INNER: f64 = 0.5;
 const CORE: f64 = 0.5;
 const BULGE: f64 = 0.35;
 
-/// An upright cylinder of `radius` and `height` (m) on the plane z = 0 around the z axis.
+/// A cylinder of `radius` and `height` (m) on the plane z = 0 around the z axis.
 ///
 /// `cells = [across, along]`: hexahedra along each side of the core square (with `(across + 1) / 2` layers around
 /// it), and along the height. `grading` is the ratio of the last to the first interval along the height (1:

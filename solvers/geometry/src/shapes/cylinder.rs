@@ -1,11 +1,11 @@
-//! The upright cylinder on the plane z = 0.
+//! The cylinder about the z axis, on the plane z = 0.
 
 use std::f64::consts::PI;
 
 use super::Shape;
 use crate::{Point3, Vector3};
 
-/// An upright cylinder around the z axis, from z = 0 to z = `height`.
+/// A cylinder around the z axis, from z = 0 to z = `height`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// Radius in metres.
