@@ -19,6 +19,10 @@
 //! The bound of Ogden's law on hex8 in AVX2: 8 points x 190 instructions on 4 lanes at two per cycle of some 3.5 GHz are
 //! 54 ns per element, beside the 55 ns of the kernel with the linear law: 1.63 of the neo-Hookean's time. Bytes are those of the kernel, whatever
 //! the law (see the benchmark `explicit`).
+//!
+//! A whole step of a run (`element-step` of a block of 18^3 hex8 or 10^3 cells of tet4, one thread, medians of ten and three)
+//! has gather, update and energies besides; Ogden's over the neo-Hookean's, AVX2 / AVX-512: hex8 1.60 (148 over 92 ns) / 1.47
+//! (115 over 78), hex8 mean 1.52 / 1.42, tet4 1.48 / 1.13.
 
 mod common;
 

@@ -23,6 +23,7 @@ pub type Coefficients = [f64; 3];
 
 impl Invariants {
     /// From `tr H` and `II(H) + det H`.
+    #[inline(always)]
     pub fn new(trace: f64, rest: f64) -> Invariants {
         Invariants { trace, rest, j: trace + rest }
     }
