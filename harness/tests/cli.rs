@@ -5,7 +5,7 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "dofs",
     "elements",
     "linear_solver",
@@ -18,6 +18,7 @@ const KEYS: [&str; 13] = [
     "scene",
     "status",
     "tools",
+    "warnings",
     "work",
 ];
 

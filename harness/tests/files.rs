@@ -62,15 +62,6 @@ fn a_baseline_that_is_not_there_is_bad_input() {
     assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
 }
 
-#[test]
-fn a_body_that_nothing_moves_is_warned_of() {
-    let dir = tempfile::tempdir().unwrap();
-    let done = tissuebench(&["run", &write(&dir, "still.toml", &common::without(BLOCK, "load"))]);
-    assert_eq!(done.code, 0, "{}", done.stderr);
-    assert!(done.stderr.contains("still.toml: warning: nothing moves this body"), "{}", done.stderr);
-    assert!(!tissuebench(&["plan", &write(&dir, "block.toml", BLOCK)]).stderr.contains("warning"));
-}
-
 /// Two tetrahedra on a common face, millimetres; no named surface.
 const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 40 0 0\n3 0 40 0\n4 0 0 20\n\
     5 40 40 20\n$EndNodes\n$Elements\n2\n7 4 2 0 1 1 2 3 4\n8 4 2 0 1 2 3 4 5\n$EndElements\n";

@@ -95,6 +95,9 @@ method = [{ id = "tet4", family = "fem", element = "tet4", size = { level = 3 } 
 fn a_probe_outside_the_cells_says_how_far() {
     let outside = probed(&run(BALL)[0]).outside;
     assert!(outside > 1e-6 && outside < 6e-4, "{outside}");
+    let warning = &run(BALL)[0]["warnings"][0];
+    assert_eq!((&warning["code"], warning["value"].as_f64()), (&"probe-outside".into(), Some(outside)));
+    assert_eq!((&warning["where"], &warning["unit"]), (&"output.probes[0]".into(), &"m".into()));
     assert_eq!(probed(&run(&BALL.replace("13.1 mm", "3 mm"))[0]).outside, 0.0);
 }
 

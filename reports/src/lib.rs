@@ -47,5 +47,7 @@ pub use provenance::{Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
 pub use record::{Family, Purpose, Record};
 pub use render::{Rendered, render};
-pub use run_set::{Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull};
+pub use run_set::{
+    Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
+};
 pub use store::{read_run, source_of, write_run};

@@ -165,6 +165,28 @@ pub struct Failure {
     pub reason: String,
 }
 
+/// What is to be said against the numbers of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    /// Case name.
+    pub case: String,
+    /// Method id.
+    pub method: String,
+    /// Id of the run, as in the records.
+    pub run: String,
+    /// Which warning, such as `probe-outside`.
+    pub code: String,
+    /// What it means here, with its numbers.
+    pub message: String,
+    /// The number it goes by, SI.
+    pub value: f64,
+    /// Unit of the value; `1` for a bare number.
+    pub unit: String,
+    /// The key of the scene that it is about, or empty.
+    #[serde(rename = "where")]
+    pub place: String,
+}
+
 /// Everything one study leaves behind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSet {
@@ -180,4 +202,6 @@ pub struct RunSet {
     pub plans: Vec<PlanEntry>,
     /// Runs that failed.
     pub failures: Vec<Failure>,
+    /// What is to be said against the numbers.
+    pub warnings: Vec<Warning>,
 }

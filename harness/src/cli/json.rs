@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::outcome::{Counters, LoadStep, Outcome, Plan, Unfinished};
+use crate::outcome::{Counters, LoadStep, Outcome, Plan, Unfinished, Warning};
 
 /// One run as `tissuebench run --format json` prints it.
 #[derive(Serialize)]
@@ -28,6 +28,8 @@ pub struct RunObject<'a> {
     /// Load steps of a static procedure, as far as it came; absent in a linear one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
+    /// What is to be said against these numbers; empty in a run without any.
+    warnings: &'a [Warning],
     plan: &'a Plan,
     /// What evaluated the internal forces of explicit dynamics or relaxation.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -144,6 +146,7 @@ impl<'a> RunObject<'a> {
                         .collect(),
                 })
                 .collect(),
+            warnings: &outcome.warnings,
             plan: &outcome.plan,
             force_kernel: outcome.identity.force_kernel.as_deref(),
             lane_path: outcome.identity.lane_path.as_deref(),
@@ -167,6 +170,7 @@ impl<'a> RunObject<'a> {
             probes: Vec::new(),
             tools: Vec::new(),
             steps: Vec::new(),
+            warnings: &[],
             plan: &run.plan,
             force_kernel: None,
             lane_path: None,

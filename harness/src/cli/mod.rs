@@ -97,10 +97,6 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
     if !ahead.is_empty() {
         return Err(refuse(&ahead));
     }
-    if !scene.is_moved() {
-        let why = "it has no load, no tool and no support that moves";
-        eprintln!("{}: warning: nothing moves this body: {why}", path.display());
-    }
     let mut chosen = Vec::new();
     for id in methods {
         match scene.methods.iter().position(|m| m.id == *id) {

@@ -107,6 +107,7 @@ impl Made<'_> {
         }
         self.set.records.extend(records);
         self.set.plans.extend(outcome.plan_entries());
+        self.set.warnings.extend(outcome.warning_rows());
         self.set.fields.extend(outcome.field.clone());
         if let Some(reason) = &outcome.relaxed {
             eprintln!("relaxed: {reason} (method '{}')", method.id);
@@ -134,6 +135,7 @@ impl Made<'_> {
     fn conclude(mut self, machine: reports::Machine) -> u8 {
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
             println!("{}", text::outcomes(&self.outcomes));
+            print!("{}", text::warnings(&self.outcomes));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
             eprintln!("{}", text::verdict(check));

@@ -108,6 +108,22 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
+/// What is to be said against the numbers above, a line for each warning with the methods it is of.
+pub fn warnings(outcomes: &[Outcome]) -> String {
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    for outcome in outcomes {
+        let method = outcome.identity.method.as_str();
+        for warning in &outcome.warnings {
+            let text = warning.text();
+            match found.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, methods)) => methods.push(method),
+                None => found.push((text, vec![method])),
+            }
+        }
+    }
+    found.iter().map(|(text, methods)| format!("warning: {}: {text}\n", methods.join(", "))).collect()
+}
+
 /// The method that the others are compared with: it differs by nothing from itself. An exact solution is no method.
 fn is_reference(outcome: &Outcome) -> bool {
     outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none()

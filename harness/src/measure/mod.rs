@@ -1,15 +1,18 @@
 //! What a finished run is compared with and what it is like: errors, maxima, energies, counts, probes.
 
 mod displacement;
+mod estimate;
 pub(crate) mod mean_pressure;
 mod modes;
 pub(crate) mod norms;
+mod own_stress;
 mod picture;
 mod probe_history;
 mod probes;
 mod request;
 mod step_history;
 mod transfer;
+mod warnings;
 
 use cases::exact::Exact;
 use catalogue::metric;
@@ -34,6 +37,7 @@ pub(crate) use request::Request;
 pub use request::{Reference, Repeats};
 pub(crate) use step_history::report as report_steps;
 pub(crate) use transfer::transfers;
+pub(crate) use warnings::warnings;
 
 /// A solved run, of which everything is measured.
 #[derive(Clone, Copy)]
@@ -97,6 +101,9 @@ pub(crate) fn measure(
     let resultant = prepared.resultant();
     for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
         push(metrics, entry, resultant[axis]);
+    }
+    if let Some(estimate) = estimate::estimated_error(run) {
+        push(metrics, &metric::ESTIMATED_ERROR, estimate);
     }
     of_tables(metrics, prepared);
     Ok(())

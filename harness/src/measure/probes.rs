@@ -3,11 +3,10 @@
 use cases::exact::Exact;
 use catalogue::metric;
 use geometry::{Mesh, Point3};
-use material::Law;
 use shape::Matrix3;
 
 use super::Solved;
-use super::mean_pressure::{self, cauchy, dilated, dilation, mean};
+use super::own_stress::OwnStress;
 use crate::Failure;
 use crate::error::Key;
 use crate::outcome::{Metric, Probe, push};
@@ -52,8 +51,8 @@ pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Fail
     let stress: Vec<Option<Matrix3>> = match setup.relaxes() {
         true => vec![None; points.len()],
         false => {
-            let own = Own::new(&setup.laws, prepared, &of_points, &solution.pressure);
-            near.iter().zip(&gradients).map(|(&q, h)| Some(own.stress(q, h))).collect()
+            let own = OwnStress::new(&setup.laws, prepared, &of_points, &solution.pressure);
+            near.iter().zip(&gradients).map(|(&q, h)| Some(own.at(q, h))).collect()
         }
     };
     let field = rows.rows().apply(&solution.u);
@@ -96,50 +95,4 @@ fn quadrature_point(prepared: &Prepared, cell: usize, x: &Point3) -> usize {
     };
     let far = |q: &usize| (points[*q] - x).norm_squared();
     candidates.filter(shares).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
-}
-
-/// Stresses of a method: of the law, with the mean pressure of its projection where it has one.
-struct Own<'a> {
-    laws: &'a [Law],
-    prepared: &'a Prepared,
-    /// Displacement gradients at the quadrature points.
-    gradients: &'a [Matrix3],
-    /// Mean pressure at the quadrature points, Pa; none without a projection.
-    pressure: Option<Vec<f64>>,
-}
-
-impl<'a> Own<'a> {
-    fn new(laws: &'a [Law], prepared: &'a Prepared, gradients: &'a [Matrix3], parameters: &[f64]) -> Own<'a> {
-        let volume = &prepared.volume;
-        let projected = volume.groups.is_some() || volume.pressure.is_some();
-        let pressure = projected.then(|| mean_pressure::at_points(laws, volume, gradients, parameters));
-        Own { laws, prepared, gradients, pressure }
-    }
-
-    fn law(&self, q: usize) -> &'a Law {
-        &self.laws[self.prepared.volume.region.get(q).map_or(0, |&r| usize::from(r))]
-    }
-
-    /// Cauchy stress (Pa) at a displacement gradient, with the law and the dilation of quadrature point `q`.
-    fn stress(&self, q: usize, h: &Matrix3) -> Matrix3 {
-        let Some(pressure) = &self.pressure else { return cauchy(self.law(q), h) };
-        let shape = match &self.prepared.volume.groups {
-            None => cauchy(self.law(q), h),
-            Some(groups) => (0..groups.len())
-                .filter_map(|a| {
-                    let (points, shares) = groups.group(a);
-                    let own = points.iter().position(|&p| p as usize == q)?;
-                    let law = self.law(q);
-                    Some(cauchy(law, &dilated(law, h, self.dilation(points, shares))) * shares[own])
-                })
-                .sum(),
-        };
-        shape - Matrix3::identity() * (shape.trace() / 3.0 + pressure[q])
-    }
-
-    /// Mean of `J - 1` over a group.
-    fn dilation(&self, points: &[u32], shares: &[f64]) -> f64 {
-        let weights = self.prepared.volume.rows.weights();
-        mean(points, shares, weights, &|q| dilation(self.law(q), &self.gradients[q]))
-    }
 }

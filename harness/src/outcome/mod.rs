@@ -7,6 +7,7 @@ mod plan;
 pub mod provenance;
 mod records;
 pub(crate) mod timing;
+mod warning;
 
 use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};
@@ -21,6 +22,7 @@ pub use plan::{Plan, Stage, StageName};
 pub(crate) use records::run_id;
 pub(crate) use timing::Meters;
 use timing::Timed;
+pub use warning::Warning;
 
 /// Which run: its record without size and number.
 pub type Identity = Record;
@@ -177,6 +179,8 @@ pub struct Outcome {
     pub relaxed: Option<Failure>,
     /// Why it ended early; its numbers are then those of the load it reached.
     pub stalled: Option<Failure>,
+    /// What is to be said against its numbers.
+    pub warnings: Vec<Warning>,
 }
 
 /// A run that gave no numbers.
@@ -218,7 +222,14 @@ impl Outcome {
             status: "ok",
             relaxed: None,
             stalled: None,
+            warnings: Vec::new(),
         }
+    }
+
+    /// Adds warnings of the scene before those of the run, and counts all.
+    pub(crate) fn warn(&mut self, of_scene: Vec<Warning>) {
+        self.warnings.splice(0..0, of_scene);
+        push(&mut self.metrics, &metric::WARNINGS, self.warnings.len() as f64);
     }
 
     /// One metric's value.

@@ -74,6 +74,22 @@ impl Outcome {
         rows
     }
 
+    /// The warnings as rows for the report.
+    pub fn warning_rows(&self) -> Vec<reports::Warning> {
+        let run = self.row().run;
+        let each = self.warnings.iter().map(|warning| reports::Warning {
+            case: self.identity.case.clone(),
+            method: self.identity.method.clone(),
+            run: run.clone(),
+            code: warning.kind.code.into(),
+            message: warning.message.clone(),
+            value: warning.value,
+            unit: warning.unit.into(),
+            place: warning.place.clone(),
+        });
+        each.collect()
+    }
+
     /// The plan as rows for the report.
     pub fn plan_entries(&self) -> Vec<PlanEntry> {
         self.plan

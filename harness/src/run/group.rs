@@ -14,7 +14,7 @@ use crate::measure::{self, Repeats, Request};
 use crate::outcome::{Counters, LoadStep, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished};
 use crate::prepare::reach;
 use crate::procedure::{Wanted, plan};
-use crate::scenario::{Scenario, point, rule};
+use crate::scenario::{Scenario, point, rule, warnings};
 
 /// What every run of a scene shares.
 pub struct Group<'a> {
@@ -213,6 +213,7 @@ impl<'a> Group<'a> {
                 let locate = |failure| scenario.locate(failure);
                 solved.outcome.stalled = solved.outcome.stalled.map(locate);
                 solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
+                solved.outcome.warn(warnings(self.scene, discretisation.mesh()));
                 Ok(solved.outcome)
             }
             Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan, size }),

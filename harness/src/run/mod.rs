@@ -14,7 +14,7 @@ use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
     self, Field, Reference, Request, check_probes, displacement, measure, of_tables, picture, probe_errors,
-    probe_history, probes, report_modes, report_steps, transfers,
+    probe_history, probes, report_modes, report_steps, transfers, warnings,
 };
 use crate::outcome::timing::Timed;
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
@@ -163,6 +163,7 @@ fn loaded(
     if outcome.plan.runs(StageName::Schemes) {
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
     }
+    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes);
     if let Some(ask) = request.repeated.filter(|_| whole) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }

@@ -8,12 +8,14 @@ mod grading;
 mod identity;
 mod law;
 mod locate;
+mod notes;
 mod same_body;
 pub(crate) mod setup;
 mod tools;
 
 pub(crate) use body::point;
 pub(crate) use identity::{purpose, rule};
+pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;
 
 use cases::exact::{Exact, Medium};

@@ -229,6 +229,7 @@ impl Plan {
             counters += result.counters;
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
+            set.warnings.extend(result.warnings.iter().cloned());
             for field in &result.fields {
                 // Of a method at several sizes the finest is shown.
                 let same =

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reports::{Failure as FailedRun, Machine, PlanEntry, Program, Record, SurfaceField};
+use reports::{Failure as FailedRun, Machine, PlanEntry, Program, Record, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -15,6 +15,8 @@ pub struct TaskResult {
     pub records: Vec<Record>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
+    /// What is to be said against its numbers.
+    pub warnings: Vec<Warning>,
     /// Surface displacement, where asked for.
     pub fields: Vec<SurfaceField>,
     /// Why it failed, with its exit code.
@@ -30,6 +32,7 @@ impl TaskResult {
         TaskResult {
             records: outcome.records(),
             plans: outcome.plan_entries(),
+            warnings: outcome.warning_rows(),
             fields: outcome.field.iter().cloned().collect(),
             failure: outcome.stalled.as_ref().map(|f| (stalled(outcome, f), f.exit_code())),
             counters: outcome.counters,

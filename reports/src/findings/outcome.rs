@@ -1,6 +1,6 @@
 //! Checks and failed runs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::run_set::{RunSet, Status};
 use crate::text::significant;
@@ -8,7 +8,7 @@ use crate::text::significant;
 /// How many checks passed, and every one that did not with its reason.
 pub(super) fn checks(set: &RunSet) -> Vec<String> {
     let mut out = Vec::new();
-    if set.checks.is_empty() && set.failures.is_empty() {
+    if set.checks.is_empty() && set.failures.is_empty() && set.warnings.is_empty() {
         return out;
     }
     let with = |status: Status| set.checks.iter().filter(move |c| c.status == status);
@@ -37,6 +37,17 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
             let tail = if more > 0 { format!("; and {more} more") } else { String::new() };
             out.push(format!("{word}: {}{tail}. {}", which.join("; "), sentence(reason)));
         }
+    }
+    let mut by_code: BTreeMap<&str, BTreeSet<(&str, &str)>> = BTreeMap::new();
+    for w in &set.warnings {
+        by_code.entry(&w.code).or_default().insert((&w.case, &w.method));
+    }
+    for (code, which) in by_code {
+        let named: Vec<String> =
+            which.iter().take(4).map(|(case, method)| format!("{case}, {method}")).collect();
+        let more = which.len().saturating_sub(4);
+        let tail = if more > 0 { format!("; and {more} more") } else { String::new() };
+        out.push(format!("Warning {code}: {}{tail}.", named.join("; ")));
     }
     for f in &set.failures {
         out.push(format!("No result for {}, {}: {}.", f.case, f.method, f.reason.trim_end_matches('.')));

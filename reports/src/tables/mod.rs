@@ -45,6 +45,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         closure::force_closure(runs),
         outcome::checks(set),
         outcome::failures(set),
+        outcome::warnings(set),
         outcome::plan(set),
     ];
     tables.into_iter().filter(|t| !t.is_empty()).collect()

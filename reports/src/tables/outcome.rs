@@ -69,6 +69,35 @@ pub(super) fn failures(set: &RunSet) -> Table {
     table
 }
 
+/// What is to be said against the numbers of runs.
+pub(super) fn warnings(set: &RunSet) -> Table {
+    let mut table = Table::new(
+        "warnings",
+        "Warnings",
+        "Runs that gave numbers which are to be read with care, and why; `tissuebench list warnings` explains the codes",
+        &[
+            ("case", Words),
+            ("method", Words),
+            ("warning", Words),
+            ("value", Number),
+            ("unit", Words),
+            ("what", Words),
+        ],
+    );
+    for w in &set.warnings {
+        let place = if w.place.is_empty() { String::new() } else { format!("{}: ", w.place) };
+        table.row(&[
+            Cell::Text(&w.case),
+            Cell::Text(&w.method),
+            Cell::Text(&w.code),
+            Cell::Digits(Some(w.value), 3),
+            Cell::Text(&w.unit),
+            Cell::Text(&format!("{place}{}", w.message)),
+        ]);
+    }
+    table
+}
+
 /// How often each stage ran or was skipped, by reason.
 pub(super) fn plan(set: &RunSet) -> Table {
     let mut table = Table::new(

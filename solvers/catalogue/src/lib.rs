@@ -5,7 +5,7 @@
 //! this crate has their types, the units of their parameters and the nearest known name of a mistyped one. Scene files,
 //! their schema, messages, lists and property tests all walk the same slices of entries.
 //!
-//! The [metrics](metric) are here themselves, because solvers record them and reports draw them.
+//! The [metrics](metric) and [warnings](warning) are here themselves, because solvers record them and reports draw them.
 //!
 //! ```
 //! use catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
@@ -36,6 +36,7 @@ mod parameter;
 mod problem;
 mod quantity;
 mod values;
+pub mod warning;
 
 pub use dimension::Dimension;
 pub use entry::{Entry, find, names};

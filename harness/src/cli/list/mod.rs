@@ -7,6 +7,7 @@ use std::path::Path;
 
 use cases::exact::SOLUTIONS;
 use catalogue::metric::METRICS;
+use catalogue::warning::WARNINGS;
 use catalogue::{Dimension, suggest, units};
 use contact::TOOL_SHAPES;
 use material::LAWS;
@@ -26,7 +27,7 @@ const fn part(name: &'static str, key: &'static str, items: fn() -> Vec<Item>) -
     Part { name, key, items }
 }
 
-const PARTS: [Part; 21] = [
+const PARTS: [Part; 22] = [
     part("bodies", "body.shape; their surfaces: on", || forms("body")),
     part("laws", "material.law", || Item::of_entries(LAWS)),
     part("tools", "tool.shape", || Item::of_entries(TOOL_SHAPES)),
@@ -47,6 +48,7 @@ const PARTS: [Part; 21] = [
     part("publications", "published", || forms("published")),
     part("units", "of quantities such as \"20 kPa\"", dimensions),
     part("metrics", "check.metric, and what is recorded", metrics),
+    part("warnings", "of a run, counted by the metric \"warnings\"", warnings),
     part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
 ];
 
@@ -106,6 +108,10 @@ fn dimensions() -> Vec<Item> {
 
 fn metrics() -> Vec<Item> {
     METRICS.iter().map(|metric| Item::new(metric.name, metric.unit(), metric.meaning)).collect()
+}
+
+fn warnings() -> Vec<Item> {
+    WARNINGS.iter().map(|warning| Item::new(warning.code, warning.unit(), warning.meaning)).collect()
 }
 
 /// The TOML files of the folders `scenes` and `studies` and below, those of a folder in order of their names.

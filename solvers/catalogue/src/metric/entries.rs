@@ -238,6 +238,10 @@ metrics! {
         "relative residual of the linear solve, of the last static step, or of the worst reported mode";
     FACTOR_NONZEROS: "factor-nonzeros", "nonzeros of the factor", None, Count, Run,
         "stored entries of the matrix factor";
+    ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
+        "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
+    WARNINGS: "warnings", "warnings", None, Count, Run,
+        "warnings of the run";
     TARGETS_OUTSIDE: "targets-outside", "targets outside the mesh", None, Count, Run,
         "points of comparison outside the mesh, where the nearest element is continued";
     CONSTRAINTS_ELIMINATED: "constraints-eliminated", "eliminated constraints", None, Count, Run,

@@ -1,0 +1,91 @@
+//! What is to be said against the numbers of a run: each warning where its number is known.
+
+use catalogue::{metric, warning};
+
+use super::Solved;
+use crate::outcome::{Metric, Probe, Warning};
+
+/// Of the norm of the stress. On the cases with an exact solution the estimate is 0.5 to 0.95 of the true error where a mesh is
+/// fine enough for its order and at least 0.2 where it locks; displacements are then off by 5 to 50 %.
+const ROUGH_STRESS: f64 = 0.25;
+/// Of the largest displacement, in one step.
+const LONG_STEP: f64 = 0.01;
+/// A cloud on the vertices of its tetrahedra has two to six cells per node, and one point in each sees its motions; at 1.7 some
+/// clouds already move between their points.
+const POINTS_PER_NODE: f64 = 2.0;
+
+/// All that can be said once the run is measured.
+pub(crate) fn warnings(run: &Solved, metrics: &[Metric], probes: &[Probe]) -> Vec<Warning> {
+    let mut found = Vec::new();
+    found.extend(probes.iter().enumerate().filter_map(|(index, probe)| outside(index, probe)));
+    found.extend(blended(run));
+    found.extend(few_points(run));
+    let value = |entry: &metric::Metric| metrics.iter().find(|m| m.entry == entry).map(|m| m.value);
+    found.extend(long_step(value(&metric::STEP_ERROR), value(&metric::MAX)));
+    found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
+    found
+}
+
+fn outside(index: usize, probe: &Probe) -> Option<Warning> {
+    (probe.outside > 0.0).then(|| {
+        let message = format!(
+            "lies {:.4} mm outside the mesh: its values are those of the mesh's nearest point",
+            1e3 * probe.outside
+        );
+        Warning::new(&warning::PROBE_OUTSIDE, probe.outside, format!("output.probes[{index}]"), message)
+    })
+}
+
+fn blended(run: &Solved) -> Option<Warning> {
+    if run.method.interpolates || !run.method.has_regions() {
+        return None;
+    }
+    let span = |moduli: Vec<f64>| {
+        moduli.iter().copied().fold(0.0, f64::max) / moduli.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let materials = || run.setup.materials.iter();
+    let jump = span(materials().map(|m| m.mu()).collect()).max(span(materials().map(|m| m.bulk()).collect()));
+    (jump > 1.0).then(|| {
+        let message = format!(
+            "the shape functions of the cloud reach across the border of materials whose moduli are 1 to {jump:.4}: they \
+             smooth the jump of the strain there; elements do not"
+        );
+        Warning::new(&warning::REGIONS_BLENDED, jump, "region", message)
+    })
+}
+
+fn few_points(run: &Solved) -> Option<Warning> {
+    if run.method.interpolates {
+        return None;
+    }
+    let each = run.prepared.volume.rows.weights().len() as f64 / run.method.nodes().len() as f64;
+    (each < POINTS_PER_NODE).then(|| {
+        let message = format!(
+            "{each:.2} integration points per node do not see every motion of the cloud; {POINTS_PER_NODE} do: take finer \
+             cells (background) or more points (integration)"
+        );
+        Warning::new(&warning::FEW_POINTS, each, "", message)
+    })
+}
+
+fn long_step(error: Option<f64>, largest: Option<f64>) -> Option<Warning> {
+    let relative = error? / largest.filter(|u| *u > 0.0)?;
+    (relative > LONG_STEP).then(|| {
+        let message = format!(
+            "the estimated error of one time step is {:.2} % of the largest displacement: take shorter steps, or give \
+             accuracy",
+            100.0 * relative
+        );
+        Warning::new(&warning::STEP_ERROR, relative, "procedure", message)
+    })
+}
+
+fn rough_stress(estimate: Option<f64>) -> Option<Warning> {
+    let value = estimate.filter(|value| *value > ROUGH_STRESS)?;
+    let message = format!(
+        "the stress is not smooth: its error is estimated as {:.0} % in the energy norm. The mesh or cloud is too coarse, or it \
+         locks",
+        100.0 * value
+    );
+    Some(Warning::new(&warning::ESTIMATED_ERROR, value, "", message))
+}

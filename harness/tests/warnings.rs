@@ -1,0 +1,122 @@
+//! Numbers that are to be read with care say so: in the object of the run, in its table and in its folder.
+
+mod common;
+
+use common::{BLOCK, assert_fails, inside, objects, tissuebench, without, write, written_out};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The objects of a scene's runs.
+#[track_caller]
+fn run(dir: &TempDir, text: &str) -> Vec<Value> {
+    let done = tissuebench(&["run", &write(dir, "scene.toml", text), "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    objects(&done.stdout)
+}
+
+fn metric(run: &Value, name: &str) -> f64 {
+    run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {run}"))
+}
+
+fn codes(run: &Value) -> Vec<&str> {
+    run["warnings"].as_array().unwrap().iter().map(|w| w["code"].as_str().unwrap()).collect()
+}
+
+const TWO_LAYERS: &str = r#"
+title = "Two layers"
+body = { shape = "box", size = ["20 mm", "20 mm", "20 mm"] }
+material = { law = "linear", young = "1 kPa", poisson = 0.3 }
+region = [{ name = "upper", where = "z > 11 mm", material = { law = "linear", young = "4 kPa", poisson = 0.3 } }]
+support = [{ on = "z-min", fix = "xyz" }]
+load = [{ on = "z-max", traction = ["0 Pa", "0 Pa", "-10 Pa"] }]
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { cells = [4, 4, 4] } },
+    { id = "hex8-20", family = "fem", element = "hex8", size = { cells = [4, 4, 20] } },
+    { id = "efg", family = "efg", size = { nodes = 125 }, kernel = "cubic-spline", basis = "linear", support_scale = 1.6, essential = "multipliers", integration = { rule = "gauss", points = 1 } },
+]
+"#;
+
+#[test]
+fn a_cut_region_and_a_blended_jump_are_told_with_their_numbers() {
+    let dir = tempfile::tempdir().unwrap();
+    let runs = run(&dir, TWO_LAYERS);
+    // The border at 11 mm runs through the third of four layers of cells, and between the cells of twenty.
+    let cut = &runs[0]["warnings"][0];
+    assert_eq!((cut["code"].as_str(), cut["value"].as_f64()), (Some("region-cut"), Some(0.25)));
+    assert_eq!(cut["where"], "region[0].where");
+    assert!(cut["message"].as_str().unwrap().contains("16 of 64 cells"), "{cut}");
+    assert!(!codes(&runs[1]).contains(&"region-cut"), "{:?}", codes(&runs[1]));
+    let blended = runs[2]["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "regions-blended");
+    assert!((blended.unwrap()["value"].as_f64().unwrap() - 4.0).abs() < 1e-12);
+    for run in &runs {
+        assert_eq!(metric(run, "warnings"), codes(run).len() as f64);
+    }
+}
+
+#[test]
+fn a_cloud_with_a_point_in_each_of_few_cells_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let few = "size = { nodes = 125 }, background = { cells = [3, 3, 3] }";
+    let [coarse, fine] = ["", few].map(|few| {
+        let text = if few.is_empty() {
+            TWO_LAYERS.into()
+        } else {
+            TWO_LAYERS.replace("size = { nodes = 125 }", few)
+        };
+        codes(&run(&dir, &text)[2]).contains(&"few-points")
+    });
+    assert!(!coarse && fine);
+}
+
+#[test]
+fn a_mesh_that_locks_warns_of_its_stress_and_a_good_one_does_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let bending = |poisson: &str| {
+        let text = written_out("pure-bending.toml");
+        let kept = text.replace("poisson = 0.3", &format!("poisson = {poisson}"));
+        run(&dir, &kept)
+            .into_iter()
+            .map(|r| (r["method"].as_str().unwrap().to_string(), r))
+            .collect::<Vec<_>>()
+    };
+    let locked = bending("0.4999");
+    for (method, warns) in [("tet4", true), ("hex8", true), ("hex8-mean", false), ("tet10", false)] {
+        let found = &locked.iter().find(|(m, _)| m == method).unwrap_or_else(|| panic!("no {method}")).1;
+        assert_eq!(codes(found).contains(&"estimated-error"), warns, "{method}: {found}");
+    }
+}
+
+#[test]
+fn a_check_can_forbid_warnings_and_a_folder_keeps_them() {
+    let dir = tempfile::tempdir().unwrap();
+    let still = without(BLOCK, "load")
+        .replace("method =", "check = [{ metric = \"warnings\", at_most = 0 }]\nmethod =");
+    let (scene, out) = (write(&dir, "still.toml", &still), inside(&dir, "out"));
+    let done = tissuebench(&["run", &scene, "--out", &out]);
+    assert_fails(&done, 1, "FAILED: still tet4 warnings");
+    assert!(done.stdout.contains("warning: tet4: nothing moves this body"), "{}", done.stdout);
+    let kept = std::fs::read_to_string(dir.path().join("out/warnings.json")).unwrap();
+    let kept: Value = serde_json::from_str(&kept).unwrap();
+    assert_eq!((&kept[0]["code"], &kept[0]["case"]), (&"nothing-moves".into(), &"still".into()));
+    assert!(
+        std::fs::read_to_string(dir.path().join("out/report/report.html")).unwrap().contains("nothing-moves")
+    );
+}
+
+/// A bar of one period of 1.39 s swings at 3.8 s in five steps: energy is kept all the same.
+#[test]
+fn time_steps_that_are_too_long_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let moved = |steps: usize| {
+        let text = BLOCK
+            .replace("poisson = 0.3", "poisson = 0.3, density = \"1000 kg/m^3\"")
+            .replace("load =", &format!("procedure = {{ kind = \"implicit-dynamic\", duration = \"40 ms\", steps = {steps} }}\nload ="))
+            .replace("law = \"linear\"", "law = \"neo-hookean\"")
+            .replace("pressure = \"1 kPa\"", "pressure = \"100 Pa\"");
+        run(&dir, &text).remove(0)
+    };
+    let (long, short) = (moved(4), moved(400));
+    assert!(codes(&long).contains(&"step-error"), "{long}");
+    assert!(!codes(&short).contains(&"step-error"), "{short}");
+    assert!(metric(&long, "energy-drift") < 1e-2);
+}

@@ -1,0 +1,66 @@
+//! The warnings: what can make a run's numbers worth less than they look. A run that warns has all its numbers and its
+//! status; whether it is right is for its reader, or for a check, to decide.
+
+use crate::Dimension;
+
+/// A kind of warning.
+#[derive(Debug, PartialEq)]
+pub struct Warning {
+    /// Code in files and tables.
+    pub code: &'static str,
+    /// Dimension of the value that goes with it.
+    pub dimension: Dimension,
+    /// What is wrong, in one line, with the value that is told.
+    pub meaning: &'static str,
+}
+
+impl Warning {
+    /// SI unit of its value; `1` for a bare number.
+    pub fn unit(&self) -> &'static str {
+        self.dimension.si_unit()
+    }
+}
+
+/// Declares each warning as a static of its own and lists them all.
+macro_rules! warnings {
+    ($($id:ident: $code:literal, $dimension:ident, $meaning:literal;)*) => {
+        $(
+            #[doc = concat!("`", $code, "`: ", $meaning, ".")]
+            pub static $id: Warning =
+                Warning { code: $code, dimension: Dimension::$dimension, meaning: $meaning };
+        )*
+        /// Every warning, in the order lists show them.
+        pub static WARNINGS: &[&Warning] = &[$(&$id),*];
+    };
+}
+
+warnings! {
+    NOTHING_MOVES: "nothing-moves", None,
+        "no load, no tool and no moved support: every displacement is 0";
+    PROBE_OUTSIDE: "probe-outside", Length,
+        "a probe lies outside the mesh and has the values of the mesh's nearest point; the distance";
+    REGION_CUT: "region-cut", None,
+        "the border of a region runs through cells, each of which is of the material at its centre; the share of such cells";
+    REGIONS_BLENDED: "regions-blended", None,
+        "shape functions of a cloud reach across the border of two materials and smooth the jump of the strain there; the \
+         stiffer's modulus over the softer's";
+    FEW_POINTS: "few-points", None,
+        "a cloud has too few integration points to see all its motions; points per node";
+    STEP_ERROR: "step-error", None,
+        "time steps are too long: the estimated error of one step over the largest displacement";
+    ESTIMATED_ERROR: "estimated-error", None,
+        "the stress is far from smooth: its estimated error in the energy norm over the norm of the stress";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_warning_has_a_code_of_its_own() {
+        for (i, warning) in WARNINGS.iter().enumerate() {
+            assert!(WARNINGS[..i].iter().all(|other| other.code != warning.code), "{} twice", warning.code);
+            assert!(warning.meaning.contains(['.', ';', ':']), "{}", warning.code);
+        }
+    }
+}
