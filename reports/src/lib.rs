@@ -20,6 +20,7 @@
 //! # }
 //! ```
 
+mod axis;
 pub mod baseline;
 mod clouds;
 mod error;
@@ -41,6 +42,7 @@ mod table;
 mod tables;
 mod text;
 
+pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
 pub use provenance::{Machine, Program, Provenance, SceneHash};

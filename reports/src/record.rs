@@ -120,6 +120,12 @@ pub struct Record {
     pub lane_path: Option<String>,
     /// Linear solver that ran, such as `sparse-llt`.
     pub linear_solver: Option<String>,
+    /// What a study drives the scene along; empty for the scene as it is.
+    #[serde(default)]
+    pub axis: String,
+    /// Where on that axis it is.
+    #[serde(default)]
+    pub at: Option<f64>,
     /// Poisson's ratio of the (first) material, dimensionless.
     pub poisson: f64,
     /// Refinement level, 1 the coarsest; 0 where the run belongs to no family of levels.
@@ -197,6 +203,7 @@ impl Record {
         let words = |value: &Option<String>| value.clone();
         let number = |value: &Option<f64>| value.map(|v| v.to_string());
         let all = [
+            ("along", self.at.map(|at| format!("{} at {at}", self.axis))),
             ("basis", words(&self.basis)),
             ("support scale", number(&self.support_scale)),
             ("dilation", words(&self.dilation)),

@@ -10,6 +10,7 @@ use crate::clouds::{self, Clouds};
 use crate::error::ReportError;
 use crate::figures;
 use crate::findings;
+use crate::record::Record;
 use crate::provenance::{Machine, Program, SceneHash};
 use crate::run_set::{RunSet, Status};
 use crate::select;
@@ -39,7 +40,9 @@ pub struct Rendered {
 /// The same records give the same bytes. Nothing is solved or timed again.
 pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     let set = read_run(results)?;
-    let (runs, clouds) = clouds::part(&select::runs(&set.records));
+    // Along an axis a scene is another one from value to value: it has maps of its own.
+    let as_they_are: Vec<Record> = set.records.iter().filter(|r| r.at.is_none()).cloned().collect();
+    let (runs, clouds) = clouds::part(&select::runs(&as_they_are));
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;

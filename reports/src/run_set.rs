@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::axis::Axis;
 use crate::error::ReportError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
@@ -204,4 +205,6 @@ pub struct RunSet {
     pub failures: Vec<Failure>,
     /// What is to be said against the numbers.
     pub warnings: Vec<Warning>,
+    /// How methods fare along axes.
+    pub axes: Vec<Axis>,
 }

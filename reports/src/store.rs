@@ -7,6 +7,7 @@
 //! | `checks.csv`, `checks.json` | every bound and how it came out |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers |
 //! | `warnings.json` | what is to be said against the numbers of runs |
+//! | `axes.json` | how methods fare along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |
 //!
 //! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
@@ -50,6 +51,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_json(&dir.join("plans.json"), &run.plans)?;
     write_json(&dir.join("failures.json"), &run.failures)?;
     write_json(&dir.join("warnings.json"), &run.warnings)?;
+    write_json(&dir.join("axes.json"), &run.axes)?;
     let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
@@ -119,6 +121,7 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
         plans: read_json(&dir.join("plans.json"))?,
         failures: read_json(&dir.join("failures.json"))?,
         warnings: read_json(&dir.join("warnings.json"))?,
+        axes: read_json(&dir.join("axes.json"))?,
     };
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;

@@ -41,6 +41,11 @@ pub(crate) fn tick(value: f64) -> String {
     }
 }
 
+/// A number as a person would write it: all of its digits from 0.001 to 100 000, a [`power`] of ten elsewhere.
+pub(crate) fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { power(value) }
+}
+
 /// `10⁻³`, `2×10⁻³` or `1.5×10⁻³`; plain from 1 to 100.
 pub(crate) fn power(value: f64) -> String {
     let exponent = exponent(value);

@@ -5,6 +5,7 @@
 //! left to parse. Methods that several scenes share are in a file of their own (`shared`).
 
 mod available;
+mod axis;
 mod conform;
 mod demands;
 mod document;
@@ -33,6 +34,7 @@ mod words;
 
 use std::path::Path;
 
+pub use axis::Axis;
 pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};

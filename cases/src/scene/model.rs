@@ -47,6 +47,8 @@ pub struct Scene {
     pub reference: Option<Reference>,
     /// What must hold.
     pub checks: Vec<Check>,
+    /// The axis of a study that drives the scene and its value there; `None` for the scene as it is in its file.
+    pub varied: Option<(String, f64)>,
     pub(crate) origin: Origin,
 }
 

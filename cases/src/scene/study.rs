@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::axis::{Axis, AxisKeys, axis};
 use super::demands::unheld;
 use catalogue::{Problem, Values};
 
@@ -55,6 +56,9 @@ pub struct Run {
     /// Clouds of the seeds 1 to this in place of their own; 0 for their own. How far a result depends on where nodes happen
     /// to stand is their spread: the scene's checks, which are of its own cloud, are not asked of them.
     pub seeds: u64,
+    /// What the scene is driven along, if anything: how each method fares there is a result, and the scene's checks, which are
+    /// of the scene as it is, are not asked.
+    pub axis: Option<Axis>,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
     /// What must hold, beside the scene's own checks.
@@ -102,6 +106,7 @@ pub(crate) struct RunKeys {
     /// Clouds of this many seeds, from 1 on, in place of their own
     #[serde(default)]
     pub seeds: u32,
+    pub axis: Option<AxisKeys>,
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
@@ -184,6 +189,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         essentials,
         split: keys.split.map(|keys| integration(keys, &at("split"), report)),
         seeds: keys.seeds.into(),
+        axis: keys.axis.and_then(|keys| axis(keys, &at("axis"), report)),
         quick: keys.quick,
         checks: checks(keys.check, &at("check"), report),
     }
@@ -197,6 +203,13 @@ fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
 /// What a run demands of its scene.
 fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&run.methods, scene, &format!("{key}.methods"), report);
+    if let Some(axis) = &run.axis
+        && let Err(bad) = axis.at(&run.scene, &run.methods, axis.base)
+    {
+        let first = bad.first().map_or(String::new(), ToString::to_string);
+        let problem = Problem::new("makes no scene of its base").found(axis.name.as_str()).help(first);
+        report.add(&format!("{key}.axis"), problem);
+    }
     for (i, check) in run.checks.iter().enumerate() {
         let key = format!("{key}.check[{i}]");
         validate::check(check, scene, &key, report);

@@ -156,6 +156,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
     known_methods(&check.methods, scene, &format!("{key}.method"), report);
     let solved = is_solved(scene);
     let lacks = match check.metric.needs {
+        Needs::Axis => "is counted along a [run.axis] of a study, and checked there",
         Needs::Reference | Needs::Levels if scene.reference.is_none() => "needs a [reference] in the scene",
         Needs::Probes if scene.reference.is_none() || scene.output.probes.is_empty() => {
             "needs a [reference] and output.probes in the scene"

@@ -8,6 +8,8 @@ use crate::outcome::{Metric, Probe, Warning};
 /// Of the norm of the stress. On the cases with an exact solution the estimate is 0.5 to 0.95 of the true error where a mesh is
 /// fine enough for its order and at least 0.2 where it locks; displacements are then off by 5 to 50 %.
 const ROUGH_STRESS: f64 = 0.25;
+/// Of the largest displacement.
+const GIVING_SUPPORT: f64 = 0.01;
 /// Of the largest displacement, in one step.
 const LONG_STEP: f64 = 0.01;
 /// A cloud on the vertices of its tetrahedra has two to six cells per node, and one point in each sees its motions; at 1.7 some
@@ -22,6 +24,7 @@ pub(crate) fn warnings(run: &Solved, metrics: &[Metric], probes: &[Probe]) -> Ve
     found.extend(few_points(run));
     let value = |entry: &metric::Metric| metrics.iter().find(|m| m.entry == entry).map(|m| m.value);
     found.extend(long_step(value(&metric::STEP_ERROR), value(&metric::MAX)));
+    found.extend(giving(value(&metric::SUPPORT_GAP), value(&metric::MAX)));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
     found
 }
@@ -77,6 +80,17 @@ fn long_step(error: Option<f64>, largest: Option<f64>) -> Option<Warning> {
             100.0 * relative
         );
         Warning::new(&warning::STEP_ERROR, relative, "procedure", message)
+    })
+}
+
+fn giving(gap: Option<f64>, largest: Option<f64>) -> Option<Warning> {
+    let relative = gap? / largest.filter(|u| *u > 0.0)?;
+    (relative > GIVING_SUPPORT).then(|| {
+        let message = format!(
+            "a support held weakly is off by {:.2} % of the largest displacement: take a larger factor, or another way to hold it",
+            100.0 * relative
+        );
+        Warning::new(&warning::SUPPORT_GIVES, relative, "support", message)
     })
 }
 

@@ -22,6 +22,8 @@ impl Scenario<'_> {
             // From the moduli of a law it comes back as 0.49500000000000005: twelve digits are those of the scene.
             poisson: self.laws().map_or(0.0, |(_, materials)| (materials[0].poisson() * 1e12).round() / 1e12),
             level: self.level,
+            axis: self.scene.varied.as_ref().map_or(String::new(), |(name, _)| name.clone()),
+            at: self.scene.varied.as_ref().map(|(_, value)| *value),
             ..Identity::default()
         };
         match &self.method.family {

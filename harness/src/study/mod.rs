@@ -7,6 +7,7 @@ pub(crate) mod make_reference;
 mod progress;
 mod task;
 mod tasks;
+mod trials;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
-use reports::{Check as Verdict, Machine, Record, RunSet, SurfaceField};
+use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
 use crate::Failure;
 use crate::outcome::{Counters, provenance};
@@ -24,6 +25,7 @@ use crate::scenario::purpose;
 use progress::Progress;
 use task::TaskResult;
 use tasks::{Task, list};
+use trials::RefusedScene;
 
 pub use args::VerifyArgs;
 pub(crate) use task::stalled;
@@ -38,6 +40,8 @@ pub struct Plan {
     study: Study,
     scenes: Vec<(PathBuf, String, Scene)>,
     tasks: Vec<Task>,
+    /// Values of axes at which there is no scene.
+    refused: Vec<RefusedScene>,
 }
 
 /// What a study came to.
@@ -55,39 +59,69 @@ pub struct Finished {
 impl Plan {
     /// Reads the scenes of a study and lists its runs.
     pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
-        let mut scenes: Vec<(PathBuf, String, Scene)> = Vec::new();
-        let mut tasks = Vec::new();
+        let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
         let mut errors = Vec::new();
-        for (index, run) in study.runs.iter().enumerate() {
-            let known = scenes.iter().position(|(path, ..)| *path == run.scene);
-            let at = match known {
-                Some(at) => at,
-                None => match scene::load(&run.scene) {
-                    Ok(scene) if !scene.unavailable().is_empty() => {
-                        errors.extend(scene.unavailable());
-                        continue;
-                    }
-                    Ok(scene) => {
-                        let text = scene.text().to_string();
-                        let named =
-                            |(_, _, other): &&(PathBuf, String, Scene)| case_name(other) == case_name(&scene);
-                        if let Some((path, ..)) = scenes.iter().find(named) {
-                            let problem = format!("is in a file of the same name as {}", path.display());
-                            let help = "rename one of them: results are filed under the names of scenes";
-                            errors.push(scene.error(ErrorKind::Invalid, "title", &problem, Some(help)));
-                        }
-                        scenes.push((run.scene.clone(), text, scene));
-                        scenes.len() - 1
-                    }
-                    Err(bad) => {
-                        errors.extend(bad);
-                        continue;
-                    }
-                },
+        for (index, run) in plan.study.runs.clone().iter().enumerate() {
+            let read = match &run.axis {
+                None => plan.scene(run).map(|at| vec![at]),
+                Some(axis) => plan.along(index, run, axis),
             };
-            list(&mut tasks, index, at, run, &scenes[at].2);
+            match read {
+                Ok(found) => {
+                    for at in found {
+                        list(&mut plan.tasks, index, at, run, &plan.scenes[at].2);
+                    }
+                }
+                Err(bad) => errors.extend(bad),
+            }
         }
-        if errors.is_empty() { Ok(Plan { study, scenes, tasks }) } else { Err(errors) }
+        if errors.is_empty() { Ok(plan) } else { Err(errors) }
+    }
+
+    /// The place of a run's scene among those read.
+    fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
+        let as_it_is = |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
+        if let Some(at) = self.scenes.iter().position(as_it_is) {
+            return Ok(at);
+        }
+        let scene = scene::load(&run.scene)?;
+        self.add(&run.scene, scene)
+    }
+
+    fn add(&mut self, path: &Path, scene: Scene) -> Result<usize, Vec<scene::SceneError>> {
+        if !scene.unavailable().is_empty() {
+            return Err(scene.unavailable());
+        }
+        let named = |(other, _, with): &&(PathBuf, String, Scene)| *other != path && case_name(with) == case_name(&scene);
+        if let Some((path, ..)) = self.scenes.iter().find(named) {
+            let problem = format!("is in a file of the same name as {}", path.display());
+            let help = "rename one of them: results are filed under the names of scenes";
+            return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
+        }
+        let text = scene.text().to_string();
+        self.scenes.push((path.to_path_buf(), text, scene));
+        Ok(self.scenes.len() - 1)
+    }
+
+    /// The scene at each value of an axis. A value that it is refused for is a result; at the base it has to be sound.
+    fn along(
+        &mut self,
+        index: usize,
+        run: &scene::Run,
+        axis: &scene::Axis,
+    ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let mut found = Vec::new();
+        for &value in &axis.values {
+            match axis.at(&run.scene, &run.methods, value) {
+                Ok(scene) => found.push(self.add(&run.scene, scene)?),
+                Err(bad) if value == axis.base => return Err(bad),
+                Err(bad) => {
+                    let reason = bad.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+                    self.refused.push(RefusedScene { run: index, value, reason });
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// Keeps the runs that the arguments select.
@@ -111,6 +145,34 @@ impl Plan {
     /// Whether it is asked for as one of many clouds only.
     fn is_one_of_many(&self, task: &Task) -> bool {
         self.tables(task).all(|run| run.seeds > 0)
+    }
+
+    /// Whether it is a run along an axis.
+    fn is_driven(&self, task: &Task) -> bool {
+        self.scenes[task.scene].2.varied.is_some()
+    }
+
+    /// What became of the methods along every axis that was run.
+    fn axes(&self, results: &BTreeMap<usize, TaskResult>) -> Vec<Axis> {
+        let mut out = Vec::new();
+        for (index, run) in self.study.runs.iter().enumerate() {
+            let Some(axis) = &run.axis else { continue };
+            let own = || results.iter().filter(|(task, _)| self.tasks[**task].runs.contains(&index));
+            let Some((&first, _)) = own().next() else { continue };
+            let mut found = trials::empty(&case_name(&self.scenes[self.tasks[first].scene].2), axis);
+            for (&task, result) in own() {
+                let Task { method, scene, .. } = &self.tasks[task];
+                if let Some((_, value)) = self.scenes[*scene].2.varied {
+                    found.trials.push(trials::trial(&method.id, value, axis, result));
+                }
+            }
+            for refused in self.refused.iter().filter(|refused| refused.run == index) {
+                let methods: Vec<String> = found.methods().into_iter().map(String::from).collect();
+                found.trials.extend(methods.iter().map(|method| trials::refused(method, refused)));
+            }
+            out.push(found);
+        }
+        out
     }
 
     /// Number of runs.
@@ -241,7 +303,8 @@ impl Plan {
                 }
             }
             let verdicts = self.verdicts(task, result);
-            if let Some((failure, code)) = &result.failure {
+            // Along an axis it is a result how a run ends.
+            if let Some((failure, code)) = result.failure.as_ref().filter(|_| !self.is_driven(task)) {
                 set.failures.push(failure.clone());
                 // Of many clouds one may stall: how many did is a result. One without any numbers is in no count. So is
                 // a path known to end where it does.
@@ -258,6 +321,8 @@ impl Plan {
             set.records.extend(reference_records(scene));
         }
         set.checks.extend(self.family_verdicts(&results));
+        set.axes = self.axes(&results);
+        set.checks.extend(set.axes.iter().flat_map(trials::verdicts));
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
@@ -284,7 +349,7 @@ impl Plan {
     fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
         let scene = &self.scenes[task.scene].2;
         // A scene's checks are of its own cloud.
-        let own = if self.is_one_of_many(task) { &[] } else { &scene.checks[..] };
+        let own = if self.is_one_of_many(task) || self.is_driven(task) { &[] } else { &scene.checks[..] };
         let all = own.iter().chain(self.tables(task).flat_map(|run| &run.checks));
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }

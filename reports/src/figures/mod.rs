@@ -13,6 +13,7 @@ mod history;
 mod locking;
 mod section;
 mod silhouette;
+mod stability;
 mod style;
 mod surface;
 mod transfer;
@@ -44,7 +45,8 @@ struct Pictured {
 /// Every figure that has something to show, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     let solved = solved(runs);
-    let mut figures = efficiency::figures(&solved);
+    let mut figures = stability::maps(&set.axes);
+    figures.extend(efficiency::figures(&solved));
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
     figures.extend(history::forces(&solved));

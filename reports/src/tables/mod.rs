@@ -11,6 +11,7 @@ mod outcome;
 mod placement;
 mod published;
 mod repeated;
+mod stability;
 mod timing;
 mod transfer;
 
@@ -27,6 +28,7 @@ use crate::table::Table;
 /// Every table with at least one row, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
     let tables = [
+        stability::stability(set),
         errors::relative(runs),
         errors::rms(runs),
         errors::maxima(runs),

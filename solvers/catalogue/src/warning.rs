@@ -46,6 +46,8 @@ warnings! {
          stiffer's modulus over the softer's";
     FEW_POINTS: "few-points", None,
         "a cloud has too few integration points to see all its motions; points per node";
+    SUPPORT_GIVES: "support-gives", None,
+        "a support held weakly gives way; the root mean square gap there over the largest displacement";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ESTIMATED_ERROR: "estimated-error", None,

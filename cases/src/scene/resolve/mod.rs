@@ -63,6 +63,7 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
         output,
         reference,
         checks,
+        varied: None,
         origin: report.origin().clone(),
     })
 }

@@ -240,6 +240,10 @@ metrics! {
         "stored entries of the matrix factor";
     ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
         "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
+    SUPPORT_GAP: "support-gap", "gap at supports", Length, Error, Run,
+        "root mean square distance between the displacement and what supports held weakly prescribe";
+    SILENT_WRONG: "silent-wrong", "wrong without a word", None, Count, Axis,
+        "runs of one method along an axis of a study that are wrong and have neither a warning nor another status";
     WARNINGS: "warnings", "warnings", None, Count, Run,
         "warnings of the run";
     TARGETS_OUTSIDE: "targets-outside", "targets outside the mesh", None, Count, Run,

@@ -67,6 +67,8 @@ pub enum Needs {
     Dynamics,
     /// Explicit dynamics.
     Explicit,
+    /// An axis of a study.
+    Axis,
     /// A tool.
     Tool,
     /// A tool, and a method as `[reference]`.

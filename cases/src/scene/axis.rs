@@ -1,0 +1,233 @@
+//! An axis of a study: one thing of a scene, driven from value to value until methods bend and break.
+//!
+//! ```toml
+//! [run.axis]
+//! name = "edge ratio of the cells"
+//! values = [1, 2, 5, 10]
+//! judge = "l2"
+//! set = { "body.size[2]" = "{40 / x} mm" }
+//! ```
+//!
+//! A key of `set` is one of the scene's as messages name them, `method[]` standing for every method that the run names. What
+//! stands in braces is an expression of the value, `x`; a text of nothing but braces becomes a number.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use catalogue::metric::{self, Metric};
+use catalogue::{Problem, nearest};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Value;
+
+use super::error::SceneError;
+use super::expression::Expression;
+use super::model::Scene;
+use super::report::Report;
+use super::{load, parse};
+
+/// What drives a scene through its values, and what tells whether a result is right.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What is driven, as figures and tables name it.
+    pub name: String,
+    /// Unit of the values in figures; empty for a bare number.
+    pub unit: String,
+    /// Its values, in their order.
+    pub values: Vec<f64>,
+    /// The value that a method's error is compared with.
+    pub base: f64,
+    /// The error that judges.
+    pub judge: &'static Metric,
+    /// From this error on a result is wrong.
+    pub wrong: f64,
+    set: BTreeMap<String, Value>,
+}
+
+/// One thing of the scene, driven from value to value until methods bend and break
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AxisKeys {
+    /// What is driven, as figures and tables name it
+    name: String,
+    /// Unit of the values, for figures; a bare number unless given
+    #[serde(default)]
+    unit: String,
+    /// Its values
+    values: Vec<f64>,
+    /// The value that the error is compared with: a method bends where the error is twice as large; the first unless given
+    base: Option<f64>,
+    /// The metric that judges, such as "l2" or "relative-rms"
+    judge: String,
+    /// From this error on a result is wrong; 0.25 unless given
+    wrong: Option<f64>,
+    /// Keys of the scene, such as "material.poisson" or "method[].support_scale" for every method of the run, with their
+    /// values: in braces, expressions of the value x, such as "{40 / x} mm"
+    #[schemars(with = "BTreeMap<String, serde_json::Value>")]
+    set: BTreeMap<String, Value>,
+}
+
+/// Reads the axis at `key`.
+pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axis> {
+    let at = |name: &str| format!("{key}.{name}");
+    let judge = match metric::named(&keys.judge) {
+        Ok(judge) => judge,
+        Err(problem) => {
+            report.add(&at("judge"), problem);
+            return None;
+        }
+    };
+    report.require(judge.lower_is_better(), &at("judge"), "is no error", "take \"l2\" or \"relative-rms\"");
+    report.require(!keys.values.is_empty(), &at("values"), "are none", "give two or more");
+    report.require(!keys.set.is_empty(), &at("set"), "drives nothing", "name a key of the scene");
+    let base = keys.base.or(keys.values.first().copied()).unwrap_or(0.0);
+    let known = keys.values.contains(&base);
+    report.require(known, &at("base"), "is none of the values", "name one of them");
+    let wrong = keys.wrong.unwrap_or(0.25);
+    report.require(wrong > 0.0, &at("wrong"), "is no error", "give a number above 0");
+    let AxisKeys { name, unit, values, set, .. } = keys;
+    Some(Axis { name, unit, values, base, judge, wrong, set })
+}
+
+impl Axis {
+    /// The scene in a file at one value of the axis, with these of its methods (all where none is named).
+    ///
+    /// # Errors
+    /// What the scene is refused for, there or as it is; a key of the axis that the scene cannot have.
+    pub fn at(&self, path: &Path, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
+        let scene = load(path)?;
+        let refuse = |key: &str, problem: Problem| {
+            vec![scene.error(
+                super::ErrorKind::Invalid,
+                key,
+                &format!("can't be driven: {}", problem.problem),
+                problem.help.as_deref(),
+            )]
+        };
+        let mut table: Value = match scene.text().parse::<toml::Table>() {
+            Ok(table) => Value::Table(table),
+            Err(bad) => return Err(refuse("", Problem::new(bad.message()))),
+        };
+        if let Some(all) = table.get_mut("method").and_then(Value::as_array_mut).filter(|_| !methods.is_empty()) {
+            let named = |method: &Value| {
+                let id = method.get("id").and_then(Value::as_str);
+                id.is_some_and(|id| methods.iter().any(|m| m == id))
+            };
+            all.retain(named);
+        }
+        // They are of the scene as it is.
+        if let Some(table) = table.as_table_mut() {
+            table.remove("check");
+        }
+        for (key, template) in &self.set {
+            let filled = fill(template, value).map_err(|problem| refuse(key, problem))?;
+            set(&mut table, key, &filled).map_err(|problem| refuse(key, problem))?;
+        }
+        let text = table.as_table().map_or(String::new(), toml::Table::to_string);
+        let mut varied = parse(&text, scene.file())?;
+        // Messages name the lines of the file, not of the text made here.
+        varied.origin = scene.origin.with_text(text);
+        varied.varied = Some((self.name.clone(), value));
+        Ok(varied)
+    }
+}
+
+/// A template with the value in its braces.
+fn fill(template: &Value, x: f64) -> Result<Value, Problem> {
+    Ok(match template {
+        Value::String(text) => fill_text(text, x)?,
+        Value::Array(list) => Value::Array(list.iter().map(|v| fill(v, x)).collect::<Result<_, _>>()?),
+        Value::Table(table) => Value::Table(
+            table.iter().map(|(k, v)| Ok((k.clone(), fill(v, x)?))).collect::<Result<_, Problem>>()?,
+        ),
+        other => other.clone(),
+    })
+}
+
+fn fill_text(text: &str, x: f64) -> Result<Value, Problem> {
+    let (mut out, mut rest, mut number) = (String::new(), text, None);
+    while let Some((before, after)) = rest.split_once('{') {
+        let (expression, behind) =
+            after.split_once('}').ok_or_else(|| Problem::new("a '{' is never closed").found(text))?;
+        let value = Expression::read(expression)?
+            .value([x, 0.0, 0.0])
+            .map_err(|bad| Problem::new(format!("'{expression}' is {} at {x}", bad.value)))?;
+        number = (before.is_empty() && behind.is_empty() && out.is_empty()).then_some(value);
+        out += &format!("{before}{value}");
+        rest = behind;
+    }
+    out += rest;
+    Ok(match number {
+        Some(value) if value.fract() == 0.0 && value.abs() < 1e15 => Value::Integer(value as i64),
+        Some(value) => Value::Float(value),
+        None => Value::String(out),
+    })
+}
+
+/// Puts a value at a key such as `method[].size.cells[0]`; tables on the way are made where there are none.
+fn set(table: &mut Value, key: &str, value: &Value) -> Result<(), Problem> {
+    let (head, rest) = match key.find(['.', '[']) {
+        Some(end) => key.split_at(end),
+        None => (key, ""),
+    };
+    if let Some(inside) = head.is_empty().then(|| rest.strip_prefix('[')).flatten() {
+        let (index, behind) =
+            inside.split_once(']').ok_or_else(|| Problem::new("a '[' is never closed").found(key))?;
+        let list = table.as_array_mut().ok_or_else(|| Problem::new("is no list").found(key))?;
+        if index.is_empty() {
+            return list.iter_mut().try_for_each(|item| below(item, behind, value));
+        }
+        let length = list.len();
+        let item = index.parse::<usize>().ok().and_then(|index| list.get_mut(index));
+        let item = item.ok_or_else(|| Problem::new(format!("[{index}] is none of {length}")).found(key))?;
+        return below(item, behind, value);
+    }
+    let here = table.as_table_mut().ok_or_else(|| Problem::new("is no table").found(key))?;
+    if !here.contains_key(head) && rest.starts_with('[') {
+        let near = nearest(head, here.keys().map(String::as_str));
+        let help = near.map_or(String::new(), |near| format!("did you mean '{near}'?"));
+        return Err(Problem::new("is not in the scene").found(head).help(help));
+    }
+    let slot = here.entry(head.to_string()).or_insert_with(|| Value::Table(toml::Table::new()));
+    below(slot, rest, value)
+}
+
+fn below(slot: &mut Value, rest: &str, value: &Value) -> Result<(), Problem> {
+    match rest.strip_prefix('.') {
+        _ if rest.is_empty() => {
+            *slot = value.clone();
+            Ok(())
+        }
+        Some(key) => set(slot, key, value),
+        None => set(slot, rest, value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn braces_hold_expressions_of_the_value() {
+        let text = |text: &str| fill(&Value::String(text.into()), 4.0).unwrap();
+        assert_eq!(text("{40 / x} mm"), Value::String("10 mm".into()));
+        assert_eq!(text("{x}"), Value::Integer(4));
+        assert_eq!(text("{x / 8}"), Value::Float(0.5));
+        assert_eq!(text("{x}{x}"), Value::String("44".into()));
+        assert_eq!(text("plain"), Value::String("plain".into()));
+        assert!(fill(&Value::String("{x".into()), 4.0).unwrap_err().problem.contains("never closed"));
+    }
+
+    #[test]
+    fn keys_reach_into_lists_and_every_method() {
+        let mut scene = Value::Table("method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 2] }".parse().unwrap());
+        set(&mut scene, "method[].cells", &Value::Integer(3)).unwrap();
+        set(&mut scene, "body.size[1]", &Value::Integer(7)).unwrap();
+        set(&mut scene, "material.poisson", &Value::Float(0.4)).unwrap();
+        let expected = "method = [{ id = 'a', cells = 3 }, { id = 'b', cells = 3 }]\nbody = { size = [1, 7] }\n\
+                        material = { poisson = 0.4 }";
+        assert_eq!(scene, Value::Table(expected.parse().unwrap()));
+        assert!(set(&mut scene, "body.size[2]", &Value::Integer(7)).unwrap_err().problem.contains("none of 2"));
+        assert!(set(&mut scene, "methd[].id", &Value::Integer(7)).unwrap_err().help.unwrap().contains("method"));
+    }
+}

@@ -1,0 +1,111 @@
+//! Stability maps: a row for each method, a column for each value of an axis, a colour for how the method fares there.
+
+use super::Figure;
+use super::axes::TEXT;
+use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
+use super::grid::{WIDTH, wrapped};
+use crate::axis::{Axis, Trial, Verdict};
+use crate::quantity::label;
+use crate::store::slug;
+use crate::text::{short, significant};
+
+const ROW: f64 = 15.0;
+const TOP: f64 = 34.0;
+const WHITE_INK: Colour = [0xff, 0xff, 0xff];
+
+/// One figure for each axis.
+pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
+    let each = axes.iter().filter(|axis| !axis.trials.is_empty()).map(|axis| Figure {
+        name: format!("stability-{}-{}", slug(&axis.case), slug(&axis.name)),
+        title: format!("Where methods bend and break: {}, {}", axis.case, axis.name),
+        caption: format!(
+            "Numbers: {} in per cent. A method bends where it is twice as large as at {}; from {} % on it is wrong",
+            label(&axis.judge),
+            value(axis, axis.base),
+            significant(100.0 * axis.wrong, 2),
+        ),
+        canvas: draw(axis),
+    });
+    each.collect()
+}
+
+/// A value of the axis with its unit.
+fn value(axis: &Axis, v: f64) -> String {
+    if axis.unit.is_empty() { short(v) } else { format!("{} {}", short(v), axis.unit) }
+}
+
+fn colour(verdict: Verdict) -> Colour {
+    match verdict {
+        Verdict::Holds => [0xcf, 0xe6, 0xf5],
+        Verdict::Bends => [0xf7, 0xe0, 0x9a],
+        Verdict::Warned => [0xf0, 0xa2, 0x4a],
+        Verdict::Refused => [0xd8, 0xd8, 0xd8],
+        Verdict::Silent => [0xa5, 0x0f, 0x15],
+    }
+}
+
+fn draw(axis: &Axis) -> Canvas {
+    let methods = axis.methods();
+    let left = 12.0 + methods.iter().map(|m| text_width(m, TEXT)).fold(40.0, f64::max).min(200.0);
+    let width = (WIDTH - left - 6.0) / axis.values.len() as f64;
+    let bottom = TOP + ROW * methods.len() as f64;
+    let key = [Verdict::Holds, Verdict::Bends, Verdict::Warned, Verdict::Refused, Verdict::Silent];
+    let notes = wrapped(&note(axis), WIDTH - 20.0);
+    let mut canvas = Canvas::new(WIDTH, bottom + 34.0 + 12.0 * notes.len() as f64);
+    let unit = if axis.unit.is_empty() { "1" } else { &axis.unit };
+    canvas.bold((6.0, 12.0), &format!("{}: {} [{unit}]", axis.case, axis.name), TEXT, Anchor::Start);
+    for (column, &v) in axis.values.iter().enumerate() {
+        let x = left + column as f64 * width;
+        let head = short(v);
+        let size = TEXT.min(TEXT * (width - 3.0) / text_width(&head, TEXT));
+        canvas.text((x + width / 2.0, TOP - 8.0), &head, size, BLACK_INK, Anchor::Middle);
+        for (row, method) in methods.iter().enumerate() {
+            let y = TOP + ROW * row as f64;
+            if let Some(trial) = axis.trial(method, v) {
+                let verdict = axis.verdict(trial);
+                fill(&mut canvas, (x, y, width - 1.0, ROW - 1.0), colour(verdict));
+                let ink = if verdict == Verdict::Silent { WHITE_INK } else { BLACK_INK };
+                let at = (x + width / 2.0, y + ROW / 2.0);
+                canvas.text(at, &number(trial), TEXT - 1.0, ink, Anchor::Middle);
+            }
+        }
+    }
+    for (row, method) in methods.iter().enumerate() {
+        let at = (left - 6.0, TOP + ROW * row as f64 + ROW / 2.0);
+        canvas.text(at, method, TEXT, BLACK_INK, Anchor::End);
+    }
+    let mut x = 12.0;
+    for verdict in key {
+        fill(&mut canvas, (x, bottom + 10.0, 12.0, 10.0), colour(verdict));
+        canvas.text((x + 16.0, bottom + 15.0), verdict.name(), TEXT, BLACK_INK, Anchor::Start);
+        x += 34.0 + text_width(verdict.name(), TEXT);
+    }
+    for (i, line) in notes.iter().enumerate() {
+        canvas.text((12.0, bottom + 34.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
+    }
+    canvas
+}
+
+fn note(axis: &Axis) -> String {
+    format!(
+        "Numbers: {} in per cent. Bends: twice that at {} or more. Wrong: {} % or more.",
+        label(&axis.judge),
+        value(axis, axis.base),
+        significant(100.0 * axis.wrong, 2),
+    )
+}
+
+fn fill(canvas: &mut Canvas, (x, y, width, height): (f64, f64, f64, f64), colour: Colour) {
+    canvas.fill(&[(x, y), (x + width, y), (x + width, y + height), (x, y + height)], colour);
+}
+
+/// The error in per cent, as short as it can be told.
+fn number(trial: &Trial) -> String {
+    match trial.error.map(|error| 100.0 * error) {
+        None => "—".into(),
+        Some(e) if e < 1e-3 => "0".into(),
+        Some(e) if e >= 1e4 => ">9999".into(),
+        Some(e) if e >= 100.0 => format!("{e:.0}"),
+        Some(e) => significant(e, 2),
+    }
+}
