@@ -176,7 +176,10 @@ mod tests {
             ["holds", "holds", "bends", "wrong, warned", "wrong, silent", "wrong, silent", "refused"];
         assert_eq!(verdicts, expected);
         assert_eq!(axis.silent("a"), 2);
-        assert_eq!((axis.first("a", Verdict::Bends, true), axis.first("a", Verdict::Warned, true)), (Some(2.0), Some(3.0)));
+        assert_eq!(
+            (axis.first("a", Verdict::Bends, true), axis.first("a", Verdict::Warned, true)),
+            (Some(2.0), Some(3.0))
+        );
         assert_eq!(axis.first("a", Verdict::Bends, false), None);
     }
 

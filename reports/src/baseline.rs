@@ -72,7 +72,7 @@ impl Baseline {
     }
 }
 
-const HEADER: &str = "# Accepted numbers of the quick tier, SI. Made and compared by `cargo xtask baseline`; not to be edited by hand.\n";
+const HEADER: &str = "# Accepted numbers of a study's quick tier, SI. Made and compared by `cargo xtask baseline`; not to be edited by hand.\n";
 
 /// Case, method, settings and size of a record.
 fn run_name(r: &Record) -> String {

@@ -26,7 +26,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Run the quick tier and compare its numbers with those accepted in tests/baseline/quick.toml
+    /// Drive every method to where it bends and breaks, by the quick part of the stress study; its results go to results-stress/
+    Stress {
+        /// All of the study: about 5 minutes
+        #[arg(long)]
+        full: bool,
+    },
+    /// Run the quick tier and the quick part of the stress study and compare their numbers with those accepted in tests/baseline
     Baseline {
         /// Further arguments of `tissuebench baseline` (--accept TEXT, --check)
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -64,8 +70,11 @@ fn run(task: Task) -> Result<u8> {
         Task::Baseline { args } => {
             // What the checks say is not asked here.
             tissuebench("verify", &["--quick".into()])?;
-            tissuebench("baseline", &[&["results".into()], &args[..]].concat())
+            stress(false)?;
+            let code = tissuebench("baseline", &[&["results".into()], &args[..]].concat())?;
+            Ok(code.max(compare_stress(&args)?))
         }
+        Task::Stress { full } => stress(full),
         Task::Bench { args } => cargo(&["bench", "--workspace"], &args),
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
@@ -96,7 +105,25 @@ fn ci() -> Result<u8> {
     if code != 0 {
         return Ok(code);
     }
-    tissuebench("baseline", &["results".into(), "--check".into()])
+    let code = tissuebench("baseline", &["results".into(), "--check".into()])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    let code = stress(false)?;
+    if code != 0 { Ok(code) } else { compare_stress(&["--check".into()]) }
+}
+
+/// Where methods bend and break; fails where one is wrong without a word.
+fn stress(full: bool) -> Result<u8> {
+    let mut args = ["cases/studies/stress.toml", "--out", "results-stress"].map(String::from).to_vec();
+    args.extend((!full).then(|| "--quick".to_string()));
+    tissuebench("verify", &args)
+}
+
+fn compare_stress(args: &[String]) -> Result<u8> {
+    let own =
+        ["results-stress", "--file", "tests/baseline/stress.toml", "--same-processor"].map(String::from);
+    tissuebench("baseline", &[&own, args].concat())
 }
 
 /// The quick tier, unless all runs are asked for; a study of the user's own has none.

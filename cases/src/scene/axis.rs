@@ -108,7 +108,9 @@ impl Axis {
             Ok(table) => Value::Table(table),
             Err(bad) => return Err(refuse("", Problem::new(bad.message()))),
         };
-        if let Some(all) = table.get_mut("method").and_then(Value::as_array_mut).filter(|_| !methods.is_empty()) {
+        if let Some(all) =
+            table.get_mut("method").and_then(Value::as_array_mut).filter(|_| !methods.is_empty())
+        {
             let named = |method: &Value| {
                 let id = method.get("id").and_then(Value::as_str);
                 id.is_some_and(|id| methods.iter().any(|m| m == id))
@@ -220,14 +222,19 @@ mod tests {
 
     #[test]
     fn keys_reach_into_lists_and_every_method() {
-        let mut scene = Value::Table("method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 2] }".parse().unwrap());
+        let mut scene =
+            Value::Table("method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 2] }".parse().unwrap());
         set(&mut scene, "method[].cells", &Value::Integer(3)).unwrap();
         set(&mut scene, "body.size[1]", &Value::Integer(7)).unwrap();
         set(&mut scene, "material.poisson", &Value::Float(0.4)).unwrap();
         let expected = "method = [{ id = 'a', cells = 3 }, { id = 'b', cells = 3 }]\nbody = { size = [1, 7] }\n\
                         material = { poisson = 0.4 }";
         assert_eq!(scene, Value::Table(expected.parse().unwrap()));
-        assert!(set(&mut scene, "body.size[2]", &Value::Integer(7)).unwrap_err().problem.contains("none of 2"));
-        assert!(set(&mut scene, "methd[].id", &Value::Integer(7)).unwrap_err().help.unwrap().contains("method"));
+        assert!(
+            set(&mut scene, "body.size[2]", &Value::Integer(7)).unwrap_err().problem.contains("none of 2")
+        );
+        assert!(
+            set(&mut scene, "methd[].id", &Value::Integer(7)).unwrap_err().help.unwrap().contains("method")
+        );
     }
 }

@@ -3,6 +3,7 @@
 mod agreement;
 mod nodal_patch;
 pub(crate) mod reach;
+mod support_gap;
 
 use cases::scene::ConstraintRows;
 use fem::SurfaceRule;
@@ -197,21 +198,6 @@ impl Prepared {
     fn multiplier_basis(&self, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
         let rule = SurfaceRule::STANDARD.with(FaceKind::Tri3, self.source.face_points())?;
         Ok(fem::surface_rows(self.source.mesh(), facets, &rule)?)
-    }
-
-    /// RMS distance (m) between the displacement and what weak supports prescribe, over their surfaces and axes; `None` without any.
-    pub fn support_gap(&self, u: &[Vector3]) -> Option<f64> {
-        let weak = self.weak.iter().map(|w| (w.flux.at().rows(), w.flux.weights(), &w.values, w.axes));
-        let held = self.penalties.iter().map(|h| (h.surface.rows(), h.surface.weights(), &h.values, h.axes));
-        let (mut sum, mut area) = (0.0, 0.0);
-        for (rows, weights, values, axes) in weak.chain(held) {
-            for ((u, g), w) in rows.apply(u).iter().zip(values).zip(weights) {
-                let off: f64 = (0..3).filter(|&axis| axes[axis]).map(|axis| (u - g)[axis].powi(2)).sum();
-                sum += w * off;
-                area += w;
-            }
-        }
-        (area > 0.0).then(|| (sum / area).sqrt())
     }
 
     /// Resultant of all surface loads and body forces, N.

@@ -80,7 +80,8 @@ impl Plan {
 
     /// The place of a run's scene among those read.
     fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
-        let as_it_is = |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
+        let as_it_is =
+            |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
         if let Some(at) = self.scenes.iter().position(as_it_is) {
             return Ok(at);
         }
@@ -92,7 +93,9 @@ impl Plan {
         if !scene.unavailable().is_empty() {
             return Err(scene.unavailable());
         }
-        let named = |(other, _, with): &&(PathBuf, String, Scene)| *other != path && case_name(with) == case_name(&scene);
+        let named = |(other, _, with): &&(PathBuf, String, Scene)| {
+            *other != path && case_name(with) == case_name(&scene)
+        };
         if let Some((path, ..)) = self.scenes.iter().find(named) {
             let problem = format!("is in a file of the same name as {}", path.display());
             let help = "rename one of them: results are filed under the names of scenes";
