@@ -102,7 +102,7 @@ pub(crate) fn measure(
     for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
         push(metrics, entry, resultant[axis]);
     }
-    if let Some(gap) = prepared.support_gap(&solution.u) {
+    if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
     if let Some(estimate) = estimate::estimated_error(run) {

@@ -5,8 +5,9 @@ use geometry::Vector3;
 use super::Prepared;
 
 impl Prepared {
-    /// RMS distance (m) between the displacement and what weak supports prescribe, over their surfaces and axes; `None` without any.
-    pub fn support_gap(&self, u: &[Vector3]) -> Option<f64> {
+    /// RMS distance (m) between the displacement and what weak supports prescribe, over their surfaces and axes, and the area of
+    /// these (m^2); `None` without any.
+    pub fn support_gap(&self, u: &[Vector3]) -> Option<[f64; 2]> {
         let weak = self.weak.iter().map(|w| (w.flux.at().rows(), w.flux.weights(), &w.values, w.axes));
         let held = self.penalties.iter().map(|h| (h.surface.rows(), h.surface.weights(), &h.values, h.axes));
         let (mut sum, mut area) = (0.0, 0.0);
@@ -17,6 +18,6 @@ impl Prepared {
                 area += w;
             }
         }
-        (area > 0.0).then(|| (sum / area).sqrt())
+        (area > 0.0).then(|| [(sum / area).sqrt(), area])
     }
 }

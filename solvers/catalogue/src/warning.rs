@@ -48,6 +48,9 @@ warnings! {
         "a cloud has too few integration points to see all its motions; points per node";
     SUPPORT_GIVES: "support-gives", None,
         "a support held weakly gives way; the root mean square gap there over the largest displacement";
+    SUPPORT_LEAKS: "support-leaks", None,
+        "a support held weakly lets volume of nearly incompressible tissue pass; the root of that volume's energy over the strain \
+         energy";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ESTIMATED_ERROR: "estimated-error", None,
