@@ -223,3 +223,17 @@ pub enum LoadKind {
     /// Force per volume, in newtons per cubic metre.
     Body(VectorField),
 }
+
+impl LoadKind {
+    /// Whether it is another one from point to point.
+    pub fn varies(&self) -> bool {
+        let constant = |field: &ScalarField| matches!(field, ScalarField::Constant(_));
+        match self {
+            LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact) => true,
+            LoadKind::Traction(VectorField::Components(c)) | LoadKind::Body(VectorField::Components(c)) => {
+                !c.iter().all(constant)
+            }
+            LoadKind::Pressure(field) => !constant(field),
+        }
+    }
+}

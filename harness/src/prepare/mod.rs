@@ -1,13 +1,13 @@
 //! The prepare phase: every table that assembly reads, for one method on one body under one setup.
 
 mod agreement;
+mod loads;
 mod nodal_patch;
 pub(crate) mod reach;
 mod support_gap;
 
 use cases::scene::ConstraintRows;
 use fem::SurfaceRule;
-use geometry::quadrature;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::FixedDof;
 use shape::{FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows};
@@ -17,21 +17,13 @@ use statics::{
 };
 
 use crate::Failure;
-use crate::discretise::place::{self, CutTriangle, Place, tolerance};
+use crate::discretise::place::{self, Place, tolerance};
 use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
-use crate::scenario::setup::{self, Applied, Setup, Support};
+use crate::scenario::setup::{Setup, Support};
+use loads::Values;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
-
-/// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
-const CUT_POINTS: usize = 6;
-
-/// Values of one load at its points.
-enum Values {
-    Traction(Vec<Vector3>),
-    Pressure(Vec<f64>),
-}
 
 /// A surface constrained weakly, with its tables owned.
 struct OwnedWeak {
@@ -218,44 +210,6 @@ impl Prepared {
             }
         }
         sum
-    }
-
-    fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
-        if let Applied::Body(field) = &load.applied {
-            let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
-            self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
-            return Ok(());
-        }
-        let patch = place::patch(&load.key, &load.place, method.mesh())?;
-        let before = self.surfaces.len();
-        let mut surfaces = Vec::new();
-        if !patch.whole.is_empty() {
-            surfaces.push(self.source.surface(&patch.whole)?);
-        }
-        if !patch.cut.is_empty() {
-            surfaces.push(cut_surface(&*self.source, &patch.cut)?);
-        }
-        for surface in surfaces {
-            let at = surface.points().iter().zip(surface.normals());
-            let values = match &load.applied {
-                Applied::Traction(field) => Values::Traction(
-                    at.map(|(x, n)| field(x, n))
-                        .collect::<Result<_, _>>()
-                        .map_err(not_finite(&load.key, "traction"))?,
-                ),
-                Applied::Pressure(field) => Values::Pressure(
-                    at.map(|(x, _)| field(x))
-                        .collect::<Result<_, _>>()
-                        .map_err(not_finite(&load.key, "pressure"))?,
-                ),
-                Applied::Body(_) => unreachable!("returned above"),
-            };
-            self.surfaces.push((surface, values));
-        }
-        if self.surfaces.len() == before {
-            return Err(place::empty(&load.key, &load.place, method.mesh()));
-        }
-        Ok(())
     }
 
     /// Constrains the body as all supports say.
@@ -473,21 +427,4 @@ fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<Cons
         }
     }
     out
-}
-
-/// Surface rows over clipped triangles.
-fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
-    let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
-    let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
-    for triangle in cut {
-        let area = triangle.area_vector();
-        let [a, b, c] = triangle.corners;
-        for (xi, w) in rule.points.iter().zip(&rule.weights) {
-            points.push(a + (b - a) * xi[0] + (c - a) * xi[1]);
-            weights.push(2.0 * w * area.norm());
-            normals.push(area.normalize());
-        }
-    }
-    let (rows, _) = source.at_points(&points)?;
-    Ok(SurfaceRows::new(rows, weights, normals)?)
 }

@@ -120,7 +120,8 @@ impl Scenario<'_> {
                         Applied::Body(Box::new(move |x| components(&c, x)))
                     }
                 };
-                Ok(Load { key: format!("load[{index}]"), place: load.place.clone(), applied })
+                let varies = load.kind.varies();
+                Ok(Load { key: format!("load[{index}]"), place: load.place.clone(), applied, varies })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Setup {

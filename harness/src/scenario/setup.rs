@@ -47,6 +47,8 @@ pub struct Load {
     pub place: Place,
     /// What.
     pub applied: Applied,
+    /// Whether it is another one from point to point.
+    pub varies: bool,
 }
 
 /// Everything that does not depend on the method.

@@ -68,6 +68,11 @@ pub trait RowSource: Send + Sync {
     /// Values on facets.
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError>;
 
+    /// Values on facets for what varies over them and need not be smooth.
+    fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
+        self.surface(facets)
+    }
+
     /// Values on the whole outer boundary, where tools may touch.
     fn contact_surface(&self) -> Result<SurfaceRows, SourceError>;
 
