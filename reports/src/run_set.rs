@@ -154,8 +154,8 @@ pub struct PlanEntry {
     pub why: String,
 }
 
-/// A run that gave no numbers.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A run that ended early: it gave no numbers, or those of a part of its load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// Case name.
     pub case: String,
@@ -163,6 +163,9 @@ pub struct Failure {
     pub method: String,
     /// What went wrong.
     pub reason: String,
+    /// The part of the load, 0 to 1, that its numbers are of; `None` where it gave none.
+    #[serde(default)]
+    pub carried: Option<f64>,
 }
 
 /// Everything one study leaves behind.
@@ -178,6 +181,6 @@ pub struct RunSet {
     pub fields: Vec<SurfaceField>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
-    /// Runs that failed.
+    /// Runs that failed or ended early.
     pub failures: Vec<Failure>,
 }

@@ -207,7 +207,8 @@ impl Plan {
                     (group.as_ref().map(Group::reference_stalled), &result.failure)
                 {
                     let reason = format!("reference stalled: {stalled}");
-                    let run = reports::Failure { case: case.clone(), method: task.method.id.clone(), reason };
+                    let carried = group.as_ref().ok().and_then(|group| group.reference_carried());
+                    let run = reports::Failure { case: case.clone(), method: task.method.id.clone(), reason, carried };
                     result.failure = Some((run, stalled.exit_code()));
                 }
                 result
