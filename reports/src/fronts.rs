@@ -233,7 +233,8 @@ pub(crate) mod tests {
     fn the_time_of_an_error_is_that_of_the_field() {
         let seconds = |times: &[(&str, f64)]| {
             let is = ("loop", "tet4", Family::Fem);
-            let records: Vec<Record> = times.iter().map(|(of, t)| record(is, 100, ("time", of), *t)).collect();
+            let records: Vec<Record> =
+                times.iter().map(|(of, t)| record(is, 100, ("time", of), *t)).collect();
             Clock::Repeated.seconds(&runs(&records)[0])
         };
         let probes = [("condense:median", 0.01), ("repeated:p99", 4e-7)];

@@ -6,6 +6,7 @@
 
 mod available;
 mod conform;
+mod coverage;
 mod demands;
 mod document;
 mod error;

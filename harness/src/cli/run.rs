@@ -100,7 +100,7 @@ impl Made<'_> {
         let records = outcome.records();
         for check in &self.scene.checks {
             let own = check.methods.is_empty() || check.methods.contains(&method.id);
-            if own && !check::needs_levels(check) {
+            if own && !check::is_of_many(check) {
                 let value = check::value(check.metric.name, &records);
                 self.set.checks.push(check::judge(check, &self.case, &method.id, value));
             }

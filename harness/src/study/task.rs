@@ -38,7 +38,12 @@ impl TaskResult {
 
     /// Of a run that gave no numbers.
     pub fn failed(case: &str, method: &str, failure: &Failure) -> TaskResult {
-        let run = FailedRun { case: case.into(), method: method.into(), reason: failure.to_string(), carried: None };
+        let run = FailedRun {
+            case: case.into(),
+            method: method.into(),
+            reason: failure.to_string(),
+            carried: None,
+        };
         TaskResult { failure: Some((run, failure.exit_code())), ..TaskResult::default() }
     }
 

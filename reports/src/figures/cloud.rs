@@ -63,8 +63,12 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
 fn settings(run: &Run) -> Vec<String> {
     let is = run.is;
     let basis = is.basis.clone().filter(|basis| basis != "linear");
-    let coupled = is.essential.as_ref().filter(|e| *e == "coupling").map(|_| "coupled to elements".to_string());
-    [basis, is.integration.clone(), is.neighbourhood.clone(), is.refine.clone(), coupled].into_iter().flatten().collect()
+    let coupled =
+        is.essential.as_ref().filter(|e| *e == "coupling").map(|_| "coupled to elements".to_string());
+    [basis, is.integration.clone(), is.neighbourhood.clone(), is.refine.clone(), coupled]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Support scales that make a sweep: a single one, or two that come from different methods, say nothing about it.
@@ -193,11 +197,17 @@ mod tests {
             let point = |r: &Run| r.value("condition-median").map(|v| (v, v, v));
             panels(&runs(records), point, |r| settings(r).join(", ")).remove(0).1
         };
-        let plain = ("gauss-4".to_string(), [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec());
+        let plain = (
+            "gauss-4".to_string(),
+            [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec(),
+        );
         assert_eq!(lines(&records), [plain.clone()]);
         // A sweep of their own is a line of its own.
         records.extend([1.2, 2.0].map(|scale| cloud("a-coupled", scale, "coupling", 9e4)));
         let both = lines(&records);
-        assert_eq!((both[0].clone(), both[1].0.as_str(), both.len()), (plain, "gauss-4, coupled to elements", 2));
+        assert_eq!(
+            (both[0].clone(), both[1].0.as_str(), both.len()),
+            (plain, "gauss-4, coupled to elements", 2)
+        );
     }
 }

@@ -274,7 +274,10 @@ mod tests {
         let (quick, mixed) = (panel("quick", &[1e-5, 9e-5]), panel("mixed", &[2e-4, 0.02]));
         let (slow, mean) = (panel("slow", &[0.5, 2.0]), panel("mean", &[0.02, 0.05]));
         assert_eq!(drawn(&quick), [""; 0]);
-        assert_eq!((drawn(&mixed), drawn(&slow), drawn(&mean)), (vec!["1 kHz", "30 Hz"], vec![], vec!["30 Hz"]));
+        assert_eq!(
+            (drawn(&mixed), drawn(&slow), drawn(&mean)),
+            (vec!["1 kHz", "30 Hz"], vec![], vec!["30 Hz"])
+        );
         assert_eq!(beyond(&[panel("quick", &[1e-5, 9e-5])]), ["all faster than 1 kHz"]);
         assert_eq!(
             beyond(&[quick, mixed, slow, mean]),

@@ -43,7 +43,12 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
         out.push(match f.carried {
             None => format!("No result for {}, {}: {reason}.", f.case, f.method),
             Some(load) => {
-                format!("Partial result for {}, {}, up to {} of the load: {reason}.", f.case, f.method, percent(load))
+                format!(
+                    "Partial result for {}, {}, up to {} of the load: {reason}.",
+                    f.case,
+                    f.method,
+                    percent(load)
+                )
             }
         });
     }

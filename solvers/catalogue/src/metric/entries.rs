@@ -111,6 +111,9 @@ metrics! {
         "observed order of the pressure error";
     ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order, Levels,
         "observed order of the frequency's error";
+    // Many clouds.
+    CARRIED_SHARE: "carried-share", "share of clouds that carried the load", None, Value, Seeds,
+        "share of the clouds of a study's seeds that gave numbers and carried the whole load, 0 to 1";
     // Vibrations.
     FREQUENCY_RATIO: "frequency-ratio", "computed over exact frequency", None, Value, ModesReference,
         "computed over exact frequency, the worst of the modes nearest to the exact ones of that frequency";
