@@ -55,7 +55,7 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run]
     for scene in scenes {
         let known = whole(&scene);
         if !run.contains(&known) && !excused.contains(&known) {
-            let problem = Problem::new("has a scene that no run has").found(&scene.display().to_string());
+            let problem = Problem::new("has a scene that no run has").found(scene.display().to_string());
             let help = "add a [[run]] with it, or a [[left_out]] with scene = \"...\" and reason = \"...\"";
             report.add("all_of", problem.help(help));
         }

@@ -201,7 +201,7 @@ mod tests {
             "gauss-4".to_string(),
             [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec(),
         );
-        assert_eq!(lines(&records), [plain.clone()]);
+        assert_eq!(lines(&records), std::slice::from_ref(&plain));
         // A sweep of their own is a line of its own.
         records.extend([1.2, 2.0].map(|scale| cloud("a-coupled", scale, "coupling", 9e4)));
         let both = lines(&records);
