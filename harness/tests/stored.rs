@@ -133,7 +133,12 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     change("element = \"hex8\"", "element = \"hex8\", dilation = \"element-mean\"");
     fails("hex20-mixed", " nodes is not by the scene's 'hex8', but by\n");
     // Words and other methods are not what was solved.
-    write(&dir, "made.toml", &(three.replace("title = \"", "title = \"Once more: ") + "# closer\n"));
+    write(
+        &dir,
+        "made.toml",
+        &(three.replace("title = \"", "title = \"Once more: ")
+            + "# closer\n\n[[check]]\nmetric = \"max\"\nat_most = \"1 m\"\n"),
+    );
     assert_eq!(make(&["tet4-nodal", "hex20-mixed"], &joined, &[&part]).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     write(&dir, "made.toml", &three);

@@ -108,6 +108,72 @@ seeds = 3
     assert_eq!(table("maxima").lines().filter(|l| l.contains("efg")).count(), 1);
 }
 
+/// Clouds of a block under twice its stiffness, with too few iterations: all get a part of the way. Pressed softly they get there.
+fn hopeless(dir: &TempDir, check: &str) -> String {
+    let scene = r#"title = "Pressed too hard"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
+support = [{ where = "z == 0 mm", fix = "xyz" }]
+load = [{ on = "z-max", pressure = "PRESSURE" }]
+procedure = { kind = "static", steps = 2, iterations = 4 }
+method = [{ id = "efg", family = "efg", nodes = 60, cloud = "uniform", seed = 1, kernel = "cubic-spline", support_scale = 1.8, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
+"#;
+    write(dir, "hard.toml", &scene.replace("PRESSURE", "40 kPa"));
+    write(dir, "soft.toml", &scene.replace("PRESSURE", "10 Pa"));
+    let text = |case: &str| {
+        format!(
+            "title = \"Seeds\"\n[[run]]\nscene = \"{case}.toml\"\nmethods = [\"efg\"]\nseeds = 3\n{check}"
+        )
+    };
+    write(dir, "soft-study.toml", &text("soft"));
+    write(dir, "hard-study.toml", &text("hard"))
+}
+
+#[test]
+fn clouds_that_all_stall_are_no_success() {
+    let dir = tempfile::tempdir().unwrap();
+    let hard = hopeless(&dir, "");
+    let out = inside(&dir, "hard");
+    let done = tissuebench(&["verify", &hard, "--out", &out]);
+    assert_eq!(done.code, 3, "{}", done.stderr);
+    let set = results(&out);
+    // Each has numbers of a part of its load, and the report says so.
+    assert_eq!(set.failures.len(), 3);
+    assert!(set.failures.iter().all(|f| f.carried.is_some_and(|load| load > 0.1 && load < 0.9)));
+    let page = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
+    assert!(page.contains("3 runs of a part of the load") && !page.contains("without a result"));
+    assert_eq!(
+        tissuebench(&["verify", &inside(&dir, "soft-study.toml"), "--out", &inside(&dir, "s")]).code,
+        0
+    );
+}
+
+#[test]
+fn a_share_of_clouds_must_carry_the_load() {
+    let dir = tempfile::tempdir().unwrap();
+    let hard = hopeless(&dir, "[[run.check]]\nmetric = \"carried-share\"\nat_least = 0.5\n");
+    for (study, code, share) in [(hard, 1, 0.0), (inside(&dir, "soft-study.toml"), 0, 1.0)] {
+        let out = inside(&dir, &format!("{share}"));
+        let done = tissuebench(&["verify", &study, "--out", &out]);
+        assert_eq!(done.code, code, "{}", done.stderr);
+        let checks = results(&out).checks;
+        assert_eq!(
+            checks.iter().map(|c| (c.metric.as_str(), c.value)).collect::<Vec<_>>(),
+            [("carried-share", Some(share))]
+        );
+        assert_eq!(done.stderr.contains("FAILED"), code == 1, "{}", done.stderr);
+    }
+}
+
+#[test]
+fn a_check_without_a_number_fails() {
+    // A block has no fallbacks of moving least squares: nothing is recorded that the check could bound.
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (bounded(&dir, "metric = \"fallbacks-enlarged\"\nat_most = 0"), inside(&dir, "out"));
+    assert_fails(&tissuebench(&["verify", &study, "--out", &out]), 1, "gives no such number");
+    assert_eq!(results(&out).checks[0].status, Status::Fail);
+}
+
 #[test]
 fn a_cloud_is_held_in_every_way_that_is_named_and_elements_in_theirs() {
     let dir = tempfile::tempdir().unwrap();

@@ -9,9 +9,10 @@
 //!   once) have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` a static path's
 //!   `solve-to-limit`). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from 1), and so have their `median`, and of
 //!   `time` also `spread` (interquartile range) and `min`.
-//! - A loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` (s), and `frames`,
+//! - A loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` or, of too few frames, `max` (s), and `frames`,
 //!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it.
-//! - A transfer scheme is a run of its own: `family = "interp"`, `variant` its name, `method` the scheme's id, `nodes` the number of
+//! - A transfer scheme is a run of its own, whose `rms` is the error of the displacement after the transfer (the method's error and the
+//!   transfer's together) and whose `transfer-rms` is what the transfer changes of the method's own displacement: `family = "interp"`, `variant` its name, `method` the scheme's id, `nodes` the number of
 //!   source nodes, `from` the method whose field it carries and `kernel` that method's kernel.
 //! - What is recorded step by step has one row per `step` (from 0, the start) and quantity: `closure` (m) or `time` (s, the
 //!   model's own) says where the step is, `tool-force` (N), `external-work`, `strain-energy`, `kinetic-energy`, `contact-energy`,
@@ -152,7 +153,7 @@ pub struct Record {
     pub step: Option<u64>,
     /// Mode of vibration, 1 the lowest.
     pub mode: Option<u64>,
-    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `p99` and `p99.9` (quantiles), or the ends `low` and
+    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9` (quantiles), or the ends `low` and
     /// `high` of an uncertainty.
     pub statistic: String,
     /// Which repeat of a timing, from 1.

@@ -155,8 +155,8 @@ pub struct PlanEntry {
     pub why: String,
 }
 
-/// A run that gave no numbers.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A run that ended early: it gave no numbers, or those of a part of its load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// Case name.
     pub case: String,
@@ -164,6 +164,9 @@ pub struct Failure {
     pub method: String,
     /// What went wrong.
     pub reason: String,
+    /// The part of the load, 0 to 1, that its numbers are of; `None` where it gave none.
+    #[serde(default)]
+    pub carried: Option<f64>,
 }
 
 /// What is to be said against the numbers of a run.
@@ -201,7 +204,7 @@ pub struct RunSet {
     pub fields: Vec<SurfaceField>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
-    /// Runs that failed.
+    /// Runs that failed or ended early.
     pub failures: Vec<Failure>,
     /// What is to be said against the numbers.
     pub warnings: Vec<Warning>,

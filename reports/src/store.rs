@@ -5,7 +5,7 @@
 //! | `records.csv` | the long table, one number a row, SI |
 //! | `provenance.json` | where the numbers come from, with the hash of every scene |
 //! | `checks.csv`, `checks.json` | every bound and how it came out |
-//! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers |
+//! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers, or those of a part of their load |
 //! | `warnings.json` | what is to be said against the numbers of runs |
 //! | `axes.json` | how methods fare along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |

@@ -7,6 +7,7 @@
 mod available;
 mod axis;
 mod conform;
+mod coverage;
 mod demands;
 mod document;
 mod error;

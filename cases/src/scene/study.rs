@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::axis::{Axis, AxisKeys, axis};
+use super::coverage::{self, LeftOutKeys};
 use super::demands::unheld;
 use catalogue::{Problem, Values};
 
@@ -70,6 +71,10 @@ pub struct Run {
 #[serde(deny_unknown_fields)]
 pub(crate) struct StudyKeys {
     pub title: String,
+    /// A folder, relative to the study's: every scene in it and below it is in a run or left out with a reason
+    pub all_of: Option<String>,
+    #[serde(default)]
+    pub left_out: Vec<LeftOutKeys>,
     #[serde(default)]
     pub run: Vec<RunKeys>,
 }
@@ -133,6 +138,7 @@ pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
             fit(run, &scene, &format!("run[{i}]"), &mut report);
         }
     }
+    coverage::check(keys.all_of.as_deref(), &keys.left_out, &runs, &mut report);
     let errors = report.finish();
     if errors.is_empty() { Ok(Study { title: keys.title, runs }) } else { Err(errors) }
 }
@@ -215,6 +221,10 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         validate::check(check, scene, &key, report);
         if check.metric.needs == Needs::Levels && run.levels.len() < 2 {
             let problem = Problem::new("needs several levels").help("give the run levels = [1, 2, 3]");
+            report.add(&format!("{key}.metric"), problem);
+        }
+        if check.metric.needs == Needs::Seeds && run.seeds == 0 {
+            let problem = Problem::new("needs many clouds").help("give the run seeds = 50");
             report.add(&format!("{key}.metric"), problem);
         }
         if !run.methods.is_empty() {

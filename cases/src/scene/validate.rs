@@ -46,6 +46,11 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             let problem = Problem::new("needs several levels").help("checks of orders belong into a study");
             report.add(&format!("{key}.metric"), problem);
         }
+        if check.metric.needs == Needs::Seeds {
+            let problem =
+                Problem::new("needs many clouds").help("checks of shares belong into a study with seeds");
+            report.add(&format!("{key}.metric"), problem);
+        }
     }
     if let Some(id) = &scene.output.beside {
         known_methods(std::slice::from_ref(id), scene, "output.beside", report);

@@ -117,6 +117,41 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "run[0].check[0].method",
         &["'hex' is not a method"],
     ),
+    (
+        "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\n[[run.check]]\nmetric = \"carried-share\" #<\nat_least = 0.9",
+        "run[0].check[0].metric",
+        &["needs many clouds", "seeds = 50"],
+    ),
+    (
+        "title = \"t\"\nall_of = \"scenes/beam\" #<\n[[run]]\nscene = \"scenes/first.toml\"",
+        "all_of",
+        &["has a scene that no run has", "torsion.toml", "[[left_out]]"],
+    ),
+    (
+        "title = \"t\"\nall_of = \"scenes/beams\" #<\n[[run]]\nscene = \"scenes/first.toml\"",
+        "all_of",
+        &["has no scenes", "relative to the study's"],
+    ),
+    (
+        "title = \"t\"\n[[left_out]] #<\nscene = \"scenes/first.toml\"\nreason = \"why\"\n[[run]]\nscene = \"scenes/first.toml\"",
+        "left_out",
+        &["goes with all_of only"],
+    ),
+    (
+        "title = \"t\"\nall_of = \"scenes\"\n[[left_out]]\nscene = \"scenes/first.toml\" #<\nreason = \"why\"\n[[run]]\nscene = \"scenes/first.toml\"",
+        "left_out[0].scene",
+        &["is in a run"],
+    ),
+    (
+        "title = \"t\"\nall_of = \"scenes\"\n[[left_out]]\nscene = \"scenes/last.toml\" #<\nreason = \"why\"\n[[run]]\nscene = \"scenes/first.toml\"",
+        "left_out[0].scene",
+        &["can't be found"],
+    ),
+    (
+        "title = \"t\"\nall_of = \"scenes\"\n[[left_out]]\nscene = \"scenes/cloud-cost.toml\"\nreason = \" \" #<\n[[run]]\nscene = \"scenes/first.toml\"",
+        "left_out[0].reason",
+        &["says nothing"],
+    ),
 ];
 
 #[test]

@@ -41,7 +41,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Err(failure) => return made.unreferenced(&chosen, &failure),
     };
     if let Some(failure) = group.reference_stalled() {
-        made.reference_stalled(failure);
+        made.reference_stalled(failure, group.reference_carried());
     }
     for index in chosen {
         let method = &scene.methods[index];
@@ -85,11 +85,11 @@ impl Made<'_> {
         failure.exit_code()
     }
 
-    fn reference_stalled(&mut self, failure: &Failure) {
+    fn reference_stalled(&mut self, failure: &Failure, carried: Option<f64>) {
         eprintln!("reference stalled: {failure} (every method is compared with the steps it reached)");
         let reason = format!("reference stalled: {failure}");
         let (case, method) = (self.case.clone(), "reference".into());
-        self.set.failures.push(reports::Failure { case, method, reason });
+        self.set.failures.push(reports::Failure { case, method, reason, carried });
         self.code = failure.exit_code();
     }
 
@@ -100,7 +100,7 @@ impl Made<'_> {
         let records = outcome.records();
         for check in &self.scene.checks {
             let own = check.methods.is_empty() || check.methods.contains(&method.id);
-            if own && !check::needs_levels(check) {
+            if own && !check::is_of_many(check) {
                 let value = check::value(check.metric.name, &records);
                 self.set.checks.push(check::judge(check, &self.case, &method.id, value));
             }
@@ -127,7 +127,7 @@ impl Made<'_> {
         let failure = unfinished.failure;
         eprintln!("{failure} (method '{}')", method.id);
         let (case, method, reason) = (self.case.clone(), method.id.clone(), failure.to_string());
-        self.set.failures.push(reports::Failure { case, method, reason });
+        self.set.failures.push(reports::Failure { case, method, reason, carried: None });
         self.code = self.code.max(failure.exit_code());
     }
 

@@ -42,7 +42,11 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
     }
     let rendered = report(&args.out, &args.out.join("report"));
     for failure in &set.failures {
-        eprintln!("could not run: {} {}: {}", failure.case, failure.method, failure.reason);
+        let word = match failure.carried {
+            None => "could not run".into(),
+            Some(load) => format!("ended at {load:.4} of the load"),
+        };
+        eprintln!("{word}: {} {}: {}", failure.case, failure.method, failure.reason);
     }
     let count = |status| set.checks.iter().filter(|c| c.status == status).count();
     for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {

@@ -23,7 +23,7 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// Statistics with their units, as far as there are frames for them.
+    /// Statistics with their units, as far as there are frames for them; of too few for `p99` the slowest, `max`.
     pub fn statistics(&self) -> Vec<(&'static str, &'static str, f64)> {
         if let Some(frame) = self.broke_off {
             return vec![("broke-off", "1", frame as f64)];
@@ -40,6 +40,9 @@ impl Latency {
             .map(|(name, p, _)| (name, "s", quantile(p)))
             .collect();
         if count > 1 {
+            if count < FOR_P99 {
+                reported.push(("max", "s", sorted[count - 1]));
+            }
             reported.push(("frames", "1", count as f64));
         }
         if self.iterations > 0 {
@@ -64,7 +67,8 @@ mod tests {
             deviation: None,
         };
         let (frames, iterations) = (("frames", "1", 4.0), ("iterations", "1", 2.0));
-        assert_eq!(of(4).statistics(), [("median", "s", 2.0), frames, iterations]);
+        assert_eq!(of(4).statistics(), [("median", "s", 2.0), ("max", "s", 4.0), frames, iterations]);
+        assert_eq!(of(1).statistics(), [("median", "s", 1.0), ("iterations", "1", 2.0)]);
         assert_eq!(of(100).statistics()[..2], [("median", "s", 50.0), ("p99", "s", 99.0)]);
         assert_eq!(of(1000).statistics()[1..3], [("p99", "s", 990.0), ("p99.9", "s", 999.0)]);
         let broken = Latency { broke_off: Some(7), ..of(100) };

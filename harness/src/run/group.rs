@@ -180,6 +180,11 @@ impl<'a> Group<'a> {
         self.reference_stalled.as_ref()
     }
 
+    /// The part of the load that the reference reached, where it has steps.
+    pub fn reference_carried(&self) -> Option<f64> {
+        self.reference.as_ref().and_then(|reference| reference.steps.last()).map(|step| step.load)
+    }
+
     /// Runs one method.
     pub fn run(&self, scenario: &Scenario, options: RunOptions) -> Result<Outcome, Unfinished> {
         let discretisation = scenario.discretise()?;

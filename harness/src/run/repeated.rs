@@ -94,8 +94,8 @@ fn linear(
         })?);
     }
     let mut forces = vec![Vector3::zeros(); method.nodes().len()];
-    // Timed too: what 99 % of the frames take, and no more than a fiftieth of the time that the loop may take.
-    let ask = Repeated { frames: ask.frames.min(FOR_P99), within: 0.02 * ask.within, ..*ask };
+    // Timed too: what 99 % of the frames take, and no more than a tenth of the time that the loop may take.
+    let ask = Repeated { frames: ask.frames.min(FOR_P99), within: 0.1 * ask.within, ..*ask };
     let share = ask.cycle / (unit.len() + 1);
     latencies.push(timed("repeated-field", &ask, |k| {
         forces.fill(Vector3::zeros());

@@ -72,7 +72,8 @@ impl Problem {
                 methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
             }
         }
-        for words in ["title", "source", "purpose", "published"] {
+        // What is said of it, and what must hold of its results, is no part of a problem.
+        for words in ["title", "source", "purpose", "published", "check"] {
             table.remove(words);
         }
         Problem { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }

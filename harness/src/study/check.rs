@@ -1,7 +1,7 @@
 //! Bounds on numbers: of one run, or of a family of runs at several levels.
 
 use cases::scene::{Bound, Check};
-use catalogue::metric::Needs;
+use catalogue::metric::{self, Needs};
 use reports::{Check as Verdict, Family, Record, Status};
 
 /// The SI value a check's metric names, among the records of one run.
@@ -33,15 +33,29 @@ pub fn order(metric: &str, family: &[&[Record]]) -> Option<f64> {
     reports::observed_order(&points)?.pairs.last().copied()
 }
 
-/// Whether the check is about a family of levels.
-pub fn needs_levels(check: &Check) -> bool {
-    check.metric.needs == Needs::Levels
+/// The value of a metric of many runs, each given by its records: an order of levels, or the share of clouds that carried the load.
+pub fn of_many(metric: &str, runs: &[&[Record]]) -> Option<f64> {
+    if metric == metric::CARRIED_SHARE.name {
+        let carried = runs.iter().filter(|records| carried(records)).count();
+        return (!runs.is_empty()).then(|| carried as f64 / runs.len() as f64);
+    }
+    order(metric, runs)
 }
 
-/// The verdict on one value.
+/// Whether a run gave numbers and carried the whole load, as what knows no steps does.
+pub fn carried(records: &[Record]) -> bool {
+    !records.is_empty() && value(metric::LOAD_CARRIED.name, records).is_none_or(|load| load > 0.999_999)
+}
+
+/// Whether the check is about many runs together: a family of levels, or clouds of many seeds.
+pub fn is_of_many(check: &Check) -> bool {
+    matches!(check.metric.needs, Needs::Levels | Needs::Seeds)
+}
+
+/// The verdict on one value. No value is a failure: what was to be guarded is gone.
 pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Verdict {
     let (bound, status, reason) = match (&check.bound, value) {
-        (bound, None) => (text(bound), Status::NotRun, "this run gives no such number".to_string()),
+        (bound, None) => (text(bound), Status::Fail, "this run gives no such number".to_string()),
         (Bound::Within { at_least, at_most }, Some(v)) => {
             // Written so that a NaN fails.
             let holds = at_least.is_none_or(|low| v >= low) && at_most.is_none_or(|high| v <= high);
@@ -49,6 +63,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Ver
             (text(&check.bound), if holds { Status::Pass } else { Status::Fail }, reason)
         }
         (Bound::KnownBand { low, high, reason }, Some(v)) => {
+            // Written so that a NaN fails.
             if v >= *low && v <= *high {
                 (text(&check.bound), Status::KnownFailure, reason.clone())
             } else {
@@ -68,6 +83,11 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Ver
     }
 }
 
+/// The verdict on a check of a run that failed: the failure is counted by itself.
+pub fn not_run(check: &Check, case: &str, method: &str, failure: &str) -> Verdict {
+    Verdict { status: Status::NotRun, reason: failure.into(), ..judge(check, case, method, None) }
+}
+
 fn text(bound: &Bound) -> String {
     match bound {
         Bound::Within { at_least: Some(low), at_most: Some(high) } => format!("from {low:e} to {high:e}"),
@@ -75,5 +95,73 @@ fn text(bound: &Bound) -> String {
         Bound::Within { at_least: None, at_most: Some(high) } => format!("at most {high:e}"),
         Bound::Within { at_least: None, at_most: None } => "any number".into(),
         Bound::KnownBand { low, high, .. } => format!("known to lie from {low:e} to {high:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn status(bound: Bound, value: Option<f64>) -> Status {
+        let check = Check { metric: &metric::L2, methods: vec![], bound };
+        let verdict = judge(&check, "block", "tet4", value);
+        assert_eq!(verdict.reason.is_empty(), verdict.status == Status::Pass, "{}", verdict.reason);
+        assert!(verdict.value.is_none_or(f64::is_finite));
+        verdict.status
+    }
+
+    #[test]
+    fn a_bound_holds_on_its_side_and_at_its_end_and_never_of_no_number() {
+        let within = |at_least, at_most| move |v| status(Bound::Within { at_least, at_most }, v);
+        let (least, most, both) =
+            (within(Some(1.0), None), within(None, Some(2.0)), within(Some(1.0), Some(2.0)));
+        for (value, expected) in [
+            (Some(0.9), [false, true, false]),
+            (Some(1.0), [true, true, true]),
+            (Some(2.0), [true, true, true]),
+            (Some(2.1), [true, false, false]),
+            (Some(f64::NAN), [false; 3]),
+            (None, [false; 3]),
+        ] {
+            let found = [least(value), most(value), both(value)].map(|status| status == Status::Pass);
+            assert_eq!(found, expected, "{value:?}");
+        }
+    }
+
+    #[test]
+    fn a_known_failure_stays_between_both_ends_of_its_band() {
+        let band = |v| status(Bound::KnownBand { low: 1.0, high: 2.0, reason: "locks".into() }, v);
+        for value in [1.0, 1.5, 2.0] {
+            assert_eq!(band(Some(value)), Status::KnownFailure, "{value}");
+        }
+        for value in [Some(0.99), Some(2.01), Some(-1.5), Some(f64::NAN), Some(f64::INFINITY), None] {
+            assert_eq!(band(value), Status::Fail, "{value:?}");
+        }
+    }
+
+    #[test]
+    fn the_share_counts_clouds_without_numbers_and_those_that_stalled() {
+        let cloud = |load: f64| {
+            let (quantity, statistic) = ("load-carried".to_string(), "value".to_string());
+            vec![Record { family: Family::Efg, quantity, statistic, value: load, ..Record::default() }]
+        };
+        let clouds = [cloud(1.0), cloud(0.99), vec![], cloud(1.0)];
+        let clouds = clouds.each_ref().map(Vec::as_slice);
+        assert_eq!(of_many("carried-share", &clouds), Some(0.5));
+        assert_eq!(of_many("carried-share", &[]), None);
+        // A linear problem has no steps.
+        let linear = [Record { quantity: "rms".into(), statistic: "value".into(), ..Record::default() }];
+        assert_eq!(of_many("carried-share", &[&linear]), Some(1.0));
+    }
+
+    #[test]
+    fn a_check_of_a_run_that_failed_was_not_run() {
+        let bound = Bound::Within { at_least: None, at_most: Some(1.0) };
+        let check = Check { metric: &metric::L2, methods: vec![], bound };
+        let verdict = not_run(&check, "block", "tet4", "no support");
+        assert_eq!(
+            (verdict.status, verdict.reason.as_str(), verdict.value),
+            (Status::NotRun, "no support", None)
+        );
     }
 }

@@ -5,6 +5,8 @@ pub mod check;
 pub(crate) mod folder;
 pub(crate) mod make_reference;
 mod progress;
+#[cfg(test)]
+mod project;
 mod task;
 mod tasks;
 mod trials;
@@ -272,7 +274,13 @@ impl Plan {
                     (group.as_ref().map(Group::reference_stalled), &result.failure)
                 {
                     let reason = format!("reference stalled: {stalled}");
-                    let run = reports::Failure { case: case.clone(), method: task.method.id.clone(), reason };
+                    let carried = group.as_ref().ok().and_then(|group| group.reference_carried());
+                    let run = reports::Failure {
+                        case: case.clone(),
+                        method: task.method.id.clone(),
+                        reason,
+                        carried,
+                    };
                     result.failure = Some((run, stalled.exit_code()));
                 }
                 result
@@ -323,7 +331,9 @@ impl Plan {
         for (_, _, scene) in &self.scenes {
             set.records.extend(reference_records(scene));
         }
-        set.checks.extend(self.family_verdicts(&results));
+        let families = self.families(&results);
+        set.checks.extend(self.family_verdicts(&families));
+        failed.extend(self.without_any(&families));
         set.axes = self.axes(&results);
         set.checks.extend(set.axes.iter().flat_map(trials::verdicts));
         let texts: Vec<(String, String)> =
@@ -337,14 +347,12 @@ impl Plan {
         let scene = &self.scenes[task.scene].2;
         let label = label(task, &result.records, self.is_one_of_many(task));
         self.checks(task)
-            .filter(|check| !check::needs_levels(check))
-            .map(|check| {
-                let value = check::value(check.metric.name, &result.records);
-                let mut verdict = check::judge(check, &case_name(scene), &label, value);
-                if let (None, Some((failure, _))) = (value, &result.failure) {
-                    verdict.reason = failure.reason.clone();
+            .filter(|check| !check::is_of_many(check))
+            .map(|check| match (check::value(check.metric.name, &result.records), &result.failure) {
+                (None, Some((failure, _))) => {
+                    check::not_run(check, &case_name(scene), &label, &failure.reason)
                 }
-                verdict
+                (value, _) => check::judge(check, &case_name(scene), &label, value),
             })
             .collect()
     }
@@ -357,38 +365,59 @@ impl Plan {
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }
 
-    /// Checks of orders: once for each method and Poisson's ratio of a run table.
-    fn family_verdicts(&self, results: &BTreeMap<usize, TaskResult>) -> Vec<Verdict> {
-        let mut verdicts = Vec::new();
-        // In the order of the first result of each.
-        let mut families: Vec<(usize, &Task)> = Vec::new();
+    /// The runs that a run table has of each method and Poisson's ratio together, in the order of the first result of each.
+    fn families<'a>(&'a self, results: &'a BTreeMap<usize, TaskResult>) -> Vec<Family<'a>> {
+        let mut families: Vec<Family> = Vec::new();
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
-        for task in results.keys().map(|&index| &self.tasks[index]) {
+        for (&index, result) in results {
+            let task = &self.tasks[index];
             for &run in &task.runs {
-                if !families.iter().any(|(other, first)| *other == run && same(first, task)) {
-                    families.push((run, task));
+                match families.iter_mut().find(|f| f.run == run && same(f.first, task)) {
+                    Some(family) => family.members.push(result),
+                    None => families.push(Family { run, first: task, members: vec![result] }),
                 }
             }
         }
-        for (run, first) in families {
-            let of = |task: &Task| task.runs.contains(&run) && same(first, task);
-            let members: Vec<&[Record]> = (results.iter())
-                .filter(|(index, _)| of(&self.tasks[**index]))
-                .map(|(_, result)| result.records.as_slice())
-                .collect();
+        families
+    }
+
+    /// Checks of orders and shares: once for each method and Poisson's ratio of a run table.
+    fn family_verdicts(&self, families: &[Family]) -> Vec<Verdict> {
+        let mut verdicts = Vec::new();
+        for Family { run, first, members } in families {
             let case = case_name(&self.scenes[first.scene].2);
+            let label = match first.poisson {
+                Some(poisson) => format!("{} nu={poisson}", first.method.id),
+                None => first.method.id.clone(),
+            };
             let own = |c: &&Check| c.methods.is_empty() || c.methods.contains(&first.method.id);
-            for check in self.study.runs[run].checks.iter().filter(own).filter(|c| check::needs_levels(c)) {
-                let value = check::order(check.metric.name, &members);
-                let label = match first.poisson {
-                    Some(poisson) => format!("{} nu={poisson}", first.method.id),
-                    None => first.method.id.clone(),
-                };
-                verdicts.push(check::judge(check, &case, &label, value));
+            for check in self.study.runs[*run].checks.iter().filter(own).filter(|c| check::is_of_many(c)) {
+                let records: Vec<&[Record]> = members.iter().map(|member| &member.records[..]).collect();
+                let value = check::of_many(check.metric.name, &records);
+                let failed = members.iter().find_map(|member| member.failure.as_ref());
+                verdicts.push(match (value, failed) {
+                    (None, Some((failure, _))) => check::not_run(check, &case, &label, &failure.reason),
+                    (value, _) => check::judge(check, &case, &label, value),
+                });
             }
         }
         verdicts
     }
+
+    /// Of many clouds some may stall; where none carried the load there is no result.
+    fn without_any(&self, families: &[Family]) -> Vec<u8> {
+        let seeded = families.iter().filter(|family| self.study.runs[family.run].seeds > 0);
+        let none = seeded.filter(|f| !f.members.iter().any(|member| check::carried(&member.records)));
+        none.filter_map(|f| f.members.iter().find_map(|m| m.failure.as_ref()).map(|(_, code)| *code))
+            .collect()
+    }
+}
+
+/// The runs that a run table has of one method at one Poisson's ratio: its levels, or its clouds.
+struct Family<'a> {
+    run: usize,
+    first: &'a Task,
+    members: Vec<&'a TaskResult>,
 }
 
 /// The rows of a stored reference; one that can't be read has failed every method that asked for it.

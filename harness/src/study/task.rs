@@ -41,7 +41,12 @@ impl TaskResult {
 
     /// Of a run that gave no numbers.
     pub fn failed(case: &str, method: &str, failure: &Failure) -> TaskResult {
-        let run = FailedRun { case: case.into(), method: method.into(), reason: failure.to_string() };
+        let run = FailedRun {
+            case: case.into(),
+            method: method.into(),
+            reason: failure.to_string(),
+            carried: None,
+        };
         TaskResult { failure: Some((run, failure.exit_code())), ..TaskResult::default() }
     }
 
@@ -66,6 +71,7 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
         case: outcome.identity.case.clone(),
         method: outcome.identity.method.clone(),
         reason: format!("{}: {failure}", outcome.status),
+        carried: outcome.metric("load-carried").filter(|load| *load > 0.0),
     }
 }
 

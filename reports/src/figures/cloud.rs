@@ -57,10 +57,18 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     }]
 }
 
-/// What must not change along a line besides the support scale; the linear basis, being the usual one, goes unsaid.
+/// What must not change along a line besides the support scale: all that the rows of a cloud depend on. What is usual goes unsaid:
+/// the linear basis, supports that are balls, and a cloud that is not coupled to finite elements. How else displacements are
+/// prescribed leaves the rows as they are.
 fn settings(run: &Run) -> Vec<String> {
-    let basis = run.is.basis.clone().filter(|basis| basis != "linear");
-    [basis, run.is.integration.clone()].into_iter().flatten().collect()
+    let is = run.is;
+    let basis = is.basis.clone().filter(|basis| basis != "linear");
+    let coupled =
+        is.essential.as_ref().filter(|e| *e == "coupling").map(|_| "coupled to elements".to_string());
+    [basis, is.integration.clone(), is.neighbourhood.clone(), is.refine.clone(), coupled]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Support scales that make a sweep: a single one, or two that come from different methods, say nothing about it.
@@ -154,4 +162,52 @@ fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
     let span = values.last().zip(values.first()).map_or(0.0, |(high, low)| high - low);
     values.dedup_by(|next, kept| *next - *kept <= 0.06 * span);
     values.into_iter().map(|v| (v, v.to_string())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+    use crate::select::runs;
+
+    #[test]
+    fn coupled_clouds_are_no_points_of_a_line_of_plain_ones() {
+        let cloud = |method: &str, scale: f64, essential: &str, condition: f64| {
+            Record {
+                case: "block".into(),
+                method: method.into(),
+                family: Family::Efg,
+                variant: "cubic-spline".into(),
+                basis: Some("linear".into()),
+                integration: Some("gauss-4".into()),
+                essential: Some(essential.into()),
+                support_scale: Some(scale),
+                nodes: 216,
+                quantity: "condition-median".into(),
+                value: condition,
+                ..Record::blank()
+            }
+            .of_its_run()
+        };
+        let mut records = vec![cloud("a-coupled", 1.6, "coupling", 9e4)];
+        for (scale, condition) in [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)] {
+            records.push(cloud("plain", scale, "nitsche", condition));
+        }
+        let lines = |records: &[Record]| {
+            let point = |r: &Run| r.value("condition-median").map(|v| (v, v, v));
+            panels(&runs(records), point, |r| settings(r).join(", ")).remove(0).1
+        };
+        let plain = (
+            "gauss-4".to_string(),
+            [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec(),
+        );
+        assert_eq!(lines(&records), std::slice::from_ref(&plain));
+        // A sweep of their own is a line of its own.
+        records.extend([1.2, 2.0].map(|scale| cloud("a-coupled", scale, "coupling", 9e4)));
+        let both = lines(&records);
+        assert_eq!(
+            (both[0].clone(), both[1].0.as_str(), both.len()),
+            (plain, "gauss-4, coupled to elements", 2)
+        );
+    }
 }

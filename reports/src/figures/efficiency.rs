@@ -5,7 +5,7 @@ use super::canvas::{Canvas, GREY};
 use super::grid::{Content, scattered};
 use super::style::{Style, find, styles};
 use super::{Figure, PAGE, chosen, continued, paged};
-use crate::fronts::{Clock, DEADLINES, FLOOR, QUESTIONS, Question, pareto, point};
+use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, QUESTIONS, Question, pareto, point};
 use crate::quantity::label;
 use crate::record::Family;
 use crate::select::{Run, Series, kernels, labels, series};
@@ -82,7 +82,8 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styl
         Clock::Repeated => (
             "efficiency-repeated",
             "Time of a repeated solve against error",
-            "Time that 99 of 100 solves of a loop prepared once take at most",
+            "Time that 99 of 100 solves of a loop prepared once take at most (of fewer solves the slowest), each for the displacement of \
+             all nodes,",
         ),
     };
     Figure {
@@ -113,8 +114,9 @@ fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'
     let (scale, x) = match clock {
         Clock::First => (1.0, Axis::log("run time, median [s]", points().map(|p| p.0))),
         Clock::Repeated => {
-            let times = points().map(|p| p.0).chain(DEADLINES.map(|d| d.seconds));
-            (1e3, Axis::log("repeated solve, 99 % within [ms]", times.map(|t| 1e3 * t)))
+            let near = near(&panel.clusters).into_iter().map(|d| d.seconds);
+            let times = points().map(|p| 1e3 * p.0).chain(near.map(|t| 1e3 * t));
+            (1e3, Axis::log("repeated solve, 99 % within [ms]", times))
         }
     };
     Content {
@@ -130,7 +132,7 @@ fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'
                 canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
             }
             if clock == Clock::Repeated {
-                deadlines(canvas, panel, scale);
+                deadlines(canvas, panel, scale, &near(clusters));
             }
             for (label, _, points) in clusters {
                 if let Some(style) = find(styles, label) {
@@ -139,6 +141,44 @@ fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'
             }
         }),
     }
+}
+
+/// Times by which a line may lie beyond the runs: one decade, or it would squeeze them into a corner.
+const REACH: f64 = 10.0;
+
+/// The least and the largest time of a panel.
+fn range(clusters: &[Cluster]) -> (f64, f64) {
+    let times = clusters.iter().flat_map(|c| c.2.iter().map(|p| p.0));
+    times.fold((f64::INFINITY, 0.0), |(low, high), t| (t.min(low), t.max(high)))
+}
+
+/// The deadlines among the runs of a panel or near them.
+fn near(clusters: &[Cluster]) -> Vec<Deadline> {
+    let (low, high) = range(clusters);
+    DEADLINES.into_iter().filter(|d| (low / REACH..=high * REACH).contains(&d.seconds)).collect()
+}
+
+/// What is said of the deadlines that are not drawn, with the panels: of all that every run keeps, the hardest; of all that none
+/// keeps, the easiest.
+fn beyond(panels: &[Paned]) -> Vec<String> {
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for panel in panels {
+        let (low, high) = range(&panel.clusters);
+        let kept = DEADLINES.iter().find(|d| d.seconds > high * REACH).map(|d| ("faster", d));
+        let missed = DEADLINES.iter().rev().find(|d| d.seconds < low / REACH).map(|d| ("slower", d));
+        for (word, deadline) in kept.into_iter().chain(missed) {
+            let text = format!("all {word} than {}", deadline.name);
+            match said.iter_mut().find(|(other, _)| *other == text) {
+                Some((_, titles)) => titles.push(panel.title.clone()),
+                None => said.push((text, vec![panel.title.clone()])),
+            }
+        }
+    }
+    let place = |titles: &[String]| match titles.len() == panels.len() {
+        true => String::new(),
+        false => format!(" ({})", titles.join("; ")),
+    };
+    said.into_iter().map(|(text, titles)| text + &place(&titles)).collect()
 }
 
 /// Errors with as many around them as make a decade: closer ones would need digits that have no room beside an axis.
@@ -158,8 +198,16 @@ fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
         note += " Dashed: an error of 1 %.";
     }
     if clock == Clock::Repeated {
-        let all = DEADLINES.map(|d| format!("{} ({})", d.name, d.what));
-        note += &format!(" Vertical lines: the periods of {}.", list(&all));
+        let drawn = |d: &&Deadline| panels.iter().any(|p| near(&p.clusters).iter().any(|n| n.name == d.name));
+        let drawn = DEADLINES.iter().filter(drawn).map(|d| format!("{} ({})", d.name, d.what));
+        let drawn: Vec<String> = drawn.collect();
+        if !drawn.is_empty() {
+            note += &format!(" Vertical lines: the periods of {}.", list(&drawn));
+        }
+        let beyond = beyond(panels);
+        if !beyond.is_empty() {
+            note += &format!(" Not drawn, more than a decade away: {}.", list(&beyond));
+        }
     }
     if question.scalar {
         note += " A single number can be right by chance, where its errors cancel.";
@@ -183,9 +231,9 @@ fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
 }
 
 /// Vertical lines where a frame must be done.
-fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64) {
+fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, drawn: &[Deadline]) {
     let (_, top, _, bottom) = panel.frame;
-    for deadline in DEADLINES {
+    for deadline in drawn {
         let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
         canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
         // Along its line: beside it there is no room where that is near an end of the axis.
@@ -210,6 +258,32 @@ mod tests {
     use super::*;
     use crate::fronts::tests::run;
     use crate::select::runs;
+
+    #[test]
+    fn a_line_far_from_all_runs_is_not_drawn_but_said() {
+        let panel = |title: &str, times: &[f64]| {
+            let points = times.iter().map(|&t| (t, 0.1)).collect();
+            Paned {
+                title: title.into(),
+                error: "l2",
+                clusters: vec![("tet4".into(), false, points)],
+                reference: None,
+            }
+        };
+        let drawn = |p: &Paned| near(&p.clusters).iter().map(|d| d.name).collect::<Vec<_>>();
+        let (quick, mixed) = (panel("quick", &[1e-5, 9e-5]), panel("mixed", &[2e-4, 0.02]));
+        let (slow, mean) = (panel("slow", &[0.5, 2.0]), panel("mean", &[0.02, 0.05]));
+        assert_eq!(drawn(&quick), [""; 0]);
+        assert_eq!(
+            (drawn(&mixed), drawn(&slow), drawn(&mean)),
+            (vec!["1 kHz", "30 Hz"], vec![], vec!["30 Hz"])
+        );
+        assert_eq!(beyond(&[panel("quick", &[1e-5, 9e-5])]), ["all faster than 1 kHz"]);
+        assert_eq!(
+            beyond(&[quick, mixed, slow, mean]),
+            ["all faster than 1 kHz (quick)", "all slower than 30 Hz (slow)", "all slower than 1 kHz (mean)"]
+        );
+    }
 
     #[test]
     fn the_note_names_the_reference() {

@@ -24,7 +24,7 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
 
 fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     let (quantity, label, scale) = [
-        ("rms", "RMS error after the transfer [mm]", 1e3),
+        ("rms", "RMS error after the transfer, from the reference [mm]", 1e3),
         ("l2", "relative L2 error after the transfer [1]", 1.0),
     ]
     .into_iter()

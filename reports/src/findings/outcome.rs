@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::run_set::{RunSet, Status};
-use crate::text::significant;
+use crate::text::{percent, significant};
 
 /// How many checks passed, and every one that did not with its reason.
 pub(super) fn checks(set: &RunSet) -> Vec<String> {
@@ -50,7 +50,18 @@ pub(super) fn checks(set: &RunSet) -> Vec<String> {
         out.push(format!("Warning {code}: {}{tail}.", named.join("; ")));
     }
     for f in &set.failures {
-        out.push(format!("No result for {}, {}: {}.", f.case, f.method, f.reason.trim_end_matches('.')));
+        let reason = f.reason.trim_end_matches('.');
+        out.push(match f.carried {
+            None => format!("No result for {}, {}: {reason}.", f.case, f.method),
+            Some(load) => {
+                format!(
+                    "Partial result for {}, {}, up to {} of the load: {reason}.",
+                    f.case,
+                    f.method,
+                    percent(load)
+                )
+            }
+        });
     }
     out
 }

@@ -55,16 +55,25 @@ fn once(method: &str) -> String {
     words.join(" ")
 }
 
-/// Runs that gave no numbers.
+/// Runs that ended early, those without any numbers first.
 pub(super) fn failures(set: &RunSet) -> Table {
     let mut table = Table::new(
         "failed-runs",
-        "Failed runs",
-        "Runs that gave no numbers, and why",
-        &[("case", Words), ("method", Words), ("reason", Words)],
+        "Runs that ended early",
+        "Runs that gave no numbers or those of a part of their load only, and why. A partial run is in tables and figures of what it reached, \
+         and in none where errors of whole runs are compared",
+        &[("result", Words), ("case", Words), ("method", Words), ("load [1]", Number), ("reason", Words)],
     );
-    for f in &set.failures {
-        table.row(&[Cell::Text(&f.case), Cell::Text(&f.method), Cell::Text(&f.reason)]);
+    let mut failures: Vec<_> = set.failures.iter().collect();
+    failures.sort_by_key(|f| f.carried.is_some());
+    for f in failures {
+        table.row(&[
+            Cell::Text(if f.carried.is_some() { "partial" } else { "none" }),
+            Cell::Text(&f.case),
+            Cell::Text(&f.method),
+            Cell::Digits(f.carried, 3),
+            Cell::Text(&f.reason),
+        ]);
     }
     table
 }
@@ -147,11 +156,27 @@ fn pattern(why: &str) -> (String, Option<u64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run_set::Failure;
 
     #[test]
     fn a_value_shows_the_digits_of_its_bound() {
         assert_eq!(digits("from 1.743135e-2 to 1.743145e-2"), 7);
         assert_eq!(digits("at most 1e-12"), 4);
+    }
+
+    #[test]
+    fn a_partial_run_is_told_from_one_without_numbers() {
+        let run = |method: &str, carried| Failure {
+            case: "jaws".into(),
+            method: method.into(),
+            reason: "stalled".into(),
+            carried,
+        };
+        let set = RunSet { failures: vec![run("tet10", Some(0.578)), run("efg", None)], ..RunSet::default() };
+        assert_eq!(
+            failures(&set).shown(),
+            [["none", "jaws", "efg", "—", "stalled"], ["partial", "jaws", "tet10", "0.578", "stalled"]]
+        );
     }
 
     #[test]

@@ -8,8 +8,10 @@ use crate::table::{Cell, Table};
 
 /// Error and cost of every scheme, by what it carried over.
 pub(super) fn schemes(runs: &[Run]) -> Table {
-    let caption = "Error at the target points after the transfer, and its cost: building the weights (prepare) and applying them (transfer). Of a prescribed field \
-         the error is the transfer's own; of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone";
+    let caption = "Two numbers at the target points, and the cost. The error is the distance of the transferred displacement from the reference: of a \
+         prescribed field it is the transfer's own (rms in the records); of a method's result it holds the method's error too, which own-rows (the method's own shape functions) \
+         shows alone. The change is the distance from the method's own displacement there (transfer-rms in the records): what the transfer does, whatever \
+         the reference. Cost: building the weights (prepare) and applying them (transfer)";
     let mut table = Table::new(
         "transfer",
         "Transfer schemes",
@@ -21,11 +23,12 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             ("settings", Words),
             ("from nodes", Number),
             ("to points", Number),
-            ("L2 [1]", Number),
-            ("RMS x [mm]", Number),
-            ("RMS y [mm]", Number),
-            ("RMS z [mm]", Number),
-            ("RMS |u| [mm]", Number),
+            ("L2 error [1]", Number),
+            ("RMS error x [mm]", Number),
+            ("RMS error y [mm]", Number),
+            ("RMS error z [mm]", Number),
+            ("RMS error |u| [mm]", Number),
+            ("RMS change |u| [mm]", Number),
             ("build [ms]", Number),
             ("apply [ms]", Number),
         ],
@@ -44,6 +47,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             Cell::Digits(millimetres(run.value("rms-y")), 3),
             Cell::Digits(millimetres(run.value("rms-z")), 3),
             Cell::Digits(millimetres(run.value("rms")), 3),
+            Cell::Digits(millimetres(run.value("transfer-rms")), 3),
             Cell::Digits(millimetres(run.time("prepare", "median")), 3),
             Cell::Digits(millimetres(run.time("transfer", "median")), 3),
         ]);

@@ -408,6 +408,7 @@ pub fn study() -> RunSet {
         case: "cantilever".into(),
         method: "efg-tight".into(),
         reason: "Too few neighbours at <0, 0, 1>: 3 of 4 & no fallback.".into(),
+        carried: None,
     }];
     for (stage, ran, why) in [
         ("contact search", false, "no tool"),

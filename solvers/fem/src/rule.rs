@@ -71,23 +71,23 @@ pub struct SurfaceRule {
     tri6: usize,
     quad4: usize,
     quad8: usize,
-    /// Whether quadratic faces are taken in quarters.
-    quarters: bool,
+    /// Whether quadratic triangles are taken in sixteen parts.
+    parts: bool,
 }
 
 impl SurfaceRule {
     /// What integrates a traction of the face's own order exactly on a flat straight-sided face: tri3 3 points,
     /// tri6 6, quad4 2 x 2, quad8 3 x 3.
-    pub const STANDARD: SurfaceRule = SurfaceRule { tri3: 3, tri6: 6, quad4: 2, quad8: 3, quarters: false };
+    pub const STANDARD: SurfaceRule = SurfaceRule { tri3: 3, tri6: 6, quad4: 2, quad8: 3, parts: false };
 
     /// For tractions that are no polynomial of low order: tri3 7 points (degree 5), tri6 16 (degree 8),
     /// quad4 4 x 4, quad8 5 x 5.
-    pub const FINE: SurfaceRule = SurfaceRule { tri3: 7, tri6: 16, quad4: 4, quad8: 5, quarters: false };
+    pub const FINE: SurfaceRule = SurfaceRule { tri3: 7, tri6: 16, quad4: 4, quad8: 5, parts: false };
 
-    /// For tractions whose derivatives have no bound: as [`FINE`](SurfaceRule::FINE), quadratic faces in quarters. At the corners of
-    /// Saint-Venant's square section a rule of any degree loses h^3, as much as a quadratic element's displacement: 7e-6 of
-    /// the load of a section of 4 x 4 faces, and an eighth of it in quarters.
-    pub const FIELD: SurfaceRule = SurfaceRule { quarters: true, ..SurfaceRule::FINE };
+    /// For tractions whose derivatives have no bound: as [`FINE`](SurfaceRule::FINE), quadratic triangles in sixteen parts. At the
+    /// corners of Saint-Venant's square section a rule of any degree loses h^3, as much as a quadratic element's
+    /// displacement: on 4 x 4 x 2 faces tet10 is 3.4 % farther off than with any finer rule, and with this one 0.05 %.
+    pub const FIELD: SurfaceRule = SurfaceRule { parts: true, ..SurfaceRule::FINE };
 
     /// The same choice but for one kind: `points` per face (triangles) or along each axis (quadrilaterals).
     pub fn with(self, kind: FaceKind, points: usize) -> Result<SurfaceRule, FemError> {
@@ -103,12 +103,12 @@ impl SurfaceRule {
     /// Number of points on a face of this kind.
     pub fn points(&self, kind: FaceKind) -> usize {
         let n = self.number(kind);
-        let parts = if self.in_quarters(kind) { 4 } else { 1 };
+        let parts = if self.is_in_parts(kind) { 16 } else { 1 };
         parts * if is_triangle(kind) { n } else { n * n }
     }
 
-    fn in_quarters(&self, kind: FaceKind) -> bool {
-        self.quarters && matches!(kind, FaceKind::Tri6 | FaceKind::Quad8)
+    fn is_in_parts(&self, kind: FaceKind) -> bool {
+        self.parts && kind == FaceKind::Tri6
     }
 
     pub(crate) fn rule(&self, kind: FaceKind) -> Result<Rule<2>, FemError> {
@@ -118,11 +118,7 @@ impl SurfaceRule {
         } else {
             quadrature::quad(n)
         };
-        Ok(match (self.in_quarters(kind), is_triangle(kind)) {
-            (false, _) => whole,
-            (true, true) => whole.halved_triangle(),
-            (true, false) => whole.halved_square(),
-        })
+        Ok(if self.is_in_parts(kind) { whole.halved_triangle().halved_triangle() } else { whole })
     }
 
     fn number(&self, kind: FaceKind) -> usize {

@@ -33,7 +33,7 @@ impl<const D: usize> Rule<D> {
 }
 
 impl Rule<2> {
-    /// A rule of the reference triangle in each of its four halves: where an integrand is no polynomial, such as near a
+    /// A rule of the reference triangle in each of its four parts of half the size: where an integrand is no polynomial, such as near a
     /// singular corner, more points help where a higher degree does not.
     pub fn halved_triangle(&self) -> Rule<2> {
         // Corners at the origin, at (1/2, 0) and at (0, 1/2), and the middle one, turned round.
@@ -41,18 +41,6 @@ impl Rule<2> {
             let (s, t) = (0.5 * s, 0.5 * t);
             [[s, t], [s + 0.5, t], [s, t + 0.5], [0.5 - s, 0.5 - t]]
         };
-        self.in_quarters(map)
-    }
-
-    /// A rule of the reference square in each of its four quarters.
-    pub fn halved_square(&self) -> Rule<2> {
-        let map = |[s, t]: [f64; 2]| {
-            [[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]].map(|[a, b]| [0.5 * s + a, 0.5 * t + b])
-        };
-        self.in_quarters(map)
-    }
-
-    fn in_quarters(&self, map: impl Fn([f64; 2]) -> [[f64; 2]; 4]) -> Rule<2> {
         let each = |part: usize| self.points.iter().map(move |&x| (part, x));
         let points = (0..4).flat_map(each).map(|(part, x)| map(x)[part]).collect();
         let weights = (0..4).flat_map(|_| self.weights.iter().map(|w| 0.25 * w)).collect();
@@ -71,12 +59,10 @@ mod tests {
             rule.points.iter().zip(&rule.weights).map(|(x, w)| w * x[0].powi(a) * x[1].powi(b)).sum()
         };
         let triangle = tri(6).unwrap();
-        let square = quad(3);
         for (a, b) in [(0, 0), (1, 0), (0, 3), (2, 2), (1, 3)] {
             let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
             let exact = factorial(a) * factorial(b) / factorial(a + b + 2);
-            assert!((integral(&triangle.halved_triangle(), a, b) - exact).abs() < 1e-16, "{a} {b}");
-            assert!((integral(&square.halved_square(), a, b) - integral(&square, a, b)).abs() < 1e-15);
+            assert!((integral(&triangle.halved_triangle(), a, b) - exact).abs() < 1e-15, "{a} {b}");
         }
         let exact = 1.0 / 110.0;
         let error = |rule: &Rule<2>| (integral(rule, 9, 0) - exact).abs();

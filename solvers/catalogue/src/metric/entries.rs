@@ -31,7 +31,7 @@ metrics! {
     RMS_Z: "rms-z", "RMS error along z", Length, Error, Reference,
         "root mean square error of the displacement along z";
     RMS: "rms", "RMS error", Length, Error, Reference,
-        "root mean square error of the displacement";
+        "root mean square error of the displacement; of a transfer, of the displacement after it: the method's error and the transfer's together";
     MAX_ERROR: "max-error", "largest error", Length, Error, Reference,
         "largest error of the displacement";
     RELATIVE_MAX: "relative-max", "relative largest error", None, Error, Reference,
@@ -80,17 +80,17 @@ metrics! {
     BESIDE_RMS: "beside-rms", "RMS difference from the secondary reference", Length, Value, Reference,
         "root mean square difference from the secondary reference (output.beside)";
     // Transfers to other points.
-    TRANSFER_RMS: "transfer-rms", "RMS change by transfer", Length, Error, Transfer,
-        "root mean square difference of the transferred displacement from that of the method's own shape functions; the worst of all schemes in a check";
+    TRANSFER_RMS: "transfer-rms", "RMS change made by a transfer", Length, Error, Transfer,
+        "root mean square difference of the transferred displacement from that of the method's own shape functions: what the transfer changes, without the method's error; the worst of all schemes in a check";
     LINEAR_RMS: "linear-rms", "RMS error of a linear field", Length, Error, Transfer,
         "root mean square error of a transferred linear field of 10 % strain";
-    TRANSFER_ONLY_RMS_X: "transfer-only-rms-x", "RMS error of transfer alone along x", Length, Error, Transfer,
+    TRANSFER_ONLY_RMS_X: "transfer-only-rms-x", "RMS error of the reference's field after transfer along x", Length, Error, Transfer,
         "root mean square error along x of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS_Y: "transfer-only-rms-y", "RMS error of transfer alone along y", Length, Error, Transfer,
+    TRANSFER_ONLY_RMS_Y: "transfer-only-rms-y", "RMS error of the reference's field after transfer along y", Length, Error, Transfer,
         "root mean square error along y of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS_Z: "transfer-only-rms-z", "RMS error of transfer alone along z", Length, Error, Transfer,
+    TRANSFER_ONLY_RMS_Z: "transfer-only-rms-z", "RMS error of the reference's field after transfer along z", Length, Error, Transfer,
         "root mean square error along z of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS: "transfer-only-rms", "RMS error of transfer alone", Length, Error, Transfer,
+    TRANSFER_ONLY_RMS: "transfer-only-rms", "RMS error of the reference's field after transfer", Length, Error, Transfer,
         "root mean square error of the reference's own field, transferred from the cloud's nodes";
     BESIDE_TRANSFER_RMS_X: "beside-transfer-rms-x", "RMS error of transfer alone along x, secondary reference", Length, Error, Transfer,
         "root mean square error along x of the secondary reference's own field, transferred from the cloud's nodes";
@@ -111,6 +111,9 @@ metrics! {
         "observed order of the pressure error";
     ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order, Levels,
         "observed order of the frequency's error";
+    // Many clouds.
+    CARRIED_SHARE: "carried-share", "share of clouds that carried the load", None, Value, Seeds,
+        "share of the clouds of a study's seeds that gave numbers and carried the whole load, 0 to 1";
     // Vibrations.
     FREQUENCY_RATIO: "frequency-ratio", "computed over exact frequency", None, Value, ModesReference,
         "computed over exact frequency, the worst of the modes nearest to the exact ones of that frequency";

@@ -53,6 +53,8 @@ pub enum Needs {
     Probes,
     /// A `[reference]` and a study with several levels.
     Levels,
+    /// A study with many clouds of one method: `seeds`.
+    Seeds,
     /// A transfer.
     Transfer,
     /// A static procedure or dynamics.

@@ -1,0 +1,81 @@
+//! Whether a study has every scene of a folder: a case that was taken out of it, or never put in, is named.
+
+use std::path::{Path, PathBuf};
+
+use catalogue::Problem;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::report::Report;
+use super::study::Run;
+
+/// A scene that the study leaves out
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LeftOutKeys {
+    /// The scene file, relative to the study's folder
+    pub scene: String,
+    /// Why no run has it
+    pub reason: String,
+}
+
+/// Reports every scene in the folder `all_of` and below it that is neither in a run nor left out with a reason.
+pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run], report: &mut Report) {
+    let Some(folder) = all_of else {
+        let help = "name the folder of scenes that the study is of: all_of = \"../scenes\"";
+        report.require(left_out.is_empty(), "left_out", "goes with all_of only", help);
+        return;
+    };
+    let folder = report.path(folder, "all_of");
+    let mut scenes = Vec::new();
+    if list(&folder, &mut scenes).is_err() || scenes.is_empty() {
+        let help = format!("no scenes in {}; the folder is relative to the study's", folder.display());
+        report.add("all_of", Problem::new("has no scenes").help(help));
+        return;
+    }
+    scenes.sort();
+    let run: Vec<PathBuf> = runs.iter().map(|run| whole(&run.scene)).collect();
+    let mut excused = Vec::new();
+    for (i, keys) in left_out.iter().enumerate() {
+        let key = format!("left_out[{i}]");
+        let scene = report.path(&keys.scene, &format!("{key}.scene"));
+        let help = format!("no file at {}; scenes are relative to the study's folder", scene.display());
+        report.require(scene.is_file(), &format!("{key}.scene"), "can't be found", &help);
+        let scene = whole(&scene);
+        report.require(
+            !run.contains(&scene),
+            &format!("{key}.scene"),
+            "is in a run",
+            "leave one of them out",
+        );
+        let sound = !keys.reason.trim().is_empty();
+        report.require(sound, &format!("{key}.reason"), "says nothing", "say why no run has the scene");
+        excused.push(scene);
+    }
+    for scene in scenes {
+        let known = whole(&scene);
+        if !run.contains(&known) && !excused.contains(&known) {
+            let problem = Problem::new("has a scene that no run has").found(scene.display().to_string());
+            let help = "add a [[run]] with it, or a [[left_out]] with scene = \"...\" and reason = \"...\"";
+            report.add("all_of", problem.help(help));
+        }
+    }
+}
+
+/// The TOML files in a folder and below it.
+fn list(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            list(&path, found)?;
+        } else if path.extension().is_some_and(|extension| extension == "toml") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// One path for one file, however it is written.
+fn whole(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.into())
+}

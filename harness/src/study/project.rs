@@ -1,0 +1,72 @@
+//! The project's own verification, held against its scenes and its baseline.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use cases::scene;
+
+use super::{Plan, Task, case_name, check};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn verification() -> Plan {
+    let study = scene::load_study(&root().join("cases/studies/verify.toml")).expect("a sound study");
+    Plan::new(study).unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// Whether any check, of its own or of many runs together, is of a task.
+fn is_checked(plan: &Plan, task: &Task) -> bool {
+    let of_tables = plan.tables(task).flat_map(|run| &run.checks).filter(|check| check::is_of_many(check));
+    let mut of_tables = of_tables.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id));
+    plan.checks(task).next().is_some() || of_tables.next().is_some()
+}
+
+#[test]
+fn every_run_of_the_verification_is_checked() {
+    let plan = verification();
+    let unchecked = plan.tasks.iter().filter(|task| !is_checked(&plan, task));
+    let case = |task: &Task| case_name(&plan.scenes[task.scene].2);
+    let named: BTreeSet<String> = unchecked.map(|t| format!("{} {}", case(t), t.method.id)).collect();
+    assert!(named.is_empty(), "no check is of\n{}", named.into_iter().collect::<Vec<_>>().join("\n"));
+}
+
+/// Scenes in a folder and below it.
+fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            scenes(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "toml") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_scene_of_the_project_has_a_check_of_what_it_is_for() {
+    let study = verification().study;
+    let mut paths = Vec::new();
+    scenes(&root().join("cases/scenes"), &mut paths);
+    assert!(paths.len() > 30, "{}", paths.len());
+    for path in paths {
+        let same = |run: &&scene::Run| run.scene.file_name() == path.file_name();
+        let in_study = study.runs.iter().filter(same).any(|run| !run.checks.is_empty());
+        let own = scene::load(&path).map(|scene| !scene.checks.is_empty()).unwrap_or_default();
+        assert!(own || in_study, "{} has no check, nor has a run of it", path.display());
+    }
+}
+
+#[test]
+fn the_quick_tier_has_the_cases_of_the_baseline_and_no_others() {
+    let path = root().join("tests/baseline/quick.toml");
+    let baseline = reports::baseline::Baseline::load(&path).expect("a baseline");
+    // A run's name begins with its case and method. A stored reference is there in either tier.
+    let names = baseline.runs.keys().filter_map(|run| run.split_once(' '));
+    let solved = names.filter(|(_, method)| !method.starts_with("reference "));
+    let accepted: BTreeSet<&str> = solved.map(|(case, _)| case).collect();
+    let study = verification().study;
+    let quick = study.runs.iter().filter(|run| run.quick).filter_map(|run| run.scene.file_stem()?.to_str());
+    assert_eq!(accepted, quick.collect::<BTreeSet<&str>>(), "the baseline's, and those of the quick tier");
+}
