@@ -97,8 +97,8 @@ impl Scenario<'_> {
     fn of_static(&self, error: &StaticError) -> Finding {
         match error {
             StaticError::Solve(error) => self.of_solve(error),
-            StaticError::Contact(_) => {
-                finding(ErrorKind::NotRun, Key::Scene("tool".into()), error.to_string(), "")
+            StaticError::Contact { tool, cause } => {
+                finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), cause.to_string(), "")
             }
             StaticError::Parameter { .. } => {
                 finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")

@@ -7,7 +7,9 @@ use shape::Vector3;
 use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
 use super::{Energy, TimeError};
-use crate::nonlinear::{Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
+use crate::nonlinear::{
+    Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms, shortest_travel,
+};
 use crate::{StaticWork, Step};
 
 /// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
@@ -36,6 +38,8 @@ pub fn solve_in_time(
     }
     let count = params.steps.max(1);
     let longest = params.end / count as f64;
+    // Tools travel at their largest speed all along: their ramp is linear.
+    let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
     let (mut next, mut step) = (1, longest);
     while next <= count {
         let target = next as f64 * longest;
@@ -63,7 +67,9 @@ pub fn solve_in_time(
                         TimeError::Inaccurate { error, allowed } => following(allowed, error).clamp(0.2, 0.8),
                         _ => 0.5,
                     };
-                if step < params.smallest * longest {
+                let smallest = params.smallest * longest;
+                let too_far = matches!(&cause, TimeError::Static(cause) if cause.is_too_far());
+                if step < if too_far { smallest.min(shortest) } else { smallest } {
                     let (time, cause) = (march.state.time, Box::new(cause));
                     path.failure = Some(TimeError::Stalled { time, step: length, cause });
                     break;
@@ -195,7 +201,8 @@ impl<'a> March<'a> {
         let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
         let (state, step) = to(Descent::Nearest)
             .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
-            .or_else(|_| to(Descent::Down))?;
+            .or_else(|_| to(Descent::Down))
+            .and_then(|reached| self.newton.checked(&self.state, reached))?;
         let mut motion = self.motion_at(time, dt, &state.u);
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {

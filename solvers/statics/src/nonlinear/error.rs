@@ -39,9 +39,14 @@ pub enum StaticError {
     /// The problem itself, or a linear system of it.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// Contact could not be evaluated.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
+    /// Contact with a tool has no meaning.
+    #[error("tool[{tool}]: {cause}")]
+    Contact {
+        /// Its index.
+        tool: usize,
+        /// Why.
+        cause: ContactError,
+    },
     /// An inverted point.
     #[error(transparent)]
     Inverted(#[from] Inverted),
@@ -94,4 +99,11 @@ pub enum StaticError {
         /// What it should be.
         need: &'static str,
     },
+}
+
+impl StaticError {
+    /// Whether a smaller step of a tool may do: it went too deep, or all the way through.
+    pub(crate) fn is_too_far(&self) -> bool {
+        matches!(self, StaticError::Contact { cause, .. } if cause.is_too_far())
+    }
 }

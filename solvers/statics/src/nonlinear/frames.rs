@@ -3,7 +3,7 @@
 use shape::Vector3;
 
 use super::error::StaticError;
-use super::newton::{Descent, Newton, State, near};
+use super::newton::{Descent, Newton, State, near, shortest_travel};
 use super::statics::{StaticParams, StaticProblem, Step};
 
 /// Equilibria in frames: each starts from the last, forwards or backwards along the loading. Residuals are relative to the
@@ -15,6 +15,8 @@ pub struct Frames<'a> {
     augmentations: usize,
     /// Part of the load below which cutting a frame is given up.
     smallest: f64,
+    /// The same where a tool travels too far.
+    shortest: f64,
 }
 
 impl<'a> Frames<'a> {
@@ -26,6 +28,7 @@ impl<'a> Frames<'a> {
             before: None,
             augmentations: params.augmentations,
             smallest: params.smallest / params.steps.max(1) as f64,
+            shortest: shortest_travel(problem),
         })
     }
 
@@ -56,7 +59,9 @@ impl<'a> Frames<'a> {
                 Err(cause) => {
                     let failed = target - self.state.time;
                     target = self.state.time + 0.5 * failed;
-                    if 0.5 * failed.abs() < self.smallest {
+                    let smallest =
+                        if cause.is_too_far() { self.smallest.min(self.shortest) } else { self.smallest };
+                    if 0.5 * failed.abs() < smallest {
                         let time = self.state.time;
                         return Err(StaticError::Stalled { time, step: failed, cause: Box::new(cause) });
                     }
