@@ -3,8 +3,10 @@
 mod agreement;
 mod nodal_patch;
 pub(crate) mod reach;
+mod touch;
 
 use cases::scene::ConstraintRows;
+use contact::ContactSurface;
 use fem::SurfaceRule;
 use geometry::quadrature;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
@@ -22,6 +24,7 @@ use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{self, Applied, Setup, Support};
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
+use touch::Touch;
 
 /// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
 const CUT_POINTS: usize = 6;
@@ -67,7 +70,7 @@ pub struct Prepared {
     weak: Vec<OwnedWeak>,
     penalties: Vec<OwnedPenalty>,
     /// Where tools may touch; `None` without tools.
-    pub contact: Option<SurfaceRows>,
+    touch: Option<Touch>,
 }
 
 /// Fills every table that the plan has.
@@ -90,7 +93,7 @@ pub fn prepare(
         eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
         penalties: Vec::new(),
-        contact: None,
+        touch: None,
     };
     for load in &setup.loads {
         prepared.load(method, load)?;
@@ -108,12 +111,12 @@ pub fn prepare(
         prepared.penalise(setup)?;
     }
     if plan.runs(StageName::Contact) {
-        let surface = prepared.source.contact_surface()?;
-        let points = surface.weights().len() as u64;
+        let touch = Touch::new(&*prepared.source, &setup.tools)?;
+        let points = touch.surface.weights().len() as u64;
         counters.contact_points += points;
         counters.friction_points +=
             points * setup.tools.iter().filter(|t| t.tool.law().friction() > 0.0).count() as u64;
-        prepared.contact = Some(surface);
+        prepared.touch = Some(touch);
     }
     Ok(prepared)
 }
@@ -142,6 +145,11 @@ impl Prepared {
                 trace: w.trace.as_ref(),
             })
             .collect()
+    }
+
+    /// Where tools may touch, as the solver takes it; `None` without tools.
+    pub fn contact(&self) -> Option<ContactSurface<'_>> {
+        self.touch.as_ref().map(Touch::contact)
     }
 
     /// Degrees of freedom prescribed.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
-use contact::{ContactSurface, DrivenTool};
+use contact::DrivenTool;
 use statics::{
     Dilation, NewtonParams, Solid, StaticError, StaticParams, StaticPath, StaticProblem, Step, solve_static,
 };
@@ -70,7 +70,7 @@ pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> R
 
 fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(Solution, Limit), Failure> {
     let Problem { method, setup, prepared, plan, watch } = *problem;
-    let contact = prepared.contact.as_ref().map(ContactSurface::new);
+    let contact = prepared.contact();
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
     let start = Instant::now();
     let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));

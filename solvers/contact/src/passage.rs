@@ -37,13 +37,7 @@ impl ContactSurface<'_> {
     ///
     /// A point that goes deeper on its way than [`Tool::deepest`], and half of that where nothing touches in the end, has been
     /// jumped over: points that slide along a tool cut its corners by less.
-    pub fn check_step(
-        &self,
-        tool: &Tool,
-        from: Stand,
-        to: Stand,
-        touches: bool,
-    ) -> Result<(), ContactError> {
+    pub fn check_step(&self, tool: &Tool, from: Stand, to: Stand, touches: bool) -> Result<(), ContactError> {
         self.check_passage(tool, from, to, touches)?;
         if touches { Ok(()) } else { self.check_overlap(tool, to) }
     }

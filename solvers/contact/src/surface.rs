@@ -167,7 +167,11 @@ impl Cluster {
     }
 
     /// Middle and half extents of a box that holds the cluster's points in the state `u`.
-    pub(super) fn current_box(&self, nodes: &[u32], u: &[Vector3]) -> Result<(Point3, Vector3), ContactError> {
+    pub(super) fn current_box(
+        &self,
+        nodes: &[u32],
+        u: &[Vector3],
+    ) -> Result<(Point3, Vector3), ContactError> {
         let nodes = &nodes[self.nodes.clone()];
         let mut finite = true;
         let (low, high) = range(nodes.iter().map(|&node| {

@@ -10,6 +10,7 @@ use shape::{
     SurfaceRows, TraceRows, VolumeRows, equal_groups,
 };
 
+use crate::facets::divided_surface_rows;
 use crate::{
     Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support, flux_rows, gauss_regions,
     gauss_rows, grid_rows, node_smoothed_regions, node_smoothed_rows, node_smoothed_trace, smoothed_regions,
@@ -227,9 +228,10 @@ impl RowSource for CloudSource {
 
     /// Smoothed gradients want their own face points: a block of smoothed cells between two plates came out 3 % too wide with
     /// three contact points on faces of one.
-    fn contact_surface(&self) -> Result<SurfaceRows, SourceError> {
+    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError> {
         let points = self.integration.smoothed_face_points().unwrap_or(CONTACT_POINTS);
-        Ok(surface_rows(&self.approximation, &self.background, &self.background.boundary(), points)?.0)
+        let facets = self.background.boundary();
+        Ok(divided_surface_rows(&self.approximation, &self.background, &facets, points, parts)?.0)
     }
 
     /// Those of the smoothing, so that the integration constraint holds to rounding.

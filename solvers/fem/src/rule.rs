@@ -108,6 +108,13 @@ impl SurfaceRule {
         }
     }
 
+    /// The same on each of `parts` x `parts` parts of a face.
+    pub(crate) fn divided(&self, kind: FaceKind, parts: usize) -> Result<Rule<2>, FemError> {
+        let whole = self.rule(kind)?;
+        let divide = if is_triangle(kind) { quadrature::divided_tri } else { quadrature::divided_quad };
+        Ok(if parts > 1 { divide(&whole, parts) } else { whole })
+    }
+
     fn number(&self, kind: FaceKind) -> usize {
         match kind {
             FaceKind::Tri3 => self.tri3,

@@ -9,8 +9,8 @@ use shape::{
 };
 
 use crate::{
-    SurfaceRule, VolumeRule, element_dilation, flux_rows, nearest_grad_rows, nearest_point_rows,
-    pressure_rows, regions, surface_rows, volume_rows,
+    SurfaceRule, VolumeRule, divided_surface_rows, element_dilation, flux_rows, nearest_grad_rows,
+    nearest_point_rows, pressure_rows, regions, surface_rows, volume_rows,
 };
 
 /// Elements of a mesh, whose nodes are the method's.
@@ -75,10 +75,10 @@ impl RowSource for Elements {
     /// 3 points per linear triangle and 2 x 2 per quadrilateral (on a kidney of 1331 nodes between two jaws, more change the
     /// force by 0.1 %), 16 and 5 x 5 per quadratic face (with 3 x 3 on hex20 of 3519 nodes the force was 1.1 % lower where the
     /// jaw's edge crosses the faces).
-    fn contact_surface(&self) -> Result<SurfaceRows, SourceError> {
+    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError> {
         let quadratic = self.mesh.uniform_kind().is_some_and(|kind| kind.order() == 2);
         let rule = if quadratic { SurfaceRule::FINE } else { SurfaceRule::STANDARD };
-        Ok(surface_rows(&self.mesh, &self.mesh.boundary(), &rule)?)
+        Ok(divided_surface_rows(&self.mesh, &self.mesh.boundary(), &rule, parts)?)
     }
 
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError> {

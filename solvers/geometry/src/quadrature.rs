@@ -4,9 +4,11 @@
 //! corners; all weights are positive and all points lie strictly inside. Cube and square rules are tensor products
 //! of Gauss-Legendre. Weights sum to the measure of the reference cell.
 
+mod divided;
 mod gauss;
 mod simplex;
 
+pub use divided::{divided_quad, divided_tri};
 pub use gauss::{gauss_legendre, hex, quad};
 pub use simplex::{TET_RULES, TRI_RULES, tet, tri};
 

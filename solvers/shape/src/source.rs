@@ -68,8 +68,9 @@ pub trait RowSource: Send + Sync {
     /// Values on facets.
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError>;
 
-    /// Values on the whole outer boundary, where tools may touch.
-    fn contact_surface(&self) -> Result<SurfaceRows, SourceError>;
+    /// Values on the whole outer boundary, where tools may touch, with the points on each of `parts` x `parts` parts of a facet:
+    /// one number for each facet of the boundary, or none for whole facets.
+    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError>;
 
     /// Values and gradients on facets, for weak supports.
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;

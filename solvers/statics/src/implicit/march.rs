@@ -38,7 +38,7 @@ pub fn solve_in_time(
     }
     let count = params.steps.max(1);
     let longest = params.end / count as f64;
-    // Tools travel at their largest speed all along: their ramp is linear.
+    // A smooth ramp is less than twice as fast as a linear one.
     let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
     let (mut next, mut step) = (1, longest);
     while next <= count {
