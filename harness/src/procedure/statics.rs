@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
-use contact::DrivenTool;
+use contact::{ContactSurface, DrivenTool};
 use statics::{
     Dilation, NewtonParams, Solid, StaticError, StaticParams, StaticPath, StaticProblem, Step, solve_static,
 };
