@@ -251,6 +251,9 @@ impl Run<'_, '_> {
             self.motion.run(1, 1, load, &mut |balance, u| seen = Some((*balance, u.to_vec())))?;
             let (balance, u) = seen.expect("every step is recorded");
             if state > 0 {
+                if let Some(tools) = self.motion.tools() {
+                    tools.check_overlap(self.motion.steps() - 1, state as f64 * interval, &u)?;
+                }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
                 let step = self.reported(&balance, &u, state as f64 * interval);
                 self.states.steps.push(step);

@@ -117,7 +117,7 @@ impl Scenario<'_> {
                 (Key::Method(""), "procedure.safety = 0.7 leaves more room")
             }
             ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool-mass"),
-            ExplicitError::ContactAt { .. } => (Key::Scene("tool".into()), ""),
+            ExplicitError::ContactAt { tool, .. } => (Key::Scene(format!("tool[{tool}]")), ""),
             ExplicitError::InvertedAt { .. } => {
                 (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")
             }

@@ -42,6 +42,21 @@ impl ContactSurface<'_> {
         if touches { Ok(()) } else { self.check_overlap(tool, to) }
     }
 
+    /// Fails where a tool that travels while the surface stays jumps over it; `touches` at the end or not. Less than
+    /// [`Tool::deepest`] takes no point in and out again.
+    pub fn check_travel(
+        &self,
+        tool: &Tool,
+        [from, to]: [f64; 2],
+        u: &[Vector3],
+        touches: bool,
+    ) -> Result<(), ContactError> {
+        if (to - from).abs() <= tool.deepest() {
+            return Ok(());
+        }
+        self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
+    }
+
     fn check_passage(&self, tool: &Tool, from: Stand, to: Stand, touches: bool) -> Result<(), ContactError> {
         let limit = tool.deepest() * if touches { 1.0 } else { 0.5 };
         if limit.is_infinite() {
@@ -64,8 +79,8 @@ impl ContactSurface<'_> {
         if depth > limit { Err(ContactError::JumpedOver { depth, at, travel }) } else { Ok(()) }
     }
 
-    /// Fails where a corner of the surface stands in the tool deeper than its points can tell.
-    fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
+    /// Fails where a corner of the surface stands in a tool that touches no point deeper than its points can tell.
+    pub fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
         let Some(corners) = self.corners else { return Ok(()) };
         let mut worst: Option<(f64, usize, f64)> = None;
         for c in 0..corners.points().len() {

@@ -1,0 +1,128 @@
+//! Where tools may touch: contact points so close together that no tool fits between them, and the corners of the faces.
+
+use cases::scene::ErrorKind;
+use contact::{ContactSurface, Tool};
+use geometry::{Facet, Mesh, Point3, Vector3};
+use shape::{PointRows, RowSource, SurfaceRows};
+
+use crate::Failure;
+use crate::error::Key;
+use crate::scenario::PlacedTool;
+
+/// Part of a tool's half breadth that its way may be off the nearest point at most: a ball is then 0.3 of its radius deep when
+/// it touches first, and a point that it jumps over passes no less deep through it.
+const FREE: f64 = 0.7;
+/// The same where faces are divided.
+const AIM: f64 = 0.5;
+/// Points that dividing faces may add: as many as a large mesh has.
+const MOST: usize = 500_000;
+
+/// Points on a part of a face, about.
+const POINTS: usize = 4;
+
+/// Tables of the surface.
+pub(super) struct Touch {
+    /// Contact points.
+    pub(super) surface: SurfaceRows,
+    /// Nodes of the faces; they carry no force.
+    corners: PointRows,
+}
+
+impl Touch {
+    /// The method's own contact points, and more where a tool passes faces that are too large for it.
+    pub(super) fn new(source: &dyn RowSource, tools: &[PlacedTool]) -> Result<Touch, Failure> {
+        let mesh = source.mesh();
+        let facets = mesh.boundary();
+        let mut surface = source.contact_surface(&[])?;
+        let nodes = mesh.facet_group_nodes(&facets);
+        let points: Vec<Point3> = nodes.iter().map(|&node| mesh.points()[node as usize]).collect();
+        let (corners, _) = source.at_points(&points)?;
+        let (mut parts, mut added) = (vec![1; facets.len()], 0usize);
+        for (index, set) in tools.iter().enumerate() {
+            outside(source, index, &set.tool)?;
+            let half = set.tool.half_breadth();
+            for (parts, &facet) in parts.iter_mut().zip(&facets) {
+                let free =
+                    if passes(mesh, facet, &set.tool) { free(mesh, facet, &surface, half) } else { 0.0 };
+                if free > FREE * half {
+                    *parts = (*parts).max((free / (AIM * half)).ceil() as usize);
+                    added += POINTS * *parts * *parts;
+                    affordable(index, half, free, added)?;
+                }
+            }
+        }
+        if parts.iter().any(|parts| *parts > 1) {
+            surface = source.contact_surface(&parts)?;
+        }
+        Ok(Touch { surface, corners })
+    }
+
+    /// As the solver takes it.
+    pub(super) fn contact(&self) -> ContactSurface<'_> {
+        ContactSurface::new(&self.surface).with_corners(&self.corners)
+    }
+}
+
+/// Refuses a tool that starts within the body: it would never meet the surface from outside.
+fn outside(source: &dyn RowSource, index: usize, tool: &Tool) -> Result<(), Failure> {
+    if tool.shape().is_endless() {
+        return Ok(());
+    }
+    let place = tool.place(0.0);
+    let (_, outside) = fem::nearest_point_rows(source.mesh(), &[place])?;
+    if !outside.points.is_empty() {
+        return Ok(());
+    }
+    let at = place.coords.map(|c| 1e3 * c);
+    let problem = format!("({:.4}, {:.4}, {:.4}) mm lies within the body", at.x, at.y, at.z);
+    Err(Failure::input(
+        Key::Scene(format!("tool[{index}].at")),
+        problem,
+        "a tool starts outside, and closes from there",
+    ))
+}
+
+/// Refuses faces that would take too many points.
+fn affordable(index: usize, half: f64, free: f64, points: usize) -> Result<(), Failure> {
+    if points <= MOST {
+        return Ok(());
+    }
+    let problem = format!(
+        "leaves {:.3} mm free between contact points, where tool[{index}] is {:.3} mm broad and would slip through; to divide the \
+         faces takes more than {MOST} points",
+        2e3 * free,
+        2e3 * half
+    );
+    Err(Failure::at(ErrorKind::NotRun, Key::Size(""), problem, "a finer mesh where the tool touches"))
+}
+
+/// Whether a tool passes a facet, or twice its own size beside it: the tissue gives way.
+fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
+    let nodes = || mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]);
+    let middle = Point3::from(nodes().map(|x| x.coords).sum::<Vector3>() / nodes().len() as f64);
+    let radius = nodes().map(|x| (x - middle).norm()).fold(0.0, f64::max);
+    let (low, high) = tool.bounds(0.0);
+    let off = middle - tool.place(0.0);
+    let across = off - tool.along() * off.dot(&tool.along());
+    across.norm() <= radius + (high - low).norm()
+}
+
+/// Distance (m) from the place on a facet that is farthest from all contact points: its nodes, its middle and the places between
+/// them; 0 where the facet is too small for it to matter to a tool that is twice as broad as `half`.
+fn free(mesh: &Mesh, facet: Facet, surface: &SurfaceRows, half: f64) -> f64 {
+    let nodes: Vec<Point3> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();
+    let middle = nodes.iter().map(|x| x.coords).sum::<Vector3>() / nodes.len() as f64;
+    let size = nodes.iter().map(|x| (x.coords - middle).norm()).fold(0.0, f64::max);
+    if size <= FREE * half {
+        return 0.0;
+    }
+    let places = (nodes.iter().map(|x| x.coords))
+        .chain([middle])
+        .chain(nodes.iter().map(|x| 0.5 * (x.coords + middle)))
+        .chain(nodes.iter().zip(nodes.iter().cycle().skip(1)).map(|(a, b)| 0.5 * (a.coords + b.coords)));
+    let nearest = |x: Vector3| {
+        let squares = surface.points().iter().map(|p| (p.coords - x).norm_squared());
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    };
+    places.map(nearest).fold(0.0, f64::max)
+}
