@@ -1,7 +1,7 @@
 //! Where tools may touch: contact points so close together that no tool fits between them, and the corners of the faces.
 
 use cases::scene::ErrorKind;
-use contact::{ContactSurface, Tool};
+use contact::{ContactSurface, Outline, Tool};
 use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::{PointRows, RowSource, SurfaceRows};
 
@@ -24,8 +24,9 @@ const POINTS: usize = 4;
 pub(super) struct Touch {
     /// Contact points.
     pub(super) surface: SurfaceRows,
-    /// Nodes of the faces; they carry no force.
-    corners: PointRows,
+    /// Vertices and middles of the faces that tools pass; they carry no force.
+    outline: PointRows,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl Touch {
@@ -34,12 +35,13 @@ impl Touch {
         let mesh = source.mesh();
         let facets = mesh.boundary();
         let mut surface = source.contact_surface(&[])?;
-        let nodes = mesh.facet_group_nodes(&facets);
-        let points: Vec<Point3> = nodes.iter().map(|&node| mesh.points()[node as usize]).collect();
-        let (corners, _) = source.at_points(&points)?;
+        let passed =
+            facets.iter().copied().filter(|&facet| tools.iter().any(|t| passes(mesh, facet, &t.tool)));
+        let passed: Vec<Facet> = passed.collect();
+        let (outline, triangles) = (source.outline(&passed)?, triangles(mesh, &passed));
         let (mut parts, mut added) = (vec![1; facets.len()], 0usize);
         for (index, set) in tools.iter().enumerate() {
-            outside(source, index, &set.tool)?;
+            outside(&surface, index, &set.tool)?;
             let half = set.tool.half_breadth();
             for (parts, &facet) in parts.iter_mut().zip(&facets) {
                 let free =
@@ -54,23 +56,29 @@ impl Touch {
         if parts.iter().any(|parts| *parts > 1) {
             surface = source.contact_surface(&parts)?;
         }
-        Ok(Touch { surface, corners })
+        Ok(Touch { surface, outline, triangles })
     }
 
     /// As the solver takes it.
     pub(super) fn contact(&self) -> ContactSurface<'_> {
-        ContactSurface::new(&self.surface).with_corners(&self.corners)
+        let outline = Outline::new(&self.outline, &self.triangles).expect("triangles of its own points");
+        ContactSurface::new(&self.surface).with_outline(outline)
     }
 }
 
-/// Refuses a tool that starts within the body: it would never meet the surface from outside.
-fn outside(source: &dyn RowSource, index: usize, tool: &Tool) -> Result<(), Failure> {
-    if tool.shape().is_endless() {
-        return Ok(());
-    }
+/// Part of the solid angle `4 pi` from which on a place is taken to lie within a surface: 1 inside, 0 outside, but near points
+/// that are far apart 1/2 on both sides.
+const WITHIN: f64 = 0.75;
+
+/// Refuses a tool that starts within the body: it would never meet the surface from outside. What is inside is seen from the solid
+/// angle `sum w n . r / |r|^3` of the surface.
+fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failure> {
     let place = tool.place(0.0);
-    let (_, outside) = fem::nearest_point_rows(source.mesh(), &[place])?;
-    if !outside.points.is_empty() {
+    let angle: f64 = (surface.points().iter().zip(surface.normals()).zip(surface.weights()))
+        .map(|((x, n), w)| w * n.dot(&(x - place)) / (x - place).norm().powi(3))
+        .sum();
+    // A plate's place is any point of its face. Written so that a NaN, of a place on a point, passes.
+    if tool.shape().is_endless() || !(angle > WITHIN * 4.0 * std::f64::consts::PI) {
         return Ok(());
     }
     let at = place.coords.map(|c| 1e3 * c);
@@ -80,6 +88,24 @@ fn outside(source: &dyn RowSource, index: usize, tool: &Tool) -> Result<(), Fail
         problem,
         "a tool starts outside, and closes from there",
     ))
+}
+
+/// Facets in triangles around their middles, between the rows of [`RowSource::outline`]: nodes in ascending order, then middles.
+fn triangles(mesh: &Mesh, facets: &[Facet]) -> Vec<[u32; 3]> {
+    let nodes = mesh.facet_group_nodes(facets);
+    let mut triangles = Vec::new();
+    for (k, &facet) in facets.iter().enumerate() {
+        let row = |node: u32| nodes.binary_search(&node).expect("a node of the facets") as u32;
+        let of_facet: Vec<u32> = mesh.facet_nodes(facet).map(row).collect();
+        let corners = mesh.kind(facet.cell as usize).face_kind().corner_count();
+        // Nodes on the edges, if there are any, follow the corners, each after the corner of the same place.
+        let (corners, between) = of_facet.split_at(corners);
+        let around: Vec<u32> =
+            (0..corners.len()).flat_map(|i| [Some(corners[i]), between.get(i).copied()]).flatten().collect();
+        let middle = (nodes.len() + k) as u32;
+        triangles.extend((0..around.len()).map(|i| [around[i], around[(i + 1) % around.len()], middle]));
+    }
+    triangles
 }
 
 /// Refuses faces that would take too many points.

@@ -1,18 +1,15 @@
-//! What a step may have done without any force: tools that jumped over the surface, or stand in it between its points.
+//! Tools that jumped over the surface in a step.
 //!
 //! Contact sees a state, not how it was reached. A tool that travels farther in a step than it is thick ends beyond the
 //! surface, where nothing touches. Seen from the tool every point goes a straight way during a step, and the distance to a
 //! convex shape is convex along it: its least value is found by halving the way at the sign of its slope.
 
-use shape::{Point3, PointRows, Vector3};
+use shape::{Point3, Vector3};
 
 use super::{ContactError, ContactSurface, Tool};
 
 /// Halvings of a way: to a millionth of it.
 const HALVINGS: usize = 20;
-/// Part of the way to the nearest point of the surface that a corner of it may stand in a tool which touches no point: below
-/// it, the points are on their way to it; a tool that comes on along the corner's normal is two thirds of it deep.
-const RESOLVED: f64 = 0.5;
 
 /// Where a tool and a surface stand.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +18,6 @@ pub struct Stand<'u> {
     pub closure: f64,
     /// Nodal parameters, m.
     pub u: &'u [Vector3],
-}
-
-/// Position `X + sum_I N_I u_I` of a corner of the surface's faces, where it has no points, m. Corners carry no force, but tell
-/// where the body is.
-fn corner(corners: &PointRows, corner: usize, u: &[Vector3]) -> Point3 {
-    let (nodes, values) = corners.rows().row(corner);
-    let moved: Vector3 = nodes.iter().zip(values).map(|(&node, value)| u[node as usize] * *value).sum();
-    corners.points()[corner] + moved
 }
 
 impl ContactSurface<'_> {
@@ -69,37 +58,14 @@ impl ContactSurface<'_> {
                 worst.meet(tool, [from.closure, to.closure], ends);
             }
         }
-        if let (Some(corners), false) = (self.corners, touches) {
-            for c in 0..corners.points().len() {
-                let ends = [corner(corners, c, from.u), corner(corners, c, to.u)];
+        if let (Some(outline), false) = (self.outline, touches) {
+            for k in 0..outline.len() {
+                let ends = [outline.position(k, from.u), outline.position(k, to.u)];
                 worst.meet(tool, [from.closure, to.closure], ends);
             }
         }
         let Passage { depth, at, travel } = worst;
         if depth > limit { Err(ContactError::JumpedOver { depth, at, travel }) } else { Ok(()) }
-    }
-
-    /// Fails where a corner of the surface stands in a tool that touches no point deeper than its points can tell.
-    pub fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
-        let Some(corners) = self.corners else { return Ok(()) };
-        let mut worst: Option<(f64, usize, f64)> = None;
-        for c in 0..corners.points().len() {
-            let depth = -tool.shape().foot(&tool.local(stand.closure, &corner(corners, c, stand.u))).0;
-            if !(depth > worst.map_or(0.0, |(most, ..)| most)) {
-                continue;
-            }
-            let points = self.rows().points().iter().map(|p| (p - corners.points()[c]).norm_squared());
-            let apart = points.fold(f64::INFINITY, f64::min).sqrt();
-            if depth > (RESOLVED * apart).min(tool.deepest()) {
-                worst = Some((depth, c, apart));
-            }
-        }
-        match worst {
-            Some((depth, c, apart)) => {
-                Err(ContactError::Overlap { depth, at: corner(corners, c, stand.u), apart })
-            }
-            None => Ok(()),
-        }
     }
 
     /// Points of each cluster that may come deeper than `limit` (m) into the tool on the way; all others cannot.

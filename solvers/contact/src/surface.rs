@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use shape::{Point3, PointRows, SurfaceRows, Vector3};
+use shape::{Point3, SurfaceRows, Vector3};
 
-use super::{ContactError, Contacts, Tool};
+use super::{ContactError, Contacts, Outline, Tool};
 
 /// Points per cluster, at most.
 const CLUSTER: usize = 32;
@@ -18,8 +18,8 @@ pub struct ContactSurface<'a> {
     pub(super) clusters: Vec<Cluster>,
     /// Nodes that the clusters see, one cluster after another.
     pub(super) nodes: Vec<u32>,
-    /// Corners of its faces, if they are given.
-    pub(super) corners: Option<&'a PointRows>,
+    /// Where the surface is between its points, if that is given.
+    pub(super) outline: Option<Outline<'a>>,
     /// For each point two others beside it, counter-clockwise seen from outside; the point itself where there are none.
     beside: Vec<[u32; 2]>,
 }
@@ -56,12 +56,12 @@ impl<'a> ContactSurface<'a> {
             let near = &order[cluster.points.clone()];
             near.iter().for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
         }
-        ContactSurface { rows, order, clusters, nodes, beside, corners: None }
+        ContactSurface { rows, order, clusters, nodes, beside, outline: None }
     }
 
-    /// With the corners of its faces: they carry no force, but tell of tools that stand in the body between its points.
-    pub fn with_corners(mut self, corners: &'a PointRows) -> ContactSurface<'a> {
-        self.corners = Some(corners);
+    /// With the surface between its points, to find tools that stand in the body there.
+    pub fn with_outline(mut self, outline: Outline<'a>) -> ContactSurface<'a> {
+        self.outline = Some(outline);
         self
     }
 

@@ -120,7 +120,7 @@ impl<'a> Pressing<'a> {
                 .map_err(lost)?;
             match contacts.filter(|c| !c.points().is_empty()) {
                 Some(contacts) => self.surface.check_side(&contacts, u),
-                None => self.surface.check_overlap(tool.tool, Stand { closure: tool.closure, u }),
+                None => self.surface.check_end(tool.tool, Stand { closure: tool.closure, u }),
             }
             .map_err(lost)?;
         }

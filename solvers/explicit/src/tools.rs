@@ -129,12 +129,21 @@ impl<'a> Tools<'a> {
         })
     }
 
-    /// Fails where a tool that touches nothing stands in the body all the same, at the last step, with the displacements `u` (m) of
-    /// then.
-    pub fn check_overlap(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
+    /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then;
+    /// `last` is the end of the motion, where no way is left to the next point of the surface.
+    pub fn check_overlap(
+        &self,
+        step: usize,
+        time: f64,
+        u: &[Vector3],
+        last: bool,
+    ) -> Result<(), ExplicitError> {
         for (tool, moving) in self.each.iter().enumerate().filter(|(_, m)| m.motion.state.active == 0) {
             let stand = Stand { closure: moving.motion.state.closure, u };
-            let found = self.surface.check_overlap(moving.of.tool, stand);
+            let found = match last {
+                true => self.surface.check_end(moving.of.tool, stand),
+                false => self.surface.check_overlap(moving.of.tool, stand),
+            };
             found.map_err(|cause| ExplicitError::ContactAt { step, time, tool, cause })?;
         }
         Ok(())

@@ -10,7 +10,7 @@ use shape::{
 
 use crate::{
     SurfaceRule, VolumeRule, divided_surface_rows, element_dilation, flux_rows, nearest_grad_rows,
-    nearest_point_rows, pressure_rows, regions, surface_rows, volume_rows,
+    nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
 };
 
 /// Elements of a mesh, whose nodes are the method's.
@@ -79,6 +79,11 @@ impl RowSource for Elements {
         let quadratic = self.mesh.uniform_kind().is_some_and(|kind| kind.order() == 2);
         let rule = if quadratic { SurfaceRule::FINE } else { SurfaceRule::STANDARD };
         Ok(divided_surface_rows(&self.mesh, &self.mesh.boundary(), &rule, parts)?)
+    }
+
+    /// A row of a node for each vertex, of all nodes of a facet for its middle.
+    fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError> {
+        Ok(outline_rows(&self.mesh, facets)?)
     }
 
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError> {

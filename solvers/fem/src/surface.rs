@@ -48,6 +48,25 @@ pub fn divided_surface_rows(
     Ok(SurfaceRows::new(PointRows::new(table.points, rows)?, table.weights, table.normals)?)
 }
 
+/// Values at the nodes of some facets, in ascending order, and then at the middle of each.
+pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError> {
+    let mut table = Table::new();
+    for node in mesh.facet_group_nodes(facets) {
+        table.push_row(mesh.points()[node as usize], &[node], &[1.0]);
+    }
+    for &facet in facets {
+        let kind = check(mesh, facet)?.face_kind();
+        let s = if kind.corner_count() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] };
+        with_face!(kind, F, N => {
+            let nodes = facet_nodes::<N>(mesh, facet);
+            let n = <F as Face<N>>::shape(s);
+            table.push_row(Nodes::gather(mesh, &nodes).position(&n), &nodes, &n);
+        });
+    }
+    let rows = Rows::new(mesh.points().len(), table.offsets, table.nodes, table.values, UNITY)?;
+    Ok(PointRows::new(table.points, rows)?)
+}
+
 /// As [`surface_rows`], but each row holds all nodes of the facet's cell, in the cell's order, with gradients
 /// (1/m): the boundary stress depends on them all.
 pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<FluxRows, FemError> {

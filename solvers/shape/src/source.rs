@@ -72,6 +72,10 @@ pub trait RowSource: Send + Sync {
     /// one number for each facet of the boundary, or none for whole facets.
     fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError>;
 
+    /// Values at the nodes of facets in ascending order, then at the middle of each; they carry no quadrature, but tell where the
+    /// boundary is.
+    fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError>;
+
     /// Values and gradients on facets, for weak supports.
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;
 

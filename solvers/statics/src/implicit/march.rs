@@ -77,6 +77,9 @@ pub fn solve_in_time(
             }
         }
     }
+    if let (None, Some(last)) = (&path.failure, path.steps.last()) {
+        march.newton.check_end(&march.state, &last.step)?;
+    }
     path.counts = march.newton.counts();
     path.work = march.newton.work();
     path.motion = march.motion;

@@ -125,7 +125,8 @@ impl StaticPath {
 
 /// Solves; `observe` is called after every converged step with the step, the nodal parameters and the pressures.
 /// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
-/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance.
+/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance. So is a tool
+/// that ends within the body without a force.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,
@@ -207,6 +208,7 @@ pub fn solve_static(
     path.counts = newton.counts();
     path.work = newton.work();
     if path.failure.is_none() && !problem.tools.is_empty() {
+        path.steps.last().map_or(Ok(()), |last| newton.check_end(&state, last))?;
         newton.check_rigid(&state)?;
     }
     path.u = state.u;

@@ -24,6 +24,17 @@ impl Newton<'_> {
         }
         Ok(reached)
     }
+
+    /// Refuses the last state, after `step`, where a tool stands in the body without a force.
+    pub fn check_end(&self, state: &State, step: &Step) -> Result<(), StaticError> {
+        let Some(surface) = self.problem.contact else { return Ok(()) };
+        for (k, driven) in self.problem.tools.iter().enumerate().filter(|(k, _)| step.tools[*k].active == 0) {
+            let stand = Stand { closure: state.closures[k], u: &state.u };
+            let checked = surface.check_end(driven.tool, stand);
+            checked.map_err(|cause| StaticError::Contact { tool: k, cause })?;
+        }
+        Ok(())
+    }
 }
 
 /// The part of its full closure that a tool has to be able to travel in a step, the least of all tools: how finely a path can be
