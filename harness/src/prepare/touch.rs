@@ -43,12 +43,14 @@ impl Touch {
         for (index, set) in tools.iter().enumerate() {
             outside(&surface, index, &set.tool)?;
             let half = set.tool.half_breadth();
-            for (parts, &facet) in parts.iter_mut().zip(&facets) {
-                let free =
-                    if passes(mesh, facet, &set.tool) { free(mesh, facet, &surface, half) } else { 0.0 };
+            for (k, &facet) in facets.iter().enumerate().filter(|(_, facet)| passes(mesh, **facet, &set.tool))
+            {
+                // Points go by facets: those of this one are near there.
+                let near = k * surface.points().len() / facets.len();
+                let free = free(mesh, facet, &surface, near, FREE * half);
                 if free > FREE * half {
-                    *parts = (*parts).max((free / (AIM * half)).ceil() as usize);
-                    added += POINTS * *parts * *parts;
+                    parts[k] = parts[k].max((free / (AIM * half)).ceil() as usize);
+                    added += POINTS * parts[k] * parts[k];
                     affordable(index, half, free, added)?;
                 }
             }
@@ -134,21 +136,21 @@ fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
 }
 
 /// Distance (m) from the place on a facet that is farthest from all contact points: its nodes, its middle and the places between
-/// them; 0 where the facet is too small for it to matter to a tool that is twice as broad as `half`.
-fn free(mesh: &Mesh, facet: Facet, surface: &SurfaceRows, half: f64) -> f64 {
-    let nodes: Vec<Point3> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();
-    let middle = nodes.iter().map(|x| x.coords).sum::<Vector3>() / nodes.len() as f64;
-    let size = nodes.iter().map(|x| (x.coords - middle).norm()).fold(0.0, f64::max);
-    if size <= FREE * half {
-        return 0.0;
-    }
-    let places = (nodes.iter().map(|x| x.coords))
-        .chain([middle])
-        .chain(nodes.iter().map(|x| 0.5 * (x.coords + middle)))
-        .chain(nodes.iter().zip(nodes.iter().cycle().skip(1)).map(|(a, b)| 0.5 * (a.coords + b.coords)));
+/// them; 0 where none is farther than `allowed` (m). Points from `near` on are looked at first.
+fn free(mesh: &Mesh, facet: Facet, surface: &SurfaceRows, near: usize, allowed: f64) -> f64 {
+    let nodes: Vec<Vector3> =
+        mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize].coords).collect();
+    let middle = nodes.iter().sum::<Vector3>() / nodes.len() as f64;
+    let between = nodes.iter().zip(nodes.iter().cycle().skip(1)).map(|(a, b)| 0.5 * (a + b));
+    let places =
+        nodes.iter().copied().chain([middle]).chain(nodes.iter().map(|x| 0.5 * (x + middle))).chain(between);
+    let (before, after) = surface.points().split_at(near);
     let nearest = |x: Vector3| {
-        let squares = surface.points().iter().map(|p| (p.coords - x).norm_squared());
-        squares.fold(f64::INFINITY, f64::min).sqrt()
+        let squares = || after.iter().chain(before).map(|p| (p.coords - x).norm_squared());
+        if squares().any(|square| square <= allowed * allowed) {
+            return 0.0;
+        }
+        squares().fold(f64::INFINITY, f64::min).sqrt()
     };
     places.map(nearest).fold(0.0, f64::max)
 }

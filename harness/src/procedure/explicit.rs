@@ -252,8 +252,11 @@ impl Run<'_, '_> {
             let (balance, u) = seen.expect("every step is recorded");
             if state > 0 {
                 if let Some(tools) = self.motion.tools() {
-                    let last = state == self.asked.ramp.steps;
-                    tools.check_overlap(self.motion.steps() - 1, state as f64 * interval, &u, last)?;
+                    let (step, time) = (self.motion.steps() - 1, state as f64 * interval);
+                    tools.check_overlap(step, time, &u)?;
+                    if state == self.asked.ramp.steps {
+                        tools.check_end(step, time, &u)?;
+                    }
                 }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
                 let step = self.reported(&balance, &u, state as f64 * interval);

@@ -2,6 +2,7 @@
 
 use algebra::AlgebraError;
 use cases::scene::{Cloud, ErrorKind, Family, Functions, Procedure, Scene, SupportRule};
+use contact::ContactError;
 use efg::EfgError;
 use explicit::ExplicitError;
 use statics::{SolveError, StaticError, TimeError};
@@ -103,7 +104,12 @@ impl Scenario<'_> {
             StaticError::Parameter { .. } => {
                 finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")
             }
-            _ => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+            _ => match overlapping(error) {
+                Some(tool) => {
+                    finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), error.to_string(), "")
+                }
+                None => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+            },
         }
     }
 
@@ -138,6 +144,10 @@ impl Scenario<'_> {
                 Key::Scene("procedure.accuracy".into()),
                 "no step is short enough: allow more",
             ),
+            TimeError::Static(error) => match overlapping(error) {
+                Some(tool) => (ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), ""),
+                None => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+            },
             _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
         };
         finding(kind, key, error.to_string(), help)
@@ -180,6 +190,15 @@ impl Scenario<'_> {
             }
             _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
         }
+    }
+}
+
+/// The tool that stands in the body without a force, where that is what ended a solution: no smaller step helps.
+fn overlapping(error: &StaticError) -> Option<usize> {
+    match error {
+        StaticError::Stalled { cause, .. } => overlapping(cause),
+        StaticError::Contact { tool, cause: ContactError::Overlap { .. } } => Some(*tool),
+        _ => None,
     }
 }
 

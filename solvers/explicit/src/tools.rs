@@ -1,7 +1,7 @@
 //! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
 
 use super::{ExplicitError, Springs};
-use contact::{ContactCounts, ContactHistory, ContactSurface, Contacts, Stand, Tool};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Stand, Tool};
 use contact::{Drive, ToolState};
 use shape::{Point3, Vector3};
 
@@ -129,22 +129,31 @@ impl<'a> Tools<'a> {
         })
     }
 
-    /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then;
-    /// `last` is the end of the motion, where no way is left to the next point of the surface.
-    pub fn check_overlap(
+    /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then.
+    pub fn check_overlap(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
+        self.check(step, time, u, ContactSurface::check_overlap)
+    }
+
+    /// As [`Tools::check_overlap`] at the end of the motion, where no way is left to the next point of the surface.
+    pub fn check_end(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
+        self.check(step, time, u, ContactSurface::check_end)
+    }
+
+    fn check(
         &self,
         step: usize,
         time: f64,
         u: &[Vector3],
-        last: bool,
+        check: impl Fn(&ContactSurface, &Tool, Stand) -> Result<(), ContactError>,
     ) -> Result<(), ExplicitError> {
         for (tool, moving) in self.each.iter().enumerate().filter(|(_, m)| m.motion.state.active == 0) {
             let stand = Stand { closure: moving.motion.state.closure, u };
-            let found = match last {
-                true => self.surface.check_end(moving.of.tool, stand),
-                false => self.surface.check_overlap(moving.of.tool, stand),
-            };
-            found.map_err(|cause| ExplicitError::ContactAt { step, time, tool, cause })?;
+            check(self.surface, moving.of.tool, stand).map_err(|cause| ExplicitError::ContactAt {
+                step,
+                time,
+                tool,
+                cause,
+            })?;
         }
         Ok(())
     }
