@@ -131,12 +131,12 @@ impl<'a> Tools<'a> {
 
     /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then.
     pub fn check_overlap(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
-        self.check(step, time, u, ContactSurface::check_overlap)
+        self.check(step, time, u, |surface, tool, stand| surface.check_overlap(tool, stand))
     }
 
     /// As [`Tools::check_overlap`] at the end of the motion, where no way is left to the next point of the surface.
     pub fn check_end(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
-        self.check(step, time, u, ContactSurface::check_end)
+        self.check(step, time, u, |surface, tool, stand| surface.check_end(tool, stand))
     }
 
     fn check(
