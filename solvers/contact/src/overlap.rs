@@ -62,6 +62,9 @@ impl ContactSurface<'_> {
     pub fn check_end(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
         let Some(outline) = self.outline else { return Ok(()) };
         let mut worst = Deepest::default();
+        for k in 0..outline.len() {
+            worst.meet(tool, stand.closure, outline.position(k, stand.u), outline.rows.points()[k]);
+        }
         for triangle in outline.triangles {
             let corners = triangle.map(|k| {
                 let (k, at) = (k as usize, outline.position(k as usize, stand.u));
@@ -101,15 +104,21 @@ struct Deepest {
 }
 
 impl Deepest {
+    /// Looks at one place; its depth.
+    fn meet(&mut self, tool: &Tool, closure: f64, at: Point3, reference: Point3) -> f64 {
+        let depth = -tool.shape().foot(&tool.local(closure, &at)).0;
+        if depth > self.depth {
+            *self = Deepest { depth, at, reference };
+        }
+        depth
+    }
+
     /// Looks for a deeper one in a triangle, of which each corner has a place and one in the undeformed body.
     fn search(&mut self, tool: &Tool, closure: f64, corners: [(Point3, Point3); 3], divided: usize) {
         let middle =
             |points: [Point3; 3]| Point3::from(points.iter().map(|p| p.coords).sum::<Vector3>() / 3.0);
         let (at, reference) = (middle(corners.map(|c| c.0)), middle(corners.map(|c| c.1)));
-        let depth = -tool.shape().foot(&tool.local(closure, &at)).0;
-        if depth > self.depth {
-            *self = Deepest { depth, at, reference };
-        }
+        let depth = self.meet(tool, closure, at, reference);
         // The distance changes by no more than the way gone.
         let size = corners.iter().map(|c| (c.0 - at).norm()).fold(0.0, f64::max);
         if divided == DIVISIONS || depth + size <= self.depth {
