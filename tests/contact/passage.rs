@@ -15,7 +15,7 @@ fn over(shape: ToolShape, above: f64, aside: f64) -> Tool {
 
 fn jumps(surface: &ContactSurface, tool: &Tool, closures: [f64; 2], u: &[Vector3]) -> bool {
     let [from, to] = closures.map(|closure| Stand { closure, u });
-    match surface.check_step(tool, from, to, false) {
+    match surface.check_passage(tool, from, to, false) {
         Ok(()) => false,
         Err(ContactError::JumpedOver { depth, travel, .. }) => {
             let length = (closures[1] - closures[0]).abs();
@@ -51,11 +51,14 @@ fn no_tool_gets_through_a_surface_unseen() {
         // The block may move as well: it jumps up by the tool's height and 2 mm.
         let up = vec![Vector3::z() * (height + 2e-3); u.len()];
         let [from, to] = [Stand { closure: 0.0, u: &u }, Stand { closure: 0.0, u: &up }];
-        assert!(matches!(surface.check_step(&tool, from, to, false), Err(ContactError::JumpedOver { .. })));
+        assert!(matches!(
+            surface.check_passage(&tool, from, to, false),
+            Err(ContactError::JumpedOver { .. })
+        ));
         // With the block nothing is passed.
         let down = vec![-Vector3::z() * 0.05; u.len()];
         let to = Stand { closure: 0.05, u: &down };
-        assert_eq!(surface.check_step(&tool, from, to, false), Ok(()), "{shape:?}");
+        assert_eq!(surface.check_passage(&tool, from, to, false), Ok(()), "{shape:?}");
     }
 }
 
@@ -72,19 +75,19 @@ fn sliding_and_penetrating_is_no_jump() {
     let moved: Vec<Vector3> = u.iter().map(|u| u + Vector3::x() * 0.8 * radius).collect();
     let [from, to] = [&u, &moved].map(|u| Stand { closure: 0.1 * radius, u });
     for touches in [false, true] {
-        assert_eq!(surface.check_step(&ball, from, to, touches), Ok(()), "{touches}");
+        assert_eq!(surface.check_passage(&ball, from, to, touches), Ok(()), "{touches}");
     }
     // From a penetration of four tenths back out.
     let [from, to] = [0.4 * radius, -1e-3].map(|closure| Stand { closure, u: &u });
-    assert_eq!(surface.check_step(&ball, from, to, false), Ok(()));
+    assert_eq!(surface.check_passage(&ball, from, to, false), Ok(()));
     // A wheel's rim goes 0.3 of its inradius through the block's edge: seen where nothing touches afterwards.
     let wheel = ToolShape::Cylinder(Cylinder { radius: 8e-3, half_length: 5e-3 });
     let law = ContactLaw::frictionless(5e8).unwrap();
     let at = Point3::new(0.02, 0.03 + 8e-3 - 2.2e-3, 0.05);
     let wheel = Tool::new(wheel, at, Matrix3::identity(), -Vector3::z(), law).unwrap();
     let [from, to] = [0.0, 0.1].map(|closure| Stand { closure, u: &u });
-    assert!(matches!(surface.check_step(&wheel, from, to, false), Err(ContactError::JumpedOver { .. })));
-    assert_eq!(surface.check_step(&wheel, from, to, true), Ok(()));
+    assert!(matches!(surface.check_passage(&wheel, from, to, false), Err(ContactError::JumpedOver { .. })));
+    assert_eq!(surface.check_passage(&wheel, from, to, true), Ok(()));
 }
 
 /// A ball of 10 mm that dips into a face of 10 mm between its points, at its middle, over a vertex and over an edge.

@@ -43,7 +43,8 @@ impl<'a> Outline<'a> {
 }
 
 impl ContactSurface<'_> {
-    /// Fails where a corner of the outline stands in a tool that touches no point, deeper than on the way to the next point.
+    /// Fails where a corner of the outline stands in a tool that touches no point, deeper than on the way to the next point: for
+    /// states that are reported.
     pub fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
         let Some(outline) = self.outline else { return Ok(()) };
         let mut worst = Deepest::default();

@@ -21,16 +21,6 @@ pub struct Stand<'u> {
 }
 
 impl ContactSurface<'_> {
-    /// Fails where a step from one state to another took the surface through the tool, and where a tool that touches no point
-    /// of it at the end (`touches`) stands in the body all the same.
-    ///
-    /// A point that goes deeper on its way than [`Tool::deepest`], and half of that where nothing touches in the end, has been
-    /// jumped over: points that slide along a tool cut its corners by less.
-    pub fn check_step(&self, tool: &Tool, from: Stand, to: Stand, touches: bool) -> Result<(), ContactError> {
-        self.check_passage(tool, from, to, touches)?;
-        if touches { Ok(()) } else { self.check_overlap(tool, to) }
-    }
-
     /// Fails where a tool that travels while the surface stays jumps over it; `touches` at the end or not. Less than
     /// [`Tool::deepest`] takes no point in and out again.
     pub fn check_travel(
@@ -46,7 +36,18 @@ impl ContactSurface<'_> {
         self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
     }
 
-    fn check_passage(&self, tool: &Tool, from: Stand, to: Stand, touches: bool) -> Result<(), ContactError> {
+    /// Fails where a step from one state to another took the surface through the tool; whether the tool touches any point of it in
+    /// the end is `touches`.
+    ///
+    /// A point that goes deeper on its way than [`Tool::deepest`], and half of that where nothing touches in the end, has been
+    /// jumped over: points that slide along a tool cut its corners by less.
+    pub fn check_passage(
+        &self,
+        tool: &Tool,
+        from: Stand,
+        to: Stand,
+        touches: bool,
+    ) -> Result<(), ContactError> {
         let limit = tool.deepest() * if touches { 1.0 } else { 0.5 };
         if limit.is_infinite() {
             return Ok(());

@@ -48,7 +48,8 @@ pub fn solve_in_time(
         let reaches = step > 0.9 * left;
         let time = if reaches { target } else { march.state.time + step };
         let length = time - march.state.time;
-        match march.step(time) {
+        let reported = reaches.then_some(next == count);
+        match march.step(time, reported) {
             Ok(mut done) => {
                 done.step.wanted = reaches;
                 let quick = done.step.iterations.len() <= 6;
@@ -68,17 +69,17 @@ pub fn solve_in_time(
                         _ => 0.5,
                     };
                 let smallest = params.smallest * longest;
-                let too_far = matches!(&cause, TimeError::Static(cause) if cause.is_too_far());
-                if step < if too_far { smallest.min(shortest) } else { smallest } {
+                let finest = match &cause {
+                    TimeError::Static(cause) => cause.finest(smallest, shortest),
+                    _ => smallest,
+                };
+                if step < finest {
                     let (time, cause) = (march.state.time, Box::new(cause));
                     path.failure = Some(TimeError::Stalled { time, step: length, cause });
                     break;
                 }
             }
         }
-    }
-    if let (None, Some(last)) = (&path.failure, path.steps.last()) {
-        march.newton.check_end(&march.state, &last.step)?;
     }
     path.counts = march.newton.counts();
     path.work = march.newton.work();
@@ -134,7 +135,8 @@ impl<'a> March<'a> {
             return Ok((march, None));
         }
         let Scales { loads, supports, tools } = march.scales(0.0);
-        let first = if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0)?) } else { None };
+        let first =
+            if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0, None)?) } else { None };
         march.before = None;
         Ok((march, first))
     }
@@ -194,8 +196,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// On to `time`; nothing has changed if that fails.
-    fn step(&mut self, time: f64) -> Result<TimeStep, TimeError> {
+    /// On to `time`; nothing has changed if that fails. A state that is `reported` says whether it is the last.
+    fn step(&mut self, time: f64, reported: Option<bool>) -> Result<TimeStep, TimeError> {
         let dt = time - self.state.time;
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
@@ -206,6 +208,9 @@ impl<'a> March<'a> {
             .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
             .or_else(|_| to(Descent::Down))
             .and_then(|reached| self.newton.checked(&self.state, reached))?;
+        if let Some(ends) = reported {
+            self.newton.check_overlap(&state, &step, ends)?;
+        }
         let mut motion = self.motion_at(time, dt, &state.u);
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {

@@ -102,8 +102,13 @@ pub enum StaticError {
 }
 
 impl StaticError {
-    /// Whether a smaller step of a tool may do: it went too deep, or all the way through.
-    pub(crate) fn is_too_far(&self) -> bool {
-        matches!(self, StaticError::Contact { cause, .. } if cause.is_too_far())
+    /// The step below which cutting back is given up after this: `smallest`, where a tool went too deep or all the way through no
+    /// more than `shortest`, and none is short enough where it stands in the body without a force.
+    pub(crate) fn finest(&self, smallest: f64, shortest: f64) -> f64 {
+        match self {
+            StaticError::Contact { cause: ContactError::Overlap { .. }, .. } => f64::INFINITY,
+            StaticError::Contact { cause, .. } if cause.is_too_far() => smallest.min(shortest),
+            _ => smallest,
+        }
     }
 }

@@ -43,7 +43,12 @@ impl<'a> Frames<'a> {
         loop {
             let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
             let mut solve = |descent| newton.find(state, before, target, self.augmentations, descent);
-            match near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down)) {
+            let reached = near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down));
+            let reached = reached.and_then(|(reached, step)| match target == time {
+                true => self.newton.check_overlap(&reached, &step, false).map(|()| (reached, step)),
+                false => Ok((reached, step)),
+            });
+            match reached {
                 Ok((reached, step)) => {
                     self.newton.keep_scale();
                     let last = std::mem::replace(&mut self.state, reached);
@@ -59,9 +64,7 @@ impl<'a> Frames<'a> {
                 Err(cause) => {
                     let failed = target - self.state.time;
                     target = self.state.time + 0.5 * failed;
-                    let smallest =
-                        if cause.is_too_far() { self.smallest.min(self.shortest) } else { self.smallest };
-                    if 0.5 * failed.abs() < smallest {
+                    if 0.5 * failed.abs() < cause.finest(self.smallest, self.shortest) {
                         let time = self.state.time;
                         return Err(StaticError::Stalled { time, step: failed, cause: Box::new(cause) });
                     }

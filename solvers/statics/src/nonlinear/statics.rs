@@ -125,8 +125,7 @@ impl StaticPath {
 
 /// Solves; `observe` is called after every converged step with the step, the nodal parameters and the pressures.
 /// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
-/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance. So is a tool
-/// that ends within the body without a force.
+/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,
@@ -175,6 +174,10 @@ pub fn solve_static(
                 nearest => nearest.or_else(|_| to(Descent::Down)),
             }
         };
+        let reached = reached.and_then(|(reached, done)| match reaches {
+            true => newton.check_overlap(&reached, &done, next == count).map(|()| (reached, done)),
+            false => Ok((reached, done)),
+        });
         match reached {
             Ok((reached, mut done)) => {
                 done.wanted = reaches;
@@ -196,8 +199,7 @@ pub fn solve_static(
                 near_limit = within.is_some();
                 let failed = time - state.time;
                 step = 0.5 * failed;
-                let smallest = params.smallest * longest;
-                if step < if cause.is_too_far() { smallest.min(shortest) } else { smallest } {
+                if step < cause.finest(params.smallest * longest, shortest) {
                     path.failure =
                         Some(StaticError::Stalled { time: state.time, step: failed, cause: Box::new(cause) });
                     break;
@@ -208,7 +210,6 @@ pub fn solve_static(
     path.counts = newton.counts();
     path.work = newton.work();
     if path.failure.is_none() && !problem.tools.is_empty() {
-        path.steps.last().map_or(Ok(()), |last| newton.check_end(&state, last))?;
         newton.check_rigid(&state)?;
     }
     path.u = state.u;

@@ -1,6 +1,6 @@
-//! Steps too long for the tools: jumped over in a converged step, and how short a step may become to prevent it.
+//! Tools that jumped over the surface or stand in it, and how short a step may become to prevent it.
 
-use contact::{Drive, Stand};
+use contact::{ContactError, ContactSurface, Drive, Stand, Tool};
 
 use super::{Newton, State};
 use crate::nonlinear::StaticError;
@@ -11,27 +11,37 @@ use crate::nonlinear::statics::{StaticProblem, Step};
 const SHORTEST: f64 = 0.125;
 
 impl Newton<'_> {
-    /// The converged step from `start`, refused where a tool has jumped over the surface on the way, or stands in the body
-    /// without a force in the end.
+    /// The converged step from `start`, refused where a tool has jumped over the surface on the way.
     pub fn checked(&self, start: &State, reached: (State, Step)) -> Result<(State, Step), StaticError> {
-        let Some(surface) = self.problem.contact else { return Ok(reached) };
         let (state, step) = &reached;
-        for (k, driven) in self.problem.tools.iter().enumerate() {
+        self.each_tool(|surface, k, tool| {
             let from = Stand { closure: start.closures[k], u: &start.u };
             let to = Stand { closure: state.closures[k], u: &state.u };
-            let checked = surface.check_step(driven.tool, from, to, step.tools[k].active > 0);
-            checked.map_err(|cause| StaticError::Contact { tool: k, cause })?;
-        }
+            surface.check_passage(tool, from, to, step.tools[k].active > 0)
+        })?;
         Ok(reached)
     }
 
-    /// Refuses the last state, after `step`, where a tool stands in the body without a force.
-    pub fn check_end(&self, state: &State, step: &Step) -> Result<(), StaticError> {
-        let Some(surface) = self.problem.contact else { return Ok(()) };
-        for (k, driven) in self.problem.tools.iter().enumerate().filter(|(k, _)| step.tools[*k].active == 0) {
+    /// Refuses a state that is reported, after `step`, where a tool stands in the body without a force; at the end of the loading,
+    /// where no way is left to the next contact point, however little.
+    pub fn check_overlap(&self, state: &State, step: &Step, ends: bool) -> Result<(), StaticError> {
+        self.each_tool(|surface, k, tool| {
             let stand = Stand { closure: state.closures[k], u: &state.u };
-            let checked = surface.check_end(driven.tool, stand);
-            checked.map_err(|cause| StaticError::Contact { tool: k, cause })?;
+            match (step.tools[k].active, ends) {
+                (0, true) => surface.check_end(tool, stand),
+                (0, false) => surface.check_overlap(tool, stand),
+                _ => Ok(()),
+            }
+        })
+    }
+
+    fn each_tool(
+        &self,
+        check: impl Fn(&ContactSurface, usize, &Tool) -> Result<(), ContactError>,
+    ) -> Result<(), StaticError> {
+        let Some(surface) = self.problem.contact else { return Ok(()) };
+        for (tool, driven) in self.problem.tools.iter().enumerate() {
+            check(surface, tool, driven.tool).map_err(|cause| StaticError::Contact { tool, cause })?;
         }
         Ok(())
     }
