@@ -195,15 +195,15 @@ impl<'a> Tools<'a> {
                 .tractions(tool.of.tool, tool.closure, u, &tool.history, &mut self.counts)
                 .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
-            let touches = contacts.as_ref().is_some_and(|c| !c.points().is_empty());
-            let travel = [std::mem::replace(&mut tool.before, tool.closure), tool.closure];
-            (self.surface.check_travel(tool.of.tool, travel, u, touches)).map_err(lost)?;
             if let Some(contacts) = &contacts {
                 contacts.add_force(self.surface.rows(), &mut self.forces);
                 self.touched = true;
             }
             tool.settle(contacts.as_ref(), self.surface);
             tool.check(index, step, time, dt, contacts.as_ref(), self.surface)?;
+            let travel = [std::mem::replace(&mut tool.before, tool.closure), tool.closure];
+            let touches = tool.motion.state.active > 0;
+            (self.surface.check_travel(tool.of.tool, travel, u, touches)).map_err(lost)?;
             let within = contacts.iter().try_for_each(|c| self.surface.check_side(c, u));
             within.map_err(lost)?;
             tool.advance(step == 0, time, dt);
