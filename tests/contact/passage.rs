@@ -74,9 +74,7 @@ fn sliding_and_penetrating_is_no_jump() {
     // By 0.8 of the radius sideways at a depth of a tenth.
     let moved: Vec<Vector3> = u.iter().map(|u| u + Vector3::x() * 0.8 * radius).collect();
     let [from, to] = [&u, &moved].map(|u| Stand { closure: 0.1 * radius, u });
-    for touches in [false, true] {
-        assert_eq!(surface.check_passage(&ball, from, to, touches), Ok(()), "{touches}");
-    }
+    assert_eq!(surface.check_passage(&ball, from, to, true), Ok(()));
     // From a penetration of four tenths back out.
     let [from, to] = [0.4 * radius, -1e-3].map(|closure| Stand { closure, u: &u });
     assert_eq!(surface.check_passage(&ball, from, to, false), Ok(()));

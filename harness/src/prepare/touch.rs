@@ -9,9 +9,9 @@ use crate::Failure;
 use crate::error::Key;
 use crate::scenario::PlacedTool;
 
-/// Part of a tool's half breadth that its way may be off the nearest point at most: a ball is then 0.3 of its radius deep when
-/// it touches first, and a point that it jumps over passes no less deep through it.
-const FREE: f64 = 0.7;
+/// Part of a tool's half breadth that its way may be off the nearest point at most: just so much that it cannot pass all points,
+/// nor go through the surface in one step unseen. Tools of that size keep the method's own points.
+const FREE: f64 = 0.95;
 /// The same where faces are divided.
 const AIM: f64 = 0.5;
 /// Points that dividing faces may add: as many as a large mesh has.

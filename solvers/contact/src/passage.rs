@@ -11,6 +11,9 @@ use super::{ContactError, ContactSurface, Tool};
 /// Halvings of a way: to a millionth of it.
 const HALVINGS: usize = 20;
 
+/// Part of the deepest penetration that a point may have had on its way where nothing touches in the end.
+const UNSEEN: f64 = 0.08;
+
 /// Where a tool and a surface stand.
 #[derive(Clone, Copy, Debug)]
 pub struct Stand<'u> {
@@ -21,8 +24,8 @@ pub struct Stand<'u> {
 }
 
 impl ContactSurface<'_> {
-    /// Fails where a tool that travels while the surface stays jumps over it; `touches` at the end or not. Less than
-    /// [`Tool::deepest`] takes no point in and out again.
+    /// As [`ContactSurface::check_passage`] of a tool that travels while the surface stays: no work on short ways, which take no
+    /// point in and out again.
     pub fn check_travel(
         &self,
         tool: &Tool,
@@ -30,7 +33,7 @@ impl ContactSurface<'_> {
         u: &[Vector3],
         touches: bool,
     ) -> Result<(), ContactError> {
-        if (to - from).abs() <= tool.deepest() {
+        if (to - from).abs() <= 2.0 * UNSEEN * tool.deepest() {
             return Ok(());
         }
         self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
@@ -39,8 +42,8 @@ impl ContactSurface<'_> {
     /// Fails where a step from one state to another took the surface through the tool; whether the tool touches any point of it in
     /// the end is `touches`.
     ///
-    /// A point that goes deeper on its way than [`Tool::deepest`], and half of that where nothing touches in the end, has been
-    /// jumped over: points that slide along a tool cut its corners by less.
+    /// A point that goes deeper on its way than [`Tool::deepest`] has been jumped over: points that slide along a tool cut its
+    /// corners by less. Where nothing touches in the end, much less is one too many.
     pub fn check_passage(
         &self,
         tool: &Tool,
@@ -48,7 +51,7 @@ impl ContactSurface<'_> {
         to: Stand,
         touches: bool,
     ) -> Result<(), ContactError> {
-        let limit = tool.deepest() * if touches { 1.0 } else { 0.5 };
+        let limit = tool.deepest() * if touches { 1.0 } else { UNSEEN };
         if limit.is_infinite() {
             return Ok(());
         }
