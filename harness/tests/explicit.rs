@@ -161,7 +161,7 @@ method = [
 fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     let (done, told) = run(STRUCK);
     assert_fails(&done, 3, "contact-lost: ");
-    assert_fails(&done, 3, "key 'tool': ");
+    assert_fails(&done, 3, "key 'tool[0]': ");
     for object in &told {
         assert_eq!(object["status"], "contact-lost", "{object}");
         let message = object["message"].as_str().unwrap();

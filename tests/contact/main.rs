@@ -1,5 +1,6 @@
 //! Contact with rigid tools: shapes, the law at a point, and over surfaces.
 
 mod law;
+mod passage;
 mod shapes;
 mod surface;

@@ -88,6 +88,15 @@ fn the_same_as_point_by_point_and_in_balance() {
             let found = found.unwrap();
             assert!(found.points().len() > 3 && counts.active >= found.points().len() as u64, "{shape:?}");
             assert!(found.force().x.abs() > 1e-6, "{shape:?} does not drag");
+            let forces: Vec<f64> = found
+                .points()
+                .iter()
+                .map(|&q| rows.weights()[q as usize] * all[q as usize].pressure)
+                .collect();
+            let (sum, most) = (forces.iter().sum::<f64>(), forces.iter().copied().fold(0.0, f64::max));
+            let squares: f64 = forces.iter().map(|f| f * f).sum();
+            assert!((found.carriers() * squares / (sum * sum) - 1.0).abs() < 1e-12);
+            assert!(found.carriers() <= forces.len() as f64 && found.carriers() >= sum / most - 1e-9);
 
             let light = surface.tractions(&tool, 2e-5, &u, &history, &mut counts).unwrap().unwrap();
             assert_eq!((light.tractions(), light.force()), (found.tractions(), found.force()));

@@ -11,3 +11,4 @@ mod locking;
 mod manufactured;
 mod quadratic;
 mod snap;
+mod tunnels;

@@ -6,6 +6,9 @@ use geometry::Vector3;
 
 use super::Metric;
 
+/// Points that have to carry a tool's force: three hold a plane.
+const FEWEST: f64 = 3.0;
+
 /// A tool at the end of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolStep {
@@ -17,6 +20,8 @@ pub struct ToolStep {
     pub pushed: f64,
     /// Surface points in contact.
     pub active: u64,
+    /// How many of them carry the force: n where n points have the same, 1 where one has it all.
+    pub carriers: f64,
     /// Their undeformed area, m^2.
     pub area: f64,
     /// Deepest penetration, m.
@@ -31,9 +36,15 @@ impl ToolStep {
             force: state.force,
             pushed: -state.force.dot(&tool.along()),
             active: state.active as u64,
+            carriers: state.carriers,
             area: state.area,
             penetration: state.penetration,
         }
+    }
+
+    /// Whether so few points carry the force that it depends on where they happen to be: the surface is too coarse for the tool.
+    pub fn is_carried_by_few(&self) -> bool {
+        self.active > 0 && self.carriers < FEWEST
     }
 
     /// Where every tool starts.
@@ -42,6 +53,7 @@ impl ToolStep {
         force: Vector3::new(0.0, 0.0, 0.0),
         pushed: 0.0,
         active: 0,
+        carriers: 0.0,
         area: 0.0,
         penetration: 0.0,
     };
@@ -86,5 +98,17 @@ impl LoadStep {
             against: Vec::new(),
             more: Vec::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_points_are_enough_and_none_is_no_contact() {
+        let tool = |active, carriers| ToolStep { active, carriers, ..ToolStep::UNTOUCHED };
+        assert!(tool(1, 1.0).is_carried_by_few() && tool(40, 2.9).is_carried_by_few());
+        assert!(!tool(3, 3.0).is_carried_by_few() && !tool(0, 0.0).is_carried_by_few());
     }
 }

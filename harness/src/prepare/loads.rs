@@ -54,7 +54,7 @@ impl Prepared {
     /// gives 6.5 % too much of a Saint-Venant traction on 4 x 4 faces.
     fn by_means(&self, load: &setup::Load, facets: &[Facet]) -> Result<(SurfaceRows, Values), Failure> {
         let surface = self.source.surface(facets)?;
-        let fine = fem::surface_rows(self.source.mesh(), facets, &SurfaceRule::FIELD)?;
+        let fine = fem::surface_rows(self.source.mesh(), facets, &SurfaceRule::FINE)?;
         let (each, weights) = (fine.weights().len() / facets.len(), fine.weights().to_vec());
         let mean = |facet: usize, value: &dyn Fn(usize) -> Vector3| -> Vector3 {
             let points = each * facet..each * (facet + 1);

@@ -5,8 +5,10 @@ mod loads;
 mod nodal_patch;
 pub(crate) mod reach;
 mod support_gap;
+mod touch;
 
 use cases::scene::ConstraintRows;
+use contact::ContactSurface;
 use fem::SurfaceRule;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::FixedDof;
@@ -24,6 +26,7 @@ use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{Setup, Support};
 use loads::Values;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
+use touch::Touch;
 
 /// A surface constrained weakly, with its tables owned.
 struct OwnedWeak {
@@ -60,7 +63,7 @@ pub struct Prepared {
     weak: Vec<OwnedWeak>,
     penalties: Vec<OwnedPenalty>,
     /// Where tools may touch; `None` without tools.
-    pub contact: Option<SurfaceRows>,
+    touch: Option<Touch>,
 }
 
 /// Fills every table that the plan has.
@@ -83,7 +86,7 @@ pub fn prepare(
         eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
         penalties: Vec::new(),
-        contact: None,
+        touch: None,
     };
     for load in &setup.loads {
         prepared.load(method, load)?;
@@ -101,12 +104,12 @@ pub fn prepare(
         prepared.penalise(setup)?;
     }
     if plan.runs(StageName::Contact) {
-        let surface = prepared.source.contact_surface()?;
-        let points = surface.weights().len() as u64;
+        let touch = Touch::new(&*prepared.source, &setup.tools)?;
+        let points = touch.surface.weights().len() as u64;
         counters.contact_points += points;
         counters.friction_points +=
             points * setup.tools.iter().filter(|t| t.tool.law().friction() > 0.0).count() as u64;
-        prepared.contact = Some(surface);
+        prepared.touch = Some(touch);
     }
     Ok(prepared)
 }
@@ -135,6 +138,11 @@ impl Prepared {
                 trace: w.trace.as_ref(),
             })
             .collect()
+    }
+
+    /// Where tools may touch, as the solver takes it; `None` without tools.
+    pub fn contact(&self) -> Option<ContactSurface<'_>> {
+        self.touch.as_ref().map(Touch::contact)
     }
 
     /// Degrees of freedom prescribed.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use cases::scene::Explicit;
 use catalogue::metric;
-use contact::{ContactSurface, Drive};
+use contact::Drive;
 use explicit::{
     Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
     Lumping, MovingTool, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
@@ -106,7 +106,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         .collect();
 
     let zeros = vec![Vector3::zeros(); mass.len()];
-    let surface = prepared.contact.as_ref().map(ContactSurface::new);
+    let surface = prepared.contact();
     let tool_mass = asked.tool_mass * mass.iter().sum::<f64>();
     let moving = moving_tools(setup, asked, tool_mass);
     let tools = match &surface {
@@ -115,7 +115,8 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     };
     let constrained: BTreeSet<usize> =
         loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
-    let springs = prepared.contact.as_ref().map(|surface| Springs { surface, modulus: stiffest(setup) });
+    let springs =
+        surface.as_ref().map(|surface| Springs { surface: surface.rows(), modulus: stiffest(setup) });
     let first =
         critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS)?;
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
@@ -250,6 +251,13 @@ impl Run<'_, '_> {
             self.motion.run(1, 1, load, &mut |balance, u| seen = Some((*balance, u.to_vec())))?;
             let (balance, u) = seen.expect("every step is recorded");
             if state > 0 {
+                if let Some(tools) = self.motion.tools() {
+                    let (step, time) = (self.motion.steps() - 1, state as f64 * interval);
+                    tools.check_overlap(step, time, &u)?;
+                    if state == self.asked.ramp.steps {
+                        tools.check_end(step, time, &u)?;
+                    }
+                }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
                 let step = self.reported(&balance, &u, state as f64 * interval);
                 self.states.steps.push(step);

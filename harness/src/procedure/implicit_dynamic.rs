@@ -3,7 +3,6 @@
 
 use cases::scene::Implicit;
 use catalogue::metric;
-use contact::ContactSurface;
 use geometry::Vector3;
 use statics::{
     Inertia, Mass, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
@@ -61,7 +60,7 @@ fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
 
 fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
-    let contact = prepared.contact.as_ref().map(ContactSurface::new);
+    let contact = prepared.contact();
     // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
     let mass = if asked.inertia {
         let (fine, region) = prepared.fine_volume()?;

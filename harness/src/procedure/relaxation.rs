@@ -1,7 +1,7 @@
 //! Beyond a limit point: dynamic relaxation from the last equilibrium to the load steps that are left.
 
 use catalogue::metric;
-use contact::{ContactHistory, ContactSurface, Drive};
+use contact::{ContactHistory, Drive};
 use explicit::{
     ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
     RelaxationParams, lumped_mass, relax_under,
@@ -91,7 +91,7 @@ pub(super) fn continue_from(
     let mut force = InternalForce::new(body, LanePath::best())?;
     let loads = nodal_forces(rows, &prepared.loads())?;
     let constrained = led(prepared);
-    let surface = prepared.contact.as_ref().map(ContactSurface::new);
+    let surface = prepared.contact();
     let part_of = |drive: Drive, load: f64| match drive {
         Drive::Closure(full) => Drive::Closure(full * load),
         Drive::Force(full) => Drive::Force(full * load),

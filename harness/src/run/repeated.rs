@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use cases::scene::{Procedure, Repeated};
 use catalogue::metric;
-use contact::ContactSurface;
 use geometry::{Point3, Vector3};
 use shape::{Rows, Unity};
 use statics::{Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
@@ -150,7 +149,7 @@ fn outputs(
 fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<Latency>, Failure> {
     let Solved { method, setup, prepared, solution } = *run;
     let end = solution.history.as_ref().and_then(|history| history.last.tools.first());
-    let contact = prepared.contact.as_ref().map(ContactSurface::new);
+    let contact = prepared.contact();
     with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
         let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
         let params = StaticParams { newton: NewtonParams { tolerance, ..params.newton }, ..*params };

@@ -2,6 +2,7 @@
 
 use algebra::AlgebraError;
 use cases::scene::{Cloud, ErrorKind, Family, Functions, Procedure, Scene, SupportRule};
+use contact::ContactError;
 use efg::EfgError;
 use explicit::ExplicitError;
 use statics::{SolveError, StaticError, TimeError};
@@ -97,13 +98,18 @@ impl Scenario<'_> {
     fn of_static(&self, error: &StaticError) -> Finding {
         match error {
             StaticError::Solve(error) => self.of_solve(error),
-            StaticError::Contact(_) => {
-                finding(ErrorKind::NotRun, Key::Scene("tool".into()), error.to_string(), "")
+            StaticError::Contact { tool, cause } => {
+                finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), cause.to_string(), "")
             }
             StaticError::Parameter { .. } => {
                 finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")
             }
-            _ => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+            _ => match overlapping(error) {
+                Some(tool) => {
+                    finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), error.to_string(), "")
+                }
+                None => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+            },
         }
     }
 
@@ -117,7 +123,7 @@ impl Scenario<'_> {
                 (Key::Method(""), "procedure.safety = 0.7 leaves more room")
             }
             ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool-mass"),
-            ExplicitError::ContactAt { .. } => (Key::Scene("tool".into()), ""),
+            ExplicitError::ContactAt { tool, .. } => (Key::Scene(format!("tool[{tool}]")), ""),
             ExplicitError::InvertedAt { .. } => {
                 (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")
             }
@@ -138,6 +144,10 @@ impl Scenario<'_> {
                 Key::Scene("procedure.accuracy".into()),
                 "no step is short enough: allow more",
             ),
+            TimeError::Static(error) => match overlapping(error) {
+                Some(tool) => (ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), ""),
+                None => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+            },
             _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
         };
         finding(kind, key, error.to_string(), help)
@@ -180,6 +190,15 @@ impl Scenario<'_> {
             }
             _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
         }
+    }
+}
+
+/// The tool that stands in the body without a force, where that is what ended a solution: no smaller step helps.
+fn overlapping(error: &StaticError) -> Option<usize> {
+    match error {
+        StaticError::Stalled { cause, .. } => overlapping(cause),
+        StaticError::Contact { tool, cause: ContactError::Overlap { .. } } => Some(*tool),
+        _ => None,
     }
 }
 

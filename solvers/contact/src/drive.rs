@@ -33,6 +33,8 @@ pub struct ToolState {
     pub moment: Vector3,
     /// Surface points in contact.
     pub active: usize,
+    /// How many of them carry the force, see [`Contacts::carriers`].
+    pub carriers: f64,
     /// Their undeformed area, m^2.
     pub area: f64,
     /// Deepest penetration, m.
@@ -48,6 +50,7 @@ impl ToolState {
             force: contacts.map_or_else(zero, Contacts::force),
             moment: contacts.map_or_else(zero, Contacts::moment),
             active: contacts.map_or(0, |c| c.points().len()),
+            carriers: contacts.map_or(0.0, Contacts::carriers),
             area: contacts.map_or(0.0, Contacts::area),
             penetration: contacts.map_or(0.0, Contacts::max_penetration),
         }

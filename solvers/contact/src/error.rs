@@ -88,6 +88,34 @@ pub enum ContactError {
         /// The limit, m.
         limit: f64,
     },
+    /// A tool that a step takes over the surface, to where nothing touches it.
+    #[error(
+        "the surface near ({:.4}, {:.4}, {:.4}) m would go straight through the tool, {depth:.3e} m below its surface on the way: \
+         they move {travel:.3e} m against each other in this step, and a smaller one is needed",
+        at.x, at.y, at.z
+    )]
+    JumpedOver {
+        /// Depth on the way, m.
+        depth: f64,
+        /// Where the point of the surface is in the end, m.
+        at: Point3,
+        /// Its way in the step as seen from the tool, m.
+        travel: f64,
+    },
+    /// A tool that stands in the body and meets no point of its surface.
+    #[error(
+        "it overlaps the body by {depth:.3e} m near ({:.4}, {:.4}, {:.4}) m and touches no contact point, so without any force: \
+         the nearest one is {apart:.3e} m from there, and a finer surface is needed",
+        at.x, at.y, at.z
+    )]
+    Overlap {
+        /// Depth, m.
+        depth: f64,
+        /// Where that is, m.
+        at: Point3,
+        /// Distance to the nearest contact point in the undeformed body, m.
+        apart: f64,
+    },
     /// A tool that pushes out of the body from within.
     #[error(
         "{:.0} % of the tool's force push out of the body from within, at surface point {point} near ({:.4}, {:.4}, {:.4}) m: it has \
@@ -102,4 +130,11 @@ pub enum ContactError {
         /// Where that is, m.
         at: Point3,
     },
+}
+
+impl ContactError {
+    /// Whether a smaller step of the tool may do: it went too deep, or all the way through.
+    pub fn is_too_far(&self) -> bool {
+        matches!(self, ContactError::PassedThrough { .. } | ContactError::JumpedOver { .. })
+    }
 }

@@ -23,6 +23,7 @@ pub struct Contacts {
     moment: Vector3,
     area: f64,
     max_penetration: f64,
+    carriers: f64,
     dissipated: f64,
 }
 
@@ -157,6 +158,7 @@ impl Contacts {
     ) -> Contacts {
         let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
         let (mut area, mut max_penetration, mut dissipated) = (0.0, 0.0f64, 0.0);
+        let (mut load, mut squares) = (0.0, 0.0);
         for f in &found {
             let w = surface.rows().weights()[f.point as usize];
             let arm = surface.position(f.point as usize, u) - tool.place(closure);
@@ -165,6 +167,8 @@ impl Contacts {
             area += w;
             max_penetration = max_penetration.max(-f.gap);
             dissipated += f.dissipated * w;
+            load += w * f.pressure;
+            squares += (w * f.pressure).powi(2);
         }
         Contacts {
             points: found.iter().map(|f| f.point).collect(),
@@ -176,6 +180,7 @@ impl Contacts {
             moment,
             area,
             max_penetration,
+            carriers: if squares > 0.0 { load * load / squares } else { 0.0 },
             dissipated,
         }
     }
@@ -225,6 +230,12 @@ impl Contacts {
     /// Deepest penetration, m; 0 if no point is inside.
     pub fn max_penetration(&self) -> f64 {
         self.max_penetration
+    }
+
+    /// How many points carry the load: `(sum F_q)^2 / sum F_q^2` of the normal forces `F_q = w p`, n for n points with the same
+    /// force and 1 where one of many has it all; 0 without contact.
+    pub fn carriers(&self) -> f64 {
+        self.carriers
     }
 
     /// Frictional work since the last commit, J.

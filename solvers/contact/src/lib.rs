@@ -4,7 +4,9 @@
 //! A [`Tool`] is a [`ToolShape`] put somewhere, with a [`ContactLaw`]; it moves by `closure` (m) along its direction.
 //! A [`ContactSurface`] is a surface quadrature with its boxes. Evaluating one against the other gives [`Contacts`]:
 //! tractions per undeformed area and their consistent tangents at the points that touch, and nothing at the others.
-//! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers.
+//! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers. What no state shows by itself is
+//! checked after a step: [`ContactSurface::check_passage`] finds tools that jumped over the surface, and
+//! [`ContactSurface::check_overlap`] those that stand in the body between its points.
 //!
 //! ```
 //! use contact::{ContactLaw, Slip, Sphere, Tool};
@@ -27,6 +29,8 @@ mod error;
 mod evaluate;
 mod history;
 mod law;
+mod overlap;
+mod passage;
 mod surface;
 mod tool;
 mod tool_shape;
@@ -36,6 +40,8 @@ pub use error::ContactError;
 pub use evaluate::{ContactCounts, Contacts};
 pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
+pub use overlap::Outline;
+pub use passage::Stand;
 pub use surface::ContactSurface;
 pub use tool::{PointContact, Tool};
 pub use tool_shape::*;

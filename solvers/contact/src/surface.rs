@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use shape::SurfaceRows;
-use shape::{Point3, Vector3};
+use shape::{Point3, SurfaceRows, Vector3};
 
-use super::{ContactError, Contacts, Tool};
+use super::{ContactError, Contacts, Outline, Tool};
 
 /// Points per cluster, at most.
 const CLUSTER: usize = 32;
@@ -15,10 +14,12 @@ const CLUSTER: usize = 32;
 pub struct ContactSurface<'a> {
     rows: &'a SurfaceRows,
     /// Points, neighbours together.
-    order: Vec<u32>,
-    clusters: Vec<Cluster>,
+    pub(super) order: Vec<u32>,
+    pub(super) clusters: Vec<Cluster>,
     /// Nodes that the clusters see, one cluster after another.
-    nodes: Vec<u32>,
+    pub(super) nodes: Vec<u32>,
+    /// Where the surface is between its points, if that is given.
+    pub(super) outline: Option<Outline<'a>>,
     /// For each point two others beside it, counter-clockwise seen from outside; the point itself where there are none.
     beside: Vec<[u32; 2]>,
 }
@@ -27,8 +28,8 @@ pub struct ContactSurface<'a> {
 /// the cluster's nodes, `|x - X - m| <= max(sum |N_I|) h + max|sum N_I - 1| |m|` per axis: a box for all its points
 /// from the nodes alone, for any basis.
 #[derive(Clone, Debug)]
-struct Cluster {
-    points: Range<usize>,
+pub(super) struct Cluster {
+    pub(super) points: Range<usize>,
     nodes: Range<usize>,
     /// Middle and half extents of the box of reference positions, m.
     middle: Point3,
@@ -55,7 +56,13 @@ impl<'a> ContactSurface<'a> {
             let near = &order[cluster.points.clone()];
             near.iter().for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
         }
-        ContactSurface { rows, order, clusters, nodes, beside }
+        ContactSurface { rows, order, clusters, nodes, beside, outline: None }
+    }
+
+    /// With the surface between its points, to find tools that stand in the body there.
+    pub fn with_outline(mut self, outline: Outline<'a>) -> ContactSurface<'a> {
+        self.outline = Some(outline);
+        self
     }
 
     /// The surface quadrature.
@@ -160,7 +167,11 @@ impl Cluster {
     }
 
     /// Middle and half extents of a box that holds the cluster's points in the state `u`.
-    fn current_box(&self, nodes: &[u32], u: &[Vector3]) -> Result<(Point3, Vector3), ContactError> {
+    pub(super) fn current_box(
+        &self,
+        nodes: &[u32],
+        u: &[Vector3],
+    ) -> Result<(Point3, Vector3), ContactError> {
         let nodes = &nodes[self.nodes.clone()];
         let mut finite = true;
         let (low, high) = range(nodes.iter().map(|&node| {

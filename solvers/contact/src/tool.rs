@@ -106,6 +106,21 @@ impl Tool {
         (place - half, place + half)
     }
 
+    /// Half of the least breadth across the direction of closing, m: the tool fits between points that leave more free. Infinite
+    /// for a plate.
+    pub fn half_breadth(&self) -> f64 {
+        if self.shape.is_endless() {
+            return f64::INFINITY;
+        }
+        let outline = self.shape.outline(0.0);
+        let turned = Tool::turned_to(&self.along);
+        let breadth = |turn: f64| {
+            let across = self.rotation.tr_mul(&(turned * Vector3::new(turn.cos(), turn.sin(), 0.0)));
+            outline.iter().map(|p| across.dot(p)).fold(0.0, f64::max)
+        };
+        (0..24).map(|k| breadth((7.5 * f64::from(k)).to_radians())).fold(f64::INFINITY, f64::min)
+    }
+
     /// Contact at the current position `x` (m), from the last committed history. `augmented` is the multiplier of the
     /// augmented Lagrangian, Pa, 0 for a plain penalty.
     pub fn contact(&self, closure: f64, x: &Point3, history: &Slip, augmented: f64) -> PointContact {

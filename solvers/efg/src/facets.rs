@@ -25,7 +25,19 @@ pub fn surface_rows(
     facets: &[Facet],
     face_points: usize,
 ) -> Result<(SurfaceRows, MlsInfo), EfgError> {
-    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points)?;
+    divided_surface_rows(approximation, background, facets, face_points, &[])
+}
+
+/// As [`surface_rows`], with the points on each of `parts` x `parts` parts of a facet: one number for each, or none for whole
+/// facets.
+pub(crate) fn divided_surface_rows(
+    approximation: &Approximation,
+    background: &Mesh,
+    facets: &[Facet],
+    face_points: usize,
+    parts: &[usize],
+) -> Result<(SurfaceRows, MlsInfo), EfgError> {
+    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points, parts)?;
     let (at, info) = approximation.point_rows(&points)?;
     Ok((SurfaceRows::new(at, weights, normals)?, info))
 }
@@ -38,7 +50,7 @@ pub fn flux_rows(
     facets: &[Facet],
     face_points: usize,
 ) -> Result<(FluxRows, MlsInfo), EfgError> {
-    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points)?;
+    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points, &[])?;
     let (at, info) = approximation.grad_rows(&points)?;
     Ok((FluxRows::new(at, weights, normals)?, info))
 }
@@ -69,10 +81,16 @@ pub(crate) fn triangle_points(mesh: &Mesh, corners: [u32; 3], rule: &Rule<2>, po
     points.extend(rule.points.iter().map(|xi| p + (q - p) * xi[0] + (r - p) * xi[1]));
 }
 
-fn facet_points(mesh: &Mesh, facets: &[Facet], face_points: usize) -> Result<FacetPoints, EfgError> {
+fn facet_points(
+    mesh: &Mesh,
+    facets: &[Facet],
+    face_points: usize,
+    parts: &[usize],
+) -> Result<FacetPoints, EfgError> {
     let mut out = FacetPoints { points: Vec::new(), weights: Vec::new(), normals: Vec::new() };
     let (mut triangle, mut quadrilateral) = (None, None);
-    for &facet in facets {
+    for (k, &facet) in facets.iter().enumerate() {
+        let divided = parts.get(k).copied().filter(|parts| *parts > 1);
         let (cell, kind) = (facet.cell as usize, mesh.kind(facet.cell as usize));
         match kind {
             CellKind::Tet4 => {
@@ -80,7 +98,8 @@ fn facet_points(mesh: &Mesh, facets: &[Facet], face_points: usize) -> Result<Fac
                     Some(rule) => rule,
                     None => triangle_rule(face_points)?,
                 };
-                on_triangle(mesh, facet, &rule, &mut out)?;
+                let parts = divided.map(|parts| quadrature::divided_tri(&rule, parts));
+                on_triangle(mesh, facet, parts.as_ref().unwrap_or(&rule), &mut out)?;
                 triangle = Some(rule);
             }
             CellKind::Hex8 => {
@@ -88,7 +107,8 @@ fn facet_points(mesh: &Mesh, facets: &[Facet], face_points: usize) -> Result<Fac
                     Some(rule) => rule,
                     None => quadrilateral_rule(face_points)?,
                 };
-                on_quadrilateral(mesh, facet, &rule, &mut out)?;
+                let parts = divided.map(|parts| quadrature::divided_quad(&rule, parts));
+                on_quadrilateral(mesh, facet, parts.as_ref().unwrap_or(&rule), &mut out)?;
                 quadrilateral = Some(rule);
             }
             _ => return Err(EfgError::CellKind { cell, kind, what: "a boundary", allowed: "tet4 and hex8" }),

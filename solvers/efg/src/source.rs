@@ -7,9 +7,10 @@ use geometry::shapes::Shape;
 use geometry::{Cloud, Facet, Mesh};
 use shape::{
     DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
-    SurfaceRows, TraceRows, VolumeRows, equal_groups,
+    SurfaceRows, TraceRows, Vector3, VolumeRows, equal_groups,
 };
 
+use crate::facets::divided_surface_rows;
 use crate::{
     Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support, flux_rows, gauss_regions,
     gauss_rows, grid_rows, node_smoothed_regions, node_smoothed_rows, node_smoothed_trace, smoothed_regions,
@@ -227,9 +228,23 @@ impl RowSource for CloudSource {
 
     /// Smoothed gradients want their own face points: a block of smoothed cells between two plates came out 3 % too wide with
     /// three contact points on faces of one.
-    fn contact_surface(&self) -> Result<SurfaceRows, SourceError> {
+    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError> {
         let points = self.integration.smoothed_face_points().unwrap_or(CONTACT_POINTS);
-        Ok(surface_rows(&self.approximation, &self.background, &self.background.boundary(), points)?.0)
+        let facets = self.background.boundary();
+        Ok(divided_surface_rows(&self.approximation, &self.background, &facets, points, parts)?.0)
+    }
+
+    fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError> {
+        let mesh = &self.background;
+        let at = |node: u32| mesh.points()[node as usize];
+        let middle = |&facet: &Facet| {
+            let nodes = mesh.facet_nodes(facet);
+            let count = nodes.len() as f64;
+            Point3::from(nodes.map(|node| at(node).coords / count).sum::<Vector3>())
+        };
+        let vertices = mesh.facet_group_nodes(facets).into_iter().map(at);
+        let points: Vec<Point3> = vertices.chain(facets.iter().map(middle)).collect();
+        Ok(self.approximation.point_rows(&points)?.0)
     }
 
     /// Those of the smoothing, so that the integration constraint holds to rounding.

@@ -101,12 +101,14 @@ pub enum ExplicitError {
         critical: f64,
     },
     /// Contact without meaning in a state on the way.
-    #[error("step {step} (t = {time:e} s): {cause}")]
+    #[error("step {step} (t = {time:e} s): tool[{tool}]: {cause}")]
     ContactAt {
         /// Step.
         step: usize,
         /// Time, s.
         time: f64,
+        /// Index of the tool.
+        tool: usize,
         /// Why.
         cause: ContactError,
     },

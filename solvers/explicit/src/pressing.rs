@@ -1,6 +1,6 @@
 //! Rigid tools in a dynamic relaxation: a closure that is led, or one more unknown that a force moves.
 
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Tool};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Stand, Tool};
 use contact::{Drive, ToolState};
 use shape::Vector3;
 
@@ -25,6 +25,8 @@ pub struct PressingTool<'a> {
 pub struct Pressing<'a> {
     surface: &'a ContactSurface<'a>,
     tools: Vec<PressingTool<'a>>,
+    /// Closures at the last step, m.
+    before: Vec<f64>,
     /// Last move of every closure, m.
     moves: Vec<f64>,
     /// Force that each exerts along its way at this and at the last step, N.
@@ -37,6 +39,7 @@ pub struct Pressing<'a> {
 impl<'a> Pressing<'a> {
     /// Tools as they stand.
     pub fn new(surface: &'a ContactSurface<'a>, mut tools: Vec<PressingTool<'a>>) -> Pressing<'a> {
+        let before = tools.iter().map(|tool| tool.closure).collect();
         for tool in &mut tools {
             if let Drive::Closure(closure) = tool.drive {
                 tool.closure = closure;
@@ -45,6 +48,7 @@ impl<'a> Pressing<'a> {
         let still = |tool: &PressingTool| ToolState::new(tool.closure, None);
         Pressing {
             surface,
+            before,
             moves: vec![0.0; tools.len()],
             pushed: vec![[0.0; 2]; tools.len()],
             states: tools.iter().map(still).collect(),
@@ -82,12 +86,21 @@ impl<'a> Pressing<'a> {
         Some(super::Springs { surface: self.surface.rows(), modulus })
     }
 
-    /// Contact forces (N) in the state `u` (m), added to `force`, and committed.
-    pub(super) fn touch(&mut self, u: &[Vector3], force: &mut [Vector3]) -> Result<(), ContactError> {
+    /// Contact forces (N) in the state `u` (m), added to `force`, and committed; fails with the index of a tool.
+    pub(super) fn touch(
+        &mut self,
+        u: &[Vector3],
+        force: &mut [Vector3],
+    ) -> Result<(), (usize, ContactError)> {
         for (k, tool) in self.tools.iter_mut().enumerate() {
-            let contacts =
-                self.surface.tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)?;
+            let lost = |cause| (k, cause);
+            let contacts = (self.surface)
+                .tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)
+                .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
+            let touches = contacts.as_ref().is_some_and(|c| !c.points().is_empty());
+            let travel = [std::mem::replace(&mut self.before[k], tool.closure), tool.closure];
+            self.surface.check_travel(tool.tool, travel, u, touches).map_err(lost)?;
             if let Some(contacts) = &contacts {
                 contacts.add_force(self.surface.rows(), force);
             }
@@ -97,12 +110,19 @@ impl<'a> Pressing<'a> {
         Ok(())
     }
 
-    /// Fails where a tool pushes from within the body, in the state `u` (m) at the end: on the way there it may.
-    pub(super) fn check_sides(&mut self, u: &[Vector3]) -> Result<(), ContactError> {
-        for tool in &self.tools {
-            let contacts =
-                self.surface.tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)?;
-            contacts.iter().try_for_each(|c| self.surface.check_side(c, u))?;
+    /// Fails where a tool pushes from within the body, or stands in it and touches nothing, in the state `u` (m) at the end: on
+    /// the way there it may.
+    pub(super) fn check_sides(&mut self, u: &[Vector3]) -> Result<(), (usize, ContactError)> {
+        for (k, tool) in self.tools.iter().enumerate() {
+            let lost = |cause| (k, cause);
+            let contacts = (self.surface)
+                .tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)
+                .map_err(lost)?;
+            match contacts.filter(|c| !c.points().is_empty()) {
+                Some(contacts) => self.surface.check_side(&contacts, u),
+                None => self.surface.check_end(tool.tool, Stand { closure: tool.closure, u }),
+            }
+            .map_err(lost)?;
         }
         Ok(())
     }

@@ -95,7 +95,7 @@ pub fn relax_under(
             if let Some(pressing) = &mut pressing {
                 let time = step as f64 * dt;
                 let within = pressing.check_sides(&trajectory.u);
-                within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+                within.map_err(|(tool, cause)| ExplicitError::ContactAt { step, time, tool, cause })?;
             }
             return Ok((trajectory.u, trajectory.info));
         }
@@ -191,9 +191,10 @@ impl<'a, 'b> Trajectory<'a, 'b> {
         if let Some(pressing) = pressing {
             self.touch.clear();
             self.touch.resize(self.u.len(), Vector3::zeros());
-            pressing.touch(&self.u, &mut self.touch).map_err(|cause| ExplicitError::ContactAt {
+            pressing.touch(&self.u, &mut self.touch).map_err(|(tool, cause)| ExplicitError::ContactAt {
                 step,
                 time,
+                tool,
                 cause,
             })?;
             self.internal.iter_mut().zip(&self.touch).for_each(|(f, t)| *f -= t);

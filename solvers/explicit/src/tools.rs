@@ -1,7 +1,7 @@
 //! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
 
 use super::{ExplicitError, Springs};
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Stand, Tool};
 use contact::{Drive, ToolState};
 use shape::{Point3, Vector3};
 
@@ -70,6 +70,8 @@ struct Moving<'a> {
     touch: f64,
     /// Closure at the step to come, m.
     closure: f64,
+    /// Closure at the step before, m.
+    before: f64,
     /// At `n - 1/2`, m/s.
     speed: f64,
     motion: ToolMotion,
@@ -127,6 +129,35 @@ impl<'a> Tools<'a> {
         })
     }
 
+    /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then.
+    pub fn check_overlap(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
+        self.check(step, time, u, |surface, tool, stand| surface.check_overlap(tool, stand))
+    }
+
+    /// As [`Tools::check_overlap`] at the end of the motion, where no way is left to the next point of the surface.
+    pub fn check_end(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
+        self.check(step, time, u, |surface, tool, stand| surface.check_end(tool, stand))
+    }
+
+    fn check(
+        &self,
+        step: usize,
+        time: f64,
+        u: &[Vector3],
+        check: impl Fn(&ContactSurface, &Tool, Stand) -> Result<(), ContactError>,
+    ) -> Result<(), ExplicitError> {
+        for (tool, moving) in self.each.iter().enumerate().filter(|(_, m)| m.motion.state.active == 0) {
+            let stand = Stand { closure: moving.motion.state.closure, u };
+            check(self.surface, moving.of.tool, stand).map_err(|cause| ExplicitError::ContactAt {
+                step,
+                time,
+                tool,
+                cause,
+            })?;
+        }
+        Ok(())
+    }
+
     /// What the contact search did and skipped.
     pub fn counts(&self) -> ContactCounts {
         self.counts
@@ -158,10 +189,11 @@ impl<'a> Tools<'a> {
             self.touched = false;
         }
         for (index, tool) in self.each.iter_mut().enumerate() {
+            let lost = |cause| ExplicitError::ContactAt { step, time, tool: index, cause };
             let contacts = self
                 .surface
                 .tractions(tool.of.tool, tool.closure, u, &tool.history, &mut self.counts)
-                .map_err(|cause: ContactError| ExplicitError::ContactAt { step, time, cause })?;
+                .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
             if let Some(contacts) = &contacts {
                 contacts.add_force(self.surface.rows(), &mut self.forces);
@@ -169,8 +201,11 @@ impl<'a> Tools<'a> {
             }
             tool.settle(contacts.as_ref(), self.surface);
             tool.check(index, step, time, dt, contacts.as_ref(), self.surface)?;
+            let travel = [std::mem::replace(&mut tool.before, tool.closure), tool.closure];
+            let touches = tool.motion.state.active > 0;
+            (self.surface.check_travel(tool.of.tool, travel, u, touches)).map_err(lost)?;
             let within = contacts.iter().try_for_each(|c| self.surface.check_side(c, u));
-            within.map_err(|cause| ExplicitError::ContactAt { step, time, cause })?;
+            within.map_err(lost)?;
             tool.advance(step == 0, time, dt);
         }
         Ok(())
@@ -185,6 +220,7 @@ impl<'a> Moving<'a> {
             history: ContactHistory::new(of.tool, surface.rows().points().len()),
             touch,
             closure: 0.0,
+            before: 0.0,
             speed: 0.0,
             motion: ToolMotion { state: ToolState::new(0.0, None), speed: 0.0 },
             worked: 0.0,
@@ -202,6 +238,7 @@ impl<'a> Moving<'a> {
                 }
             }
         };
+        moving.before = moving.closure;
         moving.motion.state.closure = moving.closure;
         moving
     }

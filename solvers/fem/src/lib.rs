@@ -38,5 +38,5 @@ pub use error::FemError;
 pub use points::{Outside, grad_rows, nearest_cells, nearest_grad_rows, nearest_point_rows, point_rows};
 pub use rule::{SurfaceRule, VolumeRule};
 pub use source::Elements;
-pub use surface::{flux_rows, surface_rows};
+pub use surface::{divided_surface_rows, flux_rows, outline_rows, surface_rows};
 pub use volume::{cell_of_point, element_dilation, pressure_rows, regions, volume_rows};

@@ -14,11 +14,26 @@ use geometry::element::{Element, with_element};
 /// given. Curved faces count as they are. Rows hold the facet's own nodes, in the order of
 /// [`Mesh::facet_nodes`]: no other node of the cell counts on the facet.
 pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<SurfaceRows, FemError> {
+    divided_surface_rows(mesh, facets, rule, &[])
+}
+
+/// As [`surface_rows`], with the rule on each of `parts` x `parts` parts of a facet: one number for each, or none for whole
+/// facets.
+pub fn divided_surface_rows(
+    mesh: &Mesh,
+    facets: &[Facet],
+    rule: &SurfaceRule,
+    parts: &[usize],
+) -> Result<SurfaceRows, FemError> {
     let rules = rules(rule)?;
     let mut table = Table::new();
-    for &facet in facets {
+    for (k, &facet) in facets.iter().enumerate() {
         let kind = check(mesh, facet)?.face_kind();
-        let rule = &rules[kind as usize];
+        let divided = match parts.get(k) {
+            Some(&parts) if parts > 1 => Some(rule.divided(kind, parts)?),
+            _ => None,
+        };
+        let rule = divided.as_ref().unwrap_or(&rules[kind as usize]);
         with_face!(kind, F, N => {
             let nodes = facet_nodes::<N>(mesh, facet);
             let x = Nodes::gather(mesh, &nodes);
@@ -31,6 +46,25 @@ pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result
     }
     let rows = Rows::new(mesh.points().len(), table.offsets, table.nodes, table.values, UNITY)?;
     Ok(SurfaceRows::new(PointRows::new(table.points, rows)?, table.weights, table.normals)?)
+}
+
+/// Values at the nodes of some facets, in ascending order, and then at the middle of each.
+pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError> {
+    let mut table = Table::new();
+    for node in mesh.facet_group_nodes(facets) {
+        table.push_row(mesh.points()[node as usize], &[node], &[1.0]);
+    }
+    for &facet in facets {
+        let kind = check(mesh, facet)?.face_kind();
+        let s = if kind.corner_count() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] };
+        with_face!(kind, F, N => {
+            let nodes = facet_nodes::<N>(mesh, facet);
+            let n = <F as Face<N>>::shape(s);
+            table.push_row(Nodes::gather(mesh, &nodes).position(&n), &nodes, &n);
+        });
+    }
+    let rows = Rows::new(mesh.points().len(), table.offsets, table.nodes, table.values, UNITY)?;
+    Ok(PointRows::new(table.points, rows)?)
 }
 
 /// As [`surface_rows`], but each row holds all nodes of the facet's cell, in the cell's order, with gradients

@@ -73,8 +73,13 @@ pub trait RowSource: Send + Sync {
         self.surface(facets)
     }
 
-    /// Values on the whole outer boundary, where tools may touch.
-    fn contact_surface(&self) -> Result<SurfaceRows, SourceError>;
+    /// Values on the whole outer boundary, where tools may touch, with the points on each of `parts` x `parts` parts of a facet:
+    /// one number for each facet of the boundary, or none for whole facets.
+    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError>;
+
+    /// Values at the nodes of facets in ascending order, then at the middle of each; they carry no quadrature, but tell where the
+    /// boundary is.
+    fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError>;
 
     /// Values and gradients on facets, for weak supports.
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;

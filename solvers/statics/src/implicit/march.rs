@@ -7,7 +7,9 @@ use shape::Vector3;
 use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
 use super::{Energy, TimeError};
-use crate::nonlinear::{Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms};
+use crate::nonlinear::{
+    Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms, shortest_travel,
+};
 use crate::{StaticWork, Step};
 
 /// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
@@ -36,6 +38,8 @@ pub fn solve_in_time(
     }
     let count = params.steps.max(1);
     let longest = params.end / count as f64;
+    // A smooth ramp is less than twice as fast as a linear one.
+    let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
     let (mut next, mut step) = (1, longest);
     while next <= count {
         let target = next as f64 * longest;
@@ -44,7 +48,8 @@ pub fn solve_in_time(
         let reaches = step > 0.9 * left;
         let time = if reaches { target } else { march.state.time + step };
         let length = time - march.state.time;
-        match march.step(time) {
+        let reported = reaches.then_some(next == count);
+        match march.step(time, reported) {
             Ok(mut done) => {
                 done.step.wanted = reaches;
                 let quick = done.step.iterations.len() <= 6;
@@ -63,7 +68,12 @@ pub fn solve_in_time(
                         TimeError::Inaccurate { error, allowed } => following(allowed, error).clamp(0.2, 0.8),
                         _ => 0.5,
                     };
-                if step < params.smallest * longest {
+                let smallest = params.smallest * longest;
+                let finest = match &cause {
+                    TimeError::Static(cause) => cause.finest(smallest, shortest),
+                    _ => smallest,
+                };
+                if step < finest {
                     let (time, cause) = (march.state.time, Box::new(cause));
                     path.failure = Some(TimeError::Stalled { time, step: length, cause });
                     break;
@@ -125,7 +135,8 @@ impl<'a> March<'a> {
             return Ok((march, None));
         }
         let Scales { loads, supports, tools } = march.scales(0.0);
-        let first = if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0)?) } else { None };
+        let first =
+            if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0, None)?) } else { None };
         march.before = None;
         Ok((march, first))
     }
@@ -185,8 +196,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// On to `time`; nothing has changed if that fails.
-    fn step(&mut self, time: f64) -> Result<TimeStep, TimeError> {
+    /// On to `time`; nothing has changed if that fails. A state that is `reported` says whether it is the last.
+    fn step(&mut self, time: f64, reported: Option<bool>) -> Result<TimeStep, TimeError> {
         let dt = time - self.state.time;
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
@@ -195,7 +206,11 @@ impl<'a> March<'a> {
         let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
         let (state, step) = to(Descent::Nearest)
             .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
-            .or_else(|_| to(Descent::Down))?;
+            .or_else(|_| to(Descent::Down))
+            .and_then(|reached| self.newton.checked(&self.state, reached))?;
+        if let Some(ends) = reported {
+            self.newton.check_overlap(&state, &step, ends)?;
+        }
         let mut motion = self.motion_at(time, dt, &state.u);
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {

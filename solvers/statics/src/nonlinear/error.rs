@@ -39,9 +39,14 @@ pub enum StaticError {
     /// The problem itself, or a linear system of it.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// Contact could not be evaluated.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
+    /// Contact with a tool has no meaning.
+    #[error("tool[{tool}]: {cause}")]
+    Contact {
+        /// Its index.
+        tool: usize,
+        /// Why.
+        cause: ContactError,
+    },
     /// An inverted point.
     #[error(transparent)]
     Inverted(#[from] Inverted),
@@ -94,4 +99,16 @@ pub enum StaticError {
         /// What it should be.
         need: &'static str,
     },
+}
+
+impl StaticError {
+    /// The step below which cutting back is given up after this: `smallest`, where a tool went too deep or all the way through no
+    /// more than `shortest`, and none is short enough where it stands in the body without a force.
+    pub(crate) fn finest(&self, smallest: f64, shortest: f64) -> f64 {
+        match self {
+            StaticError::Contact { cause: ContactError::Overlap { .. }, .. } => f64::INFINITY,
+            StaticError::Contact { cause, .. } if cause.is_too_far() => smallest.min(shortest),
+            _ => smallest,
+        }
+    }
 }

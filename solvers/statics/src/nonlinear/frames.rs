@@ -3,7 +3,7 @@
 use shape::Vector3;
 
 use super::error::StaticError;
-use super::newton::{Descent, Newton, State, near};
+use super::newton::{Descent, Newton, State, near, shortest_travel};
 use super::statics::{StaticParams, StaticProblem, Step};
 
 /// Equilibria in frames: each starts from the last, forwards or backwards along the loading. Residuals are relative to the
@@ -15,6 +15,8 @@ pub struct Frames<'a> {
     augmentations: usize,
     /// Part of the load below which cutting a frame is given up.
     smallest: f64,
+    /// The same where a tool travels too far.
+    shortest: f64,
 }
 
 impl<'a> Frames<'a> {
@@ -26,6 +28,7 @@ impl<'a> Frames<'a> {
             before: None,
             augmentations: params.augmentations,
             smallest: params.smallest / params.steps.max(1) as f64,
+            shortest: shortest_travel(problem),
         })
     }
 
@@ -40,7 +43,12 @@ impl<'a> Frames<'a> {
         loop {
             let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
             let mut solve = |descent| newton.find(state, before, target, self.augmentations, descent);
-            match near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down)) {
+            let reached = near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down));
+            let reached = reached.and_then(|(reached, step)| match target == time {
+                true => self.newton.check_overlap(&reached, &step, false).map(|()| (reached, step)),
+                false => Ok((reached, step)),
+            });
+            match reached {
                 Ok((reached, step)) => {
                     self.newton.keep_scale();
                     let last = std::mem::replace(&mut self.state, reached);
@@ -56,7 +64,7 @@ impl<'a> Frames<'a> {
                 Err(cause) => {
                     let failed = target - self.state.time;
                     target = self.state.time + 0.5 * failed;
-                    if 0.5 * failed.abs() < self.smallest {
+                    if 0.5 * failed.abs() < cause.finest(self.smallest, self.shortest) {
                         let time = self.state.time;
                         return Err(StaticError::Stalled { time, step: failed, cause: Box::new(cause) });
                     }

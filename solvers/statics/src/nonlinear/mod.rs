@@ -17,7 +17,7 @@ mod system;
 mod tests;
 
 pub(crate) use in_time::{Ended, InertiaTerms, Scales, TimeTerms};
-pub(crate) use newton::{Descent, Newton, State};
+pub(crate) use newton::{Descent, Newton, State, shortest_travel};
 pub(crate) use relaxing::Memory;
 pub(crate) use system::SurfaceTable;
 

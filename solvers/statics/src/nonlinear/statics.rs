@@ -5,7 +5,7 @@ use shape::SurfaceRows;
 use shape::{FixedDof, Point3, Vector3};
 
 use super::error::StaticError;
-use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near};
+use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near, shortest_travel};
 use super::solid::Solid;
 use crate::Load;
 
@@ -47,7 +47,8 @@ pub struct StaticProblem<'a> {
 pub struct StaticParams {
     /// Number of equal steps at whose ends results are wanted. Steps are never longer; a step that fails is halved.
     pub steps: usize,
-    /// Part of a step below which cutting back is given up.
+    /// Part of a step below which cutting back is given up; where a tool travels too far in it, an eighth of the deepest that
+    /// the tool may penetrate, if that is less.
     pub smallest: f64,
     /// Newton's method.
     pub newton: NewtonParams,
@@ -151,6 +152,7 @@ pub fn solve_static(
     let (mut next, mut step) = (1, longest);
     // No finer than a step that can be halved once more: one that can't has to take any way there is.
     let finest = 2.0 * params.smallest * longest;
+    let shortest = shortest_travel(problem);
     let (mut within, mut near_limit) = (params.limit_within.map(|within| within.max(finest)), false);
     while next <= count {
         let target = next as f64 * longest;
@@ -172,6 +174,10 @@ pub fn solve_static(
                 nearest => nearest.or_else(|_| to(Descent::Down)),
             }
         };
+        let reached = reached.and_then(|(reached, done)| match reaches {
+            true => newton.check_overlap(&reached, &done, next == count).map(|()| (reached, done)),
+            false => Ok((reached, done)),
+        });
         match reached {
             Ok((reached, mut done)) => {
                 done.wanted = reaches;
@@ -193,7 +199,7 @@ pub fn solve_static(
                 near_limit = within.is_some();
                 let failed = time - state.time;
                 step = 0.5 * failed;
-                if step < params.smallest * longest {
+                if step < cause.finest(params.smallest * longest, shortest) {
                     path.failure =
                         Some(StaticError::Stalled { time: state.time, step: failed, cause: Box::new(cause) });
                     break;

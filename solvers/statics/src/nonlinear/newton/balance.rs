@@ -79,13 +79,13 @@ impl Newton<'_> {
             table.add_force(&traction, &mut out);
         }
         let mut contacts = Vec::new();
-        for ((driven, &closure), history) in
-            self.problem.tools.iter().zip(&state.closures).zip(&state.history)
+        for (tool, ((driven, &closure), history)) in
+            self.problem.tools.iter().zip(&state.closures).zip(&state.history).enumerate()
         {
             let found = match self.problem.contact {
-                Some(surface) => {
-                    surface.evaluate(driven.tool, closure, &state.u, history, &mut self.counts)?
-                }
+                Some(surface) => surface
+                    .evaluate(driven.tool, closure, &state.u, history, &mut self.counts)
+                    .map_err(|cause| StaticError::Contact { tool, cause })?,
                 None => None,
             };
             if let (Some(found), Some(surface)) = (&found, self.problem.contact) {

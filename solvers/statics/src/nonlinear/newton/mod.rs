@@ -2,6 +2,7 @@
 
 mod balance;
 mod drive;
+mod passage;
 mod rigid;
 mod search;
 mod tangent;
@@ -15,6 +16,7 @@ use contact::{ContactCounts, ContactHistory as History, Drive, ToolState};
 use shape::Vector3;
 
 use self::balance::Balance;
+pub(crate) use self::passage::shortest_travel;
 use self::tangent::Direction;
 use crate::body::check_len;
 use crate::load::nodal_forces;
@@ -279,10 +281,11 @@ impl<'a> Newton<'a> {
         descent: Descent,
     ) -> Result<(State, Step), StaticError> {
         let step = self.step(start, before, time, augmentations, descent);
-        step.or_else(|error| match descent {
-            Descent::Smooth | Descent::Nearest => {
-                self.under_displacement_control(start, time, augmentations, descent).ok_or(error)
-            }
+        step.and_then(|reached| self.checked(start, reached)).or_else(|error| match descent {
+            Descent::Smooth | Descent::Nearest => self
+                .under_displacement_control(start, time, augmentations, descent)
+                .ok_or(error)
+                .and_then(|reached| self.checked(start, reached)),
             Descent::Guarded | Descent::Down => Err(error),
         })
     }
@@ -334,7 +337,8 @@ impl<'a> Newton<'a> {
         if let Some(surface) = self.problem.contact {
             for (k, (history, contacts)) in state.history.iter_mut().zip(&balance.contacts).enumerate() {
                 let (tool, closure) = (self.problem.tools[k].tool, state.closures[k]);
-                contacts.iter().try_for_each(|c| surface.check_side(c, &state.u))?;
+                let side = contacts.iter().try_for_each(|c| surface.check_side(c, &state.u));
+                side.map_err(|cause| StaticError::Contact { tool: k, cause })?;
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
             }
         }

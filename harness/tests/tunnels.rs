@@ -1,0 +1,131 @@
+//! Tools that would go through the body unseen: load steps longer than a tool is thick, faces larger than a tool, tools that start
+//! or end within the body.
+
+mod common;
+
+use common::{Done, assert_fails, objects, tissuebench, write};
+use serde_json::Value;
+
+/// A clamped block of 40 x 40 x 20 mm under a tool that closes downwards, in cells of 10 mm.
+fn scene(tool: &str, closure: &str, procedure: &str) -> String {
+    format!(
+        r#"title = "A block under a tool"
+body = {{ shape = "box", size = ["40 mm", "40 mm", "20 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }}
+support = [{{ on = "z-min", fix = "xyz" }}]
+procedure = {{ {procedure} }}
+tool = [{{ name = "jaw", {tool}, drive = {{ closure = "{closure}" }}, penalty = "5 MPa/mm" }}]
+output = {{ probes = [["20 mm", "20 mm", "20 mm"]] }}
+method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [4, 4, 2] }} }}]
+"#
+    )
+}
+
+fn run(scene: &str) -> Done {
+    let dir = tempfile::tempdir().unwrap();
+    tissuebench(&["run", &write(&dir, "tool.toml", scene), "--format", "json"])
+}
+
+/// Force of the tool at the end of a run that carried all of it, and the number of steps that it reports.
+fn force(scene: &str) -> (f64, usize) {
+    let done = run(scene);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let object: Value = objects(&done.stdout).remove(0);
+    assert_eq!(object["status"], "ok");
+    let force = object["metrics"]["tool-force"]["value"].as_f64().unwrap();
+    (force, object["steps"].as_array().unwrap().len())
+}
+
+const DOWN: &str = "along = [0, 0, -1]";
+const STATIC: &str = r#"kind = "static""#;
+
+fn box_of(half_height: &str, radius: &str, z: &str) -> String {
+    format!(
+        r#"shape = "rounded-box", half = ["10 mm", "10 mm", "{half_height}"], radius = "{radius}", at = ["20 mm", "20 mm", "{z}"], {DOWN}"#
+    )
+}
+
+fn ball(radius: &str, at: &str) -> String {
+    format!(r#"shape = "sphere", radius = "{radius}", at = [{at}], {DOWN}"#)
+}
+
+#[test]
+fn one_step_gives_the_force_of_many() {
+    let jaw = box_of("4 mm", "1 mm", "24.5 mm");
+    let sheet = box_of("0.1 mm", "0.1 mm", "25 mm");
+    // A ball of 3 mm over a vertex, whose contact points are 3 mm away.
+    let small = ball("3 mm", r#""20 mm", "20 mm", "23 mm""#);
+    for (tool, closure) in [(&jaw, "10 mm"), (&sheet, "8 mm"), (&small, "3 mm")] {
+        let [one, five] = [1, 5].map(|steps| {
+            let (force, reported) = force(&scene(tool, closure, &format!("{STATIC}, steps = {steps}")));
+            assert_eq!(reported, steps, "{tool}");
+            force
+        });
+        assert!(five > 0.1 && (one / five - 1.0).abs() < 1e-6, "{tool}: {one} {five}");
+        for inertia in ["false", "true"] {
+            let time =
+                format!(r#"kind = "implicit-dynamic", duration = "20 s", steps = 1, inertia = {inertia}"#);
+            let (slow, reported) = force(&scene(tool, closure, &time));
+            assert_eq!(reported, 1, "{tool}");
+            assert!((slow / five - 1.0).abs() < 1e-2, "{tool}: {slow} {five}");
+        }
+    }
+}
+
+#[test]
+fn tools_that_meet_nothing_end_without_a_force() {
+    for (at, closure) in [
+        (r#""20 mm", "20 mm", "-5 mm""#, "20 mm"),
+        (r#""20 mm", "43.5 mm", "30 mm""#, "60 mm"),
+        (r#""20 mm", "20 mm", "25 mm""#, "1.99 mm"),
+    ] {
+        for steps in [1, 3] {
+            let scene = scene(&ball("3 mm", at), closure, &format!("{STATIC}, steps = {steps}"));
+            assert_eq!(force(&scene), (0.0, steps), "{at}");
+        }
+    }
+}
+
+#[test]
+fn a_tool_between_the_points_is_refused_with_its_depth() {
+    // A ball of 10 mm dips 0.2 mm into the top over a vertex, 3 mm from the nearest points.
+    let shallow = scene(&ball("10 mm", r#""20 mm", "20 mm", "30 mm""#), "0.2 mm", STATIC);
+    let done = run(&shallow);
+    assert_fails(&done, 3, "key 'tool[0]'");
+    assert_fails(&done, 3, "overlaps the body by 2.000e-4 m near (0.0200, 0.0200, 0.0200) m");
+    assert_fails(&done, 3, "a finer surface is needed");
+    let time = r#"kind = "implicit-dynamic", duration = "10 ms", steps = 2"#;
+    assert_fails(
+        &run(&shallow.replace(STATIC, time)),
+        3,
+        "overlaps the body by 2.000e-4 m near (0.0200, 0.0200, 0.0200) m",
+    );
+    // A plate comes to a corner of the block along its diagonal.
+    let corner = r#"shape = "plate", at = ["40 mm", "40 mm", "20 mm"], along = [-0.57735027, -0.57735027, -0.57735027]"#;
+    let done = run(&scene(corner, "2 mm", STATIC));
+    assert_fails(&done, 3, "near (0.0400, 0.0400, 0.0200) m and touches no contact point");
+    assert_fails(&done, 3, "of the load");
+    // Deeper it touches.
+    assert!(force(&scene(corner, "6 mm", STATIC)).0 > 0.0);
+}
+
+#[test]
+fn tools_that_cannot_touch_are_refused_before_the_first_step() {
+    let within = scene(&ball("2 mm", r#""20 mm", "20 mm", "9 mm""#), "2 mm", STATIC);
+    assert_fails(&run(&within), 2, "key 'tool[0].at': (20.0000, 20.0000, 9.0000) mm lies within the body");
+    let needle = scene(&ball("20 um", r#""20 mm", "20 mm", "21 mm""#), "2 mm", STATIC);
+    let done = run(&needle);
+    assert_fails(&done, 3, "key 'method[0].size'");
+    assert_fails(&done, 3, "where tool[0] is 0.040 mm broad and would slip through");
+}
+
+#[test]
+fn explicit_tools_are_no_faster_than_their_thickness() {
+    // 20 mm in 50 us: beyond the block within two steps.
+    let fast = scene(&box_of("0.1 mm", "0.1 mm", "20.5 mm"), "20 mm", STATIC)
+        .replace(r#"closure = "20 mm""#, r#"closure = "20 mm", over = "50 us""#)
+        .replace(STATIC, r#"kind = "explicit", duration = "1 ms", steps = 2"#);
+    let done = run(&fast);
+    assert_fails(&done, 3, "would go straight through the tool");
+    assert_fails(&done, 3, "key 'tool[0]'");
+}

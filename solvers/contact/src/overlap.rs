@@ -1,0 +1,137 @@
+//! Tools that stand in the body and touch none of the surface's points: without a force, and wrong without a word.
+
+use shape::{Point3, PointRows, Vector3};
+
+use super::{ContactError, ContactSurface, Stand, Tool};
+
+/// How deep a place of the surface may stand in a tool that touches no point, over its distance to the nearest one: on the way
+/// the points may be about to touch, in the end they are not.
+const ON_THE_WAY: f64 = 0.5;
+const IN_THE_END: f64 = 0.01;
+/// Times that a triangle is divided in four to find its deepest place.
+const DIVISIONS: usize = 5;
+
+/// A surface in triangles, without quadrature: it carries no force, but tells where the body is between the contact points.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline<'a> {
+    rows: &'a PointRows,
+    triangles: &'a [[u32; 3]],
+}
+
+impl<'a> Outline<'a> {
+    /// Triangles between the points of a table.
+    pub fn new(rows: &'a PointRows, triangles: &'a [[u32; 3]]) -> Result<Outline<'a>, ContactError> {
+        let expected = rows.points().len();
+        match triangles.iter().flatten().find(|&&k| k as usize >= expected) {
+            Some(&k) => {
+                Err(ContactError::Length { what: "corners of the outline", found: k as usize + 1, expected })
+            }
+            None => Ok(Outline { rows, triangles }),
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.rows.points().len()
+    }
+
+    /// Position `X + sum_I N_I u_I` of a corner, m.
+    pub(super) fn position(&self, corner: usize, u: &[Vector3]) -> Point3 {
+        let (nodes, values) = self.rows.rows().row(corner);
+        let moved: Vector3 = nodes.iter().zip(values).map(|(&node, value)| u[node as usize] * *value).sum();
+        self.rows.points()[corner] + moved
+    }
+}
+
+impl ContactSurface<'_> {
+    /// Fails where a corner of the outline stands in a tool that touches no point, deeper than on the way to the next point: for
+    /// states that are reported.
+    pub fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
+        let Some(outline) = self.outline else { return Ok(()) };
+        let mut worst = Deepest::default();
+        for k in 0..outline.len() {
+            let at = outline.position(k, stand.u);
+            let depth = -tool.shape().foot(&tool.local(stand.closure, &at)).0;
+            if depth > worst.depth && depth > self.allowed(tool, &outline.rows.points()[k], ON_THE_WAY) {
+                worst = Deepest { depth, at, reference: outline.rows.points()[k] };
+            }
+        }
+        self.refuse(worst)
+    }
+
+    /// Fails where any place of the outline stands in a tool that touches no point, at the end of the loading, where no way is left
+    /// to the next point.
+    pub fn check_end(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
+        let Some(outline) = self.outline else { return Ok(()) };
+        let mut worst = Deepest::default();
+        for k in 0..outline.len() {
+            worst.meet(tool, stand.closure, outline.position(k, stand.u), outline.rows.points()[k]);
+        }
+        for triangle in outline.triangles {
+            let corners = triangle.map(|k| {
+                let (k, at) = (k as usize, outline.position(k as usize, stand.u));
+                (at, outline.rows.points()[k])
+            });
+            worst.search(tool, stand.closure, corners, 0);
+        }
+        let allowed = self.allowed(tool, &worst.reference, IN_THE_END);
+        self.refuse(if worst.depth > allowed { worst } else { Deepest::default() })
+    }
+
+    /// Depth (m) that a place may have without a force.
+    fn allowed(&self, tool: &Tool, reference: &Point3, part: f64) -> f64 {
+        (part * self.apart(reference)).min(tool.deepest())
+    }
+
+    /// Distance (m) to the nearest contact point in the undeformed body.
+    fn apart(&self, reference: &Point3) -> f64 {
+        let squares = self.rows().points().iter().map(|p| (p - reference).norm_squared());
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    fn refuse(&self, Deepest { depth, at, reference }: Deepest) -> Result<(), ContactError> {
+        if depth > 0.0 {
+            return Err(ContactError::Overlap { depth, at, apart: self.apart(&reference) });
+        }
+        Ok(())
+    }
+}
+
+/// The deepest place found, m; none at a depth of 0.
+#[derive(Default)]
+struct Deepest {
+    depth: f64,
+    at: Point3,
+    reference: Point3,
+}
+
+impl Deepest {
+    /// Looks at one place; its depth.
+    fn meet(&mut self, tool: &Tool, closure: f64, at: Point3, reference: Point3) -> f64 {
+        let depth = -tool.shape().foot(&tool.local(closure, &at)).0;
+        if depth > self.depth {
+            *self = Deepest { depth, at, reference };
+        }
+        depth
+    }
+
+    /// Looks for a deeper one in a triangle, of which each corner has a place and one in the undeformed body.
+    fn search(&mut self, tool: &Tool, closure: f64, corners: [(Point3, Point3); 3], divided: usize) {
+        let middle =
+            |points: [Point3; 3]| Point3::from(points.iter().map(|p| p.coords).sum::<Vector3>() / 3.0);
+        let (at, reference) = (middle(corners.map(|c| c.0)), middle(corners.map(|c| c.1)));
+        let depth = self.meet(tool, closure, at, reference);
+        // The distance changes by no more than the way gone.
+        let size = corners.iter().map(|c| (c.0 - at).norm()).fold(0.0, f64::max);
+        if divided == DIVISIONS || depth + size <= self.depth {
+            return;
+        }
+        let between = |a: usize, b: usize| {
+            let ((a, x), (b, y)) = (corners[a], corners[b]);
+            (nalgebra::center(&a, &b), nalgebra::center(&x, &y))
+        };
+        let [ab, bc, ca] = [between(0, 1), between(1, 2), between(2, 0)];
+        for part in [[corners[0], ab, ca], [ab, corners[1], bc], [ca, bc, corners[2]], [ab, bc, ca]] {
+            self.search(tool, closure, part, divided + 1);
+        }
+    }
+}

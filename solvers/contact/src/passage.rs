@@ -1,0 +1,126 @@
+//! Tools that jumped over the surface in a step.
+//!
+//! Contact sees a state, not how it was reached. A tool that travels farther in a step than it is thick ends beyond the
+//! surface, where nothing touches. Seen from the tool every point goes a straight way during a step, and the distance to a
+//! convex shape is convex along it: its least value is found by halving the way at the sign of its slope.
+
+use shape::{Point3, Vector3};
+
+use super::{ContactError, ContactSurface, Tool};
+
+/// Halvings of a way: to a millionth of it.
+const HALVINGS: usize = 20;
+
+/// Part of the deepest penetration that a point may have had on its way where nothing touches in the end.
+const UNSEEN: f64 = 0.08;
+
+/// Where a tool and a surface stand.
+#[derive(Clone, Copy, Debug)]
+pub struct Stand<'u> {
+    /// Closure, m.
+    pub closure: f64,
+    /// Nodal parameters, m.
+    pub u: &'u [Vector3],
+}
+
+impl ContactSurface<'_> {
+    /// As [`ContactSurface::check_passage`] of a tool that travels while the surface stays: no work on short ways, which take no
+    /// point in and out again.
+    pub fn check_travel(
+        &self,
+        tool: &Tool,
+        [from, to]: [f64; 2],
+        u: &[Vector3],
+        touches: bool,
+    ) -> Result<(), ContactError> {
+        if (to - from).abs() <= 2.0 * UNSEEN * tool.deepest() {
+            return Ok(());
+        }
+        self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
+    }
+
+    /// Fails where a step from one state to another took the surface through the tool; whether the tool touches any point of it in
+    /// the end is `touches`.
+    ///
+    /// A point that goes deeper on its way than [`Tool::deepest`] has been jumped over: points that slide along a tool cut its
+    /// corners by less. Where nothing touches in the end, much less is one too many.
+    pub fn check_passage(
+        &self,
+        tool: &Tool,
+        from: Stand,
+        to: Stand,
+        touches: bool,
+    ) -> Result<(), ContactError> {
+        let limit = tool.deepest() * if touches { 1.0 } else { UNSEEN };
+        if limit.is_infinite() {
+            return Ok(());
+        }
+        let mut worst = Passage { depth: limit, at: Point3::origin(), travel: 0.0 };
+        for points in self.passed(tool, from, to, limit)? {
+            for &q in points {
+                let ends = [self.position(q as usize, from.u), self.position(q as usize, to.u)];
+                worst.meet(tool, [from.closure, to.closure], ends);
+            }
+        }
+        if let (Some(outline), false) = (self.outline, touches) {
+            for k in 0..outline.len() {
+                let ends = [outline.position(k, from.u), outline.position(k, to.u)];
+                worst.meet(tool, [from.closure, to.closure], ends);
+            }
+        }
+        let Passage { depth, at, travel } = worst;
+        if depth > limit { Err(ContactError::JumpedOver { depth, at, travel }) } else { Ok(()) }
+    }
+
+    /// Points of each cluster that may come deeper than `limit` (m) into the tool on the way; all others cannot.
+    fn passed(&self, tool: &Tool, from: Stand, to: Stand, limit: f64) -> Result<Vec<&[u32]>, ContactError> {
+        let mut passed = Vec::new();
+        for cluster in &self.clusters {
+            let ends = [from, to].map(|stand| {
+                let boxed = cluster.current_box(&self.nodes, stand.u);
+                boxed.map(|(middle, half)| (middle - tool.along() * stand.closure, half))
+            });
+            let [(a, half_a), (b, half_b)] = [ends[0].clone()?, ends[1].clone()?];
+            let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));
+            let (middle, half) = (nalgebra::center(&low, &high), (high - low) * 0.5);
+            // The distance changes by no more than the way gone.
+            if tool.shape().foot(&tool.local(0.0, &middle)).0 - half.norm() < -limit {
+                passed.push(&self.order[cluster.points.clone()]);
+            }
+        }
+        Ok(passed)
+    }
+}
+
+/// The deepest that a point has come on its way.
+struct Passage {
+    /// m.
+    depth: f64,
+    /// Where the point stands in the end, m.
+    at: Point3,
+    /// Way of the point as seen from the tool, m.
+    travel: f64,
+}
+
+impl Passage {
+    /// Follows one point. One that was as deep before the step, or is after it, has not been passed by.
+    fn meet(&mut self, tool: &Tool, closures: [f64; 2], ends: [Point3; 2]) {
+        let [a, b] = [tool.local(closures[0], &ends[0]), tool.local(closures[1], &ends[1])];
+        let (way, foot) = (b - a, |part: f64| tool.shape().foot(&(a + (b - a) * part)));
+        let (before, after, travel) = (foot(0.0).0, foot(1.0).0, way.norm());
+        if 0.5 * (before + after - travel) >= -self.depth {
+            return;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut least = before.min(after);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let (gap, normal) = foot(middle);
+            least = least.min(gap);
+            *(if normal.dot(&way) < 0.0 { &mut low } else { &mut high }) = middle;
+        }
+        if -least > self.depth && least < before.min(after) {
+            *self = Passage { depth: -least, at: ends[1], travel };
+        }
+    }
+}
