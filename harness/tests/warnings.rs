@@ -120,3 +120,72 @@ fn time_steps_that_are_too_long_are_told() {
     assert!(!codes(&short).contains(&"step-error"), "{short}");
     assert!(metric(&long, "energy-drift") < 1e-2);
 }
+
+/// What penalty lets pass of a nearly incompressible solid spoils its pressure, not its displacement.
+#[test]
+fn a_support_that_gives_way_or_leaks_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let patch = |poisson: &str, essential: &str| {
+        let text = format!(
+            r#"title = "Patch"
+body = {{ shape = "box", size = ["50 mm", "50 mm", "50 mm"] }}
+material = {{ law = "linear", young = "20 kPa", poisson = {poisson} }}
+support = [{{ on = "surface", move = "exact" }}]
+reference = {{ exact = "affine" }}
+method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-spline", support_scale = 1.6, size = {{ cells = [5, 5, 5] }}, integration = {{ rule = "cell-smoothed" }}, essential = {essential} }}]
+"#
+        );
+        run(&dir, &text).remove(0)
+    };
+    let found = patch("0.4999", "\"penalty\"");
+    // The stress is off by a fifth, and the warning says about as much.
+    assert!((metric(&found, "stress") - 0.21).abs() < 0.02, "{found}");
+    assert_eq!(codes(&found), ["support-leaks"]);
+    assert!((found["warnings"][0]["value"].as_f64().unwrap() - 0.21).abs() < 0.05, "{found}");
+    assert!(codes(&patch("0.4999", "\"nitsche\"")).is_empty());
+    assert!(codes(&patch("0.3", "\"penalty\"")).is_empty());
+    assert!(codes(&patch("0.3", "{ method = \"penalty\", factor = 1 }")).contains(&"support-gives"));
+}
+
+/// Reduced elements fold between their points: the force falls as the plate goes on.
+#[test]
+fn elements_that_fold_between_their_points_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = r#"title = "Reduced integration under a plate"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
+support = [{ on = "z-min", fix = "xyz" }]
+tool = [{ name = "top", shape = "plate", at = ["20 mm", "20 mm", "20 mm"], along = [0, 0, -1], drive = { closure = "12 mm" }, penalty = "1 MPa/mm" }]
+procedure = { kind = "static", steps = 6 }
+method = [
+    { id = "reduced", family = "fem", element = "hex20", reduced = true, size = { cells = [4, 4, 2] } },
+    { id = "full", family = "fem", element = "hex20", size = { cells = [4, 4, 2] } },
+]
+"#;
+    let [reduced, full] = run(&dir, text).try_into().unwrap();
+    assert!(metric(&reduced, "smallest-j") > 0.5 && metric(&reduced, "smallest-fine-j") < -1.0, "{reduced}");
+    assert!(codes(&reduced).contains(&"folded") && !codes(&full).contains(&"folded"), "{full}");
+}
+
+/// A small ball on a coarse block stands on one point.
+#[test]
+fn a_tool_that_stands_on_a_point_or_two_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = |cells: &str| {
+        format!(
+            r#"title = "A small ball"
+body = {{ shape = "box", size = ["20 mm", "20 mm", "10 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3 }}
+support = [{{ on = "z-min", fix = "xyz" }}]
+tool = [{{ name = "ball", shape = "sphere", radius = "2 mm", at = ["10.3 mm", "10.2 mm", "12 mm"], along = [0, 0, -1], drive = {{ closure = "0.4 mm" }}, penalty = "1 MPa/mm" }}]
+procedure = {{ kind = "static", steps = 1 }}
+method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = {cells} }} }}]
+"#
+        )
+    };
+    let coarse = run(&dir, &text("[4, 4, 2]")).remove(0);
+    let few = coarse["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "few-contact-points");
+    assert_eq!(few.unwrap_or_else(|| panic!("{coarse}"))["where"], "tool[0]");
+    let fine = run(&dir, &text("[32, 32, 8]")).remove(0);
+    assert!(!codes(&fine).contains(&"few-contact-points"), "{fine}");
+}

@@ -16,7 +16,7 @@ mod warnings;
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::Vector3;
+use geometry::{Matrix3, Vector3};
 use material::{Law, Material as _};
 use statics::Body;
 
@@ -102,6 +102,9 @@ pub(crate) fn measure(
     for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
         push(metrics, entry, resultant[axis]);
     }
+    if let Some(j) = smallest_fine_j(run)? {
+        push(metrics, &metric::SMALLEST_FINE_J, j);
+    }
     if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
@@ -110,6 +113,18 @@ pub(crate) fn measure(
     }
     of_tables(metrics, prepared);
     Ok(())
+}
+
+/// Smallest J at the points of the finer quadrature, of a body at large strain: under-integrated elements can fold between
+/// their points.
+fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
+    let Solved { setup, prepared, solution, .. } = *run;
+    if solution.history.is_none() || setup.laws.iter().all(Law::is_small_strain) {
+        return Ok(None);
+    }
+    let (fine, _) = prepared.fine_volume()?;
+    let gradients = fine.at().displacement_gradients(&solution.u);
+    Ok(gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).reduce(f64::min))
 }
 
 /// Norms over the body against an exact solution. Stresses are compared with Hooke's; a pressure field of its own is another

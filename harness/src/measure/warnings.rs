@@ -3,7 +3,7 @@
 use catalogue::{metric, warning};
 
 use super::Solved;
-use crate::outcome::{Metric, Probe, Warning};
+use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
 /// Of the norm of the stress. On the cases with an exact solution the estimate is 0.5 to 0.95 of the true error where a mesh is
 /// fine enough for its order and at least 0.2 where it locks; displacements are then off by 5 to 50 %.
@@ -21,7 +21,12 @@ const LONG_STEP: f64 = 0.01;
 const POINTS_PER_NODE: f64 = 2.0;
 
 /// All that can be said once the run is measured.
-pub(crate) fn warnings(run: &Solved, metrics: &[Metric], probes: &[Probe]) -> Vec<Warning> {
+pub(crate) fn warnings(
+    run: &Solved,
+    metrics: &[Metric],
+    probes: &[Probe],
+    last: Option<&LoadStep>,
+) -> Vec<Warning> {
     let mut found = Vec::new();
     found.extend(probes.iter().enumerate().filter_map(|(index, probe)| outside(index, probe)));
     found.extend(blended(run));
@@ -30,6 +35,8 @@ pub(crate) fn warnings(run: &Solved, metrics: &[Metric], probes: &[Probe]) -> Ve
     found.extend(long_step(value(&metric::STEP_ERROR), value(&metric::MAX)));
     found.extend(giving(value(&metric::SUPPORT_GAP), value(&metric::MAX)));
     found.extend(leaking(run, value(&metric::MAX), value(&metric::STRAIN_ENERGY)));
+    found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
+    found.extend(last.into_iter().flat_map(few_carriers));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
     found
 }
@@ -120,6 +127,28 @@ fn leaking(run: &Solved, largest: Option<f64>, energy: Option<f64>) -> Option<Wa
         );
         Warning::new(&warning::SUPPORT_LEAKS, relative, "support", message)
     })
+}
+
+fn folded(smallest: f64) -> Option<Warning> {
+    (smallest <= 0.0).then(|| {
+        let message = format!(
+            "between its integration points the body is turned inside out (J = {smallest:.3}): the mesh is too coarse, or reduced \
+             integration lets it fold"
+        );
+        Warning::new(&warning::FOLDED, smallest, "", message)
+    })
+}
+
+fn few_carriers(step: &LoadStep) -> Vec<Warning> {
+    let few = step.tools.iter().enumerate().filter(|(_, tool)| tool.is_carried_by_few());
+    let each = few.map(|(index, tool)| {
+        let message = format!(
+            "{:.1} contact points carry the tool's force, which depends on where they happen to be: take a finer mesh there",
+            tool.carriers
+        );
+        Warning::new(&warning::FEW_CONTACT_POINTS, tool.carriers, format!("tool[{index}]"), message)
+    });
+    each.collect()
 }
 
 fn rough_stress(estimate: Option<f64>) -> Option<Warning> {

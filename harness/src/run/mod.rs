@@ -163,7 +163,7 @@ fn loaded(
     if outcome.plan.runs(StageName::Schemes) {
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
     }
-    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes);
+    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes, outcome.last.as_ref());
     if let Some(ask) = request.repeated.filter(|_| whole) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }

@@ -51,6 +51,10 @@ warnings! {
     SUPPORT_LEAKS: "support-leaks", None,
         "a support held weakly lets volume of nearly incompressible tissue pass; the root of that volume's energy over the strain \
          energy";
+    FEW_CONTACT_POINTS: "few-contact-points", None,
+        "fewer than three contact points carry the force of a tool, which depends on where they are; how many carry it";
+    FOLDED: "folded", None,
+        "the body is turned inside out between the integration points; the smallest J at the points of a finer quadrature";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ESTIMATED_ERROR: "estimated-error", None,

@@ -243,6 +243,8 @@ metrics! {
         "stored entries of the matrix factor";
     ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
         "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
+    SMALLEST_FINE_J: "smallest-fine-j", "least J between points", None, Value, Steps,
+        "smallest J at the points of a finer quadrature than the method's own, at the end";
     SUPPORT_GAP: "support-gap", "gap at supports", Length, Error, Run,
         "root mean square distance between the displacement and what supports held weakly prescribe";
     SILENT_WRONG: "silent-wrong", "wrong without a word", None, Count, Axis,
