@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{PRESSED, assert_fails, inside, objects, tissuebench, write};
+use common::{BLOCK, PRESSED, assert_fails, inside, objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -323,4 +323,25 @@ fn a_motion_that_nothing_prevents_is_refused() {
     let tools = &free[free.find("tool = [").unwrap()..=free.find("\n]\n").unwrap() + 2];
     let alone = free.replace(tools, "load = [{ on = \"z-max\", pressure = \"1 kPa\" }]\n");
     assert_fails(&run(&alone), 3, "rotation about x");
+}
+
+/// A cantilever of one reduced element across: the hourglass motions of a row have no energy.
+#[test]
+fn reduced_elements_in_a_row_say_why_they_end() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = r#"title = "A row of reduced elements"
+body = { shape = "box", size = ["10 mm", "10 mm", "80 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
+support = [{ on = "z-min", fix = "xyz" }]
+load = [{ on = "z-max", traction = ["20 Pa", "0 Pa", "0 Pa"] }]
+procedure = { kind = "static", steps = 2 }
+method = [{ id = "reduced", family = "fem", element = "hex20", reduced = true, size = { cells = [1, 1, 8] } }]
+"#;
+    let done = tissuebench(&["run", &write(&dir, "row.toml", text)]);
+    assert_fails(&done, 3, "reduced integration leaves motions without energy");
+    // A wrong unit is the body's, not the method's size.
+    let flat = BLOCK.replace("\"20 mm\"]", "\"20e-9 mm\"]").replace("cells = [2, 2, 1]", "level = 2");
+    let done = tissuebench(&["run", &write(&dir, "flat.toml", &flat)]);
+    assert_fails(&done, 2, "flat.toml:2: key 'body'");
+    assert!(done.stderr.contains("check the units of its extents"), "{}", done.stderr);
 }

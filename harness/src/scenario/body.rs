@@ -59,6 +59,15 @@ pub(super) fn unchecked(
                 let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
                 let h = extent.iter().copied().fold(f64::MAX, f64::min) / n as f64;
                 let cells = extent.map(|e| (e / h).round().max(1.0) as usize);
+                if let Some(most) = cells.into_iter().max().filter(|most| *most > MOST_NODES) {
+                    let problem = format!(
+                        "is {:.3e} times as long as it is narrow: {most} cells, about cubes, would lie along it",
+                        extent.iter().copied().fold(0.0, f64::max)
+                            / extent.iter().copied().fold(f64::MAX, f64::min)
+                    );
+                    let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
+                    return Err(Failure::input(Key::Scene("body".into()), problem, help));
+                }
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
             Body::Cylinder { radius, height } => {

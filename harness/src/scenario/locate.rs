@@ -108,8 +108,21 @@ impl Scenario<'_> {
                 Some(tool) => {
                     finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), error.to_string(), "")
                 }
-                None => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), MORE_STEPS),
+                None => finding(ErrorKind::NotRun, Key::Method(""), error.to_string(), self.more_steps()),
             },
+        }
+    }
+
+    /// What helps a static procedure that ends early, if anything does.
+    fn more_steps(&self) -> &'static str {
+        match &self.method.family {
+            Family::Fem(fem) if fem.reduced => {
+                "reduced integration leaves motions without energy, which a single row of elements follows: take two or more \
+                 cells across, or reduced = false"
+            }
+            _ => {
+                "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may carry more"
+            }
         }
     }
 
@@ -146,9 +159,9 @@ impl Scenario<'_> {
             ),
             TimeError::Static(error) => match overlapping(error) {
                 Some(tool) => (ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), ""),
-                None => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+                None => (ErrorKind::NotRun, Key::Method(""), self.more_steps()),
             },
-            _ => (ErrorKind::NotRun, Key::Method(""), MORE_STEPS),
+            _ => (ErrorKind::NotRun, Key::Method(""), self.more_steps()),
         };
         finding(kind, key, error.to_string(), help)
     }
@@ -201,10 +214,6 @@ fn overlapping(error: &StaticError) -> Option<usize> {
         _ => None,
     }
 }
-
-/// What helps a static procedure that ends early, if anything does.
-const MORE_STEPS: &str =
-    "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may carry more";
 
 /// A motion that no support holds is blamed on the supports there are; on the body if there is none.
 fn rigid(scene: &Scene, motions: String) -> Finding {

@@ -7,6 +7,7 @@ mod integration;
 mod outcome;
 mod placement;
 mod published;
+mod stability;
 mod transfer;
 mod vibration;
 
@@ -30,6 +31,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
             title: "Cheapest way to an error",
             sentences: [cheapest::cheapest(&solved), claim::claim(&solved)].concat(),
         },
+        Topic { title: "Where methods bend and break", sentences: stability::stability(set) },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },
         Topic { title: "Published case", sentences: published::published(runs) },
