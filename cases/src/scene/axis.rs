@@ -77,7 +77,8 @@ pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axi
             return None;
         }
     };
-    report.require(judge.lower_is_better(), &at("judge"), "is no error", "take \"l2\" or \"relative-rms\"");
+    let is_error = matches!(judge.kind, metric::Kind::Error | metric::Kind::Tool);
+    report.require(is_error, &at("judge"), "is no error", "take \"l2\" or \"relative-rms\"");
     report.require(!keys.values.is_empty(), &at("values"), "are none", "give two or more");
     report.require(!keys.set.is_empty(), &at("set"), "drives nothing", "name a key of the scene");
     let base = keys.base.or(keys.values.first().copied()).unwrap_or(0.0);
