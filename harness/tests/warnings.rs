@@ -189,3 +189,28 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = {c
     let fine = run(&dir, &text("[32, 32, 8]")).remove(0);
     assert!(!codes(&fine).contains(&"few-contact-points"), "{fine}");
 }
+
+/// Gauss points with a dilation of each node need a factor near 86 at a Poisson's ratio of 0.4999: below it there is no Cholesky
+/// factor, a little above it there is one, and pressures are 200 times wrong.
+#[test]
+fn a_factor_of_nitsche_s_method_near_the_one_needed_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = |factor: f64| {
+        format!(
+            r#"title = "Bending, nearly incompressible"
+body = {{ shape = "box", min = ["0 mm", "-20 mm", "-20 mm"], max = ["80 mm", "20 mm", "20 mm"] }}
+material = {{ law = "linear", young = "20 kPa", poisson = 0.4999 }}
+support = [{{ on = "x-min", move = "exact" }}]
+load = [{{ on = "x-max", traction = "exact" }}]
+reference = {{ exact = "pure-bending", curvature = "0.5 /m" }}
+method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-spline", support_scale = 1.6, size = {{ level = 1 }}, integration = {{ rule = "gauss", points = 4 }}, dilation = "nodal-mean", essential = {{ method = "nitsche", factor = {factor} }} }}]
+"#
+        )
+    };
+    let above = run(&dir, &text(90.0)).remove(0);
+    let needed = metric(&above, "nitsche-factor-needed");
+    assert!(needed > 80.0 && needed < 90.0, "{needed}");
+    assert!(codes(&above).contains(&"nitsche-factor") && metric(&above, "pressure") > 100.0, "{above}");
+    let below = tissuebench(&["run", &write(&dir, "below.toml", &text(80.0))]);
+    assert_fails(&below, 3, "not positive definite");
+}

@@ -46,7 +46,7 @@ enum Task {
     },
     /// Render tables, figures and the report again from results/, without running anything
     Report,
-    /// Verify in full, then refresh the figures and tables kept in reports/gallery for the README
+    /// Verify and stress in full, then refresh the figures and tables kept in reports/gallery for the book
     Gallery,
     /// Write the book's reference pages anew, and build the book where mdbook is installed
     Book,
@@ -78,7 +78,7 @@ fn run(task: Task) -> Result<u8> {
         Task::Bench { args } => cargo(&["bench", "--workspace"], &args),
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
-            let code = verify(true, &[])?;
+            let code = verify(true, &[])?.max(stress(true)?);
             if code == 0 { keep_gallery().map(|()| 0) } else { Ok(code) }
         }
         Task::Book => book(),
@@ -190,20 +190,23 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
 }
 
-/// Copies the figures and tables that the README shows from the last results.
+/// Copies the figures and tables that the book shows from the last results: all of the verification, the maps of the stress study.
 fn keep_gallery() -> Result<()> {
-    let (from, to) = (root().join("results/report"), root().join("reports/gallery"));
+    let to = root().join("reports/gallery");
     std::fs::create_dir_all(&to)?;
     for old in std::fs::read_dir(&to)? {
         std::fs::remove_file(old?.path())?;
     }
-    for folder in ["figures", "tables"] {
-        for entry in
-            std::fs::read_dir(from.join(folder)).with_context(|| format!("no {folder} in results"))?
-        {
-            let path = entry?.path();
-            if path.extension().is_some_and(|e| e == "svg" || e == "md") {
-                std::fs::copy(&path, to.join(path.file_name().expect("a file")))?;
+    for (results, only) in [("results", ""), ("results-stress", "stability")] {
+        for folder in ["figures", "tables"] {
+            let from = root().join(results).join("report").join(folder);
+            for entry in std::fs::read_dir(from).with_context(|| format!("no {folder} in {results}"))? {
+                let path = entry?.path();
+                let kept = path.extension().is_some_and(|e| e == "svg" || e == "md");
+                let name = path.file_name().context("a file has a name")?;
+                if kept && name.to_string_lossy().starts_with(only) {
+                    std::fs::copy(&path, to.join(name))?;
+                }
             }
         }
     }

@@ -102,6 +102,9 @@ pub(crate) fn measure(
     for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
         push(metrics, entry, resultant[axis]);
     }
+    if let Some(needed) = solution.needed_nitsche_factor {
+        push(metrics, &metric::NITSCHE_FACTOR_NEEDED, needed);
+    }
     if let Some(j) = smallest_fine_j(run)? {
         push(metrics, &metric::SMALLEST_FINE_J, j);
     }

@@ -3,11 +3,14 @@
 use catalogue::{metric, warning};
 
 use super::Solved;
+use crate::discretise::Essential;
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
 /// Of the norm of the stress. On the cases with an exact solution the estimate is 0.5 to 0.95 of the true error where a mesh is
 /// fine enough for its order and at least 0.2 where it locks; displacements are then off by 5 to 50 %.
 const ROUGH_STRESS: f64 = 0.2;
+/// Factor of Nitsche's method over the needed one: at 2 three tenths of the energy are left.
+const FACTOR_TO_SPARE: f64 = 2.0;
 /// Of the largest displacement.
 const GIVING_SUPPORT: f64 = 0.01;
 /// Of the energy, as a root: on a patch test at a Poisson's ratio of 0.4999 it is 0.19 where the energy is off by 0.21.
@@ -35,6 +38,7 @@ pub(crate) fn warnings(
     found.extend(long_step(value(&metric::STEP_ERROR), value(&metric::MAX)));
     found.extend(giving(value(&metric::SUPPORT_GAP), value(&metric::MAX)));
     found.extend(leaking(run, value(&metric::MAX), value(&metric::STRAIN_ENERGY)));
+    found.extend(value(&metric::NITSCHE_FACTOR_NEEDED).and_then(|needed| bare_factor(run, needed)));
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
@@ -126,6 +130,19 @@ fn leaking(run: &Solved, largest: Option<f64>, energy: Option<f64>) -> Option<Wa
             100.0 * relative
         );
         Warning::new(&warning::SUPPORT_LEAKS, relative, "support", message)
+    })
+}
+
+fn bare_factor(run: &Solved, needed: f64) -> Option<Warning> {
+    let Essential::Nitsche(factor) = run.method.essential else { return None };
+    let distance = factor / needed;
+    (distance < FACTOR_TO_SPARE).then(|| {
+        let message = format!(
+            "the factor {factor} of Nitsche's method is {distance:.3} times the {needed:.1} below which these rules and this \
+             material have no definite form: errors grow where it is below {FACTOR_TO_SPARE}; take factor = {:.0}, or another rule",
+            4.0 * needed
+        );
+        Warning::new(&warning::NITSCHE_FACTOR, distance, "method.essential", message)
     })
 }
 

@@ -95,6 +95,8 @@ pub(crate) struct Meters {
     pub(crate) timings: Timings,
     /// Counts of one pass.
     pub(crate) counters: Counters,
+    /// Factor that Nitsche's method needs: found once for all passes.
+    pub(crate) needed_nitsche_factor: Option<f64>,
 }
 
 /// Median, interquartile range and minimum of repeated timings, in seconds.

@@ -48,7 +48,7 @@ pub(super) fn stages(asked: &Explicit) -> Stages {
 /// Runs the motion, from rest and undeformed. One that ends early keeps its numbers, those of the start if no state was
 /// recorded.
 pub(super) fn solve(problem: &Problem, asked: &Explicit, meters: &mut Meters) -> Result<Solution, Failure> {
-    let Meters { timings, counters } = meters;
+    let Meters { timings, counters, .. } = meters;
     timings.time("solve", || motion(problem, asked, counters))
 }
 

@@ -41,7 +41,7 @@ pub(super) fn stages(setup: &Setup, asked: &Implicit) -> Stages {
 
 /// Runs the motion, from rest and undeformed. One that made no step is an error, one that ended early is not.
 pub(super) fn solve(problem: &Problem, asked: &Implicit, meters: &mut Meters) -> Result<Solution, Failure> {
-    let Meters { timings, counters } = meters;
+    let Meters { timings, counters, .. } = meters;
     timings.time("solve", || motion(problem, asked, counters))
 }
 

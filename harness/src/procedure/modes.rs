@@ -33,7 +33,7 @@ pub(super) fn stages(setup: &Setup) -> Stages {
 /// Makes the mass and finds the modes, of which `count` are reported.
 pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
-    let Meters { timings, counters } = meters;
+    let Meters { timings, counters, .. } = meters;
     let nodes = method.nodes();
     let mass = timings.time("assemble", || mass(problem))?;
     counters.mass_nodes += nodes.len() as u64;

@@ -60,7 +60,7 @@ struct Limit {
 
 /// Solves. A path that reached no load is an error, one that ended early is not.
 pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> Result<Solution, Failure> {
-    let Meters { timings, counters } = meters;
+    let Meters { timings, counters, .. } = meters;
     let (solution, limit) = timings.time("solve", || path(problem, asked, counters))?;
     if limit.step.is_some() {
         timings.book("solve-to-limit", limit.seconds);

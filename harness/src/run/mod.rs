@@ -112,7 +112,7 @@ fn once(
     meters: &mut Meters,
 ) -> Result<Pass, Failure> {
     meters.counters = Counters::default();
-    let Meters { timings, counters } = meters;
+    let Meters { timings, counters, .. } = meters;
     let refined = if plan.runs(StageName::Refinement) {
         timings.time("refine", || refined(method, setup, plan, counters))?
     } else {

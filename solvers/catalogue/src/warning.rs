@@ -51,6 +51,8 @@ warnings! {
     SUPPORT_LEAKS: "support-leaks", None,
         "a support held weakly lets volume of nearly incompressible tissue pass; the root of that volume's energy over the strain \
          energy";
+    NITSCHE_FACTOR: "nitsche-factor", None,
+        "the factor of Nitsche's method is barely large enough for a definite form; the factor over the one needed";
     FEW_CONTACT_POINTS: "few-contact-points", None,
         "fewer than three contact points carry the force of a tool, which depends on where they are; how many carry it";
     FOLDED: "folded", None,

@@ -54,6 +54,7 @@
 
 mod assembly;
 mod body;
+mod coercivity;
 mod condense;
 mod constraint;
 mod dilation;

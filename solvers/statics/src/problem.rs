@@ -70,6 +70,13 @@ impl Pointwise {
             table.subtract_residual(of, u, factor, residual);
         }
     }
+
+    /// Adds Nitsche's consistency terms, `integral of (t_a(u) v_a + u_a t_a(v))`, to the nodal forces.
+    pub fn add_consistency(&self, u: &[Vector3], force: &mut [Vector3]) {
+        for (table, of) in &self.weak {
+            table.add_consistency(of, u, force);
+        }
+    }
 }
 
 /// Checks the problem, builds the pattern and sums stiffness and forces. Rigid motions left free are found here,

@@ -142,6 +142,16 @@ impl Factored<'_> {
         self.solve_for(forces, 1.0, factor)
     }
 
+    /// Smallest factor of Nitsche's method, if any support is of that kind.
+    pub(crate) fn gamma(&self) -> Option<f64> {
+        self.problem.gamma
+    }
+
+    /// The forms point by point, where supports are weak.
+    pub(crate) fn forms(&self) -> Option<&crate::problem::Pointwise> {
+        self.problem.pointwise.as_ref()
+    }
+
     /// Number of nodes.
     pub fn node_count(&self) -> usize {
         self.problem.load.len()

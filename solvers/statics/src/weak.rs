@@ -217,6 +217,25 @@ impl WeakTable {
         });
     }
 
+    /// Adds `integral of (t_a(u) v_a + u_a t_a(v))`, what the bilinear form lacks of a positive one.
+    pub fn add_consistency(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
+        let at = |q: usize| {
+            let range = self.offsets[q]..self.offsets[q + 1];
+            range.fold((Vector3::zeros(), Vector3::zeros()), |(value, traction), k| {
+                let u = u[self.nodes[k] as usize];
+                (value + self.constrained * u * self.phi[k], traction + self.traction[k] * u)
+            })
+        };
+        let at_points: Vec<(Vector3, Vector3)> = (0..self.weights.len()).map(at).collect();
+        force.iter_mut().enumerate().for_each(|(i, force)| {
+            for &(q, k) in incidence.of(i) {
+                let (q, k) = (q as usize, k as usize);
+                let (value, traction) = at_points[q];
+                *force += (traction * self.phi[k] + self.traction[k].tr_mul(&value)) * self.weights[q];
+            }
+        });
+    }
+
     /// Takes both forms at `u` and `factor` times the prescribed displacement `g` from `residual`:
     /// `integral of (beta (u_a - g_a) v_a - t_a(u) v_a - (u_a - g_a) t_a(v))`.
     pub fn subtract_residual(

@@ -245,6 +245,8 @@ metrics! {
         "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
     SMALLEST_FINE_J: "smallest-fine-j", "least J between points", None, Value, Steps,
         "smallest J at the points of a finer quadrature than the method's own, at the end";
+    NITSCHE_FACTOR_NEEDED: "nitsche-factor-needed", "needed factor of Nitsche's method", None, Value, Run,
+        "estimated factor below which Nitsche's form is not definite, with the rules and materials of the run";
     SUPPORT_GAP: "support-gap", "gap at supports", Length, Error, Run,
         "root mean square distance between the displacement and what supports held weakly prescribe";
     SILENT_WRONG: "silent-wrong", "wrong without a word", None, Count, Axis,

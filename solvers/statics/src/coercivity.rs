@@ -1,0 +1,65 @@
+//! How far Nitsche's form is from losing its definiteness.
+//!
+//! ```text
+//! K = M - N,   M(v, v) = a(v, v) + beta |v|^2,   N(v, v) = 2 t(v) . v   on the supports
+//! ```
+//!
+//! With `t(v) . t(v) <= C beta / gamma a(v, v)` the smallest `alpha` of `K v = alpha M v` is `1 - sqrt(C / gamma)`: a
+//! Cholesky factor exists while it is above zero, however little, but errors grow as `1 / alpha`. (Griebel & Schweitzer 2003,
+//! A particle-partition of unity method part V; Fritz, Hüeber & Wohlmuth 2004, Calcolo 41, 115.)
+
+use shape::Vector3;
+
+use crate::SolveError;
+use crate::problem::Pointwise;
+use crate::solve::Factored;
+
+/// Steps of the power iteration with `K^-1 M`, whose largest eigenvalue is `1 / alpha`: where it matters that one stands apart.
+const STEPS: usize = 12;
+
+impl Factored<'_> {
+    /// The factor of Nitsche's method that the method's rules need for a definite form, `C = gamma (1 - alpha)^2`; `None` without
+    /// such a support. At most `gamma`, the factor given.
+    ///
+    /// # Errors
+    /// As those of a solution.
+    pub fn needed_nitsche_factor(&self) -> Result<Option<f64>, SolveError> {
+        let (Some(gamma), Some(forms)) = (self.gamma(), self.forms()) else { return Ok(None) };
+        // No eigenvector is a wave of this length.
+        let mut v: Vec<Vector3> = (0..self.node_count())
+            .map(|i| Vector3::from_fn(|a, _| (12.9898 * i as f64 + 78.233 * a as f64).sin()))
+            .collect();
+        let mut alpha = 1.0;
+        for _ in 0..STEPS {
+            // In the space that supports leave: also the first, which need not be.
+            v = self.solve_forces(&mass(forms, &v), 0.0)?.u;
+            let size = v.iter().fold(0.0f64, |l, v| l.max(v.amax()));
+            if size == 0.0 {
+                return Ok(None);
+            }
+            v.iter_mut().for_each(|v| *v /= size);
+            let (kv, mv) = (stiff(forms, &v), mass(forms, &v));
+            alpha = dot(&v, &kv) / dot(&v, &mv);
+        }
+        Ok(Some(gamma * (1.0 - alpha.clamp(0.0, 1.0)).powi(2)))
+    }
+}
+
+/// `K v`.
+fn stiff(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
+    let mut out = vec![Vector3::zeros(); v.len()];
+    forms.subtract(v, 0.0, &mut out);
+    out.iter_mut().for_each(|f| *f = -*f);
+    out
+}
+
+/// `M v`.
+fn mass(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
+    let mut out = stiff(forms, v);
+    forms.add_consistency(v, &mut out);
+    out
+}
+
+fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
+}
