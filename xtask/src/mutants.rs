@@ -49,8 +49,10 @@ pub(crate) fn mutants(root: &Path, names: &[String]) -> Result<u8> {
     let tests: BTreeSet<&str> = chosen.iter().map(|m| m.test.as_str()).collect();
     let targets: BTreeSet<String> = tests.iter().map(|test| target(test)).collect::<Result<_>>()?;
     for target in targets {
-        let built = cargo(root, &target).arg("--no-run").status()?;
-        ensure!(built.success(), "could not build: cargo {target}");
+        // Warnings are of the switches; errors are told.
+        let built = cargo(root, &target).arg("--no-run").output()?;
+        let said = String::from_utf8_lossy(&built.stderr);
+        ensure!(built.status.success(), "cargo {target} does not build:\n{said}");
     }
     for test in tests {
         let output = run(root, test, "")?;
