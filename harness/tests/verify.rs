@@ -300,24 +300,21 @@ fn stored_runs_are_kept_until_their_scene_changes() {
     assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
 }
 
-/// A block that can't swell sideways: a run of one ratio, taken for that of another, would be seen.
+/// The second ratio finds the first one's results in the folder already, and has to be as it is alone.
 #[test]
 fn results_of_each_poisson_ratio_are_stored_apart() {
     let dir = tempfile::tempdir().unwrap();
-    write(&dir, "block.toml", BLOCK);
-    let study = "title = \"Two ratios\"\n[[run]]\nscene = \"block.toml\"\npoisson = [0.1, 0.4]\n";
-    let (study, out) = (write(&dir, "study.toml", study), inside(&dir, "out"));
-    // The second ratio finds the first one's results in the folder already.
-    let done = tissuebench(&["verify", &study, "--out", &out, "--resume"]);
-    assert_eq!(done.code, 0, "{}", done.stderr);
-    let largest = |nu: f64| {
-        let set = results(&out);
-        let of = |r: &&Record| r.poisson == nu && r.quantity == "max-z";
-        set.records.iter().find(of).unwrap_or_else(|| panic!("nothing of {nu}")).value
+    let study = |name: &str, ratios: &str| {
+        let text = format!("title = \"Ratios\"\n[[run]]\nscene = \"block.toml\"\npoisson = {ratios}\n");
+        let (study, out) = (write(&dir, name, &text), inside(&dir, &format!("{name}-out")));
+        let done = tissuebench(&["verify", &study, "--out", &out, "--resume"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        exact(&results(&out))
     };
-    // A block that spans its held base is the stiffer the less it can be squeezed.
-    let (loose, tight) = (largest(0.1), largest(0.4));
-    assert!(tight < 0.9 * loose, "{loose} {tight}");
+    write(&dir, "block.toml", BLOCK);
+    let both = study("both.toml", "[0.1, 0.4]");
+    let apart = [study("first.toml", "[0.1]"), study("second.toml", "[0.4]")].concat();
+    assert!(both == apart, "{:?}", first_difference(&both, &apart));
 }
 
 #[test]

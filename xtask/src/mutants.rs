@@ -3,7 +3,7 @@
 //! `tests/mutants.toml` lists them. The workspace is copied to `target/mutants/source` with every fault in it, so that one build serves all.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::Instant;
 
@@ -52,12 +52,12 @@ pub(crate) fn mutants(root: &Path, names: &[String]) -> Result<u8> {
         // Warnings are of the switches; errors are told.
         let built = cargo(root, &target).arg("--no-run").output()?;
         let said = String::from_utf8_lossy(&built.stderr);
-        ensure!(built.status.success(), "cargo {target} does not build:\n{said}");
+        let said = &said[said.find("\nerror").unwrap_or(0)..];
+        ensure!(built.status.success(), "cargo {target} does not build:{said}");
     }
     for test in tests {
         let output = run(root, test, "")?;
-        let said =
-            [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+        let said = String::from_utf8_lossy(&output.stdout);
         ensure!(output.status.success(), "{test} fails without any fault:\n{said}");
     }
     let begin = Instant::now();
@@ -97,6 +97,7 @@ fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
     let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root).output();
     let listed = listed.context("could not start git")?;
     let files = String::from_utf8(listed.stdout)?;
+    let mut kept = BTreeSet::new();
     for file in files.split_terminator('\0') {
         // A file may be deleted, and not yet so in git.
         let Ok(mut text) = std::fs::read(root.join(file)) else { continue };
@@ -106,13 +107,28 @@ fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
         let copy = to.join(file);
         if std::fs::read(&copy).ok().as_ref() != Some(&text) {
             std::fs::create_dir_all(copy.parent().expect("a file is in a folder"))?;
-            std::fs::write(copy, text)?;
+            std::fs::write(&copy, text)?;
         }
+        kept.insert(copy);
     }
+    remove_others(&to, &kept)?;
     match faults.into_iter().next() {
         Some((file, faults)) => bail!("{}: git knows no file {file}", faults[0].name),
         None => Ok(()),
     }
+}
+
+/// Removes what the workspace no longer has.
+fn remove_others(folder: &Path, kept: &BTreeSet<PathBuf>) -> Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            remove_others(&path, kept)?;
+        } else if !kept.contains(&path) {
+            std::fs::remove_file(path)?;
+        }
+    }
+    Ok(())
 }
 
 /// The text of a file with a switch around each expression that is to be spoiled.
