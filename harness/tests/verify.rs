@@ -300,6 +300,23 @@ fn stored_runs_are_kept_until_their_scene_changes() {
     assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
 }
 
+/// The second ratio finds the first one's results in the folder already, and has to be as it is alone.
+#[test]
+fn results_of_each_poisson_ratio_are_stored_apart() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = |name: &str, ratios: &str| {
+        let text = format!("title = \"Ratios\"\n[[run]]\nscene = \"block.toml\"\npoisson = {ratios}\n");
+        let (study, out) = (write(&dir, name, &text), inside(&dir, &format!("{name}-out")));
+        let done = tissuebench(&["verify", &study, "--out", &out, "--resume"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        exact(&results(&out))
+    };
+    write(&dir, "block.toml", BLOCK);
+    let both = study("both.toml", "[0.1, 0.4]");
+    let apart = [study("first.toml", "[0.1]"), study("second.toml", "[0.4]")].concat();
+    assert!(both == apart, "{:?}", first_difference(&both, &apart));
+}
+
 #[test]
 fn the_program_knows_its_commit_without_asking_git() {
     let dir = tempfile::tempdir().unwrap();

@@ -2,6 +2,8 @@
 //!
 //! Exit codes: those of `tissuebench` (0 all held, 1 a check failed, 2 bad usage, 3 could not run).
 
+mod mutants;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -50,6 +52,11 @@ enum Task {
     Gallery,
     /// Write the book's reference pages anew, and build the book where mdbook is installed
     Book,
+    /// Switch on the faults of tests/mutants.toml one at a time: a test has to find each
+    Mutants {
+        /// Only these, by name
+        names: Vec<String>,
+    },
     /// What continuous integration runs: format, lints, docs, tests, quick verification
     Ci,
 }
@@ -82,6 +89,7 @@ fn run(task: Task) -> Result<u8> {
             if code == 0 { keep_gallery().map(|()| 0) } else { Ok(code) }
         }
         Task::Book => book(),
+        Task::Mutants { names } => mutants::mutants(&root(), &names),
         Task::Ci => ci(),
     }
 }

@@ -146,6 +146,17 @@ mod tests {
         assert_eq!(t.total().wall, [3.0]);
     }
 
+    /// Swapped, two phases would still have times.
+    #[test]
+    fn a_time_is_booked_under_its_own_phase() {
+        let mut t = Timings::default();
+        PHASES.into_iter().enumerate().for_each(|(seconds, phase)| t.book(phase, seconds as f64));
+        PHASES.into_iter().enumerate().for_each(|(seconds, phase)| t.book(phase, 10.0 + seconds as f64));
+        for (seconds, (timed, phase)) in t.phases().iter().zip(PHASES).enumerate() {
+            assert_eq!((timed.phase, &timed.wall[..]), (phase, &[seconds as f64, 10.0 + seconds as f64][..]));
+        }
+    }
+
     #[test]
     fn cpu_seconds_are_those_of_the_work_and_not_of_waiting() {
         let mut t = Timings::default();

@@ -250,3 +250,45 @@ impl Stored {
         rows
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By one method, of one point, one probe and one tool: all lengths are `u`, the force is 10 `u`.
+    fn solution(method: &str, u: f64) -> Stored {
+        let tool = StoredTool { closure: u, force: 10.0 * u, low: 10.0 * u, high: 10.0 * u };
+        let probes = vec![[u, 0.0, 0.0]];
+        Stored {
+            case: "block".into(),
+            problem: String::new(),
+            program: String::new(),
+            made_on: String::new(),
+            source: Source { method: method.into(), nodes: 8, table: String::new() },
+            beside: Vec::new(),
+            probes: vec![[0.0; 3]],
+            steps: vec![StoredStep { load: 1.0, tools: vec![tool], probes: probes.clone(), probe_band: 0.0 }],
+            points: vec![[0.0; 3]],
+            displacement: probes,
+            displacement_band: 0.0,
+        }
+    }
+
+    /// A band reaches as far as the farthest solution, and what that one had joined before.
+    #[test]
+    fn bands_reach_over_every_solution() {
+        let mut fine = solution("fine", 2.0);
+        fine.widen(&solution("stiff", 1.5));
+        let band = |stored: &Stored| {
+            let tool = stored.steps[0].tools[0];
+            (tool.low, tool.force, tool.high, stored.steps[0].probe_band, stored.displacement_band)
+        };
+        assert_eq!(band(&fine), (15.0, 20.0, 20.0, 0.5, 0.5));
+        let mut soft = solution("soft", 3.0);
+        soft.widen(&solution("softest", 3.25));
+        fine.widen(&soft);
+        // 1 to the soft one, and 0.25 from there.
+        assert_eq!(band(&fine), (15.0, 20.0, 32.5, 1.25, 1.25));
+        assert_eq!(fine.methods().collect::<Vec<_>>(), ["soft", "softest", "stiff", "fine"]);
+    }
+}

@@ -76,3 +76,20 @@ fn help(ratio: f64) -> String {
         None => "give a mesh of the same body, in the same place".into(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::generate::ball_mesh;
+
+    /// A ball has the outline of the cube around it, and pi / 6 = 52 % of its volume.
+    #[test]
+    fn a_body_of_the_same_outline_is_known_by_its_volume() {
+        let cube = Body::Box { min: [-0.02; 3], max: [0.02; 3] };
+        let file = MeshFile { path: "ball.msh".into(), unit: 1.0 };
+        let ball = ball_mesh(CellKind::Hex8, 0.02, 8).unwrap();
+        let wrong = check(&cube, &file, &ball).unwrap_err().to_string();
+        assert!(wrong.contains("64.0000 cm^3"), "{wrong}");
+        check(&Body::Ball { radius: 0.02 }, &file, &ball).unwrap();
+    }
+}
