@@ -156,6 +156,10 @@ mod tests {
         assert_eq!(before.compare(&one("a", "rms [m]", &[next], "p"), true).changes.len(), 1);
         assert!(before.compare(&one("a", "rms [m]", &[next], "q"), true).changes.is_empty());
         assert_eq!(before.compare(&one("a", "rms [m]", &[0.3001], "q"), true).changes.len(), 1);
+        // A resultant that is rounding has no digits, one that is not has all.
+        let load = |newton: f64, processor: &str| one("a", "load-y [N]", &[newton], processor);
+        assert!(load(1e-17, "p").compare(&load(-2e-17, "q"), true).changes.is_empty());
+        assert_eq!(load(1e-3, "p").compare(&load(1.1e-3, "q"), true).changes.len(), 1);
         // Rounding has no digits: 1e-12 of the run's largest length.
         let before = one("a", "rms [m]", &[1e-12], "p");
         assert!(before.compare(&one("a", "rms [m]", &[3e-12], "q"), true).changes.is_empty());
