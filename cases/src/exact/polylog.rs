@@ -26,14 +26,20 @@ static TAIL: LazyLock<[f64; LOG_TERMS]> = LazyLock::new(|| {
         let j = index as i32 + 1;
         let even_zeta = match j {
             1 => ZETA_2,
-            2 => PI.powi(4) / 90.0,
-            3 => PI.powi(6) / 945.0,
-            _ => (1..=200).rev().map(|n: i32| f64::from(n).powi(-2 * j)).sum(),
+            2 => power(PI, 4) / 90.0,
+            3 => power(PI, 6) / 945.0,
+            _ => (1..=200).rev().map(|n: i32| 1.0 / power(f64::from(n), 2 * j)).sum(),
         };
         let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
-        sign * 2.0 * even_zeta / ((2.0 * PI).powi(2 * j) * f64::from(2 * j) * f64::from(2 * j + 1))
+        sign * 2.0 * even_zeta / (power(2.0 * PI, 2 * j) * f64::from(2 * j) * f64::from(2 * j + 1))
     })
 });
+
+/// `x^n` by products from the left: `powi` rounds differently where the compiler sees the exponent, so that its bits
+/// depend on how the build is cut into units (1e-16 to 3e-14 in the results).
+fn power(x: f64, n: i32) -> f64 {
+    (0..n).fold(1.0, |product, _| product * x)
+}
 
 /// `mu` and `ln(-mu)` of the logarithmic series; `None` at the singular corner, where every term with them vanishes.
 fn logarithm(s: f64, t: f64) -> Option<(Complex, Complex)> {

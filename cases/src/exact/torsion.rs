@@ -77,13 +77,13 @@ impl Torsion {
     /// `psi`, m^2.
     fn warping(&self, y: f64, z: f64) -> f64 {
         let (above, below) = self.images(y, z, alternating_3);
-        32.0 * self.half[1].powi(2) / PI.powi(3) * (above - below).im
+        32.0 * self.half[1] * self.half[1] / (PI * PI * PI) * (above - below).im
     }
 
     /// `(d psi/dy, d psi/dz)`, m.
     fn warping_slope(&self, y: f64, z: f64) -> (f64, f64) {
         let (above, below) = self.images(y, z, alternating_2);
-        let factor = 16.0 * self.half[1] / PI.powi(2);
+        let factor = 16.0 * self.half[1] / (PI * PI);
         (factor * (above + below).im, factor * (above - below).re)
     }
 }
