@@ -20,12 +20,23 @@ use geometry::generate::box_mesh;
 use integration::model::*;
 use material::{Law, NeoHookean};
 use shape::{Point3, Vector3};
-use statics::{StaticPath, StaticProblem};
+use statics::{StaticParams, StaticPath, StaticProblem};
 
 const PENALTY: f64 = 1e8;
 
 /// Two plates on z = 0 and z = h that close by 1 and 3 mm; gives the path and the contacts of its end.
 fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath, Vec<Tool>) {
+    press_by(model, law, touch, name, &steps(4))
+}
+
+/// The same by any steps.
+pub fn press_by(
+    model: &Model,
+    law: &Law,
+    touch: ContactLaw,
+    name: &str,
+    params: &StaticParams,
+) -> (StaticPath, Vec<Tool>) {
     let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
     let contact = ContactSurface::new(&surface);
     let plates: Vec<Tool> = [(0.0, 1.0), (SIZE.z, -1.0)]
@@ -42,7 +53,7 @@ fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath
     fixed.extend(model.hold(&["y-min"], &[1], |_| Vector3::zeros()));
     let problem =
         StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(law) };
-    (solve(name, &problem, &steps(4)), plates)
+    (solve(name, &problem, params), plates)
 }
 
 /// Normal pressures of both plates at the end, point by point.

@@ -97,7 +97,7 @@ pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
         smallest: 1e-3,
         accuracy: None,
         rho_inf,
-        newton: NewtonParams { tolerance: 1e-11, iterations: 20, chords: true },
+        newton: NewtonParams { tolerance: 1e-11, iterations: 20, chords: true, keeps: f64::INFINITY },
         augmentations: 0,
     }
 }

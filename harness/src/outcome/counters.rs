@@ -53,6 +53,8 @@ pub struct Counters {
     pub factorisations: u64,
     /// Right-hand sides solved for.
     pub solves: u64,
+    /// Iterations of the linear solver: with a factor kept from another tangent, in single precision, or with sliding friction.
+    pub inner_iterations: u64,
     /// Shape function rows that turn nodal parameters into displacements at nodes or targets.
     pub transfer_rows: u64,
     /// Tables of transfer schemes built.
@@ -108,6 +110,7 @@ impl AddAssign for Counters {
         self.assemblies += other.assemblies;
         self.factorisations += other.factorisations;
         self.solves += other.solves;
+        self.inner_iterations += other.inner_iterations;
         self.transfer_rows += other.transfer_rows;
         self.transfer_tables += other.transfer_tables;
     }

@@ -115,6 +115,7 @@ fn count(path: &TimePath, counters: &mut Counters) -> u64 {
     counters.assemblies += path.work.assemblies;
     counters.factorisations += path.work.factorisations;
     counters.solves += path.work.solves;
+    counters.inner_iterations += path.work.inner;
     counters.contact_evaluations += path.counts.evaluations;
     counters.contact_skips += path.counts.skipped;
     iterations

@@ -31,8 +31,10 @@ pub(crate) fn static_params(asked: &Static) -> StaticParams {
     }
 }
 
+/// A factor for every tangent.
 pub(super) fn newton_params(newton: &Newton) -> NewtonParams {
-    NewtonParams { tolerance: newton.tolerance, iterations: newton.iterations, chords: true }
+    let Newton { tolerance, iterations, .. } = *newton;
+    NewtonParams { tolerance, iterations, chords: true, keeps: f64::INFINITY }
 }
 
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> Stages {
@@ -74,8 +76,13 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
     let start = Instant::now();
     let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));
+    let mut params = static_params(asked);
+    if method.interpolates {
+        // A cloud on which tools slide may come to rest elsewhere by inexact steps: the kidney between jaws, 1331 nodes, did.
+        params.newton.keeps = NewtonParams::KEEPS;
+    }
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
-        solve_static(problem, &static_params(asked), |step, u, _| {
+        solve_static(problem, &params, |step, u, _| {
             if let Some(watch) = watch {
                 watch(&reported(step, setup));
             }
@@ -137,6 +144,7 @@ fn count(path: &StaticPath, counters: &mut Counters) -> u64 {
     counters.assemblies += path.work.assemblies;
     counters.factorisations += path.work.factorisations;
     counters.solves += path.work.solves;
+    counters.inner_iterations += path.work.inner;
     counters.contact_evaluations += path.counts.evaluations;
     counters.contact_skips += path.counts.skipped;
     iterations

@@ -31,8 +31,8 @@ mod stiffness;
 pub use error::AlgebraError;
 pub use linear_solver::eigen;
 pub use linear_solver::{
-    Border, DENSE_LIMIT, FactorError, Factorization, Kind, SolverPath, Symbolic, Symmetric, Unsymmetric,
-    analyse, factor, factor_as, reserve_workspaces,
+    Border, Curvature, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, SolverPath, Symbolic,
+    Symmetric, Unsymmetric, analyse, factor, factor_as, factor_roughly, reserve_workspaces,
 };
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

@@ -3,6 +3,7 @@
 //! The bits of a result do not depend on the number of threads, which only large factorisations take. Every solve
 //! ends with its residual.
 
+mod curvature;
 mod dense;
 pub mod eigen;
 mod ordering;
@@ -17,6 +18,7 @@ use faer::dyn_stack::MemBuffer;
 
 use crate::{AlgebraError, Stiffness};
 
+pub use curvature::Curvature;
 pub use sparse::Symbolic;
 pub use unsymmetric::{Border, Unsymmetric};
 pub use workspace::reserve_workspaces;
@@ -149,19 +151,57 @@ impl Symmetric {
         }
     }
 
-    /// `y -= A x`.
+    /// `y -= A x`. The three columns of a node have the rows of other nodes in common and go through them together, in the
+    /// order of sums that each by itself would have.
     pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
-        for j in 0..self.dim() {
-            let mut sum = 0.0;
-            for k in self.offsets[j]..self.offsets[j + 1] {
-                let (i, a) = (self.rows[k], self.values[k]);
-                sum += a * x[i];
-                if i != j {
-                    y[i] -= a * x[j];
+        for vertex in self.vertices.windows(2) {
+            let (first, end) = (vertex[0], vertex[1]);
+            let mut sums = [0.0; 3];
+            let common = self.offsets[first + 1] - self.offsets[first] - 1;
+            let in_common = match end - first {
+                3 => {
+                    let starts = [self.offsets[first], self.offsets[first + 1], self.offsets[first + 2]];
+                    let of = x[first..end].try_into().expect("three columns");
+                    sums = self.subtract_three(starts, common, of, x, y);
+                    common
                 }
+                _ => 0,
+            };
+            for j in first..end {
+                let mut sum = if in_common > 0 { sums[j - first] } else { 0.0 };
+                for k in self.offsets[j] + in_common..self.offsets[j + 1] {
+                    let (i, a) = (self.rows[k], self.values[k]);
+                    sum += a * x[i];
+                    if i != j {
+                        y[i] -= a * x[j];
+                    }
+                }
+                y[j] -= sum;
             }
-            y[j] -= sum;
         }
+    }
+
+    /// The `common` entries of three columns from `starts` on; the sums of these, `of` what x has in their own rows.
+    #[inline]
+    fn subtract_three(
+        &self,
+        starts: [usize; 3],
+        common: usize,
+        of: [f64; 3],
+        x: &[f64],
+        y: &mut [f64],
+    ) -> [f64; 3] {
+        let column = |k: usize| &self.values[starts[k]..starts[k] + common];
+        let (a, b, c) = (column(0), column(1), column(2));
+        let mut sums = [0.0; 3];
+        for (k, &i) in self.rows[starts[0]..starts[0] + common].iter().enumerate() {
+            let xi = x[i];
+            sums[0] += a[k] * xi;
+            sums[1] += b[k] * xi;
+            sums[2] += c[k] * xi;
+            y[i] = y[i] - a[k] * of[0] - b[k] * of[1] - c[k] * of[2];
+        }
+        sums
     }
 
     /// The diagonal entry of column `j`.
@@ -191,6 +231,7 @@ enum Numbers {
     Empty,
     Dense(dense::Dense),
     Sparse(Box<sparse::Sparse>),
+    Single(Box<sparse::Single>),
 }
 
 impl Factor {
@@ -201,6 +242,40 @@ impl Factor {
             Numbers::Empty => 0,
             Numbers::Dense(factor) => factor.negative_pivots(),
             Numbers::Sparse(factor) => factor.negative_pivots(),
+            Numbers::Single(factor) => factor.negative_pivots(),
+        }
+    }
+
+    /// The matrix factored in double precision, where this is a factor in single precision (of a matrix near to it).
+    fn exact(&self, matrix: &Symmetric) -> Result<Option<Factor>, AlgebraError> {
+        let Numbers::Single(factor) = &self.0 else { return Ok(None) };
+        let numbers = |kind| sparse::Sparse::new(factor.symbolic().clone(), matrix, kind);
+        let numbers = numbers(Kind::Definite).or_else(|_| numbers(Kind::Indefinite));
+        match numbers {
+            Ok(numbers) => Ok(Some(Factor(Numbers::Sparse(Box::new(numbers))))),
+            Err(FactorError::Other(error)) => Err(error),
+            Err(FactorError::NotDefinite) => Err(AlgebraError::ZeroPivot),
+        }
+    }
+
+    /// In single precision, as [`factor_roughly`] makes it.
+    pub fn rounded(self) -> Factor {
+        match self.0 {
+            Numbers::Sparse(factor) => Factor(Numbers::Single(Box::new((*factor).into()))),
+            other => Factor(other),
+        }
+    }
+
+    /// Solves in place, once.
+    fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+        match &self.0 {
+            Numbers::Empty => Ok(()),
+            Numbers::Dense(factor) => {
+                factor.solve(b);
+                Ok(())
+            }
+            Numbers::Sparse(factor) => factor.solve(b),
+            Numbers::Single(factor) => factor.solve(b),
         }
     }
 }
@@ -210,7 +285,7 @@ pub struct Factorization {
     /// The matrix, for residuals.
     pub matrix: Symmetric,
     /// Its factor, perhaps of a matrix near to it.
-    pub factor: Factor,
+    pub factor: Arc<Factor>,
     /// What was promised of the matrix.
     pub kind: Kind,
 }
@@ -234,7 +309,7 @@ impl From<AlgebraError> for FactorError {
 pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
     let kind = matrix.kind();
     let symbolic = analyse(&matrix, dense_limit)?;
-    let factor = factor_as(symbolic.as_ref(), &matrix, kind)?;
+    let factor = Arc::new(factor_as(symbolic.as_ref(), &matrix, kind)?);
     Ok(Factorization { matrix, factor, kind })
 }
 
@@ -254,6 +329,22 @@ pub fn factor_as(
         None => Numbers::Dense(dense::Dense::new(matrix, kind)?),
         Some(symbolic) => Numbers::Sparse(Box::new(sparse::Sparse::new(symbolic.clone(), matrix, kind)?)),
     }))
+}
+
+/// The same in single precision, for a preconditioner: half the time, and half the memory. A dense one, which is small, and one with
+/// multipliers are as ever.
+pub fn factor_roughly(
+    symbolic: Option<&Arc<Symbolic>>,
+    matrix: &Symmetric,
+    kind: Kind,
+) -> Result<Factor, FactorError> {
+    match symbolic {
+        Some(symbolic) if kind != Kind::Saddle && matrix.multipliers == matrix.dim() => {
+            let factor = sparse::Single::new(symbolic.clone(), matrix, kind == Kind::Definite)?;
+            Ok(Factor(Numbers::Single(Box::new(factor))))
+        }
+        _ => factor_as(symbolic, matrix, kind),
+    }
 }
 
 /// Refuses a pivot that is mere rounding beside its diagonal entry.
@@ -318,14 +409,7 @@ impl Factorization {
     }
 
     fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
-        match &self.factor.0 {
-            Numbers::Empty => Ok(()),
-            Numbers::Dense(factor) => {
-                factor.solve(b);
-                Ok(())
-            }
-            Numbers::Sparse(factor) => factor.solve(b),
-        }
+        self.factor.solve(b)
     }
 
     /// Number of unknowns.
@@ -339,6 +423,7 @@ impl Factorization {
             Numbers::Empty => 0,
             Numbers::Dense(_) => self.dim() * (self.dim() + 1) / 2,
             Numbers::Sparse(factor) => factor.nonzeros(),
+            Numbers::Single(factor) => factor.nonzeros(),
         }
     }
 
@@ -348,8 +433,8 @@ impl Factorization {
             (Numbers::Empty, _) => SolverPath::None,
             (Numbers::Dense(_), true) => SolverPath::DenseLlt,
             (Numbers::Dense(_), false) => SolverPath::DenseLdlt,
-            (Numbers::Sparse(_), true) => SolverPath::SparseLlt,
-            (Numbers::Sparse(_), false) => SolverPath::SparseLdlt,
+            (Numbers::Sparse(_) | Numbers::Single(_), true) => SolverPath::SparseLlt,
+            (Numbers::Sparse(_) | Numbers::Single(_), false) => SolverPath::SparseLdlt,
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
     supernodal::SupernodalLltRef,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::traits::ComplexField;
 use faer::{Conj, MatMut, Par, Side};
 
 use super::{FactorError, Kind, Symmetric, check_pivots, ordering, zeroed};
@@ -22,11 +23,14 @@ const FOR_THREADS: f64 = 4e9;
 pub struct Symbolic {
     cholesky: SymbolicCholesky<usize>,
     forward: Vec<usize>,
-    /// Whether the factorisation is large enough for threads.
-    large: bool,
+    multiplications: f64,
     /// Numbers of factors that are no more, to be written over: on fresh memory the system took a tenth of the time of
     /// a path with 4000 unknowns.
     spare: Mutex<Vec<Vec<f64>>>,
+    /// The same of factors in single precision.
+    spare_single: Mutex<Vec<Vec<f32>>>,
+    /// Workspace of the last factorisation but the first.
+    workspace: Mutex<Option<MemBuffer>>,
 }
 
 impl Symbolic {
@@ -37,13 +41,48 @@ impl Symbolic {
         let order = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n));
         let cholesky = factorize_symbolic_cholesky(pattern(matrix), Side::Upper, order, Default::default())
             .map_err(|e| too_large(n, &e))?;
-        let large = multiplications(&cholesky) > FOR_THREADS;
-        Ok(Symbolic { cholesky, forward, large, spare: Mutex::default() })
+        let multiplications = multiplications(&cholesky);
+        Ok(Symbolic {
+            cholesky,
+            forward,
+            multiplications,
+            spare: Mutex::default(),
+            spare_single: Mutex::default(),
+            workspace: Mutex::default(),
+        })
+    }
+
+    /// Whether the factorisation is large enough for threads.
+    fn large(&self) -> bool {
+        self.multiplications > FOR_THREADS
+    }
+
+    /// Multiplications of a factorisation over those of a solution with the factor.
+    pub fn solutions(&self) -> f64 {
+        self.multiplications / (2.0 * self.cholesky.len_val() as f64)
     }
 
     fn spare(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
-        self.spare.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        locked(&self.spare)
     }
+
+    /// Workspace for `scratch`: that of the factorisation before, if it is large enough. What that left there is of the same kinds in
+    /// the same places, or numbers.
+    fn workspace(&self, scratch: StackReq) -> Result<MemBuffer, AlgebraError> {
+        let kept =
+            locked(&self.workspace).take().filter(|kept| kept.len() >= scratch.unaligned_bytes_required());
+        match kept {
+            Some(kept) => Ok(kept),
+            None => {
+                let memory = MemBuffer::try_new(scratch);
+                Ok(zeroed(memory.map_err(|_| too_large(self.forward.len(), &"no memory for the workspace"))?))
+            }
+        }
+    }
+}
+
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// Of the numeric factorisation: `w^3/6 + w^2 r/2 + w r^2/2` for a supernode of w columns with r rows below; 0 where columns
@@ -87,19 +126,26 @@ impl Sparse {
         let cholesky = &symbolic.cholesky;
         let definite = kind == Kind::Definite;
         let mut values = symbolic.spare().pop().unwrap_or_default();
+        let repeats = !values.is_empty();
         values.try_reserve_exact(cholesky.len_val()).map_err(|e| too_large(n, &e))?;
         values.resize(cholesky.len_val(), 0.0);
-        let no_memory = |_| too_large(n, &"no memory for the workspace");
-        let par = if symbolic.large { Par::rayon(0) } else { Par::Seq };
+        let par = if symbolic.large() { Par::rayon(0) } else { Par::Seq };
         if definite {
             let a = SparseColMatRef::new(pattern(matrix), &matrix.values);
             let params = Default::default();
             let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, params);
-            let mut memory = zeroed(MemBuffer::try_new(scratch).map_err(no_memory)?);
+            let mut memory = symbolic.workspace(scratch)?;
             let stack = MemStack::new(&mut memory);
-            cholesky
-                .factorize_numeric_llt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
-                .map_err(|_| FactorError::NotDefinite)?;
+            let side = Side::Upper;
+            let done =
+                cholesky.factorize_numeric_llt(&mut values, a, side, Default::default(), par, stack, params);
+            if repeats {
+                *locked(&symbolic.workspace) = Some(memory);
+            }
+            if done.is_err() {
+                symbolic.spare().push(values);
+                return Err(FactorError::NotDefinite);
+            }
             let forward = &symbolic.forward;
             check_pivots(pivots(cholesky, &values).map(|(k, l)| l * l / matrix.diagonal(forward[k])))?;
         } else {
@@ -107,11 +153,15 @@ impl Sparse {
             let a = SparseColMatRef::new(pattern(matrix), regularised.as_ref().unwrap_or(&matrix.values));
             let params = Default::default();
             let scratch = cholesky.factorize_numeric_ldlt_scratch::<f64>(par, params);
-            let mut memory = zeroed(MemBuffer::try_new(scratch).map_err(no_memory)?);
+            let mut memory = symbolic.workspace(scratch)?;
             let stack = MemStack::new(&mut memory);
-            cholesky
-                .factorize_numeric_ldlt(&mut values, a, Side::Upper, Default::default(), par, stack, params)
-                .map_err(|_| AlgebraError::ZeroPivot)?;
+            let side = Side::Upper;
+            let done =
+                cholesky.factorize_numeric_ldlt(&mut values, a, side, Default::default(), par, stack, params);
+            if repeats {
+                *locked(&symbolic.workspace) = Some(memory);
+            }
+            done.map_err(|_| AlgebraError::ZeroPivot)?;
         }
         Ok(Sparse { symbolic, values, definite })
     }
@@ -143,11 +193,112 @@ impl Sparse {
     }
 }
 
+impl From<Sparse> for Single {
+    fn from(factor: Sparse) -> Single {
+        let mut values = locked(&factor.symbolic.spare_single).pop().unwrap_or_default();
+        values.clear();
+        values.extend(factor.values.iter().map(|v| *v as f32));
+        Single { symbolic: factor.symbolic.clone(), values, definite: factor.definite }
+    }
+}
+
+/// Numbers of a factor in single precision.
+pub struct Single {
+    symbolic: Arc<Symbolic>,
+    values: Vec<f32>,
+    definite: bool,
+}
+
+impl Drop for Single {
+    fn drop(&mut self) {
+        locked(&self.symbolic.spare_single).push(std::mem::take(&mut self.values));
+    }
+}
+
+impl Single {
+    /// `L L^T`, or `L D L^T` of a matrix that is not definite; none with multipliers, whose regularisation is lost in rounding.
+    pub fn new(symbolic: Arc<Symbolic>, matrix: &Symmetric, definite: bool) -> Result<Single, FactorError> {
+        let n = matrix.dim();
+        let cholesky = &symbolic.cholesky;
+        let mut values = locked(&symbolic.spare_single).pop().unwrap_or_default();
+        values.try_reserve_exact(cholesky.len_val()).map_err(|e| too_large(n, &e))?;
+        values.resize(cholesky.len_val(), 0.0);
+        let par = if symbolic.large() { Par::rayon(0) } else { Par::Seq };
+        let rounded: Vec<f32> = matrix.values.iter().map(|v| *v as f32).collect();
+        let (a, side) = (SparseColMatRef::new(pattern(matrix), &rounded), Side::Upper);
+        let scratch = match definite {
+            true => cholesky.factorize_numeric_llt_scratch::<f32>(par, Default::default()),
+            false => cholesky.factorize_numeric_ldlt_scratch::<f32>(par, Default::default()),
+        };
+        let mut memory = symbolic.workspace(scratch)?;
+        let stack = MemStack::new(&mut memory);
+        let none = Default::default();
+        let done = match definite {
+            true => cholesky
+                .factorize_numeric_llt(&mut values, a, side, none, par, stack, Default::default())
+                .map(|_| ())
+                .map_err(|_| FactorError::NotDefinite),
+            false => cholesky
+                .factorize_numeric_ldlt(
+                    &mut values,
+                    a,
+                    side,
+                    Default::default(),
+                    par,
+                    stack,
+                    Default::default(),
+                )
+                .map(|_| ())
+                .map_err(|_| FactorError::Other(AlgebraError::ZeroPivot)),
+        };
+        *locked(&symbolic.workspace) = Some(memory);
+        let factor = Single { symbolic, values, definite };
+        done.map(|_| factor)
+    }
+
+    /// Solves in place, to single precision of the largest.
+    pub fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+        let n = b.len();
+        let largest = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        if largest == 0.0 {
+            return Ok(());
+        }
+        let cholesky = &self.symbolic.cholesky;
+        let scratch = cholesky.solve_in_place_scratch::<f32>(1, Par::Seq);
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(n, &"no memory for the solve"))?;
+        let stack = MemStack::new(&mut memory);
+        let mut x: Vec<f32> = b.iter().map(|v| (v / largest) as f32).collect();
+        let rhs = MatMut::from_column_major_slice_mut(&mut x, n, 1);
+        if self.definite {
+            LltRef::new(cholesky, &self.values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, stack);
+        } else {
+            LdltRef::new(cholesky, &self.values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, stack);
+        }
+        b.iter_mut().zip(&x).for_each(|(b, x)| *b = f64::from(*x) * largest);
+        Ok(())
+    }
+
+    pub fn symbolic(&self) -> &Arc<Symbolic> {
+        &self.symbolic
+    }
+
+    pub fn negative_pivots(&self) -> usize {
+        if self.definite {
+            return 0;
+        }
+        pivots(&self.symbolic.cholesky, &self.values).filter(|p| p.1 < 0.0).count()
+    }
+
+    pub fn nonzeros(&self) -> usize {
+        self.symbolic.cholesky.len_val()
+    }
+}
+
 /// Diagonal of `L` (of `D` in `L D L^T`) with its place in the elimination order.
-fn pivots<'a>(
+fn pivots<'a, T: ComplexField + Copy>(
     symbolic: &'a SymbolicCholesky<usize>,
-    values: &'a [f64],
-) -> Box<dyn Iterator<Item = (usize, f64)> + 'a> {
+    values: &'a [T],
+) -> Box<dyn Iterator<Item = (usize, T)> + 'a> {
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(s) => Box::new((0..s.ncols()).map(|j| (j, values[s.col_ptr()[j]]))),
         SymbolicCholeskyRaw::Supernodal(s) => {
@@ -184,7 +335,7 @@ mod tests {
     fn any_number_of_threads_gives_the_same_bits() {
         let matrix = full(3001);
         let symbolic = Arc::new(Symbolic::new(&matrix).unwrap());
-        assert!(symbolic.large);
+        assert!(symbolic.large());
         for kind in [Kind::Definite, Kind::Indefinite] {
             let on = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -6,12 +6,15 @@ use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::{Factorization, dot, norm, refined};
+use super::{Factor, Factorization, Symmetric, dot, norm, refined};
 use crate::AlgebraError;
 
 /// Krylov vectors kept; the skew part has the rank of the sliding points at most, and a coefficient of friction of
 /// 0.15 needs about 10.
 const KRYLOV: usize = 40;
+/// Iterations after which the rate says whether a kept factor will do.
+const JUDGED: usize = 3;
+
 /// A row and a column beyond those of a matrix: a tool driven by force, whose closure is unknown.
 pub struct Border {
     /// Column, without its last entry.
@@ -75,9 +78,9 @@ impl Unsymmetric {
     }
 
     /// Without the unsymmetric entries: the borders by block elimination.
-    fn precondition(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+    fn precondition(&self, factor: &Factor, b: &mut [f64]) -> Result<(), AlgebraError> {
         let (x, moves) = b.split_at_mut(self.symmetric.dim());
-        self.symmetric.solve_once(x)?;
+        factor.solve(x)?;
         if moves.is_empty() {
             return Ok(());
         }
@@ -93,14 +96,60 @@ impl Unsymmetric {
         Ok(())
     }
 
-    /// Solves in place to a relative residual of `goal`, or ten times that, and returns it; by LU where that fails.
-    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<f64, AlgebraError> {
+    /// The matrix without borders, as it was before it came here with a factor of one near to it.
+    pub fn into_parts(self) -> (Symmetric, Vec<(usize, usize, f64)>) {
+        (self.symmetric.matrix, self.extra)
+    }
+
+    /// The symmetric matrix.
+    pub fn matrix(&self) -> &Symmetric {
+        &self.symmetric.matrix
+    }
+
+    /// Solves in place to a relative residual of `goal` where `most` iterations do, with a factor of a matrix near to this one;
+    /// the iterations, and whether it is solved. Given up as soon as the rate says so.
+    pub fn solve_within(&self, b: &mut [f64], goal: f64, most: usize) -> Result<(usize, bool), AlgebraError> {
         let size = norm(b);
         if size == 0.0 {
-            return Ok(0.0);
+            return Ok((0, true));
+        }
+        let (x, count) = self.gmres(&self.symmetric.factor, b, goal, most, true)?;
+        let mut rest = b.to_vec();
+        self.subtract_product(&x, &mut rest);
+        let solved = norm(&rest) <= goal * size;
+        if solved {
+            b.copy_from_slice(&x);
+        }
+        Ok((count, solved))
+    }
+
+    /// Solves in place to a relative residual of `goal`, or ten times that; the iterations. Where that fails a factor in single
+    /// precision is made in double precision, and then by LU.
+    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
+        let factor = &self.symmetric.factor;
+        let (mut iterations, mut solved) = self.cycles(factor, b, goal)?;
+        if solved {
+            return Ok(iterations);
+        }
+        if let Some(exact) = factor.exact(self.matrix())? {
+            let more;
+            (more, solved) = self.cycles(&exact, b, goal)?;
+            iterations += more;
+        }
+        if !solved {
+            self.direct(b)?;
+        }
+        Ok(iterations)
+    }
+
+    /// The iterations of a few cycles, and whether they solved; where not, b is as it was.
+    fn cycles(&self, factor: &Factor, b: &mut [f64], goal: f64) -> Result<(usize, bool), AlgebraError> {
+        let size = norm(b);
+        if size == 0.0 {
+            return Ok((0, true));
         }
         let mut x = vec![0.0; b.len()];
-        let mut residual = 1.0;
+        let (mut residual, mut iterations) = (1.0, 0);
         // Restarted twice: a round works on what rounding, or the number of vectors, left of the one before.
         for _ in 0..3 {
             let mut rest = b.to_vec();
@@ -109,18 +158,27 @@ impl Unsymmetric {
             if residual <= goal || !residual.is_finite() {
                 break;
             }
-            let step = self.gmres(&rest, goal / residual)?;
+            let (step, count) = self.gmres(factor, &rest, goal / residual, KRYLOV, false)?;
+            iterations += count;
             x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         }
-        if residual <= 10.0 * goal {
+        let solved = residual <= 10.0 * goal;
+        if solved {
             b.copy_from_slice(&x);
-            return Ok(residual);
         }
-        self.direct(b)
+        Ok((iterations, solved))
     }
 
-    /// One cycle, until the residual is `goal` times that of the start: the x in the Krylov space of `A M^-1` that makes `|rest - A x|` least.
-    fn gmres(&self, rest: &[f64], goal: f64) -> Result<Vec<f64>, AlgebraError> {
+    /// One cycle, until the residual is `goal` times that of the start: the x in the Krylov space of `A M^-1` that makes `|rest - A x|`
+    /// least, and its dimension. Where it is `judged`, it ends when the rate so far does not lead there in `most` iterations.
+    fn gmres(
+        &self,
+        factor: &Factor,
+        rest: &[f64],
+        goal: f64,
+        most: usize,
+        judged: bool,
+    ) -> Result<(Vec<f64>, usize), AlgebraError> {
         let size = norm(rest);
         let mut basis: Vec<Vec<f64>> = vec![rest.iter().map(|r| r / size).collect()];
         let mut preconditioned: Vec<Vec<f64>> = Vec::new();
@@ -128,9 +186,9 @@ impl Unsymmetric {
         let mut columns: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut right = vec![size];
-        for k in 0..KRYLOV {
+        for k in 0..most {
             let mut z = basis[k].clone();
-            self.precondition(&mut z)?;
+            self.precondition(factor, &mut z)?;
             let mut w = vec![0.0; z.len()];
             self.subtract_product(&z, &mut w);
             w.iter_mut().for_each(|w| *w = -*w);
@@ -155,6 +213,10 @@ impl Unsymmetric {
             if right[k + 1].abs() <= 0.5 * goal * size || !(next > 0.0) {
                 break;
             }
+            let fallen = right[k + 1].abs() / size;
+            if judged && k + 1 >= JUDGED && goal.ln() / fallen.ln() * (k + 1) as f64 > most as f64 {
+                break;
+            }
             basis.push(w.iter().map(|w| w / next).collect());
         }
         let m = columns.len();
@@ -167,7 +229,7 @@ impl Unsymmetric {
         for (z, y) in preconditioned.iter().zip(&y) {
             x.iter_mut().zip(z).for_each(|(x, z)| *x += y * z);
         }
-        Ok(x)
+        Ok((x, m))
     }
 
     fn direct(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
@@ -204,5 +266,92 @@ impl Unsymmetric {
             Ok(())
         };
         refined(b, once, |x, y| self.subtract_product(x, y))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear_solver::{Kind, analyse, factor_as, factor_roughly};
+    use std::sync::Arc;
+
+    const SIDE: usize = 12;
+
+    /// A membrane of SIDE x SIDE nodes on springs, which differ from node to node by `uneven`.
+    fn membrane(uneven: f64) -> Symmetric {
+        let (n, mut rows, mut values, mut offsets) = (SIDE * SIDE, Vec::new(), Vec::new(), vec![0]);
+        for j in 0..n {
+            for i in [j.checked_sub(SIDE), (j % SIDE > 0).then(|| j - 1)].into_iter().flatten() {
+                rows.push(i);
+                values.push(-1.0);
+            }
+            rows.push(j);
+            values.push(4.01 + uneven * (1.0 + (j as f64).sin()));
+            offsets.push(rows.len());
+        }
+        Symmetric { offsets, rows, values, multipliers: n, vertices: (0..=n).collect() }
+    }
+
+    /// A membrane with skew entries and the factor of an even one.
+    fn near(uneven: f64, roughly: bool) -> Unsymmetric {
+        let (matrix, even) = (membrane(uneven), membrane(0.0));
+        let symbolic = analyse(&matrix, 0).unwrap();
+        let make = if roughly { factor_roughly } else { factor_as };
+        let factor = Arc::new(make(symbolic.as_ref(), &even, Kind::Definite).unwrap());
+        let skew = vec![(3, 40, 0.1), (40, 3, -0.1)];
+        Unsymmetric::new(Factorization { matrix, factor, kind: Kind::Definite }, skew, Vec::new()).unwrap()
+    }
+
+    fn residual(of: &Unsymmetric, x: &[f64]) -> f64 {
+        let mut rest = vec![1.0; x.len()];
+        of.subtract_product(x, &mut rest);
+        norm(&rest) / (x.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn a_factor_of_a_matrix_near_to_it_solves_in_few_iterations() {
+        for roughly in [false, true] {
+            let system = near(0.05, roughly);
+            let mut x = vec![1.0; SIDE * SIDE];
+            let (iterations, solved) = system.solve_within(&mut x, 1e-4, 12).unwrap();
+            assert!(solved && (2..=8).contains(&iterations), "{iterations}");
+            assert!(residual(&system, &x) <= 1e-4);
+            let mut x = vec![1.0; SIDE * SIDE];
+            system.solve(&mut x, 1e-10).unwrap();
+            assert!(residual(&system, &x) <= 1e-9, "{}", residual(&system, &x));
+        }
+    }
+
+    #[test]
+    fn a_factor_of_another_matrix_is_given_up_soon_and_leaves_the_right_side() {
+        let system = near(40.0, true);
+        let mut x = vec![1.0; SIDE * SIDE];
+        let (iterations, solved) = system.solve_within(&mut x, 1e-8, 12).unwrap();
+        assert!(!solved && iterations < 8 && x.iter().all(|x| *x == 1.0), "{iterations}");
+        // In double precision it is of the matrix itself.
+        assert!(system.symmetric.factor.exact(system.matrix()).unwrap().is_some());
+    }
+
+    #[test]
+    fn three_columns_at_once_make_the_same_bits_as_one_by_one() {
+        // All rows of other nodes in common, as a node's columns have.
+        let full = |vertices: &[usize]| {
+            let n = 9;
+            Symmetric {
+                offsets: (0..=n).map(|j| j * (j + 1) / 2).collect(),
+                rows: (0..n).flat_map(|j| 0..=j).collect(),
+                values: (0..n * (n + 1) / 2).map(|k| (k as f64).sin()).collect(),
+                multipliers: n,
+                vertices: vertices.to_vec(),
+            }
+        };
+        let product = |matrix: &Symmetric| {
+            let x: Vec<f64> = (0..matrix.dim()).map(|i| (0.7 * i as f64).cos()).collect();
+            let mut y = vec![0.25; matrix.dim()];
+            matrix.subtract_product(&x, &mut y);
+            y.iter().map(|y| y.to_bits()).collect::<Vec<_>>()
+        };
+        let one: Vec<usize> = (0..=9).collect();
+        assert_eq!(product(&full(&one)), product(&full(&[0, 3, 6, 9])));
     }
 }

@@ -91,6 +91,8 @@ pub struct StaticWork {
     pub factorisations: u64,
     /// Linear systems solved: one per iteration, and with a pressure field one per trial whose residual did not fall.
     pub solves: u64,
+    /// Iterations of the linear solver: with a factor kept from another tangent, or with sliding friction.
+    pub inner: u64,
     /// Evaluations of the forces, one per trial state.
     pub forces: u64,
 }

@@ -1,4 +1,4 @@
-//! Forces in a state, and how far they are from balance.
+//! Forces in a state, and how far they and the constrained degrees of freedom are from where they are to be.
 
 use contact::Contacts;
 use shape::Vector3;
@@ -23,6 +23,34 @@ pub(super) struct Balance {
 }
 
 impl Newton<'_> {
+    /// What constrained degrees of freedom still lack of their values at `time`.
+    pub(super) fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
+        let scale = self.scales(time).supports;
+        let mut lacking = false;
+        let moves: Vec<Vector3> = (state.u.iter().enumerate())
+            .map(|(i, u)| {
+                Vector3::from_fn(|a, _| match self.prescribed[3 * i + a] {
+                    Some(value) if u[a] != value * scale => {
+                        lacking = true;
+                        value * scale - u[a]
+                    }
+                    _ => 0.0,
+                })
+            })
+            .collect();
+        lacking.then_some(moves)
+    }
+
+    /// Sets constrained degrees of freedom to their values at `time`.
+    pub(super) fn prescribe(&self, u: &mut [Vector3], time: f64) {
+        let scale = self.scales(time).supports;
+        for (dof, value) in self.prescribed.iter().enumerate() {
+            if let Some(value) = value {
+                u[dof / 3][dof % 3] = value * scale;
+            }
+        }
+    }
+
     /// Relative residual: forces on free degrees of freedom, volumes of the pressures, forces of driven tools.
     pub(super) fn residual(&self, balance: &Balance, time: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);

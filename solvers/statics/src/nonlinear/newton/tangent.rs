@@ -1,6 +1,6 @@
 //! The tangent of an iteration: assembled, factored, and the step it gives.
 
-use algebra::{AlgebraError, Border, DENSE_LIMIT, FactorError, Factorization, Kind, Unsymmetric};
+use algebra::{AlgebraError, Border, Factorization, Unsymmetric};
 use shape::{Matrix3, Vector3};
 
 use super::{Balance, Descent, Newton, State};
@@ -21,6 +21,8 @@ pub(super) struct Direction {
     pub closures: Vec<f64>,
     /// Whether the tangent was positive definite, tools driven by force included.
     pub definite: bool,
+    /// Whether that is of a factor of its own, not of the kept one.
+    pub proven: bool,
     pub factored: Factored,
     /// The tools whose borders the factor has.
     tools: Vec<usize>,
@@ -35,12 +37,12 @@ impl Factored {
         }
     }
 
-    fn solve(&self, b: &mut [f64], goal: f64) -> Result<(), AlgebraError> {
+    /// Solves in place; the iterations it took.
+    fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
         match self {
-            Factored::Symmetric(f) => f.solve(b),
+            Factored::Symmetric(f) => f.solve(b).map(|_| 0),
             Factored::Unsymmetric(f) => f.solve(b, goal),
         }
-        .map(|_| ())
     }
 }
 
@@ -103,12 +105,27 @@ impl Newton<'_> {
         }
         let right = self.system.gather(&right, &right_pressure);
         let (tools, borders): (Vec<usize>, Vec<Border>) = self.borders(balance).into_iter().unzip();
+        let (matrix, skew) = match self.with_kept(matrix, skew, &right, borders.is_empty())? {
+            Ok((factored, step)) => {
+                let last = Direction {
+                    step: Vec::new(),
+                    closures: Vec::new(),
+                    definite: !self.doubtful,
+                    proven: false,
+                    factored,
+                    tools,
+                };
+                return Ok(self.finish(last, step, state, time));
+            }
+            Err(parts) => parts,
+        };
         let factored = self.factor(matrix, skew, borders)?;
         let definite = !self.indefinite && factored.stable();
         if self.descent == Descent::Smooth && !definite {
             return Err(SolveError::NotPositiveDefinite.into());
         }
-        let last = Direction { step: Vec::new(), closures: Vec::new(), definite, factored, tools };
+        let proven = self.exact || self.descent == Descent::Down && !definite;
+        let last = Direction { step: Vec::new(), closures: Vec::new(), definite, proven, factored, tools };
         self.take(last, right, state, balance, time)
     }
 
@@ -126,25 +143,30 @@ impl Newton<'_> {
 
     fn take(
         &mut self,
-        Direction { definite, factored, tools, .. }: Direction,
+        last: Direction,
         mut step: Vec<f64>,
         state: &State,
         balance: &Balance,
         time: f64,
     ) -> Result<Direction, StaticError> {
         let lacking = self.lacking(balance, time);
-        step.extend(tools.iter().map(|&k| lacking[k]));
-        self.solve(&factored, &mut step)?;
+        step.extend(last.tools.iter().map(|&k| lacking[k]));
+        self.solve(&last.factored, &mut step)?;
+        Ok(self.finish(last, step, state, time))
+    }
+
+    /// The direction of a solution: free unknowns, then the closures of the tools that have a border.
+    fn finish(&self, last: Direction, mut step: Vec<f64>, state: &State, time: f64) -> Direction {
         let moves = step.split_off(self.system.dim());
         let mut closures = vec![0.0; self.problem.tools.len()];
         for (k, closure) in closures.iter_mut().enumerate() {
             let Some(force) = self.force(k, time) else { continue };
-            *closure = match tools.iter().position(|&t| t == k) {
+            *closure = match last.tools.iter().position(|&t| t == k) {
                 Some(at) => moves[at],
                 None => self.approach(k, state, force),
             };
         }
-        Ok(Direction { step, closures, definite, factored, tools })
+        Direction { step, closures, ..last }
     }
 
     /// Solves with the matrix as it was assembled, pressures scaled.
@@ -152,57 +174,8 @@ impl Newton<'_> {
         self.work.solves += 1;
         let (scale, pressures) = (self.system.pressure_scale, self.system.free..self.system.dim());
         b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
-        factored.solve(b, self.forcing)?;
+        self.work.inner += factored.solve(b, self.forcing)? as u64;
         b[pressures].iter_mut().for_each(|p| *p *= scale);
         Ok(())
-    }
-
-    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
-    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
-    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
-    fn factor(
-        &mut self,
-        mut matrix: algebra::Symmetric,
-        skew: Vec<(usize, usize, f64)>,
-        borders: Vec<Border>,
-    ) -> Result<Factored, StaticError> {
-        if self.symbolic.is_none() {
-            self.symbolic = Some(algebra::analyse(&matrix, DENSE_LIMIT)?);
-        }
-        let symbolic = self.symbolic.as_ref().expect("just analysed").as_ref();
-        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
-        let whole = |factor| match skew.is_empty() && borders.is_empty() {
-            true => Ok(Factored::Symmetric(factor)),
-            false => Unsymmetric::new(factor, skew, borders).map(Factored::Unsymmetric),
-        };
-        let shifts: &[f64] = match self.descent {
-            Descent::Smooth | Descent::Nearest | Descent::Guarded => &[0.0],
-            Descent::Down => &[0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0],
-        };
-        let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
-        for &shift in shifts {
-            matrix.shift(&diagonal, shift);
-            self.work.factorisations += 1;
-            match algebra::factor_as(symbolic, &matrix, kind) {
-                Ok(factor) if self.descent != Descent::Down || factor.negative_pivots() == pressures => {
-                    self.indefinite |= shift > 0.0 || factor.negative_pivots() != pressures;
-                    return Ok(whole(Factorization { matrix, factor, kind })?);
-                }
-                Ok(_) | Err(FactorError::NotDefinite) => {}
-                Err(FactorError::Other(AlgebraError::NearlySingular { .. } | AlgebraError::ZeroPivot)) => {}
-                Err(FactorError::Other(error)) => return Err(error.into()),
-            }
-        }
-        if matches!(self.descent, Descent::Nearest | Descent::Guarded) && kind == Kind::Definite {
-            self.indefinite = true;
-            self.work.factorisations += 1;
-            let kind = Kind::Indefinite;
-            return match algebra::factor_as(symbolic, &matrix, kind) {
-                Ok(factor) => Ok(whole(Factorization { matrix, factor, kind })?),
-                Err(FactorError::Other(error)) => Err(error.into()),
-                Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
-            };
-        }
-        Err(SolveError::NotPositiveDefinite.into())
     }
 }

@@ -40,7 +40,7 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
         contact: None,
         tools: &[],
     };
-    let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true };
+    let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
     let mut newton = Newton::new(&problem, &params).unwrap();
     // Pressed straight, with a sway of a millionth of the length.
     let mut start = State::start(&problem);

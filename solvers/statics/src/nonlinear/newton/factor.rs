@@ -1,0 +1,203 @@
+//! The factor of a tangent, or a kept one that does in its place.
+
+use std::sync::Arc;
+
+use algebra::{
+    AlgebraError, Border, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, Symmetric, Unsymmetric,
+};
+
+use super::tangent::{Direction, Factored};
+use super::{Descent, Newton};
+use crate::SolveError;
+use crate::nonlinear::StaticError;
+
+/// Multiplications of a factorisation over those of a solution for each iteration that a step with a kept factor may take: a
+/// factorisation runs in the caches, and does nine multiplications in the time in which a solution does one.
+const ITERATION: f64 = 9.0;
+/// Iterations with a kept factor at most, and at most where a factor is cheap.
+const MOST: usize = 12;
+const LEAST: usize = 4;
+
+/// Entries of an unsymmetric part.
+type Skew = Vec<(usize, usize, f64)>;
+
+/// A tangent with a kept factor and the step it gives, or the tangent as it was where that does not do.
+type Kept = Result<(Factored, Vec<f64>), (Symmetric, Skew)>;
+
+/// Shifts of the diagonal that are tried on the way down the energy.
+const SHIFTS: [f64; 7] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
+
+impl Newton<'_> {
+    /// Multiplications of a factorisation over those of a solution; 0 where the factor is dense, and so small.
+    fn solutions(&self) -> f64 {
+        self.symbolic.as_ref().and_then(Option::as_ref).map_or(0.0, |symbolic| symbolic.solutions())
+    }
+
+    /// Whether factors are large enough to be kept, and to be made in single precision. With a pressure field the regularisation
+    /// would be lost in rounding; a simulator's loop has its own way of keeping them.
+    pub(super) fn keeps(&self) -> bool {
+        self.solutions() > self.params.keeps && !self.repeats && self.problem.solid.pressure_count() == 0
+    }
+
+    /// The step with the last factor as the preconditioner, where that is expected to be quicker than a factor of its own: only on
+    /// the way to the nearest equilibrium, whose steps do not ask whether the tangent is definite.
+    pub(super) fn with_kept(
+        &mut self,
+        matrix: Symmetric,
+        skew: Skew,
+        right: &[f64],
+        borderless: bool,
+    ) -> Result<Kept, StaticError> {
+        let Some(factor) = self.factor.clone() else { return Ok(Err((matrix, skew))) };
+        if !(self.keeps() && self.descent == Descent::Nearest && borderless) {
+            return Ok(Err((matrix, skew)));
+        }
+        let most = ((self.solutions() / ITERATION) as usize).clamp(LEAST, MOST);
+        let kind = matrix.kind();
+        let near = Unsymmetric::new(Factorization { matrix, factor, kind }, skew, Vec::new())?;
+        let mut step = right.to_vec();
+        let (iterations, solved) = near.solve_within(&mut step, self.forcing, most)?;
+        self.work.inner += iterations as u64;
+        if !solved {
+            return Ok(Err(near.into_parts()));
+        }
+        self.work.solves += 1;
+        Ok(Ok((Factored::Unsymmetric(near), step)))
+    }
+
+    /// Whether the tangent of a step with a kept or a rounded factor is definite, by a factor of its own in double precision, which
+    /// is the next to be kept.
+    pub(super) fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
+        let Factored::Unsymmetric(near) = &last.factored else { return Ok(()) };
+        let matrix = near.matrix();
+        last.proven = true;
+        self.exact = true;
+        last.definite = match self.numbers(matrix, matrix.kind()) {
+            Ok(factor) => {
+                self.factor = Arc::into_inner(factor).map(|factor| Arc::new(factor.rounded()));
+                true
+            }
+            Err(FactorError::NotDefinite) => false,
+            Err(FactorError::Other(AlgebraError::NearlySingular { .. } | AlgebraError::ZeroPivot)) => false,
+            Err(FactorError::Other(error)) => return Err(error.into()),
+        };
+        self.doubtful = !last.definite;
+        Ok(())
+    }
+
+    /// The numbers of a factor; in single precision where it is for a preconditioner alone.
+    fn numbers(&mut self, matrix: &Symmetric, kind: Kind) -> Result<Arc<Factor>, FactorError> {
+        let symbolic = self.symbolic.as_ref().expect("analysed").as_ref();
+        self.work.factorisations += 1;
+        let got = match self.exact {
+            true => algebra::factor_as(symbolic, matrix, kind),
+            false => algebra::factor_roughly(symbolic, matrix, kind),
+        };
+        got.map(Arc::new)
+    }
+
+    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
+    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
+    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
+    pub(super) fn factor(
+        &mut self,
+        mut matrix: Symmetric,
+        skew: Skew,
+        borders: Vec<Border>,
+    ) -> Result<Factored, StaticError> {
+        if self.symbolic.is_none() {
+            self.symbolic = Some(algebra::analyse(&matrix, DENSE_LIMIT)?);
+        }
+        self.exact = !self.keeps() || !borders.is_empty() || self.descent == Descent::Smooth;
+        let (factor, kind) = match self.descent {
+            Descent::Down => self.lifted(&mut matrix)?,
+            Descent::Smooth | Descent::Nearest | Descent::Guarded => self.as_it_is(&matrix)?,
+        };
+        self.doubtful = self.indefinite;
+        if self.keeps() {
+            self.factor = Some(factor.clone());
+        }
+        let whole = Factorization { matrix, factor, kind };
+        Ok(match skew.is_empty() && borders.is_empty() && self.exact {
+            true => Factored::Symmetric(whole),
+            false => Factored::Unsymmetric(Unsymmetric::new(whole, skew, borders)?),
+        })
+    }
+
+    /// The factor of the matrix as it is. After a tangent that was not definite the next one rarely is: then `L D L^T` at once.
+    fn as_it_is(&mut self, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
+        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let at_once =
+            kind == Kind::Definite && self.doubtful && self.keeps() && self.descent != Descent::Smooth;
+        if !at_once {
+            match self.numbers(matrix, kind) {
+                Ok(factor) => {
+                    self.indefinite |= factor.negative_pivots() != pressures;
+                    return Ok((factor, kind));
+                }
+                Err(FactorError::NotDefinite) => {}
+                Err(FactorError::Other(AlgebraError::NearlySingular { .. } | AlgebraError::ZeroPivot)) => {}
+                Err(FactorError::Other(error)) => return Err(error.into()),
+            }
+        }
+        if kind != Kind::Definite || self.descent == Descent::Smooth {
+            return Err(SolveError::NotPositiveDefinite.into());
+        }
+        match self.numbers(matrix, Kind::Indefinite) {
+            Ok(factor) => {
+                self.indefinite |= !at_once || factor.negative_pivots() != 0;
+                Ok((factor, Kind::Indefinite))
+            }
+            Err(FactorError::Other(error)) => Err(error.into()),
+            Err(FactorError::NotDefinite) => Err(SolveError::NotPositiveDefinite.into()),
+        }
+    }
+
+    /// The factor with the least of some shifts that makes the matrix definite. Directions in which it is not, found with the last
+    /// factor, tell of most shifts that they are too small: what a try with them would tell for the price of a factor.
+    fn lifted(&mut self, matrix: &mut Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
+        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
+        let searches = kind == Kind::Definite && self.keeps();
+        let mut known = -1.0;
+        if let (true, true, Some(factor)) = (searches, self.doubtful, self.factor.clone()) {
+            known = self.curvature.shift(matrix, &diagonal, &factor, false)?;
+            if known <= 0.0 {
+                // A factor that fails tells nothing more, this one where the matrix is not definite.
+                if let Ok(factor) = self.numbers(matrix, Kind::Indefinite) {
+                    if factor.negative_pivots() == 0 {
+                        return Ok((factor, Kind::Indefinite));
+                    }
+                    known = self.curvature.shift(matrix, &diagonal, &factor, true)?.max(0.0);
+                }
+            }
+        }
+        for shift in SHIFTS {
+            if shift <= known {
+                continue;
+            }
+            if shift == SHIFTS[1]
+                && searches
+                && known < 0.0
+                && let Some(factor) = &self.factor
+            {
+                known = self.curvature.shift(matrix, &diagonal, factor, false)?.max(0.0);
+                if shift <= known {
+                    continue;
+                }
+            }
+            matrix.shift(&diagonal, shift);
+            match self.numbers(matrix, kind) {
+                Ok(factor) if factor.negative_pivots() == pressures => {
+                    self.indefinite |= shift > 0.0;
+                    return Ok((factor, kind));
+                }
+                Ok(_) | Err(FactorError::NotDefinite) => {}
+                Err(FactorError::Other(AlgebraError::NearlySingular { .. } | AlgebraError::ZeroPivot)) => {}
+                Err(FactorError::Other(error)) => return Err(error.into()),
+            }
+        }
+        self.doubtful = true;
+        Err(SolveError::NotPositiveDefinite.into())
+    }
+}
