@@ -43,8 +43,8 @@ pub struct NewtonParams {
 }
 
 impl NewtonParams {
-    /// From where that pays. Measured on the kidney between jaws (7 mm; factors kept / made anew in single precision / in double
-    /// precision, in CPU seconds): 1.2 / 1.3 / 1.9 at 83 (hex20, 1,201 nodes), 4.8 / 5.2 / 10.5 at 98 (tet10, 2,273 nodes).
+    /// From where that pays. Measured on the kidney between jaws (7 mm; factors kept / made anew for each tangent, in CPU seconds):
+    /// 1.5 / 2.2 at 83 (hex20 with reduced integration, 1,201 nodes), 6.3 / 11.5 at 98 (tet10, 2,273 nodes).
     pub const KEEPS: f64 = 80.0;
 }
 
