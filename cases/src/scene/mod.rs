@@ -48,7 +48,9 @@ pub use method::{
 };
 pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
-pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static};
+pub use procedure::{
+    Explicit, Implicit, LinearSolver, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static,
+};
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};

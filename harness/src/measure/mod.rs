@@ -90,6 +90,10 @@ pub(crate) fn measure(
     }
     if let Some(info) = &solution.linear {
         push(metrics, &metric::FACTOR_NONZEROS, info.factor_nonzeros as f64);
+        if let Some(iterations) = &info.iterations {
+            push(metrics, &metric::LINEAR_ITERATIONS, iterations.count as f64);
+            push(metrics, &metric::OPERATOR_COMPLEXITY, iterations.complexity);
+        }
         if info.eliminated + info.dropped > 0 {
             push(metrics, &metric::CONSTRAINTS_ELIMINATED, info.eliminated as f64);
             push(metrics, &metric::CONSTRAINTS_DROPPED, info.dropped as f64);

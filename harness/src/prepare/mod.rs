@@ -186,6 +186,11 @@ impl Prepared {
         if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
 
+    /// Whether the nodal parameters alone are the unknowns: no constraint rows.
+    pub fn has_rows(&self) -> bool {
+        !self.constraints.is_empty()
+    }
+
     /// A finer quadrature than the method's own, for error norms and consistent masses, with the region of each point where
     /// there are several.
     pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {

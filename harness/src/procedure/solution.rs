@@ -21,6 +21,8 @@ pub(crate) struct Solution {
     pub(crate) residual: Option<f64>,
     /// Of a linear procedure.
     pub(crate) linear: Option<SolveInfo>,
+    /// Whether a linear procedure was to iterate, and needed a factor.
+    pub(crate) not_iterated: bool,
     /// Factor that Nitsche's method needs here, where it holds the body in a linear procedure.
     pub(crate) needed_nitsche_factor: Option<f64>,
     /// Of a procedure in steps.

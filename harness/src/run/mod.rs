@@ -151,7 +151,7 @@ fn loaded(
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     outcome.identity.linear_solver = solution.linear.as_ref().map(|info| info.path.name().into());
-    conclude(&mut outcome.plan, solution.forces, &counters);
+    conclude(&mut outcome.plan, solution, &counters);
     compare(outcome, run, &field, request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     outcome.probes = probes(run, request.probes)?;

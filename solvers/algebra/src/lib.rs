@@ -2,7 +2,7 @@
 //!
 //! A [`BlockPattern`] says which pairs of nodes share a row of a table, a [`Stiffness`] holds their blocks and is summed by rows, a
 //! [`Symmetric`] is its part over the unknowns. [`factor`] takes that to a [`Factorization`]: dense, or sparse in METIS'
-//! nested-dissection order by faer's kernels. [`Unsymmetric`] adds a few unsymmetric entries and borders (GMRES, else LU);
+//! nested-dissection order by faer's kernels. [`Multigrid`] solves with a stiffness by iterations. [`Unsymmetric`] adds a few unsymmetric entries and borders (GMRES, else LU);
 //! [`eigen`] solves dense eigenproblems.
 //!
 //! ```
@@ -25,6 +25,7 @@
 
 mod error;
 mod linear_solver;
+mod multigrid;
 mod pattern;
 mod stiffness;
 
@@ -34,5 +35,6 @@ pub use linear_solver::{
     Border, DENSE_LIMIT, FactorError, Factorization, Kind, SolverPath, Symbolic, Symmetric, Unsymmetric,
     analyse, factor, factor_as, reserve_workspaces,
 };
+pub use multigrid::{Iterations, Multigrid};
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

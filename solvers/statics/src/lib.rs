@@ -91,5 +91,5 @@ pub use nonlinear::{
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};
 pub use rigid::RigidMode;
-pub use solve::{Factored, Solution, SolveInfo};
+pub use solve::{Factored, Iterated, Solution, SolveInfo};
 pub use weak::{Weak, WeakSupport};

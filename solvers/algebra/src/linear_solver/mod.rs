@@ -55,6 +55,8 @@ pub enum SolverPath {
     SparseLlt,
     /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
     SparseLdlt,
+    /// Conjugate gradients with smoothed aggregation as preconditioner.
+    Multigrid,
 }
 
 impl SolverPath {
@@ -66,6 +68,7 @@ impl SolverPath {
             SolverPath::DenseLdlt => "dense-ldlt",
             SolverPath::SparseLlt => "sparse-llt",
             SolverPath::SparseLdlt => "sparse-ldlt",
+            SolverPath::Multigrid => "multigrid",
         }
     }
 }
@@ -317,7 +320,8 @@ impl Factorization {
         refined(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
     }
 
-    fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+    /// One solve with the factor, without refinement.
+    pub(crate) fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         match &self.factor.0 {
             Numbers::Empty => Ok(()),
             Numbers::Dense(factor) => {
