@@ -18,9 +18,12 @@ pub(super) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, 
     counters.factorisations += 1;
     let statics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
     counters.solves += 1;
-    // Untimed, and once for all repeats: a diagnosis, not a part of the solution.
+    // Untimed, and once for all repeats: diagnoses, not a part of the solution.
     if meters.needed_nitsche_factor.is_none() {
         meters.needed_nitsche_factor = factored.needed_nitsche_factor()?;
+    }
+    if meters.digits.is_none() {
+        meters.digits = Some(factored.digits(&info)?);
     }
     let (dofs, residual, needed) = (info.dofs, Some(info.residual), meters.needed_nitsche_factor);
     Ok(Solution {
@@ -29,6 +32,7 @@ pub(super) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, 
         residual,
         linear: Some(info),
         needed_nitsche_factor: needed,
+        digits: meters.digits,
         ..Solution::default()
     })
 }

@@ -23,6 +23,8 @@ pub(crate) struct Solution {
     pub(crate) linear: Option<SolveInfo>,
     /// Factor that Nitsche's method needs here, where it holds the body in a linear procedure.
     pub(crate) needed_nitsche_factor: Option<f64>,
+    /// Decimal digits to be expected of a linear solution.
+    pub(crate) digits: Option<f64>,
     /// Of a procedure in steps.
     pub(crate) history: Option<StepHistory>,
     /// Of vibrations.

@@ -1,7 +1,7 @@
 //! Factorisation and solution of an assembled problem.
 
 use algebra::Stiffness;
-use algebra::{DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
+use algebra::{DENSE_LIMIT, FactorError, Factorization, Solved, SolverPath, Symmetric};
 use shape::Vector3;
 
 use crate::SolveError;
@@ -25,6 +25,8 @@ pub struct SolveInfo {
     pub factor_nonzeros: usize,
     /// Relative residual `|b - A x| / |b|` of the reduced system.
     pub residual: f64,
+    /// What the solution is judged by.
+    pub solved: Solved,
     /// The factorisation that served.
     pub path: SolverPath,
 }
@@ -142,6 +144,12 @@ impl Factored<'_> {
         self.solve_for(forces, 1.0, factor)
     }
 
+    /// Decimal digits that the largest displacement of a solution has at least, by the condition of the matrix: about five more
+    /// solves.
+    pub fn digits(&self, info: &SolveInfo) -> Result<f64, SolveError> {
+        Ok(self.factorization.digits(&info.solved)?)
+    }
+
     /// Smallest factor of Nitsche's method, if any support is of that kind.
     pub(crate) fn gamma(&self) -> Option<f64> {
         self.problem.gamma
@@ -174,7 +182,7 @@ impl Factored<'_> {
             let row = &p.rows[index];
             b[free + k] = factor * scale * (row.value - row.held_part(&p.prescribed));
         }
-        let residual = self.factorization.solve(&mut b)?;
+        let solved = self.factorization.solve_judged(&mut b)?;
         self.reduction.expand(&b, &mut u);
         if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
             self.refine(forms, load, (part, factor), &mut u)?;
@@ -190,7 +198,8 @@ impl Factored<'_> {
             eliminated: self.reduction.eliminated(),
             dropped: self.reduction.dropped,
             factor_nonzeros: self.factorization.nonzeros(),
-            residual,
+            residual: solved.residual,
+            solved,
             path: self.factorization.path(),
         };
         Ok(Solution { u, multipliers, info })
@@ -211,7 +220,7 @@ impl Factored<'_> {
             forms.subtract(u, factor, &mut residual);
             let mut b = vec![0.0; self.factorization.dim()];
             self.reduction.fold(&residual, &mut b);
-            self.factorization.solve(&mut b)?;
+            self.factorization.solve_judged(&mut b)?;
             self.reduction.expand(&b, u);
             let largest = u.iter().fold(0.0f64, |l, u| l.max(u.amax()));
             if b.iter().all(|step| step.abs() <= 1e-9 * largest) {
