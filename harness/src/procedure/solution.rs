@@ -50,6 +50,12 @@ pub(crate) struct StepHistory {
 }
 
 impl Solution {
+    /// What solved the linear system, or the eigenproblem, of a procedure that has one.
+    pub(crate) fn solver(&self) -> Option<&'static str> {
+        let of_vibration = self.vibration.as_ref().map(|vibration| vibration.modes.solver());
+        self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
+    }
+
     /// Whether the whole load was reached; a linear procedure has no less.
     pub(crate) fn is_whole(&self) -> bool {
         self.history.as_ref().is_none_or(|history| history.failure.is_none())

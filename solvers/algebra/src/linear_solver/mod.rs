@@ -6,6 +6,7 @@
 mod accuracy;
 mod dense;
 pub mod eigen;
+mod lanczos;
 mod ordering;
 mod sparse;
 mod unsymmetric;
@@ -14,6 +15,7 @@ mod workspace;
 use std::mem::MaybeUninit;
 use std::sync::Arc;
 
+use faer::MatMut;
 use faer::dyn_stack::MemBuffer;
 
 use crate::{AlgebraError, Stiffness};
@@ -144,6 +146,24 @@ impl Symmetric {
             }
         }
         m
+    }
+
+    /// `A + factor B` of two matrices over the same unknowns, whose entries need not be in the same places.
+    pub(super) fn plus(&self, other: &Symmetric, factor: f64) -> Symmetric {
+        let (mut offsets, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..self.dim() {
+            let column =
+                |m: &Symmetric| (m.offsets[j]..m.offsets[j + 1]).map(|k| (m.rows[k], m.values[k])).collect();
+            let [a, b]: [Vec<(usize, f64)>; 2] = [column(self), column(other)];
+            let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
+            while let Some(row) = [a.peek(), b.peek()].into_iter().flatten().map(|e| e.0).min() {
+                let of = |e: &(usize, f64)| e.0 == row;
+                rows.push(row);
+                values.push(a.next_if(of).map_or(0.0, |e| e.1) + factor * b.next_if(of).map_or(0.0, |e| e.1));
+            }
+            offsets.push(rows.len());
+        }
+        Symmetric { offsets, rows, values, multipliers: self.multipliers, vertices: self.vertices.clone() }
     }
 
     /// Makes the diagonal of the unknowns before the multipliers what it was in `diagonal`, times `1 + shift`.
@@ -367,6 +387,22 @@ impl Factorization {
                 Ok(())
             }
             Numbers::Sparse(factor) => factor.solve(b),
+        }
+    }
+
+    /// Solves for all columns, once.
+    fn solve_columns(&self, mut b: MatMut<f64>) -> Result<(), AlgebraError> {
+        match &self.factor.0 {
+            Numbers::Empty => Ok(()),
+            Numbers::Dense(factor) => {
+                (0..b.ncols()).for_each(|j| {
+                    factor.solve(
+                        b.as_mut().col_mut(j).try_as_col_major_mut().expect("whole columns").as_slice_mut(),
+                    )
+                });
+                Ok(())
+            }
+            Numbers::Sparse(factor) => factor.solve_columns(b),
         }
     }
 
