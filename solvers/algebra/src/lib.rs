@@ -3,7 +3,7 @@
 //! A [`BlockPattern`] says which pairs of nodes share a row of a table, a [`Stiffness`] holds their blocks and is summed by rows, a
 //! [`Symmetric`] is its part over the unknowns. [`factor`] takes that to a [`Factorization`]: dense, or sparse in METIS'
 //! nested-dissection order by faer's kernels. [`Unsymmetric`] adds a few unsymmetric entries and borders (GMRES, else LU);
-//! [`eigen`] solves eigenproblems.
+//! [`eigen`] solves eigenproblems, [`Cholesky`] full matrices for many right-hand sides.
 //!
 //! ```
 //! use algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};
@@ -31,7 +31,7 @@ mod stiffness;
 pub use error::AlgebraError;
 pub use linear_solver::eigen;
 pub use linear_solver::{
-    Border, DENSE_LIMIT, FactorError, Factorization, Kind, Solved, SolverPath, Symbolic, Symmetric,
+    Border, Cholesky, DENSE_LIMIT, FactorError, Factorization, Kind, Solved, SolverPath, Symbolic, Symmetric,
     Unsymmetric, analyse, factor, factor_as, reserve_workspaces,
 };
 pub use pattern::{BlockPattern, Connectivity, Incidence};

@@ -6,6 +6,7 @@
 mod accuracy;
 mod dense;
 pub mod eigen;
+mod full;
 mod lanczos;
 mod ordering;
 mod sparse;
@@ -22,6 +23,7 @@ use crate::{AlgebraError, Stiffness};
 
 pub use accuracy::Solved;
 use accuracy::{BACKWARD_LIMIT, FEWEST_DIGITS};
+pub use full::Cholesky;
 pub use sparse::Symbolic;
 pub use unsymmetric::{Border, Unsymmetric};
 pub use workspace::reserve_workspaces;
