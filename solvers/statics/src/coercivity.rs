@@ -32,7 +32,7 @@ impl Factored<'_> {
         let mut alpha = 1.0;
         for _ in 0..STEPS {
             // In the space that supports leave: also the first, which need not be.
-            v = self.solve_forces(&mass(forms, &v), 0.0)?.u;
+            v = self.solve_roughly(&mass(forms, &v))?;
             let size = v.iter().fold(0.0f64, |l, v| l.max(v.amax()));
             if size == 0.0 {
                 return Ok(None);

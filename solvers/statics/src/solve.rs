@@ -144,6 +144,16 @@ impl Factored<'_> {
         self.solve_for(forces, 1.0, factor)
     }
 
+    /// The displacement under nodal forces (N) with supports at rest, without refinement: for an iteration that corrects itself.
+    pub(crate) fn solve_roughly(&self, forces: &[Vector3]) -> Result<Vec<Vector3>, SolveError> {
+        let mut b = vec![0.0; self.factorization.dim()];
+        self.reduction.fold(forces, &mut b);
+        self.factorization.solve_once(&mut b)?;
+        let mut u = self.reduction.constrained(0.0);
+        self.reduction.expand(&b, &mut u);
+        Ok(u)
+    }
+
     /// Decimal digits that the largest displacement of a solution has at least, by the condition of the matrix: about five more
     /// solves.
     pub fn digits(&self, info: &SolveInfo) -> Result<f64, SolveError> {
