@@ -81,7 +81,7 @@ fn the_lowest_modes_of_a_large_body_are_found_alone() {
     };
     let rollers = large(&format!("{BOX}{ROLLERS}"));
     assert!(rollers["dofs"].as_f64().unwrap() > 4000.0, "{rollers}");
-    assert!(metric(&rollers, "spectrum-error") < 0.02 && metric(&rollers, "residual") < 1e-6, "{rollers}");
+    assert!(metric(&rollers, "spectrum-error") < 0.03 && metric(&rollers, "residual") < 1e-6, "{rollers}");
     assert!(metric(&rollers, "mode-overlap") > 0.99 && metric(&rollers, "slow-modes") == 0.0);
     assert!(metric(&rollers, "frequency-ratio") > 1.0);
     assert_eq!(rollers["linear_solver"], "block-lanczos");
