@@ -19,6 +19,9 @@ const LEAK: f64 = 0.1;
 const ROUNDING: f64 = 1e-12;
 /// Of the largest displacement, in one step.
 const LONG_STEP: f64 = 0.01;
+/// Certain digits of the largest displacement. Two or three more are right as a rule, and as many fewer of strains, which then hold
+/// to 0.01 %: less than the errors by which methods are compared.
+const DIGITS: f64 = 4.0;
 /// A cloud on the vertices of its tetrahedra has two to six cells per node, and one point in each sees its motions; at 1.7 some
 /// clouds already move between their points.
 const POINTS_PER_NODE: f64 = 2.0;
@@ -41,6 +44,7 @@ pub(crate) fn warnings(
     found.extend(value(&metric::NITSCHE_FACTOR_NEEDED).and_then(|needed| bare_factor(run, needed)));
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
+    found.extend(run.solution.digits.and_then(few_digits));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
     found
 }
@@ -166,6 +170,17 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
         Warning::new(&warning::FEW_CONTACT_POINTS, tool.carriers, format!("tool[{index}]"), message)
     });
     each.collect()
+}
+
+fn few_digits(digits: f64) -> Option<Warning> {
+    (digits < DIGITS).then(|| {
+        let message = format!(
+            "no more than {:.1} digits of the largest displacement are certain, as the matrix is near to a singular one, and fewer \
+             of strains and stresses",
+            digits.max(0.0)
+        );
+        Warning::new(&warning::FEW_DIGITS, digits, "", message)
+    })
 }
 
 fn rough_stress(estimate: Option<f64>) -> Option<Warning> {

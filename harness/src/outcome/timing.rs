@@ -109,6 +109,8 @@ pub(crate) struct Meters {
     pub(crate) counters: Counters,
     /// Factor that Nitsche's method needs: found once for all passes.
     pub(crate) needed_nitsche_factor: Option<f64>,
+    /// Decimal digits to be expected of a linear solution: found once for all passes.
+    pub(crate) digits: Option<f64>,
 }
 
 /// Median, interquartile range and minimum of repeated timings, in seconds.

@@ -29,11 +29,14 @@ pub(super) fn solve(
     let assembled = meters.timings.time("assemble", || assemble(&system))?;
     meters.counters.assemblies += 1;
     let solved = solved(problem, assembled, asked, meters)?;
-    // Untimed, and once for all repeats: a diagnosis, not a part of the solution.
+    let statics::Solution { u, info, .. } = solved.solution;
+    // Untimed, and once for all repeats: diagnoses, not a part of the solution.
     if meters.needed_nitsche_factor.is_none() {
         meters.needed_nitsche_factor = solved.factored.needed_nitsche_factor()?;
     }
-    let statics::Solution { u, info, .. } = solved.solution;
+    if meters.digits.is_none() {
+        meters.digits = solved.factored.digits(&info)?;
+    }
     Ok(Solution {
         u,
         dofs: info.dofs,
@@ -41,6 +44,7 @@ pub(super) fn solve(
         linear: Some(info),
         not_iterated: solved.not_iterated,
         needed_nitsche_factor: meters.needed_nitsche_factor,
+        digits: meters.digits,
         ..Solution::default()
     })
 }

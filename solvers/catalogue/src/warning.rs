@@ -59,6 +59,8 @@ warnings! {
         "the body is turned inside out between the integration points; the smallest J at the points of a finer quadrature";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
+    FEW_DIGITS: "few-digits", None,
+        "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
     ESTIMATED_ERROR: "estimated-error", None,
         "the stress is far from smooth: its estimated error in the energy norm over the norm of the stress";
 }

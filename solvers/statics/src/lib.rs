@@ -83,7 +83,7 @@ pub use implicit::{
     solve_in_time,
 };
 pub use load::{Load, nodal_forces};
-pub use modes::{Modes, modes};
+pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
     Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Solid, StaticError, StaticParams,
     StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,

@@ -1,7 +1,7 @@
 //! Factorisation and solution of an assembled problem.
 
 use algebra::Stiffness;
-use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, SolverPath, Symmetric};
+use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, Solved, SolverPath, Symmetric};
 use shape::{Coarser, Vector3};
 
 use crate::SolveError;
@@ -36,6 +36,8 @@ pub struct SolveInfo {
     pub iterations: Option<Iterated>,
     /// Relative residual `|b - A x| / |b|` of the reduced system.
     pub residual: f64,
+    /// What a solution by a factor is judged by.
+    pub solved: Option<Solved>,
     /// The factorisation that served.
     pub path: SolverPath,
 }
@@ -187,6 +189,33 @@ impl<'a> Factored<'a> {
         self.problem
     }
 
+    /// The displacement under nodal forces (N) with supports at rest, without refinement: for an iteration that corrects itself.
+    pub(crate) fn solve_roughly(&self, forces: &[Vector3]) -> Result<Vec<Vector3>, SolveError> {
+        let factorization = match &self.solver {
+            Solver::Direct(factorization) => factorization,
+            Solver::Multigrid { multigrid, tolerance } => {
+                let mut u = forces.to_vec();
+                multigrid.solve(&self.problem.stiffness, &mut u, *tolerance)?;
+                return Ok(u);
+            }
+        };
+        let mut b = vec![0.0; factorization.dim()];
+        self.reduction.fold(forces, &mut b);
+        factorization.solve_once(&mut b)?;
+        let mut u = self.reduction.constrained(0.0);
+        self.reduction.expand(&b, &mut u);
+        Ok(u)
+    }
+
+    /// Decimal digits that the largest displacement of a solution has at least, by the condition of the matrix: about five more
+    /// solves. Not known of iterations.
+    pub fn digits(&self, info: &SolveInfo) -> Result<Option<f64>, SolveError> {
+        match (&self.solver, &info.solved) {
+            (Solver::Direct(factorization), Some(solved)) => Ok(Some(factorization.digits(solved)?)),
+            _ => Ok(None),
+        }
+    }
+
     /// Smallest factor of Nitsche's method, if any support is of that kind.
     pub(crate) fn gamma(&self) -> Option<f64> {
         self.problem.gamma
@@ -225,7 +254,7 @@ impl<'a> Factored<'a> {
             let row = &p.rows[index];
             b[free + k] = factor * scale * (row.value - row.held_part(&p.prescribed));
         }
-        let residual = factorization.solve(&mut b)?;
+        let solved = factorization.solve_judged(&mut b)?;
         self.reduction.expand(&b, &mut u);
         if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
             self.refine(factorization, forms, load, (part, factor), &mut u)?;
@@ -242,7 +271,8 @@ impl<'a> Factored<'a> {
             dropped: self.reduction.dropped,
             factor_nonzeros: factorization.nonzeros(),
             iterations: None,
-            residual,
+            residual: solved.residual,
+            solved: Some(solved),
             path: factorization.path(),
         };
         Ok(Solution { u, multipliers, info })
@@ -266,6 +296,7 @@ impl<'a> Factored<'a> {
             factor_nonzeros: multigrid.levels().iter().map(|level| level.1).sum(),
             iterations: Some(Iterated { count: done.count, complexity: multigrid.complexity() }),
             residual: done.residual,
+            solved: None,
             path: SolverPath::Multigrid,
         };
         Ok(Solution { u, multipliers: Vec::new(), info })
@@ -287,7 +318,7 @@ impl<'a> Factored<'a> {
             forms.subtract(u, factor, &mut residual);
             let mut b = vec![0.0; factorization.dim()];
             self.reduction.fold(&residual, &mut b);
-            factorization.solve(&mut b)?;
+            factorization.solve_judged(&mut b)?;
             self.reduction.expand(&b, u);
             let largest = u.iter().fold(0.0f64, |l, u| l.max(u.amax()));
             if b.iter().all(|step| step.abs() <= 1e-9 * largest) {

@@ -2,6 +2,7 @@
 
 use shape::Vector3;
 
+use super::level::Cycle;
 use super::{Entry, Multigrid};
 use crate::{AlgebraError, Stiffness};
 
@@ -24,11 +25,26 @@ impl Multigrid {
     ///
     /// The preconditioner is in single precision, symmetric to rounding only: the flexible formula for the next direction
     /// (Polak and Ribiere's) takes that, at one more product of vectors.
+    ///
+    /// A W-cycle makes a residual on a coarse level from a solution there; where the softest motions have 1e-8 of the stiffness, as in
+    /// a slender beam, that is all rounding in single precision, and the cycle is not positive. Then V-cycles serve.
     pub fn solve(
         &self,
         stiffness: &Stiffness,
         b: &mut [Vector3],
         tolerance: f64,
+    ) -> Result<Iterations, AlgebraError> {
+        self.iterate(stiffness, b, tolerance, Cycle::W)
+            .or_else(|_| self.iterate(stiffness, b, tolerance, Cycle::V))
+    }
+
+    /// As [`Multigrid::solve`]; a failure leaves `b` as it is but where held.
+    fn iterate(
+        &self,
+        stiffness: &Stiffness,
+        b: &mut [Vector3],
+        tolerance: f64,
+        cycle: Cycle,
     ) -> Result<Iterations, AlgebraError> {
         self.release(b);
         let size = norm(b);
@@ -47,7 +63,7 @@ impl Multigrid {
         for _ in 0..3 {
             direction.fill(Vector3::zeros());
             while norm(&rest) > tolerance * size && count < MOST {
-                let preconditioned = inner.apply(self, &rest);
+                let preconditioned = inner.apply(self, &rest, cycle);
                 let product = dot(&rest, preconditioned);
                 let turned = dot(&before, preconditioned);
                 let beta = if count == 0 || last == 0.0 { 0.0 } else { (product - turned) / last };
@@ -121,12 +137,12 @@ impl Precondition {
     }
 
     /// One cycle, with the residual scaled to a largest entry of one: it falls below what single precision can hold.
-    fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3]) -> &[Vector3] {
+    fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
         let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
         for (b, r) in self.b.iter_mut().zip(rest) {
             *b = std::array::from_fn(|a| (r[a] / largest) as f32);
         }
-        multigrid.finest.solve(&self.b, &mut self.x);
+        multigrid.finest.solve(&self.b, &mut self.x, cycle);
         for (out, x) in self.out.iter_mut().zip(&self.x) {
             *out = Vector3::from_fn(|a, _| f64::from(x[a]) * largest);
         }

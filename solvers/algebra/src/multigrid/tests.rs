@@ -2,7 +2,7 @@
 
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
-use super::level::by_aggregates;
+use super::level::{Cycle, by_aggregates};
 use super::lower::{Block, Lower, LowerRows};
 use super::operator::Operator;
 use super::transfer::{Dense, Transfer, Weight};
@@ -147,7 +147,7 @@ fn a_cycle_is_symmetric_and_positive() {
     };
     let solve = |b: &[[f32; 3]]| {
         let mut x = vec![[0.0; 3]; b.len()];
-        level.solve(b, &mut x);
+        level.solve(b, &mut x, Cycle::W);
         x
     };
     let inner = |a: &[[f32; 3]], b: &[[f32; 3]]| -> f64 {
