@@ -2,10 +2,12 @@
 
 mod displacement;
 mod estimate;
+mod exact_fit;
 pub(crate) mod mean_pressure;
 mod modes;
 pub(crate) mod norms;
 mod own_stress;
+mod patch;
 mod picture;
 mod probe_history;
 mod probes;

@@ -19,6 +19,7 @@ use statics::{
 };
 
 use crate::Failure;
+use crate::discretise::gradients;
 use crate::discretise::place::{self, Place, tolerance};
 use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
@@ -299,6 +300,10 @@ impl Prepared {
                 if !patch.whole.is_empty() {
                     let flux = self.source.flux(&patch.whole)?;
                     let trace = self.source.trace(&patch.whole)?;
+                    // A trace has the gradients of the volume in their place.
+                    if trace.is_none() {
+                        gradients::check(Key::Method("essential"), method.nodes(), flux.at())?;
+                    }
                     self.constrain_flux(method, support, flux, Weak::Nitsche { gamma }, trace)?;
                 }
             }
