@@ -68,3 +68,24 @@ fn a_reference_that_knows_no_vibrations_is_refused_at_its_key() {
     let scene = write(&dir, "box.toml", &format!("{BOX}reference = {{ exact = \"rigid\" }}\n"));
     assert_fails(&tissuebench(&["run", &scene]), 2, "'reference.exact': 'rigid' knows no vibrations");
 }
+
+/// Beyond the unknowns that a dense decomposition takes: the lowest by block Lanczos.
+#[test]
+fn the_lowest_modes_of_a_large_body_are_found_alone() {
+    let large = |text: &str| {
+        let hex8 =
+            text.lines().filter(|line| !line.contains("id = \"hex8-") && !line.contains("id = \"efg\""));
+        let text = hex8.map(|line| format!("{line}\n")).collect::<String>();
+        metrics(&text.replace("{ level = 1 }", "{ cells = [16, 12, 8] }").replace("modes = 8", "modes = 20"))
+            .remove(0)
+    };
+    let rollers = large(&format!("{BOX}{ROLLERS}"));
+    assert!(rollers["dofs"].as_f64().unwrap() > 4000.0, "{rollers}");
+    assert!(metric(&rollers, "spectrum-error") < 0.03 && metric(&rollers, "residual") < 1e-6, "{rollers}");
+    assert!(metric(&rollers, "mode-overlap") > 0.99 && metric(&rollers, "slow-modes") == 0.0);
+    assert!(metric(&rollers, "frequency-ratio") > 1.0);
+    assert_eq!(rollers["linear_solver"], "block-lanczos");
+    // What is known of all modes alone.
+    assert!(rollers["metrics"]["massless"].is_null() && rollers["metrics"]["critical-step"].is_null());
+    assert_eq!(metric(&large(BOX), "rigid-modes"), 6.0);
+}

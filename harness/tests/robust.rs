@@ -81,7 +81,7 @@ method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", basis = "lin
 }
 
 #[test]
-fn hard_clouds_keep_the_affine_field_or_are_refused() {
+fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
     let dir = tempfile::tempdir().unwrap();
     // The affine field is within rounding on any cloud that has shape functions. Where all nodes of a support are nearly in a
     // plane, gradients are as large as the inverse of its thickness: so is their rounding;
@@ -129,14 +129,17 @@ fn hard_clouds_keep_the_affine_field_or_are_refused() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let told: Value = serde_json::from_str(&done.stdout).unwrap();
     assert!(told["metrics"]["fallbacks-enlarged"]["value"].as_f64().unwrap() > 0.0, "{told}");
-    // Round supports over flat cells, of 50:1 and of 12:1, see their neighbours in planes: what the solver can't hold is no
-    // result. At 18:1 it happens to hold (above).
+    // Round supports over flat cells, of 50:1 and of 12:1, see their neighbours in planes: few digits are certain, which the run
+    // says, though all but the last are right.
     for thin in [
         r#"neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
         r#"neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
     ] {
-        let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(thin))]);
-        assert_fails(&done, 3, "after the solve (limit 1e-8)");
+        let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(thin)), "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let told: Value = serde_json::from_str(&done.stdout).unwrap();
+        assert!(told["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-11, "{told}");
+        assert_eq!(told["warnings"][0]["code"], "few-digits", "{told}");
     }
     // The nodes are those of a mesh, whose cells may turn inside out.
     let wild =

@@ -71,7 +71,7 @@ fn jaw(along: Vector3, friction: f64) -> Tool {
 }
 
 fn params(dt: f64, damping: f64) -> DynamicsParams {
-    DynamicsParams { dt, damping, critical: LANCZOS, recheck: 0 }
+    DynamicsParams { dt, damping, critical: LANCZOS, recheck: 0, known: None }
 }
 
 fn no_load(_: f64, _: &[Vector3], _: &[Vector3], _: &mut [Vector3]) {}

@@ -23,7 +23,7 @@ fn body<'a>(volume: &'a shape::VolumeRows, laws: &'a [Law]) -> ExplicitBody<'a> 
 }
 
 fn undamped(dt: f64) -> DynamicsParams {
-    DynamicsParams { dt, damping: 0.0, critical: LANCZOS, recheck: 0 }
+    DynamicsParams { dt, damping: 0.0, critical: LANCZOS, recheck: 0, known: None }
 }
 
 fn no_load(_: f64, _: &[Vector3], _: &[Vector3], _: &mut [Vector3]) {}
@@ -292,6 +292,37 @@ fn bits_of_a_motion_do_not_depend_on_threads() {
         })
     };
     assert_eq!(run(1), run(2));
+}
+
+/// A motion with its own estimate at every state keeps the last one while no point has changed its shape by 2 %.
+#[test]
+fn the_critical_step_follows_the_shape() {
+    let free = Free::new([3, 2, 2]);
+    let laws = law();
+    let zero = vec![Vector3::zeros(); free.mass.len()];
+    let mut force = InternalForce::new(body(&free.block.volume, &laws), LanePath::best()).unwrap();
+    let mut stepped = |stretch: f64| {
+        let u: Vec<Vector3> =
+            free.block.mesh.points().iter().map(|x| Vector3::new(stretch * x.x, 0.0, 0.0)).collect();
+        let at = critical_step(&mut force, &free.mass, &u, |_| true, LANCZOS).unwrap();
+        let start = critical_step(&mut force, &free.mass, &zero, |_| true, LANCZOS).unwrap();
+        // As if the estimate at rest had been made before.
+        let params = DynamicsParams { known: Some(start), ..undamped(0.5 * start.dt) };
+        let velocity: Vec<Vector3> = u.iter().map(|u| u / (0.5 * start.dt)).collect();
+        let mut motion = Dynamics::new(&mut force, &free.mass, &[], params, zero.clone(), velocity).unwrap();
+        motion.run(1, 0, &mut no_load, &mut |_, _| ()).unwrap();
+        let moved = motion.displacements().iter().zip(&u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(moved < 1e-12, "{moved}");
+        (motion.critical_step().unwrap().dt, start.dt, at.dt)
+    };
+    for stretch in [0.019, -0.019] {
+        let (found, start, _) = stepped(stretch);
+        assert_eq!(found, start, "{stretch}");
+    }
+    for stretch in [0.021, -0.3] {
+        let (found, start, at) = stepped(stretch);
+        assert!((found / at - 1.0).abs() < 1e-6 && found != start, "{stretch}: {found} {at} {start}");
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Linear statics: patch tests, stiffness, solutions, and problems that are refused.
 
+mod digits;
+mod multigrid;
 mod patch;
 mod refusals;
 mod solve;

@@ -42,6 +42,7 @@ pub struct Axis {
     /// From this error on a result is wrong.
     pub wrong: f64,
     set: BTreeMap<String, Value>,
+    unset: Vec<String>,
 }
 
 /// One thing of the scene, driven from value to value until methods bend and break
@@ -65,6 +66,9 @@ pub(crate) struct AxisKeys {
     /// values: in braces, expressions of the value x, such as "{40 / x} mm"
     #[schemars(with = "BTreeMap<String, serde_json::Value>")]
     set: BTreeMap<String, Value>,
+    /// Keys of the scene to leave out, such as "method[].support_scale" where neighbours are set
+    #[serde(default)]
+    unset: Vec<String>,
 }
 
 /// Reads the axis at `key`.
@@ -86,8 +90,8 @@ pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axi
     report.require(known, &at("base"), "is none of the values", "name one of them");
     let wrong = keys.wrong.unwrap_or(0.25);
     report.require(wrong > 0.0, &at("wrong"), "is no error", "give a number above 0");
-    let AxisKeys { name, unit, values, set, .. } = keys;
-    Some(Axis { name, unit, values, base, judge, wrong, set })
+    let AxisKeys { name, unit, values, set, unset, .. } = keys;
+    Some(Axis { name, unit, values, base, judge, wrong, set, unset })
 }
 
 impl Axis {
@@ -122,9 +126,12 @@ impl Axis {
         if let Some(table) = table.as_table_mut() {
             table.remove("check");
         }
+        for key in &self.unset {
+            set(&mut table, key, None).map_err(|problem| refuse(key, problem))?;
+        }
         for (key, template) in &self.set {
             let filled = fill(template, value).map_err(|problem| refuse(key, problem))?;
-            set(&mut table, key, &filled).map_err(|problem| refuse(key, problem))?;
+            set(&mut table, key, Some(&filled)).map_err(|problem| refuse(key, problem))?;
         }
         let text = table.as_table().map_or(String::new(), toml::Table::to_string);
         let mut varied = parse(&text, scene.file())?;
@@ -167,8 +174,8 @@ fn fill_text(text: &str, x: f64) -> Result<Value, Problem> {
     })
 }
 
-/// Puts a value at a key such as `method[].size.cells[0]`; tables on the way are made where there are none.
-fn set(table: &mut Value, key: &str, value: &Value) -> Result<(), Problem> {
+/// Puts a value at a key such as `method[].size.cells[0]`, or removes the key; tables on the way are made where there are none.
+fn set(table: &mut Value, key: &str, value: Option<&Value>) -> Result<(), Problem> {
     let (head, rest) = match key.find(['.', '[']) {
         Some(end) => key.split_at(end),
         None => (key, ""),
@@ -191,18 +198,23 @@ fn set(table: &mut Value, key: &str, value: &Value) -> Result<(), Problem> {
         let help = near.map_or(String::new(), |near| format!("did you mean '{near}'?"));
         return Err(Problem::new("is not in the scene").found(head).help(help));
     }
+    if rest.is_empty() && value.is_none() {
+        here.remove(head);
+        return Ok(());
+    }
     let slot = here.entry(head.to_string()).or_insert_with(|| Value::Table(toml::Table::new()));
     below(slot, rest, value)
 }
 
-fn below(slot: &mut Value, rest: &str, value: &Value) -> Result<(), Problem> {
-    match rest.strip_prefix('.') {
-        _ if rest.is_empty() => {
+fn below(slot: &mut Value, rest: &str, value: Option<&Value>) -> Result<(), Problem> {
+    match (rest.strip_prefix('.'), value) {
+        (_, Some(value)) if rest.is_empty() => {
             *slot = value.clone();
             Ok(())
         }
-        Some(key) => set(slot, key, value),
-        None => set(slot, rest, value),
+        (_, None) if rest.is_empty() => Err(Problem::new("is one of a list, which can't be left out")),
+        (Some(key), _) => set(slot, key, value),
+        (None, _) => set(slot, rest, value),
     }
 }
 
@@ -225,17 +237,29 @@ mod tests {
     fn keys_reach_into_lists_and_every_method() {
         let mut scene =
             Value::Table("method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 2] }".parse().unwrap());
-        set(&mut scene, "method[].cells", &Value::Integer(3)).unwrap();
-        set(&mut scene, "body.size[1]", &Value::Integer(7)).unwrap();
-        set(&mut scene, "material.poisson", &Value::Float(0.4)).unwrap();
+        set(&mut scene, "method[].cells", Some(&Value::Integer(3))).unwrap();
+        set(&mut scene, "body.size[1]", Some(&Value::Integer(7))).unwrap();
+        set(&mut scene, "material.poisson", Some(&Value::Float(0.4))).unwrap();
         let expected = "method = [{ id = 'a', cells = 3 }, { id = 'b', cells = 3 }]\nbody = { size = [1, 7] }\n\
                         material = { poisson = 0.4 }";
         assert_eq!(scene, Value::Table(expected.parse().unwrap()));
+        set(&mut scene, "method[].cells", None).unwrap();
+        set(&mut scene, "material", None).unwrap();
+        let expected = "method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 7] }";
+        assert_eq!(scene, Value::Table(expected.parse().unwrap()));
+        assert!(set(&mut scene, "body.size[0]", None).unwrap_err().problem.contains("of a list"));
         assert!(
-            set(&mut scene, "body.size[2]", &Value::Integer(7)).unwrap_err().problem.contains("none of 2")
+            set(&mut scene, "body.size[2]", Some(&Value::Integer(7)))
+                .unwrap_err()
+                .problem
+                .contains("none of 2")
         );
         assert!(
-            set(&mut scene, "methd[].id", &Value::Integer(7)).unwrap_err().help.unwrap().contains("method")
+            set(&mut scene, "methd[].id", Some(&Value::Integer(7)))
+                .unwrap_err()
+                .help
+                .unwrap()
+                .contains("method")
         );
     }
 }

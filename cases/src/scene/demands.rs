@@ -1,7 +1,7 @@
 //! What a procedure and the other parts of a scene demand of each other.
 
 use super::field::{Prescribed, ScalarField};
-use super::method::{Cloud, Dilation, Efg, Element, Essential, Family};
+use super::method::{Cloud, Dilation, Efg, Element, Essential, Family, Regions};
 use super::model::Scene;
 use super::output::Reference;
 use super::procedure::{Procedure, ProcedureKind};
@@ -17,6 +17,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     mixed(scene, report);
     held(scene, report);
     unsolved(scene, report);
+    parted(scene, report);
     refined(scene, report);
     vibrating(scene, report);
     if scene.output.repeated.is_some() {
@@ -68,6 +69,19 @@ fn held(scene: &Scene, report: &mut Report) {
             let key = if report.origin().has(&table) { table } else { format!("method[{i}].essential") };
             report.add(&key, problem);
         }
+    }
+}
+
+/// Where there is one material, there is no border.
+fn parted(scene: &Scene, report: &mut Report) {
+    for (i, method) in scene.methods.iter().enumerate() {
+        let Family::Efg(Efg { regions: Regions::Separate, .. }) = &method.family else { continue };
+        report.require(
+            !scene.regions.is_empty(),
+            &format!("method[{i}].regions"),
+            "is of the borders between material regions, and the scene has no [[region]]",
+            "leave it out",
+        );
     }
 }
 

@@ -70,6 +70,8 @@ pub struct Efg {
     pub essential: Essential,
     /// Treatment of the volume change.
     pub dilation: Dilation,
+    /// Whether shape functions reach across the borders of material regions.
+    pub regions: Regions,
     /// Mesh to integrate over, where it is not the one the cloud is taken from.
     pub background: Option<Size>,
 }
@@ -265,6 +267,16 @@ words! {
         /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic. It follows the cells of the mesh
         /// whose nodes form the cloud.
         Ellipsoid = "ellipsoid",
+    }
+}
+
+words! {
+    /// What shape functions of a cloud do at the borders of material regions.
+    pub enum Regions {
+        /// They reach across and smooth the jump of the strain; used unless given.
+        Blended = "blended",
+        /// They end there: linear finite elements along the border, coupled to the cloud, keep the displacement continuous.
+        Separate = "separate",
     }
 }
 

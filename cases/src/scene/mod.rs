@@ -44,11 +44,13 @@ pub use field::{Prescribed, ScalarField, VectorField};
 pub use material::{Material, Relaxation, medium};
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, Family, Fem, Functions,
-    Integration, Jitter, Mass, MeshFile, Method, Refine, Size, SupportRule, SupportShape,
+    Integration, Jitter, Mass, MeshFile, Method, Refine, Regions, Size, SupportRule, SupportShape,
 };
 pub use model::{Body, Load, LoadKind, MaterialRegion, Place, Scene, Support};
 pub use output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
-pub use procedure::{Explicit, Implicit, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static};
+pub use procedure::{
+    Explicit, Implicit, LinearSolver, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static,
+};
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
 pub use study::{Run, Study, load_study, parse_study};

@@ -51,6 +51,18 @@ words! {
     }
 }
 
+words! {
+    /// What solves the equations of a linear procedure.
+    pub enum LinearSolver {
+        /// By size, Poisson's ratio and supports, as the plan says; used unless given.
+        Auto = "auto",
+        /// A factor, sparse or dense.
+        Direct = "direct",
+        /// Conjugate gradients with algebraic multigrid, to a relative residual of 1e-8. Not with multipliers or elimination.
+        Amg = "amg",
+    }
+}
+
 /// How the scene is solved: one procedure, with what it alone takes. In a static procedure loads, prescribed displacements and
 /// drives of tools grow in proportion over its steps, in dynamics over its duration or a time of their own, and a tool over that
 /// of its drive; loads are dead loads, per undeformed area and volume and of fixed direction.
@@ -59,7 +71,10 @@ pub enum Procedure {
     /// Tables only; nothing is solved.
     Prepare,
     /// One linear solve; what a file without `[procedure]` means.
-    Linear,
+    Linear {
+        /// What solves the equations.
+        solver: LinearSolver,
+    },
     /// Free vibrations.
     Modes {
         /// Lowest modes that are reported and compared.
@@ -78,7 +93,7 @@ impl Procedure {
     pub fn kind(&self) -> ProcedureKind {
         match self {
             Procedure::Prepare => ProcedureKind::Prepare,
-            Procedure::Linear => ProcedureKind::Linear,
+            Procedure::Linear { .. } => ProcedureKind::Linear,
             Procedure::Modes { .. } => ProcedureKind::Modes,
             Procedure::Static(_) => ProcedureKind::Static,
             Procedure::Explicit(_) => ProcedureKind::Explicit,
@@ -206,7 +221,10 @@ pub(crate) enum ProcedureKeys {
         steps: Option<u32>,
     },
     /// One linear solve
+    #[serde(rename_all = "kebab-case")]
     Linear {
+        /// What solves the equations; "auto" unless given
+        linear_solver: Option<LinearSolver>,
         /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
     },
@@ -294,10 +312,10 @@ pub(crate) struct ImplicitKeys {
 /// Without a table it is linear.
 pub(crate) fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> Procedure {
     match keys {
-        None => Procedure::Linear,
-        Some(ProcedureKeys::Linear { steps: unused }) => {
+        None => Procedure::Linear { solver: LinearSolver::Auto },
+        Some(ProcedureKeys::Linear { linear_solver, steps: unused }) => {
             steps(unused, report);
-            Procedure::Linear
+            Procedure::Linear { solver: linear_solver.unwrap_or(LinearSolver::Auto) }
         }
         Some(ProcedureKeys::Prepare { steps: unused }) => {
             steps(unused, report);

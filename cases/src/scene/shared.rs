@@ -12,6 +12,7 @@
 //! tables take nothing from elsewhere themselves.
 
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use schemars::JsonSchema;
 use serde_json::{Value, json};
@@ -25,6 +26,10 @@ use super::report::{Report, beside, which};
 use super::resolve;
 use super::sources::Taken;
 use catalogue::Problem;
+
+/// The schemas, made once: to make one takes longer than to check a file.
+static SCENE: LazyLock<Value> = LazyLock::new(schema::<SceneKeys>);
+static SHARED: LazyLock<Value> = LazyLock::new(|| unfinished(schema::<SharedKeys>()));
 
 /// A file of shared methods
 #[derive(JsonSchema)]
@@ -54,7 +59,7 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
         wrong(Problem::new("can't be read").found(shared_file.as_str()).help(help))
     })?;
     let shared = Document::parse(&shared_text, &shared_file)?;
-    shared.check(&unfinished(schema::<SharedKeys>()))?;
+    shared.check(&SHARED)?;
     unique(&shared)?;
     take(&mut document, shared)?;
     keys(document)
@@ -62,7 +67,7 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
 
 /// The keys of a scene; or what is wrong with them, and with the values of the parts whose keys are sound.
 fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
-    let Err(mut errors) = document.check(&schema::<SceneKeys>()) else { return document.values() };
+    let Err(mut errors) = document.check(&SCENE) else { return document.values() };
     if let Some((parts, origin)) = document.sound(&errors) {
         let mut report = Report::new(&origin);
         resolve::parts(parts, &mut report);

@@ -14,7 +14,7 @@ fn a_scene_arrives_in_si() {
     assert_eq!((law.young(), law.poisson(), scene.material.density), (2e4, 0.45, Some(1000.0)));
     assert_eq!(scene.regions[0].material.constant("young"), Some(4e4));
     assert_eq!(scene.output.probes, [[0.0, 0.0, 0.005]]);
-    assert_eq!(scene.procedure, Procedure::Linear);
+    assert_eq!(scene.procedure, Procedure::Linear { solver: LinearSolver::Auto });
     assert_eq!(scene.checks[0].bound, Bound::Within { at_least: None, at_most: Some(1e-4) });
     assert_eq!(scene.checks[0].methods, ["tet4", "efg-83"]);
     let Bound::KnownBand { low, high, reason } = &scene.checks[1].bound else { panic!("a band") };

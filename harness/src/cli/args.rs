@@ -79,6 +79,9 @@ pub struct RunArgs {
     /// Only this method (may be given several times)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
+    /// Time each run once; by default runs that take less than a second are repeated, up to five times
+    #[arg(long)]
+    pub once: bool,
     /// What to print on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,

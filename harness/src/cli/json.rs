@@ -37,7 +37,7 @@ pub struct RunObject<'a> {
     /// Instructions of its lanes; absent where it is the plain loop.
     #[serde(skip_serializing_if = "Option::is_none")]
     lane_path: Option<&'a str>,
-    /// What solved the equations of a linear procedure.
+    /// What solved the equations of a linear procedure, or found the modes of vibration.
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_solver: Option<&'a str>,
     /// Counts of what was done; all 0 in a run that failed.

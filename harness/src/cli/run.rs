@@ -36,7 +36,8 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         outcomes: Vec::new(),
         code: 0,
     };
-    let group = match Group::new(&scene, None, REPEATS) {
+    let repeats = if args.once { Repeats::ONCE } else { REPEATS };
+    let group = match Group::new(&scene, None, repeats) {
         Ok(group) => group,
         Err(failure) => return made.unreferenced(&chosen, &failure),
     };
@@ -74,7 +75,7 @@ impl Made<'_> {
         if self.args.format == Format::Json {
             for &index in chosen {
                 let method = &self.scene.methods[index];
-                let planned = Group::unreferenced(self.scene, REPEATS)
+                let planned = Group::unreferenced(self.scene, Repeats::ONCE)
                     .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
                 let (plan, size) = planned.unwrap_or_default();
                 let unfinished = Unfinished { failure: failure.clone(), plan, size };

@@ -9,6 +9,7 @@ use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3};
 use shape::{DilationGroups, RowSource, Rows, SourceError, VolumeRows};
 
+pub(crate) mod gradients;
 pub(crate) mod place;
 
 use crate::Failure;
@@ -101,6 +102,8 @@ pub struct Discretisation {
     pub mesh: Arc<Mesh>,
     /// Whether the basis is Kronecker: nodal parameters are displacements.
     pub interpolates: bool,
+    /// Whether shape functions reach across borders between regions.
+    pub blends: bool,
     /// Essential conditions.
     pub essential: Essential,
     /// Volumetric projection.
@@ -156,6 +159,9 @@ impl Discretisation {
         let source = (self.source)()?;
         let quadrature = source.volume()?;
         let (rows, diagnostics) = (quadrature.rows, quadrature.diagnostics);
+        if !self.interpolates {
+            gradients::check(Key::Method("basis"), self.nodes(), rows.at())?;
+        }
         let (mut groups, mut pressure) = (None, None);
         if plan.runs(StageName::Projection) {
             match self.dilation {

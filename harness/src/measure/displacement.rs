@@ -1,5 +1,7 @@
 //! The displacement field where runs are compared.
 
+use std::time::Instant;
+
 use super::{Field, Request, Solved};
 use crate::Failure;
 use crate::outcome::{Meters, Plan, StageName};
@@ -26,8 +28,12 @@ pub(crate) fn displacement(
     if !timed {
         return once();
     }
+    let start = Instant::now();
     let mut field = meters.timings.time("transfer", once)?;
     for _ in 1..request.repeats.most {
+        if start.elapsed().as_secs_f64() > request.repeats.seconds {
+            break;
+        }
         field = meters.timings.time("transfer", once)?;
     }
     Ok(field)

@@ -2,10 +2,12 @@
 
 mod displacement;
 mod estimate;
+mod exact_fit;
 pub(crate) mod mean_pressure;
 mod modes;
 pub(crate) mod norms;
 mod own_stress;
+mod patch;
 mod picture;
 mod probe_history;
 mod probes;
@@ -90,6 +92,10 @@ pub(crate) fn measure(
     }
     if let Some(info) = &solution.linear {
         push(metrics, &metric::FACTOR_NONZEROS, info.factor_nonzeros as f64);
+        if let Some(iterations) = &info.iterations {
+            push(metrics, &metric::LINEAR_ITERATIONS, iterations.count as f64);
+            push(metrics, &metric::OPERATOR_COMPLEXITY, iterations.complexity);
+        }
         if info.eliminated + info.dropped > 0 {
             push(metrics, &metric::CONSTRAINTS_ELIMINATED, info.eliminated as f64);
             push(metrics, &metric::CONSTRAINTS_DROPPED, info.dropped as f64);

@@ -36,8 +36,10 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
     push(&mut metrics, &metric::RESIDUAL, modes.residual);
     let rigid = RIGID * modes.scale.sqrt();
     push(&mut metrics, &metric::RIGID_MODES, omega.iter().filter(|&&w| w < rigid).count() as f64);
-    push(&mut metrics, &metric::MASSLESS, modes.massless as f64);
-    if let (Some(fastest), 0) = (omega.last(), modes.massless) {
+    if modes.are_all() {
+        push(&mut metrics, &metric::MASSLESS, modes.massless as f64);
+    }
+    if let (Some(fastest), true, 0) = (omega.last(), modes.are_all(), modes.massless) {
         push(&mut metrics, &metric::CRITICAL_STEP, 2.0 / fastest);
     }
     let exact = setup.exact.as_ref().and_then(|exact| exact.vibrations());
@@ -74,7 +76,7 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         }
         metrics
     });
-    Ok(Modes { modes: each.collect(), metrics, dofs: omega.len() + modes.massless })
+    Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs })
 }
 
 /// Of each mode the share in the span of the exact ones of one frequency, the squared cosine in L2 over the body; and how many

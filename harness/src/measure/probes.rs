@@ -8,6 +8,7 @@ use shape::Matrix3;
 use super::Solved;
 use super::own_stress::OwnStress;
 use crate::Failure;
+use crate::discretise::gradients;
 use crate::error::Key;
 use crate::outcome::{Metric, Probe, push};
 use crate::prepare::Prepared;
@@ -32,7 +33,7 @@ pub(crate) fn check_probes(mesh: &Mesh, points: &[Point3]) -> Result<(), Failure
 
 /// Values at `points` (m) that [`check_probes`] takes.
 pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Failure> {
-    let Solved { setup, prepared, solution, .. } = *run;
+    let Solved { method, setup, prepared, solution } = *run;
     if points.is_empty() {
         return Ok(Vec::new());
     }
@@ -45,7 +46,12 @@ pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Fail
     let smoothed = prepared.source.trace(&[])?.is_some();
     let gradients = match smoothed {
         true => near.iter().map(|&q| of_points[q]).collect(),
-        false => rows.displacement_gradients(&solution.u),
+        false => {
+            if !method.interpolates {
+                gradients::check(Key::Scene("output.probes".into()), method.nodes(), &rows)?;
+            }
+            rows.displacement_gradients(&solution.u)
+        }
     };
     // What relaxes has the stress of its past, which is followed at quadrature points only.
     let stress: Vec<Option<Matrix3>> = match setup.relaxes() {

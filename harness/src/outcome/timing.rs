@@ -63,6 +63,18 @@ impl Timings {
         self.of(phase).wall.push(seconds);
     }
 
+    /// Makes the last two entries of a phase one: a pass that went through it twice.
+    pub(crate) fn join(&mut self, phase: &'static str) {
+        let timed = self.of(phase);
+        for entries in [&mut timed.wall, &mut timed.cpu] {
+            if entries.len() > 1
+                && let Some(last) = entries.pop()
+            {
+                entries.last_mut().into_iter().for_each(|before| *before += last);
+            }
+        }
+    }
+
     fn of(&mut self, phase: &'static str) -> &mut Timed {
         let known = self.phases.iter().position(|timed| timed.phase == phase);
         let at = known.unwrap_or_else(|| {
@@ -97,6 +109,8 @@ pub(crate) struct Meters {
     pub(crate) counters: Counters,
     /// Factor that Nitsche's method needs: found once for all passes.
     pub(crate) needed_nitsche_factor: Option<f64>,
+    /// Decimal digits to be expected of a linear solution: found once for all passes.
+    pub(crate) digits: Option<f64>,
 }
 
 /// Median, interquartile range and minimum of repeated timings, in seconds.
@@ -144,6 +158,18 @@ mod tests {
         t.book("solve", 2.0);
         t.book("prepare", 10.0);
         assert_eq!(t.total().wall, [3.0]);
+    }
+
+    #[test]
+    fn a_phase_that_a_pass_goes_through_twice_counts_once() {
+        let mut t = Timings::default();
+        t.book("prepare", 1.0);
+        t.book("factor", 2.0);
+        t.book("factor", 3.0);
+        t.join("factor");
+        assert_eq!(t.phases()[1].wall, [5.0]);
+        t.join("prepare");
+        assert_eq!(t.phases()[0].wall, [1.0]);
     }
 
     /// Swapped, two phases would still have times.

@@ -19,6 +19,7 @@ use statics::{
 };
 
 use crate::Failure;
+use crate::discretise::gradients;
 use crate::discretise::place::{self, Place, tolerance};
 use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
@@ -186,6 +187,11 @@ impl Prepared {
         if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
 
+    /// Whether the nodal parameters alone are the unknowns: no constraint rows.
+    pub fn has_rows(&self) -> bool {
+        !self.constraints.is_empty()
+    }
+
     /// A finer quadrature than the method's own, for error norms and consistent masses, with the region of each point where
     /// there are several.
     pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {
@@ -294,6 +300,10 @@ impl Prepared {
                 if !patch.whole.is_empty() {
                     let flux = self.source.flux(&patch.whole)?;
                     let trace = self.source.trace(&patch.whole)?;
+                    // A trace has the gradients of the volume in their place.
+                    if trace.is_none() {
+                        gradients::check(Key::Method("essential"), method.nodes(), flux.at())?;
+                    }
                     self.constrain_flux(method, support, flux, Weak::Nitsche { gamma }, trace)?;
                 }
             }

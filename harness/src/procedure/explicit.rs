@@ -123,7 +123,8 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let longest = asked.step.unwrap_or(asked.safety * first.dt);
     let dt = divided(interval, longest).0;
     affordable(asked, dt, first.dt)?;
-    let params = DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0 };
+    let params =
+        DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0, known: Some(first) };
     let motion =
         Dynamics::new(&mut force, &mass, &prescribed, params, zeros.clone(), zeros).and_then(|motion| {
             match tools {

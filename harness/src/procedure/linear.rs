@@ -1,34 +1,50 @@
-//! The linear procedure: one stiffness matrix, one factor, one solve.
+//! The linear procedure: one stiffness matrix and one solve, by a factor or by iterations.
 
+use cases::scene::LinearSolver;
 use statics::assemble;
 
-use super::{Problem, Solution};
+use super::linear_solver::{iterates, solved};
+use super::{Problem, Solution, Stages};
 use crate::Failure;
+use crate::discretise::Discretisation;
 use crate::outcome::Meters;
+use crate::scenario::setup::Setup;
+
+/// What the linear procedure puts into the plan.
+pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> Stages {
+    let (iterates, why) = iterates(method, setup, asked);
+    let what = if iterates { "multigrid levels for conjugate gradients" } else { "one, for all load levels" };
+    Stages { factorisation: (true, format!("{what} ({why})")), ..Stages::linear() }
+}
 
 /// Assembles, factors and solves, each timed apart.
-pub(super) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
+pub(super) fn solve(
+    problem: &Problem,
+    asked: LinearSolver,
+    meters: &mut Meters,
+) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
     let (loads, weak) = (prepared.loads(), prepared.weak());
     let system = prepared.problem(method.nodes(), setup, &loads, &weak);
-    let Meters { timings, counters, .. } = meters;
-    let assembled = timings.time("assemble", || assemble(&system))?;
-    counters.assemblies += 1;
-    let factored = timings.time("factor", || prepared.factor(assembled))?;
-    counters.factorisations += 1;
-    let statics::Solution { u, info, .. } = timings.time("solve", || factored.solve(1.0))?;
-    counters.solves += 1;
-    // Untimed, and once for all repeats: a diagnosis, not a part of the solution.
+    let assembled = meters.timings.time("assemble", || assemble(&system))?;
+    meters.counters.assemblies += 1;
+    let solved = solved(problem, assembled, asked, meters)?;
+    let statics::Solution { u, info, .. } = solved.solution;
+    // Untimed, and once for all repeats: diagnoses, not a part of the solution.
     if meters.needed_nitsche_factor.is_none() {
-        meters.needed_nitsche_factor = factored.needed_nitsche_factor()?;
+        meters.needed_nitsche_factor = solved.factored.needed_nitsche_factor()?;
     }
-    let (dofs, residual, needed) = (info.dofs, Some(info.residual), meters.needed_nitsche_factor);
+    if meters.digits.is_none() {
+        meters.digits = solved.factored.digits(&info)?;
+    }
     Ok(Solution {
         u,
-        dofs,
-        residual,
+        dofs: info.dofs,
+        residual: Some(info.residual),
         linear: Some(info),
-        needed_nitsche_factor: needed,
+        not_iterated: solved.not_iterated,
+        needed_nitsche_factor: meters.needed_nitsche_factor,
+        digits: meters.digits,
         ..Solution::default()
     })
 }

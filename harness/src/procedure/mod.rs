@@ -3,6 +3,7 @@
 mod explicit;
 mod implicit_dynamic;
 mod linear;
+mod linear_solver;
 mod modes;
 mod plan;
 mod refine;
@@ -48,7 +49,7 @@ impl Problem<'_> {
 pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
     match &problem.setup.procedure {
         Procedure::Prepare => Ok(Solution::default()),
-        Procedure::Linear => linear::solve(problem, meters),
+        Procedure::Linear { solver } => linear::solve(problem, *solver, meters),
         Procedure::Modes { count } => modes::solve(problem, *count, meters),
         Procedure::Static(asked) => statics::solve(problem, asked, meters),
         Procedure::Explicit(asked) => explicit::solve(problem, asked, meters),
@@ -103,7 +104,7 @@ impl Stages {
     fn of(method: &Discretisation, setup: &Setup) -> Stages {
         match &setup.procedure {
             Procedure::Prepare => Stages::prepare(),
-            Procedure::Linear => Stages::linear(),
+            Procedure::Linear { solver } => linear::stages(method, setup, *solver),
             Procedure::Modes { .. } => modes::stages(setup),
             Procedure::Static(asked) => statics::stages(method, setup, asked),
             Procedure::Explicit(asked) => explicit::stages(asked),

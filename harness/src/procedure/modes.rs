@@ -3,7 +3,7 @@
 use cases::scene;
 use explicit::{Lumping, lumped_mass};
 use geometry::Vector3;
-use statics::{Mass, Modes, modes};
+use statics::{ALL_MODES_LIMIT, Mass, Modes, lowest_modes};
 
 use super::{Problem, Solution, Stages};
 use crate::Failure;
@@ -24,7 +24,12 @@ pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
         mass: (true, setup.mass.map_or("none given", scene::Mass::name).into()),
         stiffness: (true, "of small vibrations".into()),
-        factorisation: (true, "one, dense, into all modes".into()),
+        factorisation: (
+            true,
+            format!(
+                "one, dense for all modes up to {ALL_MODES_LIMIT} unknowns, sparse for the lowest by block Lanczos beyond"
+            ),
+        ),
         no_transfer: Some("modes are compared where they are integrated"),
         ..Stages::linear()
     }
@@ -39,7 +44,7 @@ pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Res
     counters.mass_nodes += nodes.len() as u64;
     let weak = prepared.weak();
     let system = prepared.problem(nodes, setup, &[], &weak);
-    let modes = timings.time("solve", || modes(&system, &mass))?;
+    let modes = timings.time("solve", || lowest_modes(&system, &mass, count))?;
     counters.assemblies += 1;
     counters.factorisations += 1;
     let total = mass.times(&vec![Vector3::x(); nodes.len()]).iter().map(|p| p.x).sum();

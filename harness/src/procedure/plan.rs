@@ -1,9 +1,8 @@
 //! The plan of a run: the stages it needs, the stages it does not, and why.
 
 use cases::scene::ConstraintRows;
-use explicit::KernelInfo;
 
-use super::Stages;
+use super::{Solution, Stages};
 use crate::discretise::{Dilation, Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
@@ -55,7 +54,13 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
 
 /// Says in the plan of a finished run what evaluated the internal forces, as a plain loop takes 3 to 10 times as long, and that
 /// a path without a limit point needed no relaxation.
-pub(crate) fn conclude(plan: &mut Plan, forces: Option<KernelInfo>, counters: &Counters) {
+pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters) {
+    let forces = solution.forces;
+    if solution.not_iterated {
+        plan.explain(StageName::Factorisation, |why| {
+            format!("direct after all, not {why}: it did not converge")
+        });
+    }
     if let Some(forces) = forces {
         let how = match forces.path {
             Some(path) => format!("{} kernel in {} lanes on all threads", forces.kernel.name(), path.name()),

@@ -1,6 +1,6 @@
 //! A cloud that follows an error: solve, see where gradients differ from recovered ones, place as many nodes anew, solve again.
 
-use cases::scene::ErrorKind;
+use cases::scene::{ErrorKind, LinearSolver, Procedure};
 use efg::gradient_error;
 use geometry::{CloudError, Sizes, cloud_of_sizes};
 
@@ -26,7 +26,11 @@ pub(crate) fn refined(
         let mut own = Meters::default();
         let prepared = prepare(&current, setup, plan, &mut own.counters)?;
         let problem = Problem { method: &current, setup, prepared: &prepared, plan, watch: None };
-        let solution = linear::solve(&problem, &mut own)?;
+        let solver = match setup.procedure {
+            Procedure::Linear { solver } => solver,
+            _ => LinearSolver::Auto,
+        };
+        let solution = linear::solve(&problem, solver, &mut own)?;
         let error = gradient_error(&prepared.volume.rows, &solution.u, &refine.cloud.points);
         let none = |bad: CloudError| {
             Failure::at(ErrorKind::NotRun, Key::Method("cloud"), format!("makes no cloud: {bad}"), "")

@@ -21,8 +21,12 @@ pub(crate) struct Solution {
     pub(crate) residual: Option<f64>,
     /// Of a linear procedure.
     pub(crate) linear: Option<SolveInfo>,
+    /// Whether a linear procedure was to iterate, and needed a factor.
+    pub(crate) not_iterated: bool,
     /// Factor that Nitsche's method needs here, where it holds the body in a linear procedure.
     pub(crate) needed_nitsche_factor: Option<f64>,
+    /// Decimal digits to be expected of a linear solution.
+    pub(crate) digits: Option<f64>,
     /// Of a procedure in steps.
     pub(crate) history: Option<StepHistory>,
     /// Of vibrations.
@@ -48,6 +52,12 @@ pub(crate) struct StepHistory {
 }
 
 impl Solution {
+    /// What solved the linear system, or the eigenproblem, of a procedure that has one.
+    pub(crate) fn solver(&self) -> Option<&'static str> {
+        let of_vibration = self.vibration.as_ref().map(|vibration| vibration.modes.solver());
+        self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
+    }
+
     /// Whether the whole load was reached; a linear procedure has no less.
     pub(crate) fn is_whole(&self) -> bool {
         self.history.as_ref().is_none_or(|history| history.failure.is_none())

@@ -66,6 +66,7 @@ fn on_pool(
     let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
     let mut outcome = Outcome::new(identity, size(method, &prepared, solution.dofs), plan);
     outcome.memory = memory;
+    outcome.identity.linear_solver = solution.solver().map(Into::into);
     if solution.u.is_empty() {
         unloaded(&mut outcome, &run)?;
         outcome.phases = phases(&meters, &run);
@@ -150,8 +151,7 @@ fn loaded(
         outcome.identity.force_kernel = Some(forces.kernel.name().into());
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
-    outcome.identity.linear_solver = solution.linear.as_ref().map(|info| info.path.name().into());
-    conclude(&mut outcome.plan, solution.forces, &counters);
+    conclude(&mut outcome.plan, solution, &counters);
     compare(outcome, run, &field, request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     outcome.probes = probes(run, request.probes)?;

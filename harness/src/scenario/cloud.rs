@@ -38,7 +38,7 @@ struct Placed {
 enum Supports {
     /// In the same way whatever the cloud is.
     Enforced(Essential),
-    /// By finite elements at these constrained vertices of the background.
+    /// By finite elements at these vertices of the background.
     Coupled(Vec<u32>),
 }
 
@@ -60,6 +60,8 @@ struct CloudMethod {
     functions: Functions,
     integration: Integration,
     supports: Supports,
+    /// Whether nodes count in their own region alone.
+    separate: bool,
     dilation: Dilation,
     /// Steps, ratio and seed of a cloud that follows an error.
     refine: Option<(scene::Refine, u64, Body)>,
@@ -80,17 +82,28 @@ impl Scenario<'_> {
             scene::Functions::MovingLeastSquares { shape: scene::SupportShape::Ellipsoid, .. }
         );
         let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let separate = efg.regions == scene::Regions::Separate;
+        let constrained = self.constrained_vertices(&background);
+        let background = Arc::new(self.with_regions(background)?);
         let supports = match essential(efg) {
             Some(essential) => Supports::Enforced(essential),
-            None => Supports::Coupled(self.constrained_vertices(&background)?),
+            None => {
+                let mut vertices = constrained?;
+                if separate {
+                    vertices.extend(efg::border_vertices(&background));
+                    vertices.sort_unstable();
+                    vertices.dedup();
+                }
+                Supports::Coupled(vertices)
+            }
         };
-        let background = Arc::new(self.with_regions(background)?);
         let method = CloudMethod {
             integration: integration(efg.integration, spacing, shape, &background)?,
             background,
             followed: cells.filter(|_| adapted).map(Arc::new),
             functions: functions(efg.functions),
             supports,
+            separate,
             dilation: dilation(efg.dilation),
             refine,
         };
@@ -190,6 +203,7 @@ impl CloudMethod {
             nodes: Arc::new(nodes),
             mesh: self.background.clone(),
             interpolates: false,
+            blends: !self.separate,
             essential,
             dilation: self.dilation,
             inner: inner(&self.integration),
@@ -197,7 +211,8 @@ impl CloudMethod {
             supports,
             shape_functions,
             source: Arc::new(move || {
-                let CloudMethod { background, followed, functions, integration, supports, .. } = &method;
+                let CloudMethod { background, followed, functions, integration, supports, separate, .. } =
+                    &method;
                 let followed = followed.as_deref();
                 let (background, integration) = (background.clone(), integration.clone());
                 Ok(Box::new(CloudSource::new(
@@ -206,6 +221,7 @@ impl CloudMethod {
                     followed,
                     background,
                     supports.coupled(),
+                    *separate,
                     integration,
                 )?))
             }),

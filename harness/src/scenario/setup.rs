@@ -91,7 +91,7 @@ impl Setup {
 
     /// Whether one linear solve is all there is.
     pub fn is_linear(&self) -> bool {
-        matches!(self.procedure, Procedure::Prepare | Procedure::Linear | Procedure::Modes { .. })
+        matches!(self.procedure, Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. })
     }
 
     /// Whether Newton's method solves it.

@@ -24,6 +24,29 @@ pub enum AlgebraError {
         /// The limit.
         limit: f64,
     },
+    /// The solution is not even that of a matrix nearby: dependent, contradictory or badly scaled constraints.
+    #[error(
+        "the solution is that of no system near this one: backward error {backward_error:e} (limit {limit:e}), relative \
+         residual {residual:e}"
+    )]
+    BackwardError {
+        /// Smallest relative change of matrix and right-hand side that makes the solution exact.
+        backward_error: f64,
+        /// Relative residual.
+        residual: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// The matrix is so near to a singular one that rounding takes every digit.
+    #[error(
+        "the stiffness is singular to rounding: {digits:.1} digits are left of the solution (backward error {backward_error:e})"
+    )]
+    NoDigits {
+        /// Decimal digits to be expected.
+        digits: f64,
+        /// Smallest relative change of matrix and right-hand side that makes the solution exact.
+        backward_error: f64,
+    },
     /// The decomposition of the frequencies did not end.
     #[error("no frequencies: the eigenvalues of {dofs} degrees of freedom did not converge")]
     NoEigenvalues {

@@ -2,8 +2,9 @@
 //!
 //! A [`BlockPattern`] says which pairs of nodes share a row of a table, a [`Stiffness`] holds their blocks and is summed by rows, a
 //! [`Symmetric`] is its part over the unknowns. [`factor`] takes that to a [`Factorization`]: dense, or sparse in METIS'
-//! nested-dissection order by faer's kernels. [`Unsymmetric`] adds a few unsymmetric entries and borders (GMRES, else LU);
-//! [`eigen`] solves dense eigenproblems.
+//! nested-dissection order by faer's kernels. [`Multigrid`] solves with a stiffness by iterations. [`Unsymmetric`] adds a few
+//! unsymmetric entries and borders (GMRES, else LU); [`eigen`] solves eigenproblems, [`Cholesky`] full matrices for many right-hand
+//! sides.
 //!
 //! ```
 //! use algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};
@@ -25,14 +26,16 @@
 
 mod error;
 mod linear_solver;
+mod multigrid;
 mod pattern;
 mod stiffness;
 
 pub use error::AlgebraError;
 pub use linear_solver::eigen;
 pub use linear_solver::{
-    Border, Curvature, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, SolverPath, Symbolic,
-    Symmetric, Unsymmetric, analyse, factor, factor_as, factor_roughly, reserve_workspaces,
+    Border, Cholesky, Curvature, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, Solved, SolverPath,
+    Symbolic, Symmetric, Unsymmetric, analyse, factor, factor_as, factor_roughly, reserve_workspaces,
 };
+pub use multigrid::{Iterations, Multigrid};
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

@@ -58,6 +58,13 @@ impl Stiffness {
     /// `K u`, N.
     pub fn multiply(&self, u: &[Vector3]) -> Vec<Vector3> {
         let mut out = vec![Vector3::zeros(); u.len()];
+        self.multiply_into(u, &mut out);
+        out
+    }
+
+    /// `out = K u`, N.
+    pub fn multiply_into(&self, u: &[Vector3], out: &mut [Vector3]) {
+        out.fill(Vector3::zeros());
         for i in 0..u.len() {
             let (columns, blocks) = self.row(i);
             let mut sum = Vector3::zeros();
@@ -69,7 +76,21 @@ impl Stiffness {
             }
             out[i] += sum;
         }
-        out
+    }
+
+    /// `out = |K| |u|`, N.
+    pub fn multiply_magnitudes(&self, u: &[Vector3], out: &mut [Vector3]) {
+        out.fill(Vector3::zeros());
+        for i in 0..u.len() {
+            let (columns, blocks) = self.row(i);
+            for (&j, block) in columns.iter().zip(blocks) {
+                let (j, block) = (j as usize, block.abs());
+                out[i] += block * u[j].abs();
+                if j != i {
+                    out[j] += block.tr_mul(&u[i].abs());
+                }
+            }
+        }
     }
 
     /// The block rows in this order, by tasks of a few.

@@ -37,6 +37,9 @@ macro_rules! warnings {
 warnings! {
     NOTHING_MOVES: "nothing-moves", None,
         "no load, no tool and no moved support: every displacement is 0";
+    EXACT_MISFIT: "exact-misfit", None,
+        "the exact solution has other displacements or tractions on the surface than the scene prescribes; the largest root mean \
+         square difference on a surface over the largest value on any";
     PROBE_OUTSIDE: "probe-outside", Length,
         "a probe lies outside the mesh and has the values of the mesh's nearest point; the distance";
     REGION_CUT: "region-cut", None,
@@ -46,11 +49,14 @@ warnings! {
          stiffer's modulus over the softer's";
     FEW_POINTS: "few-points", None,
         "a cloud has too few integration points to see all its motions; points per node";
+    PATCH_TEST: "patch-test", None,
+        "the integration of a cloud does not see constant stress in balance; the error that makes in the gradient of a linear \
+         field";
     SUPPORT_GIVES: "support-gives", None,
         "a support held weakly gives way; the root mean square gap there over the largest displacement";
     SUPPORT_LEAKS: "support-leaks", None,
-        "a support held weakly lets volume of nearly incompressible tissue pass; the root of that volume's energy over the strain \
-         energy";
+        "a support held weakly gives way by much for a flat body or one that is hard to compress; the root of the energy lost by \
+         that over the strain energy";
     NITSCHE_FACTOR: "nitsche-factor", None,
         "the factor of Nitsche's method is barely large enough for a definite form; the factor over the one needed";
     FEW_CONTACT_POINTS: "few-contact-points", None,
@@ -59,6 +65,8 @@ warnings! {
         "the body is turned inside out between the integration points; the smallest J at the points of a finer quadrature";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
+    FEW_DIGITS: "few-digits", None,
+        "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
     ESTIMATED_ERROR: "estimated-error", None,
         "the stress is far from smooth: its estimated error in the energy norm over the norm of the stress";
 }

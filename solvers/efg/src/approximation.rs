@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::buckets::Buckets;
-use crate::coupling::{Coupling, Layer, joined};
+use crate::coupling::{Coupling, Layer, border_vertices, joined};
 use crate::info::{Outcome, Tally};
 use crate::max_entropy::{CUT, Neighbours, NoPoint};
 use crate::mls::{Ball, Group};
@@ -45,6 +45,8 @@ pub struct Approximation {
     buckets: Buckets,
     /// The finite elements beside them; their nodes come after those of the cloud.
     coupling: Option<Coupling>,
+    /// Region of each node of the cloud, where a node counts in its own region alone; empty where it counts everywhere.
+    regions: Vec<u16>,
 }
 
 /// What the shape functions are.
@@ -126,7 +128,8 @@ impl Approximation {
         let balls: Vec<Ball> =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&balls);
-        Ok(Approximation { nodes, balls, ellipsoids: Vec::new(), functions, buckets, coupling: None })
+        let (ellipsoids, regions) = (Vec::new(), Vec::new());
+        Ok(Approximation { nodes, balls, ellipsoids, functions, buckets, coupling: None, regions })
     }
 
     /// As [`Approximation::new`], with supports that follow the cloud, one per node.
@@ -172,20 +175,36 @@ impl Approximation {
     /// quadratic one the hats reproduce too little for the others to vanish. Source: Huerta and Fernandez-Mendez (2000),
     /// Int. J. Numer. Meth. Engng 48, 1615-1636.
     pub fn coupled(self, background: &Mesh, vertices: &[u32]) -> Result<Approximation, EfgError> {
+        self.couple(background, vertices, false)
+    }
+
+    fn couple(self, background: &Mesh, vertices: &[u32], by_region: bool) -> Result<Approximation, EfgError> {
         let Functions::MovingLeastSquares(LeastSquares { basis: Basis::Linear, .. }) = self.functions else {
             return Err(EfgError::NotCoupled);
         };
         let coupling = Coupling::new(background, vertices)?;
         let kept = coupling.kept(&self.nodes)?;
-        let balls: Vec<Ball> = kept.iter().map(|&n| self.balls[n]).collect();
-        let ellipsoids = kept.iter().filter_map(|&n| self.ellipsoids.get(n).copied()).collect();
-        let mut nodes: Vec<Point3> = kept.iter().map(|&n| self.nodes[n]).collect();
+        let balls: Vec<Ball> = kept.iter().map(|&(n, _)| self.balls[n]).collect();
+        let ellipsoids = kept.iter().filter_map(|&(n, _)| self.ellipsoids.get(n).copied()).collect();
+        let mut nodes: Vec<Point3> = kept.iter().map(|&(n, _)| self.nodes[n]).collect();
         if nodes.len() < Basis::Linear.terms() {
             return Err(EfgError::TooFewNodes { found: nodes.len(), needed: Basis::Linear.terms() });
         }
         let buckets = Buckets::new(&balls);
+        let regions =
+            if by_region { kept.into_iter().map(|(_, region)| region).collect() } else { Vec::new() };
         nodes.extend(vertices.iter().map(|&v| background.points()[v as usize]));
-        Ok(Approximation { nodes, balls, ellipsoids, buckets, coupling: Some(coupling), ..self })
+        Ok(Approximation { nodes, balls, ellipsoids, buckets, coupling: Some(coupling), regions, ..self })
+    }
+
+    /// As [`Approximation::coupled`], with the [vertices of borders](crate::border_vertices) between regions of the background
+    /// among those listed, and nodes of the cloud that count at points of their own region alone: across a border the field is
+    /// continuous and its gradient may jump.
+    pub fn coupled_by_region(self, background: &Mesh, vertices: &[u32]) -> Result<Approximation, EfgError> {
+        let mut all = [vertices, &border_vertices(background)].concat();
+        all.sort_unstable();
+        all.dedup();
+        self.couple(background, &all, true)
     }
 
     /// Node positions, m; those of finite elements after those of the cloud.
@@ -272,19 +291,27 @@ impl Approximation {
     fn expected_entries(&self, points: &[Point3]) -> usize {
         let mut found = RowList::default();
         for x in points.iter().step_by(sample_step(points.len())) {
-            self.find(x, &mut found);
+            self.find(x, None, &mut found);
         }
         found.expected_entries(points.len())
     }
 
-    /// Appends the nodes whose supports cover the point, as a row.
+    /// Appends the nodes whose supports cover the point, as a row: those of its region, if nodes have one.
     #[inline(always)]
-    fn find(&self, x: &Point3, rows: &mut RowList) {
+    fn find(&self, x: &Point3, layer: Option<&Layer>, rows: &mut RowList) {
         let first = rows.nodes.len();
         self.buckets.find(x, &self.balls, &mut rows.nodes);
         if !self.ellipsoids.is_empty() {
             let kept = self.within_ellipsoids(x, &mut rows.nodes[first..]);
             rows.nodes.truncate(first + kept);
+        }
+        if let Some(layer) = layer.filter(|_| !self.regions.is_empty()) {
+            let mut n = first;
+            for k in first..rows.nodes.len() {
+                rows.nodes[n] = rows.nodes[k];
+                n += usize::from(self.counts_in(rows.nodes[k], layer));
+            }
+            rows.nodes.truncate(n);
         }
         rows.close();
     }
@@ -297,6 +324,11 @@ impl Approximation {
             n += usize::from(self.relative(nodes[k], x) < 1.0);
         }
         n
+    }
+
+    /// Whether a node counts in the region of a layer.
+    fn counts_in(&self, node: u32, layer: &Layer) -> bool {
+        self.regions.get(node as usize).is_none_or(|region| *region == layer.region)
     }
 
     /// Distance of a point from a node over what the node's support reaches in its direction.
@@ -338,7 +370,7 @@ impl Approximation {
             if full(q) {
                 rows.close();
             } else {
-                self.find(x, rows);
+                self.find(x, layers.get(q), rows);
             }
         }
         // What is left there is written over.

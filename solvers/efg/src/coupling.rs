@@ -3,7 +3,9 @@
 //! With `N_h` the hats of the listed vertices, the cloud's functions have the moments `p(x) - sum_h N_h(x) p(x_h)` in place of `p(x)`.
 //! In a tetrahedron that is `sum_v N_v(x) p(x_v)` over its other corners, so that they vanish, but for rounding, where it has none,
 //! and towards faces without any. In cells without a listed corner they are those of plain moving least squares, and the hats are
-//! continuous: so are all functions. Source: Huerta and Fernandez-Mendez (2000), Int. J. Numer. Meth. Engng 48, 1615-1636.
+//! continuous: so are all functions. Where the vertices of a border between regions are listed, the cloud's functions vanish there
+//! from both sides, and each side may have nodes of its own alone: the field is continuous and its gradient may jump. Source:
+//! Huerta and Fernandez-Mendez (2000), Int. J. Numer. Meth. Engng 48, 1615-1636.
 
 use geometry::{CellKind, Locator, Mesh};
 use shape::{Point3, Vector3};
@@ -19,9 +21,28 @@ const NONE: u32 = u32::MAX;
 /// itself and is negative around: its dilation has no positive volume, as that of one near by (kidney, 1331 nodes: at 0.3 left).
 const LEAST_SHARE: f64 = 0.5;
 
+/// Vertices of the cells of two regions or more, ascending.
+pub fn border_vertices(mesh: &Mesh) -> Vec<u32> {
+    let mut first = vec![None; mesh.points().len()];
+    let mut border = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let region = mesh.region(cell);
+        for &vertex in mesh.cell(cell) {
+            if *first[vertex as usize].get_or_insert(region) != region {
+                border.push(vertex);
+            }
+        }
+    }
+    border.sort_unstable();
+    border.dedup();
+    border
+}
+
 /// Background cells and which of their corners are finite-element nodes.
 pub(crate) struct Coupling {
     locator: Locator,
+    /// Region of each cell.
+    regions: Vec<u16>,
     /// For each corner of each cell its index among the finite-element nodes, or [`NONE`].
     corners: Vec<[u32; 4]>,
 }
@@ -34,13 +55,15 @@ pub(crate) struct Layer {
     hats: [(u32, f64, Vector3); 4],
     /// What they leave to the cloud.
     pub(crate) moments: Moments,
+    /// Region of the cell.
+    pub(crate) region: u16,
 }
 
 /// Positions (m) of the nodes of a cloud that is [coupled](crate::Approximation::coupled) to finite elements: those of its own that
 /// stay (elements have less than half of the value there), then the vertices.
 pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> Result<Vec<Point3>, EfgError> {
     let kept = Coupling::new(background, vertices)?.kept(nodes)?;
-    let of_cloud = kept.into_iter().map(|n| nodes[n]);
+    let of_cloud = kept.into_iter().map(|(n, _)| nodes[n]);
     Ok(of_cloud.chain(vertices.iter().map(|&v| background.points()[v as usize])).collect())
 }
 
@@ -75,14 +98,17 @@ impl Coupling {
             let nodes = background.cell(cell);
             corners.push([0, 1, 2, 3].map(|c| number[nodes[c] as usize]));
         }
-        Ok(Coupling { locator: Locator::new(background)?, corners })
+        let regions = (0..background.cell_count()).map(|cell| background.region(cell)).collect();
+        Ok(Coupling { locator: Locator::new(background)?, regions, corners })
     }
 
-    /// Indices of the nodes of a cloud that stay.
-    pub fn kept(&self, nodes: &[Point3]) -> Result<Vec<usize>, EfgError> {
+    /// Indices of the nodes of a cloud that stay, and the region that each is in.
+    pub fn kept(&self, nodes: &[Point3]) -> Result<Vec<(usize, u16)>, EfgError> {
         let mut layers = Vec::new();
         self.layers(nodes, &mut layers)?;
-        Ok((0..nodes.len()).filter(|&n| layers[n].moments.values[0] > LEAST_SHARE).collect())
+        let each = layers.iter().enumerate();
+        let stays = |layer: &Layer| layer.moments.values[0] > LEAST_SHARE;
+        Ok(each.filter(|(_, layer)| stays(layer)).map(|(n, layer)| (n, layer.region)).collect())
     }
 
     /// What finite elements have at each point.
@@ -95,8 +121,9 @@ impl Coupling {
 
     /// At a point in, or closest to, a cell. Beyond it the hats go on linearly.
     fn layer(&self, x: &Point3, cell: usize) -> Layer {
+        let region = self.regions[cell];
         let mut layer =
-            Layer { count: 0, hats: [(NONE, 0.0, Vector3::zeros()); 4], moments: Moments::COMPLETE };
+            Layer { count: 0, hats: [(NONE, 0.0, Vector3::zeros()); 4], moments: Moments::COMPLETE, region };
         if self.corners[cell] == [NONE; 4] {
             return layer;
         }

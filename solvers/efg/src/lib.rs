@@ -42,7 +42,7 @@ mod support;
 
 pub use approximation::Approximation;
 pub use basis::Basis;
-pub use coupling::coupled_nodes;
+pub use coupling::{border_vertices, coupled_nodes};
 pub use ellipsoid::Ellipsoid;
 pub use error::EfgError;
 pub use facets::{flux_rows, surface_rows};

@@ -205,8 +205,8 @@ impl Group {
     /// Fits the `M`-term basis over the neighbours loaded: values, and gradients if `GRAD`. `PRODUCTS` and `FLOWS`
     /// count the monomials of twice and of one more than the degree of the basis. `mu` regularises the
     /// quadratic block: `A + mu A_00 diag(0, .., 0, 1, .., 1)`, free of scale, exact for linear fields at any `mu`
-    /// (Joldes et al. 2015, modified MLS). Returns the condition number of each matrix in the 1-norm, or `None`
-    /// if it is singular to working precision.
+    /// (Joldes et al. 2015, modified MLS); without one, of the linear block. Returns the condition number of each matrix in
+    /// the 1-norm, or `None` if it is singular to working precision.
     #[inline(always)]
     pub(crate) fn fit<const M: usize, const PRODUCTS: usize, const FLOWS: usize, const GRAD: bool>(
         &mut self,
@@ -232,7 +232,7 @@ impl Group {
                 }
             }
         }
-        for i in 4..M {
+        for i in if M > 4 { 4 } else { 1 }..M {
             for l in 0..LANES {
                 a[i][i][l] += mu * a[0][0][l];
             }

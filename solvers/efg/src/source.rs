@@ -130,7 +130,8 @@ pub struct CloudSource {
 
 impl CloudSource {
     /// Finds the supports. Those of moving least squares follow the cells of `followed`, where it is given; the vertices of the
-    /// background in `coupled` are nodes of finite elements.
+    /// background in `coupled` are nodes of finite elements; where nodes are to count in their own region alone (`by_region`),
+    /// so are those of borders between regions.
     ///
     /// # Errors
     /// As [`Approximation::new`], [`Approximation::coupled`].
@@ -140,11 +141,15 @@ impl CloudSource {
         followed: Option<&Mesh>,
         background: Arc<Mesh>,
         coupled: Option<&[u32]>,
+        by_region: bool,
         integration: Integration,
     ) -> Result<CloudSource, EfgError> {
         let mut approximation = functions.over(cloud, followed)?;
         if let Some(vertices) = coupled {
-            approximation = approximation.coupled(&background, vertices)?;
+            approximation = match by_region {
+                true => approximation.coupled_by_region(&background, vertices)?,
+                false => approximation.coupled(&background, vertices)?,
+            };
         }
         let nodes = cloud.points.len();
         let spacing = cloud.spacing.iter().sum::<f64>() / nodes as f64;

@@ -4,8 +4,8 @@ mod common;
 
 use common::{field, jittered_box, on_cloud, on_mesh};
 use efg::{
-    Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support, WendlandC2, coupled_nodes,
-    surface_rows,
+    Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support, WendlandC2, border_vertices,
+    coupled_nodes, surface_rows,
 };
 use geometry::generate::box_mesh;
 use geometry::shapes::Cuboid;
@@ -195,4 +195,50 @@ fn what_cannot_be_coupled_is_refused() {
     assert_eq!(linear().coupled(&mesh, &all).err(), Some(EfgError::TooFewNodes { found: 0, needed: 4 }));
     let nodes = vec![Point3::new(f64::NAN, 0.0, 0.0)];
     assert!(matches!(coupled_nodes(&nodes, &mesh, &vertices), Err(EfgError::Locate(_))));
+}
+
+/// The lower half of the box is one region, the upper another.
+fn halved(mesh: Mesh) -> Mesh {
+    let above = |cell: usize| mesh.cell_points(cell).map(|p| p.z).sum::<f64>() / 4.0 > 0.015;
+    let regions = (0..mesh.cell_count()).map(|cell| u16::from(above(cell))).collect();
+    mesh.with_regions(regions, vec!["lower".into(), "upper".into()])
+}
+
+/// Each half has nodes of its own, both have those of the border, and a field with a kink there is one of theirs.
+#[test]
+fn separate_regions_share_the_vertices_of_their_border_alone() {
+    let max = Point3::new(0.04, 0.03, 0.03);
+    for cells in [[5, 4, 4], [8, 6, 6]] {
+        let mesh = halved(box_mesh(CellKind::Tet4, Point3::origin(), max, cells, [1.0; 3], None).unwrap());
+        let border = border_vertices(&mesh);
+        assert_eq!(border.len(), (cells[0] + 1) * (cells[1] + 1));
+        assert!(border.iter().all(|&v| (mesh.points()[v as usize].z - 0.015).abs() < 1e-12));
+        for cloud in CLOUDS {
+            let cloud = uncoupled(cloud, &mesh, Kernel::CubicSpline(CubicSpline));
+            let separate = cloud.coupled_by_region(&mesh, &[]).unwrap();
+            let first = separate.nodes().len() - border.len();
+            let kinked = |p: &Point3| field(Basis::Linear, p).0 + 3.0 * (p.z - 0.015).max(0.0);
+            let of: Vec<f64> = separate.nodes().iter().map(kinked).collect();
+            let points = inner(&mesh);
+            let (rows, _) = separate.grad_rows(&points).unwrap();
+            for (q, x) in points.iter().enumerate() {
+                for &node in rows.rows().row(q).0.iter().filter(|n| (**n as usize) < first) {
+                    assert_eq!(separate.nodes()[node as usize].z > 0.015, x.z > 0.015, "{x}");
+                }
+                let (value, slope) = apply(&rows, q, &of);
+                let exact = field(Basis::Linear, x).1 + Vector3::z() * if x.z > 0.015 { 3.0 } else { 0.0 };
+                assert!((value - kinked(x)).abs() < 1e-8, "{x}: {value}");
+                assert!((slope - exact).norm() < 1e-5, "{x}: {slope}");
+            }
+            // Nothing of either half is left on the border: it is one field.
+            let on: Vec<Point3> =
+                (0..9).map(|k| Point3::new(0.0044 * k as f64, 0.0033 * k as f64, 0.015)).collect();
+            let (rows, _) = separate.point_rows(&on).unwrap();
+            for q in 0..on.len() {
+                let (nodes, values) = rows.rows().row(q);
+                let of_cloud = nodes.iter().zip(values).filter(|(n, _)| (**n as usize) < first);
+                assert!(of_cloud.map(|(_, v)| v.abs()).sum::<f64>() < 1e-9, "{}", on[q]);
+            }
+        }
+    }
 }

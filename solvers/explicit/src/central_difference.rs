@@ -1,8 +1,8 @@
 //! Explicit time integration: central differences with velocities at half steps.
 
-use super::critical_step::{CriticalStep, LanczosParams, critical_step_touching};
+use super::critical_step::{CriticalStep, Estimate, LanczosParams, critical_step_touching};
 use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
-use shape::Vector3;
+use shape::{Matrix3, Vector3};
 
 /// What is asked of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct DynamicsParams {
     pub critical: LanczosParams,
     /// Steps between two checks of the critical step as the body deforms; 0: before the first step only.
     pub recheck: usize,
+    /// The critical step at the start, if it is known, with the springs of what may touch.
+    pub known: Option<CriticalStep>,
 }
 
 /// A degree of freedom led along a given displacement.
@@ -82,6 +84,8 @@ pub struct Dynamics<'a, 'b> {
     pending: f64,
     start: Option<f64>,
     scale: f64,
+    /// The last of the critical step.
+    estimate: Option<Estimate>,
 }
 
 impl<'a, 'b> Dynamics<'a, 'b> {
@@ -132,10 +136,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             pending: 0.0,
             start: None,
             scale: 0.0,
+            estimate: None,
         };
         for p in prescribed {
             dynamics.u[p.node as usize][p.axis as usize] = (p.motion)(0.0);
         }
+        let gradients = dynamics.gradients();
+        dynamics.estimate = params.known.map(|critical| Estimate { critical, gradients });
         dynamics.check_step()?;
         Ok(dynamics)
     }
@@ -143,6 +150,9 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     /// With tools that touch. Their penalties count in the critical step from here on.
     pub fn with_tools(mut self, tools: Tools<'b>) -> Result<Dynamics<'a, 'b>, ExplicitError> {
         self.tools = Some(tools);
+        if self.params.known.is_none() {
+            self.estimate = None;
+        }
         self.check_step()?;
         Ok(self)
     }
@@ -169,8 +179,23 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.check_step()
     }
 
-    /// Critical step at the present displacements.
+    fn gradients(&self) -> Vec<Matrix3> {
+        self.force.body().volume.at().displacement_gradients(&self.u)
+    }
+
+    /// Critical step at the present displacements, or that of the last estimate if the body has hardly changed its shape since: an
+    /// estimate takes thirty evaluations of the internal forces, to look takes about one.
     pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
+        let gradients = self.gradients();
+        if let Some(last) = self.estimate.as_ref().filter(|last| last.serves(&gradients)) {
+            return Ok(last.critical);
+        }
+        let critical = self.estimated()?;
+        self.estimate = Some(Estimate { critical, gradients });
+        Ok(critical)
+    }
+
+    fn estimated(&mut self) -> Result<CriticalStep, ExplicitError> {
         let constrained = &self.constrained;
         let springs = self.tools.as_ref().and_then(Tools::springs);
         let (step, time) = (self.step, self.time());

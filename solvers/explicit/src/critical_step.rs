@@ -3,7 +3,7 @@
 use shape::SurfaceRows;
 
 use super::{ExplicitError, InternalForce};
-use shape::Vector3;
+use shape::{Matrix3, Vector3};
 
 /// What to ask of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,27 @@ pub struct CriticalStep {
     pub omega_max: f64,
     /// Lanczos steps made: fewer than asked for when the space is exhausted.
     pub steps: usize,
+}
+
+/// Change of shape `|dF F^-1|` at any point since an estimate up to which it is kept. Moduli are products of two or four `F^-1`
+/// times a constant or `ln J`: they change by five times that at most in the neo-Hookean law, the frequency by half of it, 5 %, which
+/// the factor of 0.9 on the step covers.
+const KEPT: f64 = 0.02;
+
+/// An estimate, with the displacement gradients that it is of.
+pub(super) struct Estimate {
+    pub critical: CriticalStep,
+    pub gradients: Vec<Matrix3>,
+}
+
+impl Estimate {
+    /// Whether it serves a body of these gradients.
+    pub fn serves(&self, gradients: &[Matrix3]) -> bool {
+        self.gradients.iter().zip(gradients).all(|(then, now)| {
+            let inverse = (Matrix3::identity() + then).try_inverse();
+            inverse.is_some_and(|inverse| ((now - then) * inverse).norm() <= KEPT)
+        })
+    }
 }
 
 /// Springs to the ground all over a surface, the same in every direction: `sum_q w k N_I N_J 1`. Where tools may touch by

@@ -26,6 +26,7 @@ mod closest;
 mod element_tests;
 mod error;
 mod face;
+mod linear;
 mod locate;
 mod map;
 mod points;
@@ -35,6 +36,7 @@ mod surface;
 mod volume;
 
 pub use error::FemError;
+pub use linear::linear_nodes;
 pub use points::{Outside, grad_rows, nearest_cells, nearest_grad_rows, nearest_point_rows, point_rows};
 pub use rule::{SurfaceRule, VolumeRule};
 pub use source::Elements;

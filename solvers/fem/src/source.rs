@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use geometry::{FaceKind, Facet, Mesh};
 use shape::{
-    DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
+    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
     SurfaceRows, VolumeRows,
 };
 
 use crate::{
-    SurfaceRule, VolumeRule, divided_surface_rows, element_dilation, flux_rows, nearest_grad_rows,
-    nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
+    SurfaceRule, VolumeRule, divided_surface_rows, element_dilation, flux_rows, linear_nodes,
+    nearest_grad_rows, nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
 };
 
 /// Elements of a mesh, whose nodes are the method's.
@@ -58,6 +58,10 @@ impl RowSource for Elements {
 
     fn pressure(&self) -> Result<Option<Rows>, SourceError> {
         Ok(Some(pressure_rows(&self.mesh, &self.rule)?))
+    }
+
+    fn coarser(&self) -> Result<Option<Coarser>, SourceError> {
+        Ok(linear_nodes(&self.mesh)?)
     }
 
     fn fine_volume(&self) -> Result<VolumeRows, SourceError> {

@@ -1,9 +1,10 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) refuses a NaN as well
 //! Radial basis functions, with a linear polynomial or without: one dense, positive definite solve for all targets.
 
+use algebra::Cholesky;
 use catalogue::{Dimension, Entry, Kind, Parameter, Range};
 use geometry::Cloud;
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix4xX, MatrixXx4};
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix4xX, MatrixXx4};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
@@ -201,7 +202,7 @@ const APART: f64 = 1e-2;
 /// is full. Functions so wide that the system is singular to working precision are refused.
 ///
 /// Coordinates are shifted to the centre of the cloud and scaled by its half-extent. After one factorisation all
-/// targets are rows of two matrix products, 4 n^2 operations each.
+/// targets are rows of two triangular solutions, 2 n^2 operations each.
 pub fn radial(nodes: &[Point3], radial: Radial, targets: &[Point3]) -> Result<PointRows, InterpError> {
     let system = System::checked(nodes, radial, targets, 1)?;
     Ok(PointRows::new(targets.to_vec(), system.rows(targets)?)?)
@@ -233,9 +234,8 @@ struct System {
     centre: Point3,
     scale: f64,
     nodes: Vec<Point3>,
-    l_inverse: DMatrix<f64>,
-    /// A copy: the library's product with a transpose is a loop of dot products, three times slower.
-    l_inverse_transposed: DMatrix<f64>,
+    /// Of `K`.
+    factor: Cholesky,
     tail: Option<Tail>,
 }
 
@@ -301,8 +301,7 @@ impl System {
             _ => coincident(pivot_ratio),
         };
 
-        let phi =
-            DMatrix::from_fn(n, n, |i, j| radial.eval((nodes[i] - nodes[j]).norm_squared(), inverse_square));
+        let phi = functions(&nodes, |square| radial.eval(square, inverse_square));
         let mut k = phi.clone();
         let tail = radial.polynomial().then(|| {
             let (y, b) = polynomial(&nodes);
@@ -314,20 +313,16 @@ impl System {
             k.gemm(tau, &y, &y.transpose(), 1.0);
             Tail { phi_b: phi * &b, y, b }
         });
-        let factor = Cholesky::new(k.clone()).ok_or_else(|| singular(0.0, f64::INFINITY))?;
-        let pivots = factor.l_dirty().diagonal().map(|l| l * l);
-        let pivot_ratio = pivots.min() / pivots.max();
-        let mut l_inverse = DMatrix::identity(n, n);
-        if !factor.l_dirty().solve_lower_triangular_mut(&mut l_inverse) {
-            return Err(singular(pivot_ratio, f64::INFINITY));
-        }
-        let l_inverse_transposed = l_inverse.transpose();
+        let factor = Cholesky::new(n, k.as_slice()).ok_or_else(|| singular(0.0, f64::INFINITY))?;
+        let pivot_ratio = factor.pivot_ratio();
         let sign = DVector::from_fn(n, |i, _| if i % 2 == 0 { 1.0 } else { -1.0 });
-        let miss = (k * (&l_inverse_transposed * (&l_inverse * &sign)) - sign).amax();
+        let mut solved = sign.clone();
+        factor.solve(solved.as_mut_slice());
+        let miss = (k * solved - sign).amax();
         if !(pivot_ratio > SMALLEST_PIVOT) || (width.is_some() && !(miss < LARGEST_MISS)) {
             return Err(singular(pivot_ratio, miss));
         }
-        Ok(System { radial, inverse_square, centre, scale, l_inverse, l_inverse_transposed, tail, nodes })
+        Ok(System { radial, inverse_square, centre, scale, factor, tail, nodes })
     }
 
     fn rows(&self, targets: &[Point3]) -> Result<Rows, InterpError> {
@@ -373,15 +368,28 @@ impl System {
         if let Some(tail) = &self.tail {
             phi.gemm(-1.0, &tail.phi_b, &polynomial, 1.0);
         }
-        // K^-1 as L^-T L^-1 and not as one matrix, whose rounding grows with the square of the condition: two
-        // nodes a millionth of the extent apart spoil a smooth field by 1e-9 this way, and by 1e-3 the other.
-        let mut rows = &self.l_inverse_transposed * (&self.l_inverse * phi);
+        // By the factor and not by K^-1, whose rounding grows with the square of the condition: two nodes a millionth of the
+        // extent apart spoil a smooth field by 1e-9 this way, and by 1e-3 the other.
+        let mut rows = phi;
+        self.factor.solve(rows.as_mut_slice());
         if let Some(tail) = &self.tail {
             project_columns(&tail.y, &mut rows);
             rows.gemm(1.0, &tail.b, &polynomial, 1.0);
         }
         rows
     }
+}
+
+/// The function of the squared distance of each pair of nodes.
+fn functions(nodes: &[Point3], of: impl Fn(f64) -> f64) -> DMatrix<f64> {
+    let mut phi = DMatrix::zeros(nodes.len(), nodes.len());
+    for j in 0..nodes.len() {
+        for i in j..nodes.len() {
+            phi[(i, j)] = of((nodes[i] - nodes[j]).norm_squared());
+        }
+    }
+    phi.fill_upper_triangle_with_lower_triangle();
+    phi
 }
 
 /// Mean distance of a node to its nearest neighbours.

@@ -1,7 +1,7 @@
 //! Numbers from elsewhere: worked by hand, from the textbook's own system, and known levels of error.
 
-use geometry::{Kidney, cloud};
-use interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme};
+use geometry::{Cloud, Kidney, cloud};
+use interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme, Shepard};
 use nalgebra::{DMatrix, Vector3};
 use shape::Point3;
 
@@ -29,6 +29,30 @@ fn inverse_distance_stays_finite_beside_a_node() {
             let share = 1.0 - rows.rows().row(0).1[0];
             assert!(share <= 2.0 * gap.powf(power) + 1e-15, "{power} {gap}: {share}");
         }
+    }
+}
+
+/// Cubic splines of the distance over each node's own radius, made to sum to one.
+#[test]
+fn shepard_by_hand() {
+    let nodes: Vec<Point3> = (0..30)
+        .map(|i| Point3::new((2.1 * i as f64).sin(), (1.3 * i as f64).cos(), 0.1 * i as f64))
+        .collect();
+    let target = Point3::new(0.1, 0.2, 1.4);
+    let spacing = Cloud::from_points(nodes.clone()).unwrap().spacing;
+    let spline = |q: f64| match q {
+        q if q < 0.5 => 1.0 - 6.0 * q * q + 6.0 * q * q * q,
+        q if q < 1.0 => 2.0 * (1.0 - q).powi(3),
+        _ => 0.0,
+    };
+    let weights: Vec<f64> =
+        nodes.iter().zip(&spacing).map(|(x, h)| spline((x - target).norm() / (1.6 * h))).collect();
+    let sum: f64 = weights.iter().sum();
+    let (rows, _) = Scheme::Shepard(Shepard { support_scale: 1.6 }).rows(&nodes, None, &[target]).unwrap();
+    let (near, values) = rows.rows().row(0);
+    assert_eq!(near.len(), weights.iter().filter(|w| **w > 0.0).count());
+    for (&node, value) in near.iter().zip(values) {
+        assert!((value - weights[node as usize] / sum).abs() < 1e-14, "{node}: {value}");
     }
 }
 

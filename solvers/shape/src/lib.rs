@@ -23,6 +23,7 @@
 //! ```
 
 mod blocks;
+mod coarser;
 mod dilation;
 mod family;
 mod fixed;
@@ -33,6 +34,7 @@ mod tables;
 mod trace;
 
 pub use blocks::RowBlocks;
+pub use coarser::Coarser;
 pub use dilation::DilationGroups;
 pub use family::{FamilyEntry, MeshFamily, OverMesh};
 pub use fixed::FixedDof;

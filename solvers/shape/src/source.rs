@@ -6,7 +6,7 @@ use catalogue::metric::Metric;
 use geometry::{Facet, Mesh};
 
 use crate::{
-    DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, ShapeError, SurfaceRows, TraceRows,
+    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, ShapeError, SurfaceRows, TraceRows,
     VolumeRows,
 };
 
@@ -58,6 +58,11 @@ pub trait RowSource: Send + Sync {
 
     /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none.
     fn pressure(&self) -> Result<Option<Rows>, SourceError>;
+
+    /// A coarser mesh whose functions the method's nodes hold exactly; `None` where there is none.
+    fn coarser(&self) -> Result<Option<Coarser>, SourceError> {
+        Ok(None)
+    }
 
     /// A finer quadrature, for error norms and consistent masses.
     fn fine_volume(&self) -> Result<VolumeRows, SourceError>;

@@ -1,5 +1,7 @@
 //! The tables: rows with what else a point carries (position, gradients, weight, normal).
 
+use rayon::prelude::*;
+
 use crate::{Matrix3, Point3, Rows, ShapeError, Vector3};
 
 fn check_len(what: &'static str, found: usize, expected: usize) -> Result<(), ShapeError> {
@@ -103,6 +105,24 @@ impl GradRows {
     pub fn row(&self, row: usize) -> (&[u32], &[Vector3]) {
         let range = self.rows.range(row);
         (&self.rows.nodes()[range.clone()], &self.grads[range])
+    }
+
+    /// The row whose gradients are farthest from reproducing linear fields, and how far: `|sum_I grad N_I (x_I - x)^T - 1|`, or
+    /// `|sum_I grad N_I|` times the distance of the farthest node where that is more. `nodes` (m) has the position of each node.
+    pub fn worst_reproduction(&self, nodes: &[Point3]) -> Option<(usize, f64)> {
+        assert_eq!(nodes.len(), self.rows.node_count(), "one position per node");
+        let off = |q: usize| {
+            let (near, grads) = self.row(q);
+            let (mut sum, mut slope, mut reach) = (Vector3::zeros(), -Matrix3::identity(), 0.0_f64);
+            for (&node, grad) in near.iter().zip(grads) {
+                let r = nodes[node as usize] - self.points[q];
+                sum += grad;
+                slope += grad * r.transpose();
+                reach = reach.max(r.norm_squared());
+            }
+            (q, slope.norm().max(sum.norm() * reach.sqrt()))
+        };
+        (0..self.rows.len()).into_par_iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }
 
     /// Displacement gradient at each point: `H_ij = sum_I u_Ii N_I,j`.

@@ -30,16 +30,19 @@ impl Factored<'_> {
             .map(|i| Vector3::from_fn(|a, _| (12.9898 * i as f64 + 78.233 * a as f64).sin()))
             .collect();
         let mut alpha = 1.0;
+        let mut mv = mass(forms, stiff(forms, &v), &v);
         for _ in 0..STEPS {
             // In the space that supports leave: also the first, which need not be.
-            v = self.solve_forces(&mass(forms, &v), 0.0)?.u;
+            v = self.solve_roughly(&mv)?;
             let size = v.iter().fold(0.0f64, |l, v| l.max(v.amax()));
             if size == 0.0 {
                 return Ok(None);
             }
             v.iter_mut().for_each(|v| *v /= size);
-            let (kv, mv) = (stiff(forms, &v), mass(forms, &v));
-            alpha = dot(&v, &kv) / dot(&v, &mv);
+            let kv = stiff(forms, &v);
+            let over = dot(&v, &kv);
+            mv = mass(forms, kv, &v);
+            alpha = over / dot(&v, &mv);
         }
         Ok(Some(gamma * (1.0 - alpha.clamp(0.0, 1.0)).powi(2)))
     }
@@ -53,11 +56,10 @@ fn stiff(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
     out
 }
 
-/// `M v`.
-fn mass(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
-    let mut out = stiff(forms, v);
-    forms.add_consistency(v, &mut out);
-    out
+/// `M v` from `K v`.
+fn mass(forms: &Pointwise, mut kv: Vec<Vector3>, v: &[Vector3]) -> Vec<Vector3> {
+    forms.add_consistency(v, &mut kv);
+    kv
 }
 
 fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {

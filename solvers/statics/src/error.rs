@@ -124,6 +124,12 @@ pub enum SolveError {
          integration, or parts joined along an edge or at a point"
     )]
     NotPositiveDefinite,
+    /// Conjugate gradients over the nodal parameters know no constraint rows.
+    #[error("{rows} constraint rows need a direct solver, iterations don't do")]
+    RowsNeedFactor {
+        /// Number of rows.
+        rows: usize,
+    },
     /// As [`SolveError::NotPositiveDefinite`] with Nitsche supports: their stabilisation is too small.
     #[error(
         "the stiffness with Nitsche supports is not positive definite: gamma = {gamma} is too small (or the \

@@ -83,7 +83,7 @@ pub use implicit::{
     solve_in_time,
 };
 pub use load::{Load, nodal_forces};
-pub use modes::{Modes, modes};
+pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
     Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Solid, StaticError, StaticParams,
     StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
@@ -91,5 +91,5 @@ pub use nonlinear::{
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};
 pub use rigid::RigidMode;
-pub use solve::{Factored, Solution, SolveInfo};
+pub use solve::{Factored, Iterated, Solution, SolveInfo};
 pub use weak::{Weak, WeakSupport};

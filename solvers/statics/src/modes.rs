@@ -1,7 +1,7 @@
 //! Small free vibrations: `K v = omega^2 M v`.
 //!
 //! ```text
-//! LinearProblem, Mass --modes--> Modes
+//! LinearProblem, Mass --modes, lowest_modes--> Modes
 //! ```
 //!
 //! Loads and the values that supports prescribe have no part in them. Constraint rows are eliminated, weak supports act by
@@ -17,6 +17,8 @@ use crate::problem::{Assembled, assemble_free};
 use crate::reduction::Reduction;
 use crate::{LinearProblem, Mass, SolveError};
 
+/// Unknowns up to which all modes are found by a dense decomposition, which takes 8 s of them; beyond, the lowest alone.
+pub const ALL_MODES_LIMIT: usize = 2000;
 /// Relative residual of a mode above which it is refused: its frequency is then off by less than the square.
 const RESIDUAL_LIMIT: f64 = 1e-4;
 /// `1 / (omega^2 + shift)` over the largest one, below which only rounding is left of it: the motion has no mass.
@@ -24,10 +26,10 @@ const MASSLESS: f64 = 1e-11;
 /// Negative `omega^2` over the shift that rounding does not explain: it left 1e-10 of rigid motions.
 const UNSTABLE: f64 = 1e-4;
 
-/// The modes of a body.
+/// The modes of a body, or the lowest of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// `omega^2` of every mode, ascending, (rad/s)^2; of rigid motions zero to rounding, of either sign.
+    /// `omega^2` of each mode, ascending, (rad/s)^2; of rigid motions zero to rounding, of either sign.
     pub squared: Vec<f64>,
     /// Nodal parameters of each mode, with `v^T M v = 1`.
     pub shapes: Vec<Vec<Vector3>>,
@@ -35,8 +37,23 @@ pub struct Modes {
     pub scale: f64,
     /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all.
     pub residual: f64,
-    /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above.
+    /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above. 0 where not all
+    /// modes were looked for.
     pub massless: usize,
+    /// Unknowns of the body.
+    pub dofs: usize,
+}
+
+impl Modes {
+    /// The name used in records.
+    pub fn solver(&self) -> &'static str {
+        if self.dofs <= ALL_MODES_LIMIT { "dense-eigen" } else { "block-lanczos" }
+    }
+
+    /// Whether these are all modes of the body, not the lowest alone.
+    pub fn are_all(&self) -> bool {
+        self.squared.len() + self.massless == self.dofs
+    }
 }
 
 /// All modes of a body by a dense decomposition: none is missed, and time grows with the cube of the number of unknowns.
@@ -47,13 +64,29 @@ pub struct Modes {
 ///
 /// Errors: those of assembly, a stiffness with a negative `omega^2`, a motion with neither stiffness nor mass.
 pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> {
+    found(problem, mass, None)
+}
+
+/// The `count` lowest modes, or more: all up to [`ALL_MODES_LIMIT`] unknowns, and beyond by block Lanczos with the sparse factor of
+/// `A` ([`eigen::largest`]), whose time grows as that of one factorisation. Up to eight modes of one frequency are found.
+///
+/// Errors: those of [`modes`].
+pub fn lowest_modes(problem: &LinearProblem, mass: &Mass, count: usize) -> Result<Modes, SolveError> {
+    found(problem, mass, Some(count))
+}
+
+fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<Modes, SolveError> {
     check_len("nodes of the mass", mass.node_count(), problem.body.nodes.len())?;
     let assembled = assemble_free(problem)?;
     let constrained: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
     let reduction = Reduction::new(&constrained, &assembled.rows)?;
     let (k, m) = (reduction.matrix(&assembled.stiffness), reduction.matrix(&mass.matrix()));
     let shift = shift(problem, mass);
-    let eigen = eigen::shifted(&k, &m, shift).map_err(|error| match error {
+    let eigen = match count {
+        Some(count) if k.dim() > ALL_MODES_LIMIT => eigen::largest(&k, &m, shift, count),
+        _ => eigen::shifted(&k, &m, shift),
+    };
+    let eigen = eigen.map_err(|error| match error {
         FactorError::NotDefinite | FactorError::Other(AlgebraError::NearlySingular { .. }) => {
             indefinite(&assembled, SolveError::NoFrequency)
         }
@@ -81,7 +114,7 @@ pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> 
         shapes.push(shape);
     }
     let massless = eigen.values.len() - squared.len();
-    Ok(Modes { squared, shapes, scale: shift, residual, massless })
+    Ok(Modes { squared, shapes, scale: shift, residual, massless, dofs: k.dim() })
 }
 
 /// Nitsche's stabilisation is the first to blame.

@@ -1,14 +1,23 @@
 //! Factorisation and solution of an assembled problem.
 
 use algebra::Stiffness;
-use algebra::{DENSE_LIMIT, FactorError, Factorization, SolverPath, Symmetric};
-use shape::Vector3;
+use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, Solved, SolverPath, Symmetric};
+use shape::{Coarser, Vector3};
 
 use crate::SolveError;
 use crate::body::check_len;
 use crate::load::Load;
 use crate::problem::Assembled;
 use crate::reduction::Reduction;
+
+/// What conjugate gradients did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iterated {
+    /// Iterations.
+    pub count: usize,
+    /// Entries of the matrices of all levels over those of the finest.
+    pub complexity: f64,
+}
 
 /// What a solve did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,10 +30,14 @@ pub struct SolveInfo {
     pub eliminated: usize,
     /// Constraint rows that were to be eliminated and follow from the others.
     pub dropped: usize,
-    /// Numbers stored in the factor.
+    /// Numbers stored in the factor, or in the matrices of all levels.
     pub factor_nonzeros: usize,
+    /// Of conjugate gradients, if they served.
+    pub iterations: Option<Iterated>,
     /// Relative residual `|b - A x| / |b|` of the reduced system.
     pub residual: f64,
+    /// What a solution by a factor is judged by.
+    pub solved: Option<Solved>,
     /// The factorisation that served.
     pub path: SolverPath,
 }
@@ -41,10 +54,20 @@ pub struct Solution {
     pub info: SolveInfo,
 }
 
+/// What takes a right-hand side to the unknowns.
+enum Solver {
+    Direct(Factorization),
+    /// Conjugate gradients to a relative residual of `tolerance`.
+    Multigrid {
+        multigrid: Box<Multigrid>,
+        tolerance: f64,
+    },
+}
+
 /// A factored problem: solves for any load level or set of loads without factoring again.
 pub struct Factored<'a> {
     problem: Assembled<'a>,
-    factorization: Factorization,
+    solver: Solver,
     reduction: Reduction,
     /// Constraint rows that keep a free term: index, and the scale by which they were multiplied.
     active: Vec<(usize, f64)>,
@@ -89,7 +112,26 @@ impl<'a> Assembled<'a> {
                 None => SolveError::NotPositiveDefinite,
             },
         })?;
-        Ok(Factored { problem: self, factorization, reduction, active })
+        Ok(Factored { problem: self, solver: Solver::Direct(factorization), reduction, active })
+    }
+
+    /// The multigrid hierarchy of the stiffness, with the linear mesh of a quadratic one as first coarse level if it is given.
+    pub fn multigrid(&self, linear: Option<&Coarser>) -> Result<Multigrid, SolveError> {
+        let held = self.prescribed.iter().map(Option::is_some).collect();
+        Multigrid::new(&self.stiffness, self.body.nodes, held, linear).map_err(|error| match error {
+            FactorError::Other(error) => error.into(),
+            FactorError::NotDefinite => SolveError::NotPositiveDefinite,
+        })
+    }
+
+    /// Conjugate gradients with this preconditioner, to a relative residual of `tolerance`. Constraint rows are not for it: refused.
+    pub fn iterated(self, multigrid: Multigrid, tolerance: f64) -> Result<Factored<'a>, SolveError> {
+        if !self.rows.is_empty() {
+            return Err(SolveError::RowsNeedFactor { rows: self.rows.len() });
+        }
+        let reduction = Reduction::new(&self.prescribed, &[])?;
+        let solver = Solver::Multigrid { multigrid: Box::new(multigrid), tolerance };
+        Ok(Factored { problem: self, solver, reduction, active: Vec::new() })
     }
 
     /// Appends the constraint rows with a free term to the matrix over the unknowns, and returns which, with their scales.
@@ -124,7 +166,7 @@ impl<'a> Assembled<'a> {
     }
 }
 
-impl Factored<'_> {
+impl<'a> Factored<'a> {
     /// The solution at `factor` times all given data: loads and prescribed displacements alike.
     pub fn solve(&self, factor: f64) -> Result<Solution, SolveError> {
         self.solve_for(&self.problem.load, factor, factor)
@@ -140,6 +182,38 @@ impl Factored<'_> {
     pub fn solve_forces(&self, forces: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
         check_len("nodal forces", forces.len(), self.node_count())?;
         self.solve_for(forces, 1.0, factor)
+    }
+
+    /// The problem again, for another solver.
+    pub fn into_assembled(self) -> Assembled<'a> {
+        self.problem
+    }
+
+    /// The displacement under nodal forces (N) with supports at rest, without refinement: for an iteration that corrects itself.
+    pub(crate) fn solve_roughly(&self, forces: &[Vector3]) -> Result<Vec<Vector3>, SolveError> {
+        let factorization = match &self.solver {
+            Solver::Direct(factorization) => factorization,
+            Solver::Multigrid { multigrid, tolerance } => {
+                let mut u = forces.to_vec();
+                multigrid.solve(&self.problem.stiffness, &mut u, *tolerance)?;
+                return Ok(u);
+            }
+        };
+        let mut b = vec![0.0; factorization.dim()];
+        self.reduction.fold(forces, &mut b);
+        factorization.solve_once(&mut b)?;
+        let mut u = self.reduction.constrained(0.0);
+        self.reduction.expand(&b, &mut u);
+        Ok(u)
+    }
+
+    /// Decimal digits that the largest displacement of a solution has at least, by the condition of the matrix: about five more
+    /// solves. Not known of iterations.
+    pub fn digits(&self, info: &SolveInfo) -> Result<Option<f64>, SolveError> {
+        match (&self.solver, &info.solved) {
+            (Solver::Direct(factorization), Some(solved)) => Ok(Some(factorization.digits(solved)?)),
+            _ => Ok(None),
+        }
     }
 
     /// Smallest factor of Nitsche's method, if any support is of that kind.
@@ -167,17 +241,23 @@ impl Factored<'_> {
         let constrained = p.stiffness.multiply(&u);
         let forces: Vec<Vector3> =
             (0..load.len()).map(|i| load[i] * part + p.weak_load[i] * factor - constrained[i]).collect();
-        let mut b = vec![0.0; self.factorization.dim()];
+        let (factorization, forces) = match &self.solver {
+            Solver::Direct(factorization) => (factorization, forces),
+            Solver::Multigrid { multigrid, tolerance } => {
+                return self.iterate(multigrid, *tolerance, forces, u);
+            }
+        };
+        let mut b = vec![0.0; factorization.dim()];
         self.reduction.fold(&forces, &mut b);
         let free = self.reduction.free;
         for (k, &(index, scale)) in self.active.iter().enumerate() {
             let row = &p.rows[index];
             b[free + k] = factor * scale * (row.value - row.held_part(&p.prescribed));
         }
-        let residual = self.factorization.solve(&mut b)?;
+        let solved = factorization.solve_judged(&mut b)?;
         self.reduction.expand(&b, &mut u);
         if let (Some(forms), true) = (&p.pointwise, self.active.is_empty()) {
-            self.refine(forms, load, (part, factor), &mut u)?;
+            self.refine(factorization, forms, load, (part, factor), &mut u)?;
         }
         let mut multipliers = vec![0.0; p.rows.len()];
         for (k, &(index, scale)) in self.active.iter().enumerate() {
@@ -189,11 +269,37 @@ impl Factored<'_> {
             multipliers: self.active.len(),
             eliminated: self.reduction.eliminated(),
             dropped: self.reduction.dropped,
-            factor_nonzeros: self.factorization.nonzeros(),
-            residual,
-            path: self.factorization.path(),
+            factor_nonzeros: factorization.nonzeros(),
+            iterations: None,
+            residual: solved.residual,
+            solved: Some(solved),
+            path: factorization.path(),
         };
         Ok(Solution { u, multipliers, info })
+    }
+
+    /// Adds what conjugate gradients find for `forces` to what is prescribed.
+    fn iterate(
+        &self,
+        multigrid: &Multigrid,
+        tolerance: f64,
+        mut forces: Vec<Vector3>,
+        mut u: Vec<Vector3>,
+    ) -> Result<Solution, SolveError> {
+        let done = multigrid.solve(&self.problem.stiffness, &mut forces, tolerance)?;
+        u.iter_mut().zip(&forces).for_each(|(u, step)| *u += step);
+        let info = SolveInfo {
+            dofs: multigrid.dim(),
+            multipliers: 0,
+            eliminated: 0,
+            dropped: 0,
+            factor_nonzeros: multigrid.levels().iter().map(|level| level.1).sum(),
+            iterations: Some(Iterated { count: done.count, complexity: multigrid.complexity() }),
+            residual: done.residual,
+            solved: None,
+            path: SolverPath::Multigrid,
+        };
+        Ok(Solution { u, multipliers: Vec::new(), info })
     }
 
     /// At most two steps of refinement with the residual of the forms themselves, at parts of the load and of what supports
@@ -201,6 +307,7 @@ impl Factored<'_> {
     /// (Higham 2002, section 12.1): one of less than 1e-9 leaves nothing to the second.
     fn refine(
         &self,
+        factorization: &Factorization,
         forms: &crate::problem::Pointwise,
         load: &[Vector3],
         (part, factor): (f64, f64),
@@ -209,9 +316,9 @@ impl Factored<'_> {
         for _ in 0..2 {
             let mut residual: Vec<Vector3> = load.iter().map(|f| f * part).collect();
             forms.subtract(u, factor, &mut residual);
-            let mut b = vec![0.0; self.factorization.dim()];
+            let mut b = vec![0.0; factorization.dim()];
             self.reduction.fold(&residual, &mut b);
-            self.factorization.solve(&mut b)?;
+            factorization.solve_judged(&mut b)?;
             self.reduction.expand(&b, u);
             let largest = u.iter().fold(0.0f64, |l, u| l.max(u.amax()));
             if b.iter().all(|step| step.abs() <= 1e-9 * largest) {

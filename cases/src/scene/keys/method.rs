@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::scene::family::OverMeshKeys;
 use crate::scene::method::{
-    Basis, ConstraintRows, Dilation, Element, Entropy, EssentialKind, Mass, SupportShape,
+    Basis, ConstraintRows, Dilation, Element, Entropy, EssentialKind, Mass, Regions, SupportShape,
 };
 use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Unit};
@@ -128,6 +128,8 @@ pub(crate) struct EfgKeys {
     pub integration: IntegrationKeys,
     pub essential: EssentialKeys,
     pub dilation: Option<Dilation>,
+    /// What shape functions do at the borders of material regions; separate with essential = "coupling" only
+    pub regions: Option<Regions>,
     /// Size of the mesh to integrate over
     pub background: Option<SizeKeys>,
     /// What moves in vibrations; kind = "modes" only

@@ -81,7 +81,14 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
         coupling(&cloud, &functions, key, report);
     }
     let dilation = keys.dilation.unwrap_or(Dilation::Standard);
-    let efg = Efg { cloud, functions, integration, essential, dilation, background };
+    let regions = keys.regions.unwrap_or(Regions::Blended);
+    report.require(
+        regions == Regions::Blended || essential == Essential::Coupling,
+        &at("regions"),
+        "wants finite elements along the borders, as essential = \"coupling\" has them along supports",
+        "take essential = \"coupling\", or regions = \"blended\"",
+    );
+    let efg = Efg { cloud, functions, integration, essential, dilation, regions, background };
     let series = keys.series.unwrap_or_else(|| keys.id.clone());
     Some(Method { id: keys.id, series, family: Family::Efg(efg), mass: keys.mass })
 }

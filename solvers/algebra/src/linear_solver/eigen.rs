@@ -1,4 +1,4 @@
-//! Dense symmetric eigenproblems `M x = theta A x`.
+//! Symmetric eigenproblems `M x = theta A x`: all of a small one by a dense decomposition, the largest of a large one by Lanczos.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -9,6 +9,8 @@ use faer::{Mat, Par};
 
 use super::{FactorError, Symmetric, check_pivots, zeroed};
 use crate::AlgebraError;
+
+pub use super::lanczos::largest;
 
 /// Eigenvalues, the largest first, and their vectors with `x^T A x = 1`.
 pub struct Eigen {

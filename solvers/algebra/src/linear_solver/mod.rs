@@ -3,9 +3,12 @@
 //! The bits of a result do not depend on the number of threads, which only large factorisations take. Every solve
 //! ends with its residual.
 
+mod accuracy;
 mod curvature;
 mod dense;
 pub mod eigen;
+mod full;
+mod lanczos;
 mod ordering;
 mod sparse;
 mod unsymmetric;
@@ -14,11 +17,15 @@ mod workspace;
 use std::mem::MaybeUninit;
 use std::sync::Arc;
 
+use faer::MatMut;
 use faer::dyn_stack::MemBuffer;
 
 use crate::{AlgebraError, Stiffness};
 
+pub use accuracy::Solved;
+use accuracy::{BACKWARD_LIMIT, FEWEST_DIGITS};
 pub use curvature::Curvature;
+pub use full::Cholesky;
 pub use sparse::Symbolic;
 pub use unsymmetric::{Border, Unsymmetric};
 pub use workspace::reserve_workspaces;
@@ -28,7 +35,8 @@ pub use workspace::reserve_workspaces;
 /// cloud's: 0.34 / 1.03 at 300, 1.46 / 1.98 at 540, 5.4 / 4.3 at 882. The crossovers lie near 430 and 750.
 pub const DENSE_LIMIT: usize = 480;
 
-/// Relative residual `|b - A x| / |b|` above which a solution is refused.
+/// Relative residual `|b - A x| / |b|` up to which no solution is refused; what is above is judged by its digits, or refused
+/// where a step of an iteration is asked for.
 const RESIDUAL_LIMIT: f64 = 1e-8;
 /// Refinement stops below this residual.
 const RESIDUAL_GOAL: f64 = 1e-14;
@@ -57,6 +65,8 @@ pub enum SolverPath {
     SparseLlt,
     /// Supernodal `L D L^T` in METIS order, with static regularisation and refinement.
     SparseLdlt,
+    /// Conjugate gradients with smoothed aggregation as preconditioner.
+    Multigrid,
 }
 
 impl SolverPath {
@@ -68,6 +78,7 @@ impl SolverPath {
             SolverPath::DenseLdlt => "dense-ldlt",
             SolverPath::SparseLlt => "sparse-llt",
             SolverPath::SparseLdlt => "sparse-ldlt",
+            SolverPath::Multigrid => "multigrid",
         }
     }
 }
@@ -142,6 +153,24 @@ impl Symmetric {
             }
         }
         m
+    }
+
+    /// `A + factor B` of two matrices over the same unknowns, whose entries need not be in the same places.
+    pub(super) fn plus(&self, other: &Symmetric, factor: f64) -> Symmetric {
+        let (mut offsets, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..self.dim() {
+            let column =
+                |m: &Symmetric| (m.offsets[j]..m.offsets[j + 1]).map(|k| (m.rows[k], m.values[k])).collect();
+            let [a, b]: [Vec<(usize, f64)>; 2] = [column(self), column(other)];
+            let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
+            while let Some(row) = [a.peek(), b.peek()].into_iter().flatten().map(|e| e.0).min() {
+                let of = |e: &(usize, f64)| e.0 == row;
+                rows.push(row);
+                values.push(a.next_if(of).map_or(0.0, |e| e.1) + factor * b.next_if(of).map_or(0.0, |e| e.1));
+            }
+            offsets.push(rows.len());
+        }
+        Symmetric { offsets, rows, values, multipliers: self.multipliers, vertices: self.vertices.clone() }
     }
 
     /// Makes the diagonal of the unknowns before the multipliers what it was in `diagonal`, times `1 + shift`.
@@ -364,37 +393,52 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves in place by `once` and returns the relative residual. Refines until the residual is at rounding or no longer
-/// halves; with multipliers that takes about three steps, else none or one.
+/// A solution, what is left of the right-hand side and that relative to it.
+struct Refined {
+    x: Vec<f64>,
+    rest: Vec<f64>,
+    residual: f64,
+}
+
+/// Solves by `once` and refines until the residual is at rounding or no longer halves; with multipliers that takes about three
+/// steps, else none or one.
+fn refine(
+    b: &[f64],
+    once: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
+    subtract_product: impl Fn(&[f64], &mut [f64]),
+) -> Result<Refined, AlgebraError> {
+    let size = norm(b);
+    let mut best = Refined { x: vec![0.0; b.len()], rest: b.to_vec(), residual: f64::INFINITY };
+    if size == 0.0 {
+        return Ok(Refined { residual: 0.0, ..best });
+    }
+    for _ in 0..12 {
+        let mut step = best.rest.clone();
+        once(&mut step)?;
+        let trial: Vec<f64> = best.x.iter().zip(&step).map(|(x, d)| x + d).collect();
+        let mut left = b.to_vec();
+        subtract_product(&trial, &mut left);
+        let reached = norm(&left) / size;
+        // A NaN fails this comparison and keeps the last good solution, or none.
+        if !(reached < best.residual) {
+            break;
+        }
+        let stalled = reached > 0.5 * best.residual;
+        best = Refined { x: trial, rest: left, residual: reached };
+        if reached < RESIDUAL_GOAL || stalled {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Solves in place by `once` and returns the relative residual, which must be small.
 fn refined(
     b: &mut [f64],
     once: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
     subtract_product: impl Fn(&[f64], &mut [f64]),
 ) -> Result<f64, AlgebraError> {
-    let size = norm(b);
-    if size == 0.0 {
-        return Ok(0.0);
-    }
-    let mut x = vec![0.0; b.len()];
-    let mut rest = b.to_vec();
-    let mut residual = f64::INFINITY;
-    for _ in 0..12 {
-        let mut step = rest.clone();
-        once(&mut step)?;
-        let trial: Vec<f64> = x.iter().zip(&step).map(|(x, d)| x + d).collect();
-        let mut left = b.to_vec();
-        subtract_product(&trial, &mut left);
-        let reached = norm(&left) / size;
-        // A NaN fails this comparison and keeps the last good solution, or none.
-        if !(reached < residual) {
-            break;
-        }
-        let stalled = reached > 0.5 * residual;
-        (x, rest, residual) = (trial, left, reached);
-        if residual < RESIDUAL_GOAL || stalled {
-            break;
-        }
-    }
+    let Refined { x, residual, .. } = refine(b, once, subtract_product)?;
     if !(residual <= RESIDUAL_LIMIT) {
         return Err(AlgebraError::Residual { residual, limit: RESIDUAL_LIMIT });
     }
@@ -403,13 +447,48 @@ fn refined(
 }
 
 impl Factorization {
-    /// Solves in place and returns the relative residual.
+    /// Solves in place and returns the relative residual: for a step of an iteration, which must follow its right-hand side.
     pub fn solve(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
         refined(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
     }
 
-    fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
+    /// Solves in place: for an answer, which is refused if it has no digits and not for a residual that rounding explains.
+    pub fn solve_judged(&self, b: &mut [f64]) -> Result<Solved, AlgebraError> {
+        let Refined { x, rest, residual } = self.refine(b)?;
+        let solved = Solved::new(residual, &rest, &x, b);
+        if !(residual <= RESIDUAL_LIMIT) {
+            let backward_error = self.backward_error(&solved);
+            if !(backward_error <= BACKWARD_LIMIT) {
+                return Err(AlgebraError::BackwardError { backward_error, residual, limit: BACKWARD_LIMIT });
+            }
+            let digits = self.digits(&solved)?;
+            if !(digits >= FEWEST_DIGITS) {
+                return Err(AlgebraError::NoDigits { digits, backward_error });
+            }
+        }
+        b.copy_from_slice(&x);
+        Ok(solved)
+    }
+
+    fn refine(&self, b: &[f64]) -> Result<Refined, AlgebraError> {
+        refine(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
+    }
+
+    /// Solves in place by the factor alone, without refinement and residual.
+    pub fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         self.factor.solve(b)
+    }
+
+    /// Solves for all columns, once.
+    fn solve_columns(&self, mut b: MatMut<f64>) -> Result<(), AlgebraError> {
+        match &self.factor.0 {
+            Numbers::Empty => Ok(()),
+            Numbers::Sparse(factor) => factor.solve_columns(b),
+            Numbers::Dense(_) | Numbers::Single(_) => (0..b.ncols()).try_for_each(|j| {
+                let column = b.as_mut().col_mut(j).try_as_col_major_mut().expect("whole columns");
+                self.solve_once(column.as_slice_mut())
+            }),
+        }
     }
 
     /// Number of unknowns.

@@ -168,10 +168,14 @@ impl Sparse {
 
     pub fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         let n = b.len();
-        let scratch = self.symbolic.cholesky.solve_in_place_scratch::<f64>(1, Par::Seq);
+        self.solve_columns(MatMut::from_column_major_slice_mut(b, n, 1))
+    }
+
+    pub fn solve_columns(&self, rhs: MatMut<f64>) -> Result<(), AlgebraError> {
+        let n = rhs.nrows();
+        let scratch = self.symbolic.cholesky.solve_in_place_scratch::<f64>(rhs.ncols(), Par::Seq);
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(n, &"no memory for the solve"))?;
         let stack = MemStack::new(&mut memory);
-        let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
         let cholesky = &self.symbolic.cholesky;
         if !self.definite {
             LdltRef::new(cholesky, &self.values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, stack);

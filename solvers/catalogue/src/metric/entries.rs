@@ -240,7 +240,11 @@ metrics! {
     RESIDUAL: "residual", "relative residual", None, Error, Run,
         "relative residual of the linear solve, of the last static step, or of the worst reported mode";
     FACTOR_NONZEROS: "factor-nonzeros", "nonzeros of the factor", None, Count, Run,
-        "stored entries of the matrix factor";
+        "stored entries of the matrix factor, or of the matrices of all levels of a multigrid solver";
+    LINEAR_ITERATIONS: "linear-iterations", "iterations of conjugate gradients", None, Count, Run,
+        "iterations of conjugate gradients with a multigrid preconditioner";
+    OPERATOR_COMPLEXITY: "operator-complexity", "operator complexity", None, Value, Run,
+        "entries of the matrices of all levels of a multigrid solver over those of the finest";
     ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
         "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
     SMALLEST_FINE_J: "smallest-fine-j", "least J between points", None, Value, Steps,

@@ -3,6 +3,7 @@
 use shape::{Point3, Vector3};
 
 use super::{Approximation, Chunk, LeastSquares};
+use crate::coupling::Layer;
 use crate::info::Outcome;
 use crate::mls::{Group, Moments};
 use crate::row_list::RowList;
@@ -14,6 +15,10 @@ const BEYOND_NEIGHBOUR: f64 = 1.4;
 const MOST_ENLARGEMENT: f64 = 3.0;
 /// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
 const REGULARISATION: f64 = 1e-7;
+/// The same of the linear block, where neighbours lie in one plane: ten times the least pivot.
+const FLAT: f64 = 1e-9;
+/// What then may be missed of the moments, relative to the largest radius: more than rounding leaves of moments in that plane.
+const MISSED: f64 = 1e-6;
 
 impl Approximation {
     /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
@@ -34,8 +39,8 @@ impl Approximation {
                 rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
                 rows.close();
             } else {
-                let moments = chunk.layers.get(q).map_or(Moments::COMPLETE, |layer| layer.moments);
-                chunk.outcomes[q] = self.climb::<GRAD>(x, &moments, fit, &mut chunk.group, rows)?;
+                let layer = chunk.layers.get(q);
+                chunk.outcomes[q] = self.climb::<GRAD>(x, layer, fit, &mut chunk.group, rows)?;
             }
         }
         Ok(())
@@ -45,22 +50,28 @@ impl Approximation {
     fn climb<const GRAD: bool>(
         &self,
         x: &Point3,
-        moments: &Moments,
+        layer: Option<&Layer>,
         asked: &LeastSquares,
         group: &mut Group,
         rows: &mut RowList,
     ) -> Result<Outcome, EfgError> {
         let needed = asked.basis.terms();
-        let enlargement = self.enlargement(x, 2 * needed);
+        let counts = |node: &u32| layer.is_none_or(|layer| self.counts_in(*node, layer));
+        let enlargement = self.enlargement(x, 2 * needed, counts);
         let covers = |&node: &u32| match self.ellipsoids.is_empty() {
             true => self.balls[node as usize].covers(x, enlargement),
             false => self.relative(node, x) < enlargement,
         };
-        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(covers).collect();
+        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(counts).filter(covers).collect();
         let found = nodes.len();
         group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
-        group.aim(0, moments);
+        let moments = layer.map_or(Moments::COMPLETE, |layer| layer.moments);
+        group.aim(0, &moments);
         let rungs: &[(Basis, f64)] = match asked.basis {
+            // Beside elements the moments to be made may lie in the plane of the neighbours, which then is all it takes.
+            Basis::Linear if layer.is_some_and(|layer| !layer.is_empty()) => {
+                &[(Basis::Linear, 0.0), (Basis::Linear, FLAT)]
+            }
             Basis::Linear => &[(Basis::Linear, 0.0)],
             Basis::Quadratic => &[
                 (Basis::Quadratic, asked.mu),
@@ -70,6 +81,9 @@ impl Approximation {
         };
         for &(basis, mu) in rungs {
             if let Some(condition) = self.fit::<GRAD>(&LeastSquares { basis, mu, ..*asked }, group)[0] {
+                if mu == FLAT && self.missed(x, &nodes, group, &moments) > MISSED {
+                    continue;
+                }
                 let first = rows.values.len();
                 rows.nodes.extend_from_slice(&nodes);
                 rows.close();
@@ -94,10 +108,25 @@ impl Approximation {
         }
     }
 
-    /// Factor on all support radii by which `count` nodes (all, if there are fewer) cover `x` comfortably.
-    fn enlargement(&self, x: &Point3, count: usize) -> f64 {
-        let mut ratios: Vec<f64> = (0..self.balls.len() as u32).map(|node| self.relative(node, x)).collect();
-        let last = count.min(ratios.len()) - 1;
+    /// How far the first of a group is from its moments, relative to the largest radius.
+    fn missed(&self, x: &Point3, nodes: &[u32], group: &Group, moments: &Moments) -> f64 {
+        let mut values = vec![0.0; nodes.len()];
+        group.store(0, &mut values, &mut []);
+        let mut left = moments.values;
+        let mut scale = 0.0_f64;
+        for (&node, value) in nodes.iter().zip(&values) {
+            let e = self.nodes[node as usize] - x;
+            scale = scale.max(self.balls[node as usize].radius);
+            left.iter_mut().zip([1.0, e.x, e.y, e.z]).for_each(|(left, p)| *left -= value * p);
+        }
+        left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
+    }
+
+    /// Factor on all support radii by which `count` nodes of those that count (all, if there are fewer) cover `x` comfortably.
+    fn enlargement(&self, x: &Point3, count: usize, counts: impl Fn(&u32) -> bool) -> f64 {
+        let all = (0..self.balls.len() as u32).filter(counts);
+        let mut ratios: Vec<f64> = all.map(|node| self.relative(node, x)).collect();
+        let Some(last) = count.min(ratios.len()).checked_sub(1) else { return 1.0 };
         let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
         (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)
     }

@@ -1,0 +1,98 @@
+//! What solves a linear procedure: chosen, told in the plan, asked for, refused.
+
+mod common;
+
+use common::{BLOCK, assert_fails, objects, tissuebench, write};
+use serde_json::Value;
+
+/// [`BLOCK`] in elements of each kind and a cloud, by this solver.
+fn block(solver: &str) -> String {
+    let methods = r#"method = [
+    { id = "tet4", family = "fem", element = "tet4", size = { cells = [8, 8, 6] } },
+    { id = "tet10", family = "fem", element = "tet10", size = { cells = [5, 5, 3] } },
+    { id = "hex8-mean", family = "fem", element = "hex8", dilation = "element-mean", size = { cells = [8, 8, 6] } },
+    { id = "hex20", family = "fem", element = "hex20", size = { cells = [5, 5, 3] } },
+    { id = "efg", family = "efg", size = { cells = [8, 8, 5] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "cell-smoothed" }, essential = "nitsche" },
+]"#;
+    let first = BLOCK.lines().filter(|line| !line.starts_with("method"));
+    let text: String = first.map(|line| format!("{line}\n")).collect();
+    format!(
+        "{text}procedure = {{ kind = \"linear\", linear-solver = \"{solver}\" }}\n{methods}\noutput = {{ probes = [[\"20 mm\", \"20 mm\", \"20 mm\"]] }}\n"
+    )
+}
+
+fn run(text: &str) -> Vec<Value> {
+    let dir = tempfile::tempdir().unwrap();
+    let done = tissuebench(&["run", &write(&dir, "block.toml", text), "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    objects(&done.stdout)
+}
+
+fn metric(run: &Value, name: &str) -> Option<f64> {
+    run["metrics"][name]["value"].as_f64()
+}
+
+fn factorisation(run: &Value) -> &str {
+    let stages = run["plan"].as_array().unwrap();
+    stages.iter().find(|stage| stage["stage"] == "factorisation").unwrap()["why"].as_str().unwrap()
+}
+
+#[test]
+fn iterations_that_are_asked_for_come_to_what_a_factor_gives() {
+    let (iterated, factored) = (run(&block("amg")), run(&block("direct")));
+    assert_eq!(iterated.len(), 5);
+    for (a, b) in iterated.iter().zip(&factored) {
+        assert_eq!(a["linear_solver"], "multigrid", "{a}");
+        assert_eq!(factorisation(a), "multigrid levels for conjugate gradients (asked for)");
+        assert_eq!(factorisation(b), "one, for all load levels (asked for)");
+        let count = metric(a, "linear-iterations").unwrap();
+        // Of a cloud the parameters are no displacements, and rough ones are nearly as soft as smooth ones.
+        let most = if a["method"] == "efg" { 250.0 } else { 25.0 };
+        assert!((5.0..=most).contains(&count), "{count} iterations: {a}");
+        assert!(metric(a, "operator-complexity").is_some_and(|c| c > 1.0 && c < 2.5), "{a}");
+        assert!(metric(b, "linear-iterations").is_none());
+        for name in ["max", "strain-energy"] {
+            let (a, b) = (metric(a, name).unwrap(), metric(b, name).unwrap());
+            assert!((a - b).abs() < 1e-6 * b, "{name}: {a} and {b}");
+        }
+        assert!(metric(a, "residual").unwrap() <= 1e-8);
+    }
+}
+
+#[test]
+fn the_plan_says_which_and_why() {
+    let small = run(&block("auto"));
+    assert_eq!(small[0]["linear_solver"], "sparse-llt");
+    let said = "one, for all load levels (1701 unknowns, below 20000 at lambda / mu = 1.500)";
+    assert_eq!(factorisation(&small[0]), said);
+    let large = block("auto").replace("[8, 8, 6]", "[18, 18, 18]");
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["run", &write(&dir, "block.toml", &large), "--format", "json", "--method", "tet4"];
+    let large = &objects(&tissuebench(&args).stdout)[0];
+    assert_eq!(large["linear_solver"], "multigrid", "{large}");
+    let said = "multigrid levels for conjugate gradients (20577 unknowns, from 20000 at lambda / mu = 1.500)";
+    assert_eq!(factorisation(large), said);
+    // As much as a nearly incompressible body takes, a factor is faster.
+    let stiff = block("auto").replace("[8, 8, 6]", "[18, 18, 18]").replace("poisson = 0.3", "poisson = 0.49");
+    let plan = tissuebench(&["plan", &write(&dir, "stiff.toml", &stiff), "--method", "tet4"]).stdout;
+    assert!(plan.contains("below 46667 at lambda / mu = 49.000"), "{plan}");
+}
+
+#[test]
+fn constraint_rows_are_not_for_iterations() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = block("amg").replace("\"nitsche\"", "\"multipliers\"");
+    let done = tissuebench(&["run", &write(&dir, "block.toml", &text), "--method", "efg"]);
+    assert_fails(
+        &done,
+        2,
+        "block.toml:6: key 'procedure.linear-solver': 'amg' iterates over nodal parameters",
+    );
+    assert!(done.stderr.contains("essential = \"nitsche\""), "{}", done.stderr);
+    let free = text.replace("\"amg\"", "\"auto\"");
+    let done = tissuebench(&["run", &write(&dir, "free.toml", &free), "--method", "efg", "--format", "json"]);
+    assert_eq!(factorisation(&objects(&done.stdout)[0]), "one, for all load levels (multipliers)");
+    let wrong = block("cg");
+    let done = tissuebench(&["run", &write(&dir, "wrong.toml", &wrong)]);
+    assert_fails(&done, 2, "known here: auto, direct, amg");
+}

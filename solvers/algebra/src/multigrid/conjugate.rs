@@ -1,0 +1,160 @@
+//! Conjugate gradients.
+
+use shape::Vector3;
+
+use super::level::Cycle;
+use super::{Entry, Multigrid};
+use crate::{AlgebraError, Stiffness};
+
+/// What a solution took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iterations {
+    /// Number of iterations.
+    pub count: usize,
+    /// Relative residual `|b - A x| / |b|`, computed from the solution.
+    pub residual: f64,
+}
+
+/// More iterations than this are no solution.
+const MOST: usize = 500;
+/// A residual this small beside `|K| |x| + |b|` is rounding (Higham 2002, section 7.1).
+const ROUNDING: f64 = 1e-15;
+
+impl Multigrid {
+    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. What `b` has at held degrees of freedom is lost.
+    ///
+    /// The preconditioner is in single precision, symmetric to rounding only: the flexible formula for the next direction
+    /// (Polak and Ribiere's) takes that, at one more product of vectors.
+    ///
+    /// A W-cycle makes a residual on a coarse level from a solution there; where the softest motions have 1e-8 of the stiffness, as in
+    /// a slender beam, that is all rounding in single precision, and the cycle is not positive. Then V-cycles serve.
+    pub fn solve(
+        &self,
+        stiffness: &Stiffness,
+        b: &mut [Vector3],
+        tolerance: f64,
+    ) -> Result<Iterations, AlgebraError> {
+        self.iterate(stiffness, b, tolerance, Cycle::W)
+            .or_else(|_| self.iterate(stiffness, b, tolerance, Cycle::V))
+    }
+
+    /// As [`Multigrid::solve`]; a failure leaves `b` as it is but where held.
+    fn iterate(
+        &self,
+        stiffness: &Stiffness,
+        b: &mut [Vector3],
+        tolerance: f64,
+        cycle: Cycle,
+    ) -> Result<Iterations, AlgebraError> {
+        self.release(b);
+        let size = norm(b);
+        if size == 0.0 {
+            return Ok(Iterations { count: 0, residual: 0.0 });
+        }
+        let nodes = b.len();
+        let mut x = vec![Vector3::zeros(); nodes];
+        let mut rest = b.to_vec();
+        let mut before = vec![Vector3::zeros(); nodes];
+        let mut direction = vec![Vector3::zeros(); nodes];
+        let mut image = vec![Vector3::zeros(); nodes];
+        let mut inner = Precondition::new(nodes);
+        let (mut count, mut last, mut residual, mut at_rounding) = (0, 0.0, 1.0, false);
+        // The recursion's residual drifts from the true one; begun anew from that, it needs an iteration or two.
+        for _ in 0..3 {
+            direction.fill(Vector3::zeros());
+            while norm(&rest) > tolerance * size && count < MOST {
+                let preconditioned = inner.apply(self, &rest, cycle);
+                let product = dot(&rest, preconditioned);
+                let turned = dot(&before, preconditioned);
+                let beta = if count == 0 || last == 0.0 { 0.0 } else { (product - turned) / last };
+                for (d, z) in direction.iter_mut().zip(preconditioned) {
+                    *d = z + *d * beta;
+                }
+                stiffness.multiply_into(&direction, &mut image);
+                self.release(&mut image);
+                let energy = dot(&direction, &image);
+                if !(energy > 0.0 && product > 0.0) {
+                    return Err(AlgebraError::Residual { residual: norm(&rest) / size, limit: tolerance });
+                }
+                let step = product / energy;
+                before.copy_from_slice(&rest);
+                for i in 0..nodes {
+                    x[i] += direction[i] * step;
+                    rest[i] -= image[i] * step;
+                }
+                last = product;
+                count += 1;
+            }
+            stiffness.multiply_into(&x, &mut image);
+            self.release(&mut image);
+            for i in 0..nodes {
+                rest[i] = b[i] - image[i];
+            }
+            residual = norm(&rest) / size;
+            if residual <= tolerance || count >= MOST {
+                break;
+            }
+            // Of a slender body `|K| |x|` is a million times `|b|` and more: its rounding alone is above the tolerance.
+            stiffness.multiply_magnitudes(&x, &mut image);
+            let sizes: Vec<Vector3> = image.iter().zip(&*b).map(|(k, b)| k + b.abs()).collect();
+            at_rounding = norm(&rest) <= ROUNDING * norm(&sizes);
+            if at_rounding {
+                break;
+            }
+            last = 0.0;
+        }
+        if !(residual <= tolerance || at_rounding) {
+            return Err(AlgebraError::Residual { residual, limit: tolerance });
+        }
+        b.copy_from_slice(&x);
+        Ok(Iterations { count, residual })
+    }
+
+    /// Zero where held.
+    fn release(&self, x: &mut [Vector3]) {
+        for (x, held) in x.iter_mut().zip(self.held.chunks_exact(3)) {
+            for a in (0..3).filter(|&a| held[a]) {
+                x[a] = 0.0;
+            }
+        }
+    }
+}
+
+/// The cycle between vectors in double precision.
+struct Precondition {
+    b: Vec<Entry<3>>,
+    x: Vec<Entry<3>>,
+    out: Vec<Vector3>,
+}
+
+impl Precondition {
+    fn new(nodes: usize) -> Precondition {
+        Precondition {
+            b: vec![[0.0; 3]; nodes],
+            x: vec![[0.0; 3]; nodes],
+            out: vec![Vector3::zeros(); nodes],
+        }
+    }
+
+    /// One cycle, with the residual scaled to a largest entry of one: it falls below what single precision can hold.
+    fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
+        let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
+        for (b, r) in self.b.iter_mut().zip(rest) {
+            *b = std::array::from_fn(|a| (r[a] / largest) as f32);
+        }
+        multigrid.finest.solve(&self.b, &mut self.x, cycle);
+        for (out, x) in self.out.iter_mut().zip(&self.x) {
+            *out = Vector3::from_fn(|a, _| f64::from(x[a]) * largest);
+        }
+        &self.out
+    }
+}
+
+fn norm(x: &[Vector3]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// In chunks of fixed length, so that the sum is as good as its longest part.
+fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.chunks(1024).zip(b.chunks(1024)).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()).sum()
+}

@@ -1,0 +1,164 @@
+//! The matrix of the next level, `P^T A P`, in double precision: the softest motions of a slender body have 1e-10 of its stiffness.
+//!
+//! With `S = P^T (L + D/2) P` it is `S + S^T`, so that only the lower triangle of A is read, and half of the products are made.
+
+use rayon::prelude::*;
+
+use super::lower::{Lower, LowerRows};
+use super::operator::Operator;
+use super::transfer::{Transfer, Weight};
+
+/// Compressed rows of sorted node numbers.
+struct Sets {
+    offsets: Vec<usize>,
+    members: Vec<u32>,
+}
+
+impl Sets {
+    /// The union of what `visit` shows for each row, out of `count` numbers.
+    fn unions(rows: usize, count: usize, visit: impl Fn(usize, &mut dyn FnMut(&[u32])) + Sync) -> Sets {
+        const PART: usize = 512;
+        let parts: Vec<(Vec<u32>, Vec<usize>)> = (0..rows.div_ceil(PART))
+            .into_par_iter()
+            .map_init(
+                || vec![u32::MAX; count],
+                |mark, part| {
+                    let (mut members, mut lengths) = (Vec::new(), Vec::new());
+                    for i in part * PART..rows.min((part + 1) * PART) {
+                        let start = members.len();
+                        visit(i, &mut |numbers| {
+                            for &n in numbers {
+                                if mark[n as usize] != i as u32 {
+                                    mark[n as usize] = i as u32;
+                                    members.push(n);
+                                }
+                            }
+                        });
+                        members[start..].sort_unstable();
+                        lengths.push(members.len() - start);
+                    }
+                    (members, lengths)
+                },
+            )
+            .collect();
+        let mut offsets = vec![0];
+        let mut members = Vec::with_capacity(parts.iter().map(|p| p.0.len()).sum());
+        for (part, lengths) in parts {
+            for length in lengths {
+                offsets.push(offsets[offsets.len() - 1] + length);
+            }
+            members.extend(part);
+        }
+        Sets { offsets, members }
+    }
+
+    #[inline]
+    fn of(&self, i: usize) -> &[u32] {
+        &self.members[self.offsets[i]..self.offsets[i + 1]]
+    }
+}
+
+/// `P^T A P` of `lower`, whose whole rows are those of `matrix`.
+pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
+    lower: &impl LowerRows<B>,
+    matrix: &Operator<B>,
+    transfer: &Transfer<W>,
+) -> Lower<C> {
+    let nodes = matrix.nodes();
+    // Aggregates that a row of A P reaches, and those that a row of P^T A P does.
+    let reached = Sets::unions(nodes, transfer.count, |i, add| {
+        if !transfer.row(i).0.is_empty() {
+            matrix.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
+        }
+    });
+    let seen_by = transposed(nodes, transfer);
+    let pattern = Sets::unions(transfer.count, transfer.count, |coarse, add| {
+        seen_by.of(coarse).iter().for_each(|&i| add(reached.of(i as usize)));
+    });
+    drop(seen_by);
+
+    let mut sums = vec![[[0.0; C]; C]; pattern.members.len()];
+    let mut rows: Vec<[[f64; C]; B]> = Vec::new();
+    for i in 0..nodes {
+        let (columns, weights) = transfer.row(i);
+        if columns.is_empty() {
+            continue;
+        }
+        let reached = reached.of(i);
+        rows.clear();
+        rows.resize(reached.len(), [[0.0; C]; B]);
+        for (at, &j) in lower.columns(i).iter().enumerate() {
+            let mut block = lower.block(i, at);
+            if j as usize == i {
+                block.iter_mut().flatten().for_each(|a| *a *= 0.5);
+            }
+            let (columns, weights) = transfer.row(j as usize);
+            let mut place = 0;
+            for (column, weight) in columns.iter().zip(weights) {
+                while reached[place] != *column {
+                    place += 1;
+                }
+                weight.multiply(&block, &mut rows[place]);
+            }
+        }
+        for (&coarse, weight) in columns.iter().zip(weights) {
+            let mut place = pattern.offsets[coarse as usize];
+            for (column, rows) in reached.iter().zip(&rows) {
+                while pattern.members[place] != *column {
+                    place += 1;
+                }
+                weight.multiply_transposed(rows, &mut sums[place]);
+            }
+        }
+    }
+    folded(&pattern, &sums, lower.unit())
+}
+
+/// Rows of the finer level that see each node of the next.
+fn transposed<W>(nodes: usize, transfer: &Transfer<W>) -> Sets {
+    let mut offsets = vec![0; transfer.count + 1];
+    for i in 0..nodes {
+        transfer.row(i).0.iter().for_each(|&column| offsets[column as usize + 1] += 1);
+    }
+    for c in 0..transfer.count {
+        offsets[c + 1] += offsets[c];
+    }
+    let mut next = offsets.clone();
+    let mut members = vec![0; offsets[transfer.count]];
+    for i in 0..nodes {
+        for &column in transfer.row(i).0 {
+            members[next[column as usize]] = i as u32;
+            next[column as usize] += 1;
+        }
+    }
+    Sets { offsets, members }
+}
+
+/// The lower triangle of `S + S^T`.
+fn folded<const C: usize>(pattern: &Sets, sums: &[[[f64; C]; C]], unit: f64) -> Lower<C> {
+    let count = pattern.offsets.len() - 1;
+    let (mut offsets, mut columns) = (vec![0], Vec::new());
+    for i in 0..count {
+        columns.extend(pattern.of(i).iter().copied().take_while(|&j| j as usize <= i));
+        offsets.push(columns.len());
+    }
+    let mut lower = Lower::zeros(offsets, columns, unit);
+    // Where the upper part of each row goes on: columns ascend as the rows do.
+    let mut next: Vec<usize> =
+        (0..count).map(|i| pattern.offsets[i] + lower.offsets[i + 1] - lower.offsets[i] - 1).collect();
+    for i in 0..count {
+        for at in 0..lower.offsets[i + 1] - lower.offsets[i] {
+            let j = lower.columns[lower.offsets[i] + at] as usize;
+            let (own, other) = (&sums[pattern.offsets[i] + at], &sums[next[j]]);
+            next[j] += 1;
+            let block = &mut lower.blocks[lower.offsets[i] + at];
+            for b in 0..C {
+                for a in 0..C {
+                    block[b][a] = own[a][b] + other[b][a];
+                }
+            }
+        }
+    }
+    lower.fill_empty();
+    lower
+}

@@ -1,0 +1,161 @@
+//! The parts of the hierarchy against their definitions.
+
+use super::aggregate::{MODES, aggregates, orthonormal};
+use super::galerkin::galerkin;
+use super::level::{Cycle, by_aggregates};
+use super::lower::{Block, Lower, LowerRows};
+use super::operator::Operator;
+use super::transfer::{Dense, Transfer, Weight};
+
+/// A grid of n x n x n nodes tied to their neighbours by springs, the first face tied to the ground.
+fn grid(n: usize) -> (Lower<3>, Vec<[[f64; MODES]; 3]>) {
+    let node = |x: usize, y: usize, z: usize| (x * n + y) * n + z;
+    let at = |i: usize| [i / (n * n), i / n % n, i % n];
+    let nodes = n * n * n;
+    let mut rows = vec![std::collections::BTreeMap::<usize, Block<3>>::new(); nodes];
+    let mut add = |i: usize, j: usize, a: usize, b: usize, v: f64| {
+        rows[i].entry(j).or_insert([[0.0; 3]; 3])[b][a] += v;
+    };
+    for i in 0..nodes {
+        let [x, y, z] = at(i);
+        for a in 0..3 {
+            add(i, i, a, a, if x == 0 { 5.0 } else { 0.0 });
+        }
+        for (dx, dy, dz) in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1)] {
+            if x + dx < n && y + dy < n && z + dz < n {
+                let j = node(x + dx, y + dy, z + dz);
+                let d = [dx as f64, dy as f64, dz as f64];
+                let square: f64 = d.iter().map(|d| d * d).sum();
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let stiffness = d[a] * d[b] / square;
+                        add(i, i, a, b, stiffness);
+                        add(j, j, a, b, stiffness);
+                        add(j, i, a, b, -stiffness);
+                    }
+                }
+            }
+        }
+    }
+    let (mut offsets, mut columns, mut blocks) = (vec![0], Vec::new(), Vec::new());
+    for row in rows {
+        for (j, block) in row {
+            columns.push(j as u32);
+            blocks.push(block);
+        }
+        offsets.push(columns.len());
+    }
+    let modes = (0..nodes)
+        .map(|i| {
+            let [x, y, z] = at(i).map(|c| c as f64 / n as f64);
+            [[1.0, 0.0, 0.0, 0.0, z, -y], [0.0, 1.0, 0.0, -z, 0.0, x], [0.0, 0.0, 1.0, y, -x, 0.0]]
+        })
+        .collect();
+    (Lower { offsets, columns, blocks, unit: 10.0 }, modes)
+}
+
+/// All entries of a symmetric matrix.
+fn dense<const B: usize>(lower: &Lower<B>) -> Vec<Vec<f64>> {
+    let dim = B * lower.nodes();
+    let mut matrix = vec![vec![0.0; dim]; dim];
+    for i in 0..lower.nodes() {
+        for (at, &j) in lower.columns(i).iter().enumerate() {
+            let block = lower.block(i, at);
+            for a in 0..B {
+                for b in 0..B {
+                    let (r, c) = (B * i + a, B * j as usize + b);
+                    matrix[r][c] = block[b][a];
+                    matrix[c][r] = block[b][a];
+                }
+            }
+        }
+    }
+    matrix
+}
+
+/// Column `c` of a prolongation.
+fn column<const B: usize>(transfer: &Transfer<Dense<B>>, nodes: usize, c: usize) -> Vec<f64> {
+    let mut coarse = vec![[0.0; MODES]; transfer.count];
+    coarse[c / MODES][c % MODES] = 1.0;
+    let mut fine = vec![[0.0; B]; nodes];
+    transfer.prolong(&coarse, &mut fine);
+    fine.into_iter().flatten().map(f64::from).collect()
+}
+
+#[test]
+fn a_coarse_matrix_is_the_triple_product() {
+    let (lower, modes) = grid(6);
+    let matrix = Operator::new(&lower, 0.1);
+    let (functions, _) = orthonormal(&aggregates(&matrix), &modes);
+    let transfer = Transfer::smoothed(&matrix, &aggregates(&matrix), &functions);
+    let coarse = dense(&galerkin::<3, MODES, Dense<3>>(&lower, &matrix, &transfer));
+    let fine = dense(&lower);
+    assert!(transfer.count > 4, "{} aggregates", transfer.count);
+    let columns: Vec<Vec<f64>> = (0..MODES * transfer.count).map(|c| column(&transfer, 216, c)).collect();
+    for (r, left) in columns.iter().enumerate() {
+        let image: Vec<f64> = fine.iter().map(|row| row.iter().zip(left).map(|(a, p)| a * p).sum()).collect();
+        for (c, right) in columns.iter().enumerate() {
+            let exact: f64 = image.iter().zip(right).map(|(a, p)| a * p).sum();
+            assert!((coarse[r][c] - exact).abs() < 1e-12, "{r} {c}: {} for {exact}", coarse[r][c]);
+        }
+    }
+}
+
+/// Smoothing changes a rigid motion only next to what holds it.
+#[test]
+fn rigid_motions_are_prolonged_exactly_away_from_supports() {
+    let (lower, modes) = grid(8);
+    let matrix = Operator::new(&lower, 0.1);
+    let aggregates = aggregates(&matrix);
+    let (functions, coarse) = orthonormal(&aggregates, &modes);
+    let transfer = Transfer::smoothed(&matrix, &aggregates, &functions);
+    for m in 0..MODES {
+        let values: Vec<[f32; MODES]> =
+            coarse.iter().map(|rows| std::array::from_fn(|d| rows[d][m] as f32)).collect();
+        let mut fine = vec![[0.0f32; 3]; 512];
+        transfer.prolong(&values, &mut fine);
+        for i in 64..512 {
+            for a in 0..3 {
+                let off = f64::from(fine[i][a]) - modes[i][a][m];
+                assert!(off.abs() < 1e-5, "mode {m} at node {i}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn restriction_is_the_transpose_of_prolongation() {
+    let weight = Dense([[1.0, -2.0, 3.0, 0.5, 0.0, 7.0], [0.0; 6], [2.0, 4.0, -1.0, 1.0, 1.0, 3.0]]);
+    let (coarse, fine) = ([1.0, 2.0, -1.0, 0.5, 3.0, 0.25], [2.0, 5.0, -3.0]);
+    let (mut up, mut down) = ([0.0; 3], [0.0; 6]);
+    weight.add(&coarse, &mut up);
+    weight.add_transposed(&fine, &mut down);
+    let inner = |a: &[f32], b: &[f32]| -> f32 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    assert_eq!(inner(&up, &fine), inner(&down, &coarse));
+}
+
+/// A preconditioner of conjugate gradients has to be symmetric and positive: with several chunks too.
+#[test]
+fn a_cycle_is_symmetric_and_positive() {
+    // 17,576 nodes: two chunks of the sweeps.
+    let (lower, modes) = grid(26);
+    let level = by_aggregates(&lower, &modes, 0.1).unwrap_or_else(|_| panic!("definite"));
+    let vector = |seed: f64| -> Vec<[f32; 3]> {
+        (0..lower.nodes())
+            .map(|i| std::array::from_fn(|a| ((3 * i + a) as f64 * seed).fract() as f32 - 0.5))
+            .collect()
+    };
+    let solve = |b: &[[f32; 3]]| {
+        let mut x = vec![[0.0; 3]; b.len()];
+        level.solve(b, &mut x, Cycle::W);
+        x
+    };
+    let inner = |a: &[[f32; 3]], b: &[[f32; 3]]| -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| f64::from(a * b)).sum()
+    };
+    let (first, second) = (vector(0.618034), vector(0.414214));
+    let (left, right) = (inner(&solve(&first), &second), inner(&first, &solve(&second)));
+    let size = inner(&solve(&first), &first);
+    assert!(size > 0.0 && inner(&solve(&second), &second) > 0.0);
+    assert!((left - right).abs() < 1e-5 * size, "{left} and {right} of {size}");
+}
