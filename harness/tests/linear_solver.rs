@@ -1,4 +1,4 @@
-//! What solves a linear procedure: chosen, told in the plan, asked for, refused.
+//! What solves a linear procedure: chosen, named in the plan, asked for, refused.
 
 mod common;
 
