@@ -34,9 +34,9 @@ fn a_file_of_nodes_is_a_cloud() {
     ] {
         let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene(cloud)), "--format", "json"]);
         assert_eq!(done.code, 0, "{}", done.stderr);
-        let told: Value = serde_json::from_str(&done.stdout).unwrap();
-        assert!(told["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-12, "{told}");
-        assert_eq!(told["nodes"], 36, "{told}");
+        let object: Value = serde_json::from_str(&done.stdout).unwrap();
+        assert!(object["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-12, "{object}");
+        assert_eq!(object["nodes"], 36, "{object}");
     }
 }
 

@@ -78,9 +78,9 @@ fn integration_that_fails_the_patch_test_is_told_with_its_error() {
         run(&plate(thickness, 0.3, &format!("{integration}, essential = \"elimination\""), ""))
     };
     let flat = at(0.5, GAUSS);
-    let (energy, told) =
+    let (energy, reported) =
         (metric(&flat, "energy"), warned(&flat, "patch-test").unwrap_or_else(|| panic!("{flat}")));
-    assert!(energy > 0.1 && (told / energy - 1.0).abs() < 0.3, "{told} of {energy}");
+    assert!(energy > 0.1 && (reported / energy - 1.0).abs() < 0.3, "{reported} of {energy}");
     for sound in [at(50.0, GAUSS), at(0.5, SMOOTHED)] {
         assert!(metric(&sound, "energy") < 0.003 && warned(&sound, "patch-test").is_none(), "{sound}");
     }
@@ -93,8 +93,8 @@ fn a_penalty_that_is_soft_beside_a_flat_body_is_told() {
         let text = plate(thickness, poisson, &format!("{SMOOTHED}, essential = \"penalty\""), "");
         let found = run(&text);
         let energy = metric(&found, "energy");
-        let told = warned(&found, "support-leaks").unwrap_or_else(|| panic!("{found}"));
-        assert!(energy > 0.1 && (told / energy - 1.0).abs() < 0.3, "{told} of {energy}");
+        let reported = warned(&found, "support-leaks").unwrap_or_else(|| panic!("{found}"));
+        assert!(energy > 0.1 && (reported / energy - 1.0).abs() < 0.3, "{reported} of {energy}");
         let stiff = text.replace("\"penalty\"", "{ method = \"penalty\", factor = 1e8 }");
         assert!(run(&stiff)["warnings"].as_array().unwrap().is_empty());
     }

@@ -34,9 +34,10 @@ fn answers(scene: &str, length: f64) -> Vec<(String, [f64; 3])> {
     let dir = tempfile::tempdir().unwrap();
     let done = tissuebench(&["run", &write(&dir, "block.toml", scene), "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let told: Vec<Value> = done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let object: Vec<Value> = done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let value = |o: &Value, name: &str| o["metrics"][name]["value"].as_f64().unwrap_or(0.0);
-    told.iter()
+    object
+        .iter()
         .map(|o| {
             let numbers =
                 [value(o, "max") / length, value(o, "strain-energy") / length.powi(3), value(o, "fallbacks")];
@@ -116,19 +117,19 @@ fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
     ] {
         let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(cloud)), "--format", "json"]);
         assert_eq!(done.code, 0, "{name}: {}", done.stderr);
-        let told: Value = serde_json::from_str(&done.stdout).unwrap();
-        let error = told["metrics"]["l2"]["value"].as_f64().unwrap();
-        eprintln!("{name}: {error:e}, {}", told["metrics"]["fallbacks"]);
+        let object: Value = serde_json::from_str(&done.stdout).unwrap();
+        let error = object["metrics"]["l2"]["value"].as_f64().unwrap();
+        eprintln!("{name}: {error:e}, {}", object["metrics"]["fallbacks"]);
         assert!(error < most, "{name}: {error:e}");
-        let stress = told["metrics"]["stress"]["value"].as_f64().unwrap();
+        let stress = object["metrics"]["stress"]["value"].as_f64().unwrap();
         assert!(!cloud.contains("adapted") || stress < 1e-12, "{name}: {stress:e}");
     }
     // Too small a support is enlarged at every point, and counted; one that can reach no neighbour is refused.
     let tight = patch(r#"neighbours = 4, factor = 1.01, size = { cells = [5, 5, 5] }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &tight), "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let told: Value = serde_json::from_str(&done.stdout).unwrap();
-    assert!(told["metrics"]["fallbacks-enlarged"]["value"].as_f64().unwrap() > 0.0, "{told}");
+    let object: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert!(object["metrics"]["fallbacks-enlarged"]["value"].as_f64().unwrap() > 0.0, "{object}");
     // Round supports over flat cells, of 50:1 and of 12:1, see their neighbours in planes: few digits are certain, which the run
     // says, though all but the last are right.
     for thin in [
@@ -137,9 +138,9 @@ fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
     ] {
         let done = tissuebench(&["run", &write(&dir, "patch.toml", &patch(thin)), "--format", "json"]);
         assert_eq!(done.code, 0, "{}", done.stderr);
-        let told: Value = serde_json::from_str(&done.stdout).unwrap();
-        assert!(told["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-11, "{told}");
-        assert_eq!(told["warnings"][0]["code"], "few-digits", "{told}");
+        let object: Value = serde_json::from_str(&done.stdout).unwrap();
+        assert!(object["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-11, "{object}");
+        assert_eq!(object["warnings"][0]["code"], "few-digits", "{object}");
     }
     // The nodes are those of a mesh, whose cells may turn inside out.
     let wild =

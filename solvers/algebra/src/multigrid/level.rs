@@ -104,9 +104,9 @@ struct Coarsest<const B: usize> {
 impl<const B: usize> Level<B> for Coarsest<B> {
     fn solve(&self, b: &[Entry<B>], x: &mut [Entry<B>], _: Cycle) {
         let mut values: Vec<f64> = b.iter().flatten().map(|&b| f64::from(b) / self.scale).collect();
-        // A solve by a factor that was made has no error but a zero pivot of an indefinite one, which this is not.
+        // A definite factor always solves. If it did not, conjugate gradients end at the first product that is no number.
         if self.factor.solve_once(&mut values).is_err() {
-            values.fill(0.0);
+            values.fill(f64::NAN);
         }
         for (x, value) in x.iter_mut().flatten().zip(values) {
             *x = value as f32;

@@ -204,7 +204,7 @@ impl<const B: usize> Operator<B> {
         &self.columns[self.row(i)]
     }
 
-    /// `D^-1 x` of one row with its own diagonal block, or the one that is swept with.
+    /// `D^-1 x` of one row, with the diagonal block that is swept with.
     #[inline]
     pub fn divided(&self, i: usize, x: &Entry<B>) -> Entry<B> {
         times(&self.inverses[i], x)
