@@ -6,6 +6,7 @@ use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use geometry::{Point3, msh};
 use interp::Scheme;
 
+use super::mirror::Mirror;
 use super::stored::Stored;
 use super::{Finished, run};
 use crate::Failure;
@@ -57,8 +58,9 @@ impl<'a> Group<'a> {
             Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
             Some(Reference::Record(path)) => {
                 let stored = Stored::load(scene, path)?;
-                group.targets = stored.targets();
-                group.reference = Some(stored.reference());
+                let mirror = Mirror::of(&scene.body);
+                group.targets = stored.targets(mirror);
+                group.reference = Some(stored.reference(mirror));
             }
             Some(Reference::Exact { .. }) | None => {}
         }

@@ -2,6 +2,7 @@
 
 mod group;
 mod memory;
+pub(crate) mod mirror;
 mod repeated;
 pub(crate) mod stored;
 

@@ -10,6 +10,7 @@ use geometry::{Point3, Vector3};
 use reports::{Family, Record};
 use serde::{Deserialize, Serialize};
 
+use super::mirror::Mirror;
 use crate::Failure;
 use crate::measure::{Reference, norms};
 use crate::outcome::{LoadStep, ToolStep, provenance, run_id};
@@ -192,13 +193,14 @@ impl Stored {
     }
 
     /// The points whose displacement is given, m.
-    pub fn targets(&self) -> Vec<Point3> {
-        self.points.iter().map(|&x| Point3::from(x)).collect()
+    pub fn targets(&self, mirror: Mirror) -> Vec<Point3> {
+        self.points.iter().map(|&x| mirror.place(&x.into())).collect()
     }
 
     /// As a run's reference.
-    pub fn reference(&self) -> Reference {
+    pub fn reference(&self, mirror: Mirror) -> Reference {
         let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
+        let at_points = self.points.iter().zip(&self.displacement);
         let steps = self.steps.iter().map(|step| LoadStep {
             load: step.load,
             tools: (step.tools.iter())
@@ -214,7 +216,7 @@ impl Stored {
         Reference {
             method: self.source.method.clone(),
             nodes: self.source.nodes,
-            targets: vectors(&self.displacement),
+            targets: at_points.map(|(&x, &u)| mirror.displacement(&x.into(), u.into())).collect(),
             steps: steps.collect(),
             finished: true,
             at: None,

@@ -8,7 +8,7 @@ use geometry::generate::{
     raise_order, sphere_shell_mesh,
 };
 use geometry::quality::InvertedElement;
-use geometry::shapes::{Ball, Cuboid, Cylinder, Kidney, Shape, SphereShell};
+use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, msh, quality};
 
 use super::same_body;
@@ -28,15 +28,16 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
     Ok(mesh)
 }
 
-/// The body in closed form; `None` for a mesh file and for parts cut off at planes of symmetry.
+/// The body in closed form; `None` for a mesh file and for the octant of a shell.
 pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     match *body {
         Body::Box { min, max } => Some(Arc::new(Cuboid { min: min.into(), max: max.into() })),
         Body::Cylinder { radius, height } => Some(Arc::new(Cylinder { radius, height })),
         Body::Ball { radius } => Some(Arc::new(Ball { radius })),
         Body::SphereShell { inner, outer, octant: false } => Some(Arc::new(SphereShell { inner, outer })),
-        Body::SphereShell { octant: true, .. } | Body::Kidney { half: true } | Body::File(_) => None,
         Body::Kidney { half: false } => Some(Arc::new(Kidney)),
+        Body::Kidney { half: true } => Some(Arc::new(HalfKidney)),
+        Body::SphereShell { octant: true, .. } | Body::File(_) => None,
     }
 }
 

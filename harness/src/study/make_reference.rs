@@ -1,10 +1,11 @@
 //! Solves a scene by every method that a reference is made of, and stores what they agree on.
 
-use cases::scene::{Body, Scene};
-use geometry::{Point3, Vector3};
+use cases::scene::Scene;
+use geometry::Point3;
 
 use crate::Failure;
 use crate::outcome::{LoadStep, ToolStep, provenance};
+use crate::run::mirror::Mirror;
 use crate::run::stored::{Problem, Source, Stored, StoredStep, StoredTool};
 use crate::run::{Group, case_name};
 
@@ -34,11 +35,8 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
 
 /// The solution by one method, without bands.
 fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stored, Failure> {
-    let half = matches!(scene.body, Body::Kidney { half: true });
-    let below = |x: &Point3| half && x.z < 0.0;
-    let mirrored = |v: Vector3| Vector3::new(v.x, v.y, -v.z);
-    let images: Vec<Point3> =
-        points.iter().map(|x| if below(x) { Point3::from(mirrored(x.coords)) } else { *x }).collect();
+    let mirror = Mirror::of(&scene.body);
+    let images = points.iter().map(|x| mirror.place(x)).collect();
     let solution = Group::solve_for(scene, method, images, waiting)?;
     let tool =
         |t: &ToolStep| StoredTool { closure: t.closure, force: t.pushed, low: t.pushed, high: t.pushed };
@@ -65,9 +63,7 @@ fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stor
         probes: scene.output.probes.clone(),
         steps: solution.steps.iter().map(step).collect(),
         points: points.iter().map(|x| x.coords.into()).collect(),
-        displacement: displacement
-            .map(|(x, &u)| if below(x) { mirrored(u).into() } else { u.into() })
-            .collect(),
+        displacement: displacement.map(|(x, &u)| mirror.displacement(x, u).into()).collect(),
         displacement_band: 0.0,
     })
 }

@@ -8,7 +8,7 @@ mod kidney;
 pub use ball::{Ball, SphereShell};
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
-pub use kidney::Kidney;
+pub use kidney::{HalfKidney, Kidney};
 
 use crate::Point3;
 

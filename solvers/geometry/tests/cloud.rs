@@ -1,7 +1,7 @@
 //! Clouds: exact counts, reproducible bits, even spacing, surfaces covered; and the closed-form bodies they fill.
 
 use geometry::generate::{box_mesh, raise_order};
-use geometry::shapes::{Ball, Cuboid, Cylinder, Shape, SphereShell};
+use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Shape, SphereShell};
 use geometry::{
     CellKind, Cloud, CloudError, Kidney, Point3, Refinement, Search, Sizes, Vector3, cloud, cloud_from_mesh,
     cloud_of_sizes,
@@ -14,6 +14,7 @@ fn shapes() -> Vec<(&'static str, Box<dyn Shape>)> {
         ("cuboid", Box::new(Cuboid { min: Point3::new(-1.0, 0.0, 0.5), max: Point3::new(1.0, 0.7, 1.3) })),
         ("cylinder", Box::new(Cylinder { radius: 0.2, height: 0.5 })),
         ("kidney", Box::new(Kidney)),
+        ("half kidney", Box::new(HalfKidney)),
     ]
 }
 
@@ -265,4 +266,38 @@ fn sizes_spend_the_nodes_where_the_error_is() {
     // A ratio of 1 leaves no choice.
     assert!(refined(&corner, 1.0).abs_diff(before) <= before / 3, "{before}, {}", refined(&corner, 1.0));
     assert!(refined(&vec![0.0; 400], 3.0).abs_diff(before) <= before / 2);
+}
+
+/// The half kidney's samples: on its face by its share of the surface, on its rim by length.
+#[test]
+fn half_kidney_samples_are_uniform() {
+    let mut state = 11u64;
+    let mut unit = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mesh = geometry::generate::half_kidney_mesh(CellKind::Tet4, 8).unwrap();
+    let area = |group| -> f64 {
+        let facets = mesh.group(group).unwrap().iter();
+        let corners = facets.map(|&f| mesh.facet_nodes(f).map(|n| mesh.points()[n as usize]).collect());
+        corners.map(|p: Vec<Point3>| 0.5 * (p[1] - p[0]).cross(&(p[2] - p[0])).norm()).sum()
+    };
+    let expected = area("symmetry") / (area("symmetry") + area("surface"));
+    let samples: Vec<Point3> = (0..60_000).map(|_| HalfKidney.surface_sample(&mut unit)).collect();
+    let share = samples.iter().filter(|p| p.z == 0.0).count() as f64 / samples.len() as f64;
+    // Standard deviation 0.2 %; the mesh's facets lie 0.3 % within the surface.
+    assert!((share - expected).abs() < 0.01, "{share} of {expected}");
+
+    // The rim's length by 10,000 chords, whole and beyond y = 20 mm.
+    let at = |i: usize| {
+        let angle = i as f64 * std::f64::consts::TAU / 10_000.0;
+        Kidney.map(&Point3::new(angle.cos(), angle.sin(), 0.0))
+    };
+    let chords: Vec<(f64, f64)> = (0..10_000).map(|i| ((at(i + 1) - at(i)).norm(), at(i).y)).collect();
+    let whole: f64 = chords.iter().map(|c| c.0).sum();
+    let beyond: f64 = chords.iter().filter(|c| c.1 > 0.02).map(|c| c.0).sum();
+    let rim: Vec<Point3> = (0..60_000).map(|_| HalfKidney.edge_sample(&mut unit).unwrap()).collect();
+    assert!(rim.iter().all(|p| p.z == 0.0 && HalfKidney.level(p).abs() < 1e-12));
+    let share = rim.iter().filter(|p| p.y > 0.02).count() as f64 / rim.len() as f64;
+    assert!((share - beyond / whole).abs() < 0.01, "{share} of {}", beyond / whole);
 }

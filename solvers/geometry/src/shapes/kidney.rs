@@ -1,4 +1,4 @@
-//! A kidney-like bean: the unit ball bent along its long axis.
+//! A kidney-like bean: the unit ball bent along its long axis; and its upper half.
 
 use super::{Shape, along, unit_ball, unit_sphere};
 use crate::{Point3, Vector3};
@@ -62,6 +62,79 @@ impl Shape for Kidney {
                 Vector3::new(n.x / Self::A, (n.y - 2.0 * n.x * n.y) / Self::B, n.z / Self::C).norm();
             if unit() < stretch * Self::C {
                 return self.map(&n.into());
+            }
+        }
+    }
+}
+
+/// The half z >= 0 of the [`Kidney`], with the plane z = 0 as a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HalfKidney;
+
+impl HalfKidney {
+    /// Area (m^2) of the curved part, by numbers: half of the kidney's.
+    const CURVED: f64 = 33.506e-4;
+    /// Area (m^2) of the plane face.
+    const FACE: f64 = std::f64::consts::PI * Kidney::A * Kidney::B;
+
+    fn above(p: Point3) -> Point3 {
+        Point3::new(p.x, p.y, p.z.abs())
+    }
+
+    /// The image of the unit disc; its map preserves areas but for a factor.
+    fn on_face(unit: &mut dyn FnMut() -> f64) -> Point3 {
+        loop {
+            let (x, y) = (2.0 * unit() - 1.0, 2.0 * unit() - 1.0);
+            if x * x + y * y < 1.0 {
+                return Kidney.map(&Point3::new(x, y, 0.0));
+            }
+        }
+    }
+}
+
+impl Shape for HalfKidney {
+    fn volume(&self) -> f64 {
+        Kidney.volume() / 2.0
+    }
+
+    /// The kidney's own above the plane; below, the depth counts in the same measure.
+    fn level(&self, p: &Point3) -> f64 {
+        Kidney.level(p).max(-p.z / Kidney::C)
+    }
+
+    fn bounds(&self) -> [Point3; 2] {
+        let [low, high] = Kidney.bounds();
+        [Point3::new(low.x, low.y, 0.0), high]
+    }
+
+    fn project_to_surface(&self, p: &Point3) -> Point3 {
+        let on_plane = Point3::new(p.x, p.y, 0.0);
+        let inside = Kidney.inside(&on_plane);
+        if p.z <= 0.0 {
+            return if inside { on_plane } else { Kidney.project_to_surface(&on_plane) };
+        }
+        let curved = Kidney.project_to_surface(p);
+        if inside && p.z < (curved - p).norm() { on_plane } else { curved }
+    }
+
+    fn volume_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
+        HalfKidney::above(Kidney.volume_sample(unit))
+    }
+
+    fn surface_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
+        if unit() * (HalfKidney::FACE + HalfKidney::CURVED) < HalfKidney::FACE {
+            return HalfKidney::on_face(unit);
+        }
+        HalfKidney::above(Kidney.surface_sample(unit))
+    }
+
+    fn edge_sample(&self, unit: &mut dyn FnMut() -> f64) -> Option<Point3> {
+        // (X, Y) of the unit circle goes along (a (-Y + 2 X Y), b X), at most 41 mm; draw by rejection.
+        loop {
+            let rim = Kidney.preimage(&Kidney.project_to_surface(&HalfKidney::on_face(unit)));
+            let along = (Kidney::A * rim.y * (2.0 * rim.x - 1.0)).hypot(Kidney::B * rim.x);
+            if unit() * 0.041 < along {
+                return Some(Kidney.map(&rim));
             }
         }
     }
