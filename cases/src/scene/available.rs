@@ -41,7 +41,7 @@ impl Scene {
             let at = |key: &str| format!("method[{i}].{key}");
             match &method.family {
                 Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Modes => {
-                    let help = "\"standard\", \"element-mean\" and \"nodal-mean\" are";
+                    let help = "\"standard\", \"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
                     add(&at("dilation"), "dilation = \"mixed\" in vibrations".into(), help);
                 }
                 Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Linear => {
@@ -50,7 +50,7 @@ impl Scene {
                     add(&at("dilation"), "dilation = \"mixed\" in a linear procedure".into(), help);
                 }
                 Family::Fem(fem) if explicit && fem.dilation == Dilation::Mixed => {
-                    let help = "\"element-mean\" and \"nodal-mean\" are: their dilation needs no system of equations";
+                    let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are: their dilation needs no system of equations";
                     add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
                 }
                 Family::OverMesh(over) if explicit && !over.family.interpolates => {
@@ -68,7 +68,7 @@ impl Scene {
                     add(&at("family"), "a cloud in explicit dynamics".into(), help);
                 }
                 Family::Efg(efg) if efg.dilation == Dilation::Mixed => {
-                    let help = "\"element-mean\" and \"nodal-mean\" are";
+                    let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
                     add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
                 }
                 Family::Efg(_) => {}

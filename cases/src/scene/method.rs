@@ -133,6 +133,8 @@ words! {
         ElementMean = "element-mean",
         /// One per node.
         NodalMean = "nodal-mean",
+        /// One per node, of the points at which it is among the four that count most: of a cloud fewer couplings.
+        NodalNear = "nodal-near",
         /// An independent pressure field.
         Mixed = "mixed",
     }

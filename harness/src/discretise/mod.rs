@@ -25,6 +25,8 @@ pub enum Dilation {
     Element,
     /// One per node, weighted by the shape values.
     Nodal,
+    /// The same, each point among the four nodes with the largest values alone.
+    Near,
     /// A pressure field of its own, linear between the corners.
     Mixed,
 }
@@ -168,6 +170,7 @@ impl Discretisation {
                 Dilation::Standard => {}
                 Dilation::Element => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
                 Dilation::Nodal => groups = Some(DilationGroups::nodal(&rows)?),
+                Dilation::Near => groups = Some(DilationGroups::near(&rows)?),
                 Dilation::Mixed => pressure = Some(source.pressure()?.ok_or_else(no_pressure)?),
             }
         }
@@ -190,7 +193,7 @@ fn no_cells() -> Failure {
 }
 
 fn no_pressure() -> Failure {
-    let help = "\"element-mean\" and \"nodal-mean\" are";
+    let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
     Failure::unavailable(
         Key::Method("dilation"),
         "wants a pressure field, which this family has none of",

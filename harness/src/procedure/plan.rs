@@ -104,6 +104,7 @@ fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
         Dilation::Standard => (false, "the method asks for none (dilation = \"standard\")".into()),
         Dilation::Element => (true, "one dilation per cell".into()),
         Dilation::Nodal => (true, "one dilation per node".into()),
+        Dilation::Near => (true, "one dilation per node, each point shared among four".into()),
         Dilation::Mixed => (true, "a pressure field, linear between the corners".into()),
     }
 }

@@ -119,6 +119,7 @@ pub(super) fn dilation(dilation: scene::Dilation) -> Dilation {
         scene::Dilation::Standard => Dilation::Standard,
         scene::Dilation::ElementMean => Dilation::Element,
         scene::Dilation::NodalMean => Dilation::Nodal,
+        scene::Dilation::NodalNear => Dilation::Near,
         scene::Dilation::Mixed => Dilation::Mixed,
     }
 }

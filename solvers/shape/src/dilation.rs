@@ -3,6 +3,9 @@
 
 use crate::{ShapeError, Vector3, VolumeRows};
 
+/// Nodes among which [`DilationGroups::near`] shares out a point: in three dimensions those of the tetrahedron around it.
+const NEAREST: usize = 4;
+
 /// Groups of (point, share): group `a` averages the dilation of its points with the weights
 /// `share * w_q`, `V_a = sum_q share_aq w_q`. Shares of one point over all groups sum to one, so that no volume is
 /// lost or counted twice.
@@ -76,24 +79,58 @@ impl DilationGroups {
     /// al. 2015, volume-averaged nodal projection): `share_aq = N_a(x_q)`. A point whose values do not sum to one
     /// is refused.
     pub fn nodal(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
+        DilationGroups::of_nodes(volume, |_, _| {})
+    }
+
+    /// As [`DilationGroups::nodal`], each point shared out among its [`NEAREST`] largest shape values alone, in proportion to
+    /// them. A group couples all nodes that its points see, in a cloud those within four support radii; with this those
+    /// of the points around its node.
+    pub fn near(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
+        let mut order = Vec::new();
+        DilationGroups::of_nodes(volume, |values, shares| {
+            order.clear();
+            order.extend(0..values.len());
+            // Equal values in the order of their nodes.
+            order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+            let (kept, left) = order.split_at(NEAREST.min(order.len()));
+            let sum: f64 = kept.iter().map(|&k| values[k]).sum();
+            kept.iter().for_each(|&k| shares[k] /= sum);
+            left.iter().for_each(|&k| shares[k] = 0.0);
+        })
+    }
+
+    /// One group per node; `share` may change the shares of a point, which start as its values. Shares it makes zero are left out.
+    fn of_nodes(
+        volume: &VolumeRows,
+        mut share: impl FnMut(&[f64], &mut [f64]),
+    ) -> Result<DilationGroups, ShapeError> {
         let rows = volume.rows();
+        let mut all = Vec::with_capacity(rows.nodes().len());
+        for q in 0..rows.len() {
+            let (values, first) = (rows.row(q).1, all.len());
+            all.extend_from_slice(values);
+            share(values, &mut all[first..]);
+        }
+        let keeps = |k: usize| all[k] != 0.0 || rows.values()[k] == 0.0;
         let mut next = vec![0; rows.node_count()];
-        rows.nodes().iter().for_each(|&node| next[node as usize] += 1);
+        for (k, &node) in rows.nodes().iter().enumerate() {
+            next[node as usize] += usize::from(keeps(k));
+        }
         let mut offsets = vec![0];
         for next in &mut next {
             let (first, count) = (offsets[offsets.len() - 1], *next);
-            // A node that no point sees has no group.
+            // A node that no point counts for has no group.
             if count > 0 {
                 offsets.push(first + count);
             }
             *next = first;
         }
-        let (mut points, mut shares) = (vec![0; rows.nodes().len()], vec![0.0; rows.nodes().len()]);
+        let entries = offsets[offsets.len() - 1];
+        let (mut points, mut shares) = (vec![0; entries], vec![0.0; entries]);
         for q in 0..rows.len() {
-            let (nodes, values) = rows.row(q);
-            for (&node, &value) in nodes.iter().zip(values) {
-                let at = &mut next[node as usize];
-                (points[*at], shares[*at]) = (q as u32, value);
+            for k in rows.range(q).filter(|&k| keeps(k)) {
+                let at = &mut next[rows.nodes()[k] as usize];
+                (points[*at], shares[*at]) = (q as u32, all[k]);
                 *at += 1;
             }
         }
@@ -131,5 +168,40 @@ impl DilationGroups {
             .map(|&node| (node, std::mem::replace(&mut scratch[node as usize], Vector3::zeros()) / measure))
             .collect();
         (measure, row)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{GradRows, Point3, Rows, Unity};
+
+    /// Two points of six nodes.
+    fn volume() -> VolumeRows {
+        let values = vec![0.3, 0.05, 0.2, 0.2, -0.05, 0.3, 0.5, 0.25, 0.125, 0.0625, 0.0625, 0.0];
+        let nodes = (0..6).chain(0..6).collect();
+        let rows = Rows::new(6, vec![0, 6, 12], nodes, values, Unity::Within(1e-12)).unwrap();
+        let grads = GradRows::new(vec![Point3::origin(); 2], rows, vec![Vector3::zeros(); 12]).unwrap();
+        VolumeRows::new(grads, vec![2.0, 1.0]).unwrap()
+    }
+
+    #[test]
+    fn the_four_largest_values_share_a_point_in_their_proportion() {
+        let groups = DilationGroups::near(&volume()).unwrap();
+        let of = |point: u32| {
+            let share = |a: usize| {
+                let (points, shares) = groups.group(a);
+                points.iter().position(|&p| p == point).map(|k| shares[k])
+            };
+            (0..groups.len()).map(share).collect::<Vec<_>>()
+        };
+        // Node 4 counts for no point: of equal values the one of the first node does.
+        assert_eq!(groups.len(), 5);
+        let close = |found: &[Option<f64>], wanted: [f64; 5]| {
+            found.iter().zip(wanted).all(|(f, w)| (f.unwrap_or(0.0) - w).abs() < 1e-15)
+        };
+        assert!(close(&of(0), [0.3, 0.0, 0.2, 0.2, 0.3]), "{:?}", of(0));
+        let sum = 0.9375;
+        assert!(close(&of(1), [0.5 / sum, 0.25 / sum, 0.125 / sum, 0.0625 / sum, 0.0]), "{:?}", of(1));
     }
 }
