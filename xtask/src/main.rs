@@ -2,6 +2,7 @@
 //!
 //! Exit codes: those of `tissuebench` (0 all held, 1 a check failed, 2 bad usage, 3 could not run).
 
+mod instructions;
 mod mutants;
 
 use std::path::{Path, PathBuf};
@@ -46,6 +47,12 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
+    /// Count the instructions of each kernel, where valgrind is installed: more than 2 % above those accepted fail
+    Instructions {
+        /// Accept them
+        #[arg(long)]
+        accept: bool,
+    },
     /// Render tables, figures and the report again from results/, without running anything
     Report,
     /// Verify and stress in full, then refresh the figures and tables kept in reports/gallery for the book
@@ -83,6 +90,7 @@ fn run(task: Task) -> Result<u8> {
         }
         Task::Stress { full } => stress(full),
         Task::Bench { args } => cargo(&["bench", "--workspace"], &args),
+        Task::Instructions { accept } => instructions::instructions(&root(), accept),
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
             let code = verify(true, &[])?.max(stress(true)?);
@@ -118,7 +126,11 @@ fn ci() -> Result<u8> {
         return Ok(code);
     }
     let code = stress(false)?;
-    if code != 0 { Ok(code) } else { compare_stress(&["--check".into()]) }
+    if code != 0 {
+        return Ok(code);
+    }
+    let code = compare_stress(&["--check".into()])?;
+    if code != 0 { Ok(code) } else { instructions::instructions(&root(), false) }
 }
 
 /// Where methods bend and break; fails where one is wrong without a word.

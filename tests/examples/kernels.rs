@@ -1,0 +1,219 @@
+//! Runs one kernel a number of times on one thread, for `cargo xtask instructions`: `kernels NAME TIMES`. Without arguments it
+//! prints the names, after the instructions of the processor that they take.
+
+use std::hint::black_box;
+use std::process::ExitCode;
+
+use contact::{ContactCounts, ContactHistory, ContactLaw, ContactSurface, RoundedBox, Tool, ToolShape};
+use efg::{Approximation, Basis, CubicSpline, Kernel};
+use explicit::{ExplicitBody, InternalForce};
+use fem::{SurfaceRule, VolumeRule};
+use geometry::generate::{box_mesh, kidney_mesh};
+use geometry::{CellKind, Cloud, Kidney, Mesh, cloud};
+use interp::Scheme;
+use lanes::LanePath;
+use material::{Law, LinearElastic, NeoHookean};
+use shape::{DilationGroups, FixedDof, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
+use statics::{Assembled, Body, LinearProblem, assemble};
+
+type Kernels = Vec<(&'static str, fn(usize))>;
+
+fn main() -> ExitCode {
+    let kernels: Kernels = vec![
+        ("rows-tet10", |times| rows(CellKind::Tet10, times)),
+        ("rows-moving-least-squares", least_squares),
+        ("rows-maximum-entropy", maximum_entropy),
+        ("assemble-tet4", |times| assembled(CellKind::Tet4, false, times)),
+        ("assemble-tet4-nodal", |times| assembled(CellKind::Tet4, true, times)),
+        ("assemble-hex8", |times| assembled(CellKind::Hex8, false, times)),
+        ("assemble-cloud", assembled_cloud),
+        ("factor-and-solve", factor),
+        ("multigrid-and-solve", multigrid),
+        ("explicit-tet4", |times| force(CellKind::Tet4, false, times)),
+        ("explicit-tet4-nodal", |times| force(CellKind::Tet4, true, times)),
+        ("explicit-hex8", |times| force(CellKind::Hex8, false, times)),
+        ("contact-jaw", jaw),
+        ("transfer-apply", transfer),
+    ];
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    match &args[..] {
+        [] => {
+            println!("{}", best_path().name());
+            kernels.iter().for_each(|(name, _)| println!("{name}"));
+            ExitCode::SUCCESS
+        }
+        [name, times] => match (kernels.iter().find(|(known, _)| known == name), times.parse()) {
+            (Some((_, kernel)), Ok(times)) => {
+                kernel(times);
+                ExitCode::SUCCESS
+            }
+            _ => usage(),
+        },
+        _ => usage(),
+    }
+}
+
+fn usage() -> ExitCode {
+    eprintln!("kernels NAME TIMES");
+    ExitCode::from(2)
+}
+
+fn best_path() -> LanePath {
+    *LanePath::available().last().expect("the plain path is always there")
+}
+
+fn cube(kind: CellKind, n: usize) -> Mesh {
+    let max = Point3::new(0.04, 0.04, 0.04);
+    box_mesh(kind, Point3::origin(), max, [n; 3], [1.0; 3], None).unwrap()
+}
+
+fn rows(kind: CellKind, times: usize) {
+    let mesh = cube(kind, 6);
+    for _ in 0..times {
+        black_box(fem::volume_rows(black_box(&mesh), &VolumeRule::STANDARD).unwrap());
+    }
+}
+
+/// On a cloud of the kidney, with supports of 1.6 spacings.
+fn moving_least_squares(nodes: usize) -> Approximation {
+    let Cloud { points, spacing, .. } = cloud(&Kidney, nodes, 1, &[]).unwrap();
+    let radii = spacing.iter().map(|h| 1.6 * h).collect();
+    Approximation::new(points, radii, Kernel::CubicSpline(CubicSpline), Basis::Linear).unwrap()
+}
+
+fn least_squares(times: usize) {
+    let mls = moving_least_squares(332);
+    let background = kidney_mesh(CellKind::Tet4, 4).unwrap();
+    for _ in 0..times {
+        black_box(efg::gauss_rows(black_box(&mls), &background, 1).unwrap());
+    }
+}
+
+fn maximum_entropy(times: usize) {
+    let Cloud { points, spacing, .. } = cloud(&Kidney, 332, 1, &[]).unwrap();
+    let functions = Approximation::maximum_entropy(points, &spacing, 1.8).unwrap();
+    let at: Vec<Point3> = kidney_mesh(CellKind::Tet4, 2).unwrap().points().iter().map(|x| x * 0.9).collect();
+    for _ in 0..times {
+        black_box(functions.grad_rows(black_box(&at)).unwrap());
+    }
+}
+
+/// A cube held at the bottom and drawn at the top.
+struct Held {
+    mesh: Mesh,
+    volume: VolumeRows,
+    nodal: DilationGroups,
+    fixed: Vec<FixedDof>,
+    material: [LinearElastic; 1],
+}
+
+impl Held {
+    fn new(kind: CellKind, n: usize) -> Held {
+        let mesh = cube(kind, n);
+        let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+        let nodal = DilationGroups::nodal(&volume).unwrap();
+        let on = |group: &str, value: f64| -> Vec<FixedDof> {
+            let nodes = mesh.facet_group_nodes(mesh.group(group).unwrap());
+            nodes.iter().flat_map(|&node| (0..3).map(move |axis| FixedDof { node, axis, value })).collect()
+        };
+        let fixed = [on("z-min", 0.0), on("z-max", 1e-3)].concat();
+        Held { volume, nodal, fixed, material: [LinearElastic::new(20e3, 0.3).unwrap()], mesh }
+    }
+
+    fn assembled(&self, projected: bool) -> Assembled<'_> {
+        let body = Body {
+            nodes: self.mesh.points(),
+            volume: &self.volume,
+            materials: &self.material,
+            region: &[],
+            dilation: projected.then_some(&self.nodal),
+        };
+        assemble(&LinearProblem { body, loads: &[], fixed: &self.fixed, constraints: &[], weak: &[] })
+            .unwrap()
+    }
+}
+
+fn assembled(kind: CellKind, projected: bool, times: usize) {
+    let held = Held::new(kind, 8);
+    for _ in 0..times {
+        black_box(held.assembled(projected));
+    }
+}
+
+fn factor(times: usize) {
+    let held = Held::new(CellKind::Tet4, 8);
+    for _ in 0..times {
+        black_box(held.assembled(false).factor().unwrap().solve(1.0).unwrap());
+    }
+}
+
+fn multigrid(times: usize) {
+    let held = Held::new(CellKind::Tet4, 10);
+    for _ in 0..times {
+        let assembled = held.assembled(false);
+        let levels = assembled.multigrid(None).unwrap();
+        black_box(assembled.iterated(levels, 1e-8).unwrap().solve(1.0).unwrap());
+    }
+}
+
+fn assembled_cloud(times: usize) {
+    let mls = moving_least_squares(83);
+    let background = kidney_mesh(CellKind::Tet4, 4).unwrap();
+    let volume = efg::gauss_rows(&mls, &background, 1).unwrap().0;
+    let material = [LinearElastic::new(20e3, 0.495).unwrap()];
+    // Parameters alone are held, as only assembly counts.
+    let fixed: Vec<_> =
+        (0..3 * 83).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
+    let body =
+        Body { nodes: mls.nodes(), volume: &volume, materials: &material, region: &[], dilation: None };
+    let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
+    for _ in 0..times {
+        black_box(assemble(black_box(&problem)).unwrap());
+    }
+}
+
+fn force(kind: CellKind, projected: bool, times: usize) {
+    let held = Held::new(kind, 10);
+    let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
+    let groups = projected.then_some(&held.nodal);
+    let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], groups };
+    let mut force = InternalForce::new(body, best_path()).unwrap();
+    let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
+    let u: Vec<Vector3> = held.mesh.points().iter().map(field).collect();
+    let mut f = vec![Vector3::zeros(); u.len()];
+    for _ in 0..10 * times {
+        force.evaluate(black_box(&u), &mut f).unwrap();
+    }
+}
+
+/// A jaw a tenth of a millimetre in the top of a block, with tangents.
+fn jaw(times: usize) {
+    let max = Point3::new(0.04, 0.03, 0.02);
+    let mesh = box_mesh(CellKind::Tet4, Point3::origin(), max, [20, 16, 10], [1.0; 3], None).unwrap();
+    let rows = fem::surface_rows(&mesh, &mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
+    let surface = ContactSurface::new(&rows);
+    let law = ContactLaw::coulomb(5e8, 0.15, 1e8).unwrap();
+    let shape = ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 });
+    let at = Point3::new(0.02, 0.015, 0.024);
+    let tool = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), law).unwrap();
+    let u = vec![Vector3::new(1e-5, 2e-5, 0.0); mesh.points().len()];
+    let history = ContactHistory::new(&tool, rows.points().len());
+    let mut counts = ContactCounts::default();
+    for _ in 0..10 * times {
+        black_box(surface.evaluate(&tool, 1e-4, black_box(&u), &history, &mut counts).unwrap());
+    }
+}
+
+/// Displacements of 83 nodes at 332 points.
+fn transfer(times: usize) {
+    let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
+    let targets = cloud(&Kidney, 332, 2, &[]).unwrap().points;
+    let scheme = Scheme::all().into_iter().find(|s| s.name() == "mls-linear").expect("a scheme of that name");
+    let rows = scheme.rows(&nodes, None, &targets).unwrap().0;
+    let blocks = RowBlocks::new(rows.rows());
+    let field: Vec<Vector3> = nodes.iter().map(|x| 0.1 * x.coords).collect();
+    let mut out = vec![Vector3::zeros(); targets.len()];
+    for _ in 0..100 * times {
+        blocks.apply_into(black_box(&field), &mut out);
+    }
+}
