@@ -14,7 +14,7 @@ pub(super) fn observed(runs: &[Run]) -> Table {
         "orders",
         "Observed order of convergence",
         "Slope of log error against log h by least squares with its standard error and 95 % band (Student's t), and the order between the two finest levels; \
-         asymptotic where the last two pairs agree within 0.15",
+         asymptotic where the last two pairs agree within 0.15, oscillatory where errors grow and shrink, divergent where they grow at last",
         &[
             ("case", Words),
             ("ν [1]", Number),
@@ -26,7 +26,7 @@ pub(super) fn observed(runs: &[Run]) -> Table {
             ("standard error", Number),
             ("95 % ±", Number),
             ("finest pair", Number),
-            ("asymptotic", Words),
+            ("verdict", Words),
         ],
     );
     for (label, series) in labelled(runs) {
@@ -44,11 +44,7 @@ pub(super) fn observed(runs: &[Run]) -> Table {
                 Cell::Digits(order.error, 2),
                 Cell::Digits(order.band, 2),
                 Cell::Digits(order.pairs.last().copied(), 3),
-                Cell::Text(match order.asymptotic {
-                    Some(true) => "yes",
-                    Some(false) => "no",
-                    None => "two levels only",
-                }),
+                Cell::Text(order.verdict.map_or("two levels only", |verdict| verdict.name())),
             ]);
         }
     }
@@ -60,8 +56,8 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "grid-convergence",
         "Grid convergence index",
-        "Outcomes on the three finest levels: apparent order, Richardson's extrapolation and the grid convergence index of the finest level (safety factor 1.25); \
-         GCI32 / (r^p GCI21) is near 1 in the asymptotic range. Directions that move less than a thousandth of the largest displacement are left out",
+        "Outcomes on the three finest levels: apparent order, Richardson's extrapolation and the grid convergence index of the finest and the next level (safety \
+         factor 1.25); r^p GCI21 / GCI32 is 1 within 0.05 in the asymptotic range. Changes that alternate or grow have no order. Directions that move less than a thousandth of the largest displacement are left out",
         &[
             ("case", Words),
             ("ν [1]", Number),
@@ -72,7 +68,9 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
             ("order", Number),
             ("extrapolated", Number),
             ("GCI [%]", Number),
+            ("next GCI [%]", Number),
             ("range ratio", Number),
+            ("verdict", Words),
         ],
     );
     for (label, series) in labelled(runs) {
@@ -88,7 +86,8 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
             if quantity.starts_with("max-") && points.last().is_some_and(|p| still(p.1)) {
                 continue;
             }
-            let Some(gci) = order::grid_convergence(&points) else { continue };
+            let Some(outcome) = order::grid_convergence(&points) else { continue };
+            let of = |value: fn(&order::Gci) -> f64| outcome.index.as_ref().map(value);
             let poisson = ratio(series.is().poisson);
             let unit = if quantity.starts_with("max") {
                 "mm"
@@ -103,10 +102,12 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
                 Cell::Text(quantity),
                 Cell::Text(unit),
                 Cell::Digits(points.last().map(|p| p.1 * scale), 5),
-                Cell::Digits(Some(gci.order), 3),
-                Cell::Digits(Some(gci.extrapolated * scale), 5),
-                Cell::Digits(Some(100.0 * gci.fine), 3),
-                Cell::Digits(Some(gci.range), 3),
+                Cell::Digits(of(|gci| gci.order), 3),
+                Cell::Digits(of(|gci| gci.extrapolated).map(|value| value * scale), 5),
+                Cell::Digits(of(|gci| 100.0 * gci.fine), 3),
+                Cell::Digits(of(|gci| 100.0 * gci.coarse), 3),
+                Cell::Digits(of(|gci| gci.range), 3),
+                Cell::Text(outcome.verdict.name()),
             ]);
         }
     }
