@@ -136,6 +136,41 @@ fn by_nitsche_rollers_and_tractions() {
     check(&block, &body, &solution);
 }
 
+/// Beside sides held by Nitsche an eliminated side reacts with the traction of the exact stress, also in the cells they share.
+#[test]
+fn by_nitsche_beside_an_eliminated_side() {
+    let block = Block::new(CellKind::Tet4, [3, 3, 2]);
+    let material = [soft()];
+    let body = block.body(&material);
+    let flux = block.flux(&SIDES[1..]);
+    let weak = [WeakSupport {
+        flux: &flux,
+        axes: [true; 3],
+        values: flux.points().iter().map(affine).collect(),
+        region: &[],
+        method: Weak::Nitsche { gamma: 20.0 },
+        h: 0.01,
+        trace: None,
+    }];
+    let fixed = block.fix(&["x-min"], affine);
+    let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &weak };
+    let factored = assemble(&problem).unwrap().factor().unwrap();
+    let solution = factored.solve(1.0).unwrap();
+    check(&block, &body, &solution);
+    let (side, stress) = (block.surface(&["x-min"]), material[0].stress(&gradient()));
+    let mut exact = vec![Vector3::zeros(); body.nodes.len()];
+    for (q, n) in side.normals().iter().enumerate() {
+        let (nodes, values) = side.rows().row(q);
+        for (&i, value) in nodes.iter().zip(values) {
+            exact[i as usize] += stress * n * (value * side.weights()[q]);
+        }
+    }
+    let largest = exact.iter().fold(0.0f64, |l, f| l.max(f.norm()));
+    for (reaction, exact) in factored.reactions(&solution, 1.0).iter().zip(&exact) {
+        assert!((reaction - exact).norm() < 1e-9 * largest, "{reaction} {exact}");
+    }
+}
+
 #[test]
 fn penalty_error_falls_with_the_factor() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);

@@ -189,6 +189,19 @@ fn surfaces_have_their_area_and_outward_normals() {
             let (flux, _) = flux_rows(&mls, &mesh, facets, face_points).unwrap();
             assert!((surface.weights().iter().sum::<f64>() / area - 1.0).abs() < 1e-13, "{name}");
             assert!(surface.normals().iter().all(|n| (n - normal).norm() < 1e-13), "{name}");
+            // The points are where they should be: both rules integrate squares exactly, here of x + 2 y + 4 z.
+            let along = Vector3::new(1.0, 2.0, 4.0);
+            let size = Vector3::new(0.04, 0.03, 0.03);
+            let spread = along.component_mul(&size).component_mul(&(Vector3::repeat(1.0) - normal.abs()));
+            let centre = (size + normal.component_mul(&size)) / 2.0;
+            let mean = along.dot(&centre).powi(2) + spread.norm_squared() / 12.0;
+            let found: f64 = surface
+                .points()
+                .iter()
+                .zip(surface.weights())
+                .map(|(p, w)| along.dot(&p.coords).powi(2) * w)
+                .sum();
+            assert!((found / (area * mean) - 1.0).abs() < 1e-12, "{name}");
             // Values are the same numbers whether gradients are asked for or not.
             assert_eq!(surface.rows(), flux.at().rows());
             assert_eq!((surface.points(), surface.weights()), (flux.points(), flux.weights()));

@@ -240,3 +240,31 @@ proptest! {
         }
     }
 }
+
+/// The meshes of the stress study: between two layers of cells one of flat tetrahedra, of this height over the edge of a cell,
+/// with edges as long as those of all others.
+#[test]
+fn slivers_are_as_flat_as_their_files_say() {
+    for flatness in [0.1, 0.01, 0.0001, 0.000001, 0.00000001] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/scenes/beam");
+        let mesh = msh::read(&folder.join(format!("slivers-{flatness}.msh")), 1.0).unwrap();
+        let (mut slivers, mut whole) = (0, 0.0);
+        for cell in 0..mesh.cell_count() {
+            let x: Vec<_> = mesh.cell_points(cell).copied().collect();
+            let volume = (x[1] - x[0]).cross(&(x[2] - x[0])).dot(&(x[3] - x[0])) / 6.0;
+            let edges = (0..4).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| (x[i] - x[j]).norm());
+            let (least, most) = edges.fold((f64::MAX, 0.0f64), |(l, m), e| (l.min(e), m.max(e)));
+            assert!(least > 9.0 && most < 16.0, "edges of {least} to {most}");
+            // Opposite edges of 10 sqrt(2) mm cross at right angles, this far apart.
+            let height = 6.0 * volume / 200.0;
+            if (height / (10.0 * flatness) - 1.0).abs() < 1e-6 {
+                slivers += 1;
+            } else {
+                assert!(height > 4.0, "another sliver, of {height}");
+            }
+            whole += volume;
+        }
+        assert_eq!((slivers, mesh.cell_count()), (32, 672));
+        assert!((whole - 128e3).abs() < 1e-6 * 128e3);
+    }
+}

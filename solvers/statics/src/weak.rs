@@ -271,3 +271,6 @@ impl WeakTable {
         });
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -154,6 +154,21 @@ mod tests {
         }
     }
 
+    /// What elimination leaves of the second diagonal entry decides, in a dense and in a sparse factor.
+    #[test]
+    fn pivots_of_rounding_are_refused() {
+        for limit in [0, DENSE_LIMIT] {
+            let leaving = |rest: f64| {
+                let matrix = full(2, |i, j| if i + j == 2 { 1.0 + rest } else { 1.0 });
+                factor(matrix, limit).map(|_| ())
+            };
+            assert!(leaving(2f64.powi(-40)).is_ok());
+            let refused = leaving(2f64.powi(-48));
+            let near = matches!(refused, Err(FactorError::Other(AlgebraError::NearlySingular { .. })));
+            assert!(near, "{refused:?}");
+        }
+    }
+
     /// Hilbert's matrix of seven has a condition of 1e9 and keeps seven digits; of 13 it is singular to rounding.
     #[test]
     fn digits_are_those_of_the_error_and_none_are_refused() {
