@@ -36,6 +36,6 @@ pub use linear_solver::{
     Border, Cholesky, DENSE_LIMIT, FactorError, Factorization, Kind, Solved, SolverPath, Symbolic, Symmetric,
     Unsymmetric, analyse, factor, factor_as, reserve_workspaces,
 };
-pub use multigrid::{Iterations, Multigrid};
+pub use multigrid::{Iterations, Multigrid, PressureGroup};
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;
