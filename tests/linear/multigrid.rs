@@ -1,12 +1,12 @@
 //! Iterations with multigrid: against a factor, in the iterations that theory gives, and with the same bits.
 
 use algebra::SolverPath;
+use fem::VolumeRule;
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use integration::block::{Block, soft};
 use material::LinearElastic;
 use shape::{DilationGroups, FixedDof, Point3, Vector3};
-use fem::VolumeRule;
 use statics::{Body, ConstraintRow, Factored, LinearProblem, Load, SolveError, assemble};
 
 const KINDS: [CellKind; 4] = [CellKind::Tet4, CellKind::Tet10, CellKind::Hex8, CellKind::Hex20];
@@ -145,7 +145,8 @@ fn pressures_come_to_what_a_factor_gives_in_iterations_that_hardly_grow() {
 #[test]
 fn pressures_take_fewer_iterations_than_displacements_alone() {
     let block = Block::new(CellKind::Tet10, [6, 5, 4]);
-    let count = |solution: Result<statics::Solution, SolveError>| solution.map(|s| s.info.iterations.unwrap().count);
+    let count =
+        |solution: Result<statics::Solution, SolveError>| solution.map(|s| s.info.iterations.unwrap().count);
     nearly_incompressible(&block, 0.495, |problem| {
         let alone = count(iterated(problem, &block).unwrap().solve(1.0)).unwrap();
         let together = count(with_pressures(problem, &block).unwrap().solve(1.0)).unwrap();

@@ -21,8 +21,9 @@ impl Assembled<'_> {
         let Some(groups) = body.dilation else { return self.multigrid(linear) };
         let averaged = averaged(body, groups)?;
         let kept = |a| KEPT * group_mean(body, a, LinearElastic::mu);
-        let excess: Vec<f64> =
-            (0..groups.len()).map(|a| (group_mean(body, a, LinearElastic::bulk) - kept(a)).max(0.0)).collect();
+        let excess: Vec<f64> = (0..groups.len())
+            .map(|a| (group_mean(body, a, LinearElastic::bulk) - kept(a)).max(0.0))
+            .collect();
         if excess.iter().all(|&excess| excess == 0.0) {
             return self.multigrid(linear);
         }

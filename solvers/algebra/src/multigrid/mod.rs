@@ -22,8 +22,8 @@ mod transfer;
 
 use shape::{Coarser, Point3};
 
-use crate::{SolverPath, Stiffness};
 use crate::linear_solver::FactorError;
+use crate::{SolverPath, Stiffness};
 use aggregate::Modes;
 use level::Level;
 use lower::{Held, LowerRows};

@@ -17,9 +17,9 @@ use std::collections::VecDeque;
 
 use shape::Vector3;
 
+use super::Multigrid;
 use super::conjugate::{Iterations, Precondition, dot, is_rounding, norm};
 use super::level::Cycle;
-use super::Multigrid;
 use crate::{AlgebraError, Stiffness};
 
 /// A group whose pressure is an unknown.
@@ -117,6 +117,7 @@ impl Pressures {
         norm(scratch)
     }
 
+    /// Product of two residuals or images.
     fn dot(&self, a: &Pair, b: &Pair) -> f64 {
         let p: f64 = a.p.iter().zip(&b.p).zip(&self.force).map(|((a, b), force)| a * b * force * force).sum();
         dot(&a.u, &b.u) + p
@@ -178,14 +179,13 @@ impl Pressures {
             if self.dot(rest, rest).sqrt() <= limit && self.of_displacements(rest, &mut scratch) <= limit {
                 return;
             }
-            let mut next = if kept.len() < KEPT { None } else { kept.pop_front() }
-                .unwrap_or_else(|| Direction { way: rest.clone(), image: rest.clone(), square: 0.0 });
+            let oldest = if kept.len() == KEPT { kept.pop_front() } else { None };
+            // Of a new one every entry is set.
+            let mut next =
+                oldest.unwrap_or_else(|| Direction { way: rest.clone(), image: rest.clone(), square: 0.0 });
             self.direct(multigrid, cycles, rest, &mut next);
-            let parts: Vec<f64> = self
-                .dots(&next.image, &kept)
-                .zip(&kept)
-                .map(|(dot, before)| -dot / before.square)
-                .collect();
+            let mut parts = self.dots(&next.image, &kept);
+            parts.iter_mut().zip(&kept).for_each(|(part, before)| *part /= -before.square);
             next.way.add(&parts, kept.iter().map(|before| &before.way));
             next.image.add(&parts, kept.iter().map(|before| &before.image));
             next.square = self.dot(&next.image, &next.image);
@@ -216,7 +216,7 @@ impl Pressures {
     }
 
     /// Products of a vector with the images of all directions.
-    fn dots(&self, x: &Pair, kept: &VecDeque<Direction>) -> impl Iterator<Item = f64> {
+    fn dots(&self, x: &Pair, kept: &VecDeque<Direction>) -> Vec<f64> {
         let mut sums = vec![0.0; kept.len()];
         for (c, u) in x.u.chunks(CHUNK).enumerate() {
             for (sum, of) in sums.iter_mut().zip(kept) {
@@ -230,7 +230,7 @@ impl Pressures {
                 *sum += p.iter().zip(other).zip(force).map(|((a, b), f)| a * b * f * f).sum::<f64>();
             }
         }
-        sums.into_iter()
+        sums
     }
 }
 
