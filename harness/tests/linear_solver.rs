@@ -80,6 +80,28 @@ fn the_plan_says_which_and_why() {
 }
 
 #[test]
+fn nearly_incompressible_elements_that_share_dilations_are_iterated_with_pressures() {
+    let stiff = |solver: &str| block(solver).replace("poisson = 0.3", "poisson = 0.4999");
+    let dir = tempfile::tempdir().unwrap();
+    let of = |solver: &str| {
+        let scene = write(&dir, "block.toml", &stiff(solver));
+        let done = tissuebench(&["run", &scene, "--format", "json", "--method", "hex8-mean"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        objects(&done.stdout).remove(0)
+    };
+    let (iterated, factored) = (of("amg"), of("direct"));
+    assert_eq!(iterated["linear_solver"], "multigrid-pressures", "{iterated}");
+    assert_eq!(factorisation(&iterated), "multigrid levels for displacements and pressures (asked for)");
+    for name in ["max", "strain-energy"] {
+        let (a, b) = (metric(&iterated, name).unwrap(), metric(&factored, name).unwrap());
+        assert!((a - b).abs() < 1e-7 * b, "{name}: {a} and {b}");
+    }
+    assert!(metric(&iterated, "residual").unwrap() <= 1e-8);
+    // Small ones are factored.
+    assert_eq!(of("auto")["linear_solver"], "sparse-llt");
+}
+
+#[test]
 fn constraint_rows_are_not_for_iterations() {
     let dir = tempfile::tempdir().unwrap();
     let text = block("amg").replace("\"nitsche\"", "\"multipliers\"");

@@ -3,7 +3,7 @@
 use cases::scene::LinearSolver;
 use statics::assemble;
 
-use super::linear_solver::{iterates, solved};
+use super::linear_solver::{serves, solved};
 use super::{Problem, Solution, Stages};
 use crate::Failure;
 use crate::discretise::Discretisation;
@@ -12,9 +12,8 @@ use crate::scenario::setup::Setup;
 
 /// What the linear procedure puts into the plan.
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> Stages {
-    let (iterates, why) = iterates(method, setup, asked);
-    let what = if iterates { "multigrid levels for conjugate gradients" } else { "one, for all load levels" };
-    Stages { factorisation: (true, format!("{what} ({why})")), ..Stages::linear() }
+    let (serves, why) = serves(method, setup, asked);
+    Stages { factorisation: (true, format!("{} ({why})", serves.meaning())), ..Stages::linear() }
 }
 
 /// Assembles, factors and solves, each timed apart.

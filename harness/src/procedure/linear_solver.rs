@@ -6,7 +6,7 @@ use statics::{Assembled, Factored, SolveError};
 
 use super::Problem;
 use crate::Failure;
-use crate::discretise::{Discretisation, Essential};
+use crate::discretise::{Dilation, Discretisation, Essential};
 use crate::error::Key;
 use crate::outcome::Meters;
 use crate::prepare::Prepared;
@@ -24,6 +24,10 @@ const UNKNOWNS: f64 = 20_000.0;
 /// square root (94 at nu = 0.495, 11 times as much), and the size from which they pay in proportion.
 const COMPRESSIBLE: f64 = 9.0;
 
+/// From this `lambda / mu` on elements whose points share dilations are iterated with pressures: 45 iterations at nu = 0.495 where
+/// displacements alone take 77, each a half dearer. What they take then grows slowly: with about the fourth root.
+const PRESSURES: f64 = 60.0;
+
 /// Unknowns of a cube that take as long to factor as one of the body: what counts are the nodes across its longest side, `n^(2/3) s`
 /// with `s` the edge of a cube of its volume over that side. A beam is soft besides, and its iterations lose digits.
 fn compactness(nodes: &[Point3]) -> f64 {
@@ -39,8 +43,29 @@ fn compactness(nodes: &[Point3]) -> f64 {
     (cube / sides.iter().fold(0.0, |longest: f64, side| longest.max(*side))).powf(1.5)
 }
 
-/// Whether the equations are iterated, and why.
-pub(super) fn iterates(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> (bool, String) {
+/// What solves the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Serves {
+    Factor,
+    /// Conjugate gradients with multigrid.
+    Multigrid,
+    /// The same for displacements and pressures together.
+    Pressures,
+}
+
+impl Serves {
+    /// What the plan says of the stage that makes it.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Serves::Factor => "one, for all load levels",
+            Serves::Multigrid => "multigrid levels for conjugate gradients",
+            Serves::Pressures => "multigrid levels for displacements and pressures",
+        }
+    }
+}
+
+/// What solves the equations, and why.
+pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> (Serves, String) {
     let direct = match method.essential {
         Essential::Multipliers => Some("multipliers"),
         Essential::Elimination(_) => Some("elimination couples nodes far apart"),
@@ -49,13 +74,16 @@ pub(super) fn iterates(method: &Discretisation, setup: &Setup, asked: LinearSolv
         _ => None,
     };
     let stiffest = setup.materials.iter().map(|m| m.lambda() / m.mu()).fold(0.0, f64::max);
-    let needed = UNKNOWNS * (stiffest / COMPRESSIBLE).sqrt().max(1.0);
+    let shared = matches!(method.dilation, Dilation::Element | Dilation::Nodal) && method.interpolates;
+    let (iterated, power) =
+        if shared && stiffest >= PRESSURES { (Serves::Pressures, 0.25) } else { (Serves::Multigrid, 0.5) };
+    let needed = UNKNOWNS * (stiffest / COMPRESSIBLE).powf(power).max(1.0);
     let (unknowns, compact) = (3 * method.nodes().len(), compactness(method.nodes()));
     let of_cube = unknowns as f64 * compact;
     match (asked, direct) {
-        (LinearSolver::Direct, _) => (false, "asked for".into()),
-        (LinearSolver::Amg, _) => (true, "asked for".into()),
-        (LinearSolver::Auto, Some(why)) => (false, why.into()),
+        (LinearSolver::Direct, _) => (Serves::Factor, "asked for".into()),
+        (LinearSolver::Amg, _) => (iterated, "asked for".into()),
+        (LinearSolver::Auto, Some(why)) => (Serves::Factor, why.into()),
         (LinearSolver::Auto, None) => {
             let iterates = of_cube >= needed;
             let than = if iterates { "from" } else { "below" };
@@ -65,7 +93,7 @@ pub(super) fn iterates(method: &Discretisation, setup: &Setup, asked: LinearSolv
                 String::new()
             };
             (
-                iterates,
+                if iterates { iterated } else { Serves::Factor },
                 format!("{unknowns} unknowns{like}, {than} {needed:.0} at lambda / mu = {stiffest:.3}"),
             )
         }
@@ -88,7 +116,8 @@ pub(super) fn solved<'a>(
     meters: &mut Meters,
 ) -> Result<Solved<'a>, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
-    if !iterates(method, setup, asked).0 {
+    let serves = serves(method, setup, asked).0;
+    if serves == Serves::Factor {
         return by_factor(prepared, assembled, meters);
     }
     if prepared.has_rows() {
@@ -98,7 +127,7 @@ pub(super) fn solved<'a>(
             "give \"auto\" or \"direct\", or hold the method by essential = \"nitsche\" or \"penalty\"";
         return Err(Failure::input(key, problem, help));
     }
-    by_iterations(prepared, assembled, asked, meters)
+    by_iterations(prepared, assembled, (serves, asked), meters)
 }
 
 fn by_factor<'a>(
@@ -117,12 +146,16 @@ fn by_factor<'a>(
 fn by_iterations<'a>(
     prepared: &Prepared,
     assembled: Assembled<'a>,
-    asked: LinearSolver,
+    (serves, asked): (Serves, LinearSolver),
     meters: &mut Meters,
 ) -> Result<Solved<'a>, Failure> {
     let Meters { timings, counters, .. } = meters;
     let levels = timings.time("factor", || -> Result<_, Failure> {
-        Ok(assembled.multigrid(prepared.source.coarser()?.as_ref()))
+        let linear = prepared.source.coarser()?;
+        Ok(match serves {
+            Serves::Pressures => assembled.multigrid_with_pressures(linear.as_ref()),
+            _ => assembled.multigrid(linear.as_ref()),
+        })
     })?;
     counters.factorisations += 1;
     let may_factor = |error: &SolveError| asked == LinearSolver::Auto && is_of_iteration(error);

@@ -1,8 +1,10 @@
 //! The projected dilation at quadrature points: `theta_q = sum_a share_aq b_a . u`.
 
-use shape::Vector3;
+use material::LinearElastic;
+use rayon::prelude::*;
+use shape::{DilationGroups, Vector3};
 
-use crate::Body;
+use crate::{Body, SolveError};
 
 /// Rows of the projected dilation at those points that are asked for.
 pub(crate) struct Projected {
@@ -49,14 +51,36 @@ impl Projected {
     }
 }
 
+/// Volume (m^3) and averaged gradient row (1/m) of a group.
+pub(crate) type Averaged = (f64, Vec<(u32, Vector3)>);
+
+/// Those of every group; one without volume is refused.
+pub(crate) fn averaged(body: &Body, groups: &DilationGroups) -> Result<Vec<Averaged>, SolveError> {
+    let scratch = || vec![Vector3::zeros(); body.nodes.len()];
+    let averaged: Vec<Averaged> = (0..groups.len())
+        .into_par_iter()
+        .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
+        .collect();
+    // `!(V > 0)`: a NaN must not pass.
+    match averaged.iter().enumerate().find(|(_, of)| !(of.0 > 0.0)) {
+        Some((group, &(volume, _))) => Err(SolveError::GroupVolume { group, volume }),
+        None => Ok(averaged),
+    }
+}
+
 /// Bulk modulus of one dilation group, Pa: the volume average over its points.
 pub(crate) fn group_bulk(body: &Body, group: usize) -> f64 {
+    group_mean(body, group, LinearElastic::bulk)
+}
+
+/// The volume average of a modulus over the points of a dilation group, Pa.
+pub(crate) fn group_mean(body: &Body, group: usize, modulus: impl Fn(&LinearElastic) -> f64) -> f64 {
     let (points, shares) = body.dilation.expect("a body with groups").group(group);
-    let (mut volume, mut bulk) = (0.0, 0.0);
+    let (mut volume, mut sum) = (0.0, 0.0);
     for (&q, share) in points.iter().zip(shares) {
         let dv = share * body.volume.weights()[q as usize];
         volume += dv;
-        bulk += dv * body.material(q as usize).bulk();
+        sum += dv * modulus(body.material(q as usize));
     }
-    bulk / volume
+    sum / volume
 }

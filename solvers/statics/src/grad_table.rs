@@ -14,7 +14,7 @@ use shape::locality_order;
 use shape::{Matrix3, Vector3};
 
 use crate::body::region_of;
-use crate::dilation::group_bulk;
+use crate::dilation::{Averaged, averaged, group_bulk};
 use crate::{Body, SolveError};
 
 /// Bundles per task.
@@ -81,22 +81,24 @@ impl GradTable {
     /// The dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1, 0) and weight `kappa V_a`.
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
-        let scratch = || vec![Vector3::zeros(); body.nodes.len()];
-        let averaged: Vec<_> = (0..groups.len())
-            .into_par_iter()
-            .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
-            .collect();
-        // `!(V > 0)`: a NaN must not pass.
-        if let Some((group, &(volume, _))) = averaged.iter().enumerate().find(|(_, of)| !(of.0 > 0.0)) {
-            return Err(SolveError::GroupVolume { group, volume });
-        }
+        let averaged = averaged(body, groups)?;
+        let weight = |a: usize| group_bulk(body, a) * averaged[a].0;
+        Ok(Some(GradTable::of_groups(body.nodes.len(), &averaged, weight)))
+    }
+
+    /// `weight b_a b_a^T` of these groups.
+    pub fn of_groups(
+        node_count: usize,
+        averaged: &[Averaged],
+        weight: impl Fn(usize) -> f64 + Sync,
+    ) -> GradTable {
         let rows = Rows {
-            order: (0..groups.len() as u32).collect(),
+            order: (0..averaged.len() as u32).collect(),
             row: |a: usize| averaged[a].1.iter().copied(),
-            weight: |a| group_bulk(body, a) * averaged[a].0,
+            weight,
             law: |_| 0,
         };
-        Ok(Some(GradTable::new(body.nodes.len(), &rows, &[(1.0, 0.0)])))
+        GradTable::new(node_count, &rows, &[(1.0, 0.0)])
     }
 
     fn new<I, R, W, L>(node_count: usize, rows: &Rows<R, W, L>, moduli: &[(f64, f64)]) -> GradTable

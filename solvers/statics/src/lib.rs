@@ -66,6 +66,7 @@ mod load;
 mod modes;
 mod nonlinear;
 pub mod plain;
+mod pressure;
 mod problem;
 mod recover;
 mod reduction;

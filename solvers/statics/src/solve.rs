@@ -7,6 +7,7 @@ use shape::{Coarser, Vector3};
 use crate::SolveError;
 use crate::body::check_len;
 use crate::load::Load;
+use crate::pressure::not_definite;
 use crate::problem::Assembled;
 use crate::reduction::Reduction;
 
@@ -117,11 +118,12 @@ impl<'a> Assembled<'a> {
 
     /// The multigrid hierarchy of the stiffness, with the linear mesh of a quadratic one as first coarse level if it is given.
     pub fn multigrid(&self, linear: Option<&Coarser>) -> Result<Multigrid, SolveError> {
-        let held = self.prescribed.iter().map(Option::is_some).collect();
-        Multigrid::new(&self.stiffness, self.body.nodes, held, linear).map_err(|error| match error {
-            FactorError::Other(error) => error.into(),
-            FactorError::NotDefinite => SolveError::NotPositiveDefinite,
-        })
+        Multigrid::new(&self.stiffness, self.body.nodes, self.held(), linear).map_err(not_definite)
+    }
+
+    /// Whether each degree of freedom `3 node + axis` is prescribed.
+    pub(crate) fn held(&self) -> Vec<bool> {
+        self.prescribed.iter().map(Option::is_some).collect()
     }
 
     /// Conjugate gradients with this preconditioner, to a relative residual of `tolerance`. Constraint rows are not for it: refused.
@@ -297,7 +299,7 @@ impl<'a> Factored<'a> {
             iterations: Some(Iterated { count: done.count, complexity: multigrid.complexity() }),
             residual: done.residual,
             solved: None,
-            path: SolverPath::Multigrid,
+            path: multigrid.path(),
         };
         Ok(Solution { u, multipliers: Vec::new(), info })
     }

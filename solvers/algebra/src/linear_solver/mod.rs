@@ -67,6 +67,8 @@ pub enum SolverPath {
     SparseLdlt,
     /// Conjugate gradients with smoothed aggregation as preconditioner.
     Multigrid,
+    /// Displacements and pressures by GCR with smoothed aggregation in its preconditioner.
+    MultigridPressures,
 }
 
 impl SolverPath {
@@ -79,6 +81,7 @@ impl SolverPath {
             SolverPath::SparseLlt => "sparse-llt",
             SolverPath::SparseLdlt => "sparse-ldlt",
             SolverPath::Multigrid => "multigrid",
+            SolverPath::MultigridPressures => "multigrid-pressures",
         }
     }
 }

@@ -26,6 +26,8 @@ impl Multigrid {
     /// The preconditioner is in single precision, symmetric to rounding only: the flexible formula for the next direction
     /// (Polak and Ribiere's) takes that, at one more product of vectors.
     ///
+    /// With pressures ([`Multigrid::with_pressures`]) they and the displacements are iterated together.
+    ///
     /// A W-cycle makes a residual on a coarse level from a solution there; where the softest motions have 1e-8 of the stiffness, as in
     /// a slender beam, that is all rounding in single precision, and the cycle is not positive. Then V-cycles serve.
     pub fn solve(
@@ -34,6 +36,10 @@ impl Multigrid {
         b: &mut [Vector3],
         tolerance: f64,
     ) -> Result<Iterations, AlgebraError> {
+        if let Some(pressures) = &self.pressures {
+            self.release(b);
+            return pressures.solve(self, stiffness, b, tolerance);
+        }
         self.iterate(stiffness, b, tolerance, Cycle::W)
             .or_else(|_| self.iterate(stiffness, b, tolerance, Cycle::V))
     }
@@ -95,9 +101,7 @@ impl Multigrid {
                 break;
             }
             // Of a slender body `|K| |x|` is a million times `|b|` and more: its rounding alone is above the tolerance.
-            stiffness.multiply_magnitudes(&x, &mut image);
-            let sizes: Vec<Vector3> = image.iter().zip(&*b).map(|(k, b)| k + b.abs()).collect();
-            at_rounding = norm(&rest) <= ROUNDING * norm(&sizes);
+            at_rounding = is_rounding(stiffness, &x, b, &rest);
             if at_rounding {
                 break;
             }
@@ -111,7 +115,7 @@ impl Multigrid {
     }
 
     /// Zero where held.
-    fn release(&self, x: &mut [Vector3]) {
+    pub(super) fn release(&self, x: &mut [Vector3]) {
         for (x, held) in x.iter_mut().zip(self.held.chunks_exact(3)) {
             for a in (0..3).filter(|&a| held[a]) {
                 x[a] = 0.0;
@@ -121,14 +125,14 @@ impl Multigrid {
 }
 
 /// The cycle between vectors in double precision.
-struct Precondition {
+pub(super) struct Precondition {
     b: Vec<Entry<3>>,
     x: Vec<Entry<3>>,
     out: Vec<Vector3>,
 }
 
 impl Precondition {
-    fn new(nodes: usize) -> Precondition {
+    pub fn new(nodes: usize) -> Precondition {
         Precondition {
             b: vec![[0.0; 3]; nodes],
             x: vec![[0.0; 3]; nodes],
@@ -137,7 +141,7 @@ impl Precondition {
     }
 
     /// One cycle, with the residual scaled to a largest entry of one: it falls below what single precision can hold.
-    fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
+    pub fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
         let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
         for (b, r) in self.b.iter_mut().zip(rest) {
             *b = std::array::from_fn(|a| (r[a] / largest) as f32);
@@ -150,11 +154,19 @@ impl Precondition {
     }
 }
 
-fn norm(x: &[Vector3]) -> f64 {
+/// Whether a residual is rounding beside `|K| |x| + |b|`.
+pub(super) fn is_rounding(stiffness: &Stiffness, x: &[Vector3], b: &[Vector3], rest: &[Vector3]) -> bool {
+    let mut sizes = vec![Vector3::zeros(); x.len()];
+    stiffness.multiply_magnitudes(x, &mut sizes);
+    sizes.iter_mut().zip(b).for_each(|(size, b)| *size += b.abs());
+    norm(rest) <= ROUNDING * norm(&sizes)
+}
+
+pub(super) fn norm(x: &[Vector3]) -> f64 {
     dot(x, x).sqrt()
 }
 
 /// In chunks of fixed length, so that the sum is as good as its longest part.
-fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
+pub(super) fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
     a.chunks(1024).zip(b.chunks(1024)).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()).sum()
 }

@@ -5,6 +5,8 @@
 //! chunks, the coarsest is solved directly. The hierarchy is in single precision but for its coarse matrices while they are made,
 //! the iteration and its residual in double.
 //!
+//! Nearly incompressible stiffnesses are split: see [`pressure`].
+//!
 //! Source: Vanek, Mandel and Brezina 1996, Computing 56, 179.
 
 mod aggregate;
@@ -13,21 +15,24 @@ mod galerkin;
 mod level;
 mod lower;
 mod operator;
+mod pressure;
 #[cfg(test)]
 mod tests;
 mod transfer;
 
 use shape::{Coarser, Point3};
 
-use crate::Stiffness;
 use crate::linear_solver::FactorError;
+use crate::{SolverPath, Stiffness};
 use aggregate::Modes;
 use level::Level;
 use lower::{Held, LowerRows};
 use operator::Entry;
+use pressure::Pressures;
 use transfer::Transfer;
 
 pub use conjugate::Iterations;
+pub use pressure::PressureGroup;
 
 /// A stiffness with its hierarchy; serves any number of right-hand sides.
 pub struct Multigrid {
@@ -37,6 +42,9 @@ pub struct Multigrid {
     /// Number of degrees of freedom that are not held.
     free: usize,
     levels: Vec<(usize, usize)>,
+    /// What the finest matrix was multiplied by.
+    scale: f64,
+    pressures: Option<Box<Pressures>>,
 }
 
 impl Multigrid {
@@ -61,7 +69,19 @@ impl Multigrid {
         let mut levels = Vec::new();
         finest.sizes(&mut levels);
         let free = held.iter().filter(|held| !**held).count();
-        Ok(Multigrid { finest, held, free, levels })
+        Ok(Multigrid { finest, held, free, levels, scale, pressures: None })
+    }
+
+    /// For a nearly incompressible stiffness: `without` is what the hierarchy was made of, and the solved one adds
+    /// `excess / volume row row^T` for every group. Their pressures are iterated with the displacements.
+    pub fn with_pressures(self, without: Stiffness, groups: &[PressureGroup]) -> Multigrid {
+        let pressures = Pressures::new(without, groups, &self.held);
+        Multigrid { pressures: Some(Box::new(pressures)), ..self }
+    }
+
+    /// What a solution is recorded as.
+    pub fn path(&self) -> SolverPath {
+        if self.pressures.is_some() { SolverPath::MultigridPressures } else { SolverPath::Multigrid }
     }
 
     /// Number of unknowns.
