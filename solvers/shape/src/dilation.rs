@@ -82,7 +82,7 @@ impl DilationGroups {
         DilationGroups::of_nodes(volume, |_, _| {})
     }
 
-    /// As [`DilationGroups::nodal`], each point shared out among its [`NEAREST`] largest shape values alone, in proportion to
+    /// As [`DilationGroups::nodal`], each point shared out among its four largest shape values alone, in proportion to
     /// them. A group couples all nodes that its points see, in a cloud those within four support radii; with this those
     /// of the points around its node.
     pub fn near(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {

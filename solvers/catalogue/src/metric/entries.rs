@@ -241,8 +241,8 @@ metrics! {
         "relative residual of the linear solve, of the last static step, or of the worst reported mode";
     FACTOR_NONZEROS: "factor-nonzeros", "nonzeros of the factor", None, Count, Run,
         "stored entries of the matrix factor, or of the matrices of all levels of a multigrid solver";
-    LINEAR_ITERATIONS: "linear-iterations", "iterations of conjugate gradients", None, Count, Run,
-        "iterations of conjugate gradients with a multigrid preconditioner";
+    LINEAR_ITERATIONS: "linear-iterations", "iterations of the linear solver", None, Count, Run,
+        "iterations with multigrid, of conjugate gradients or with pressures";
     OPERATOR_COMPLEXITY: "operator-complexity", "operator complexity", None, Value, Run,
         "entries of the matrices of all levels of a multigrid solver over those of the finest";
     ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
