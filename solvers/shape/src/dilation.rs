@@ -79,7 +79,7 @@ impl DilationGroups {
     /// al. 2015, volume-averaged nodal projection): `share_aq = N_a(x_q)`. A point whose values do not sum to one
     /// is refused.
     pub fn nodal(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
-        DilationGroups::of_nodes(volume, |_, _| {})
+        DilationGroups::of_nodes(volume, |values, shares| shares.extend(values.iter().map(|&v| Some(v))))
     }
 
     /// As [`DilationGroups::nodal`], each point shared out among its four largest shape values alone, in proportion to
@@ -92,29 +92,27 @@ impl DilationGroups {
             order.extend(0..values.len());
             // Equal values in the order of their nodes.
             order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-            let (kept, left) = order.split_at(NEAREST.min(order.len()));
-            let sum: f64 = kept.iter().map(|&k| values[k]).sum();
-            kept.iter().for_each(|&k| shares[k] /= sum);
-            left.iter().for_each(|&k| shares[k] = 0.0);
+            order.truncate(NEAREST);
+            let sum: f64 = order.iter().map(|&k| values[k]).sum();
+            // A node that counts for nothing at all of its points would have a group without a volume.
+            let share = |k: usize| (order.contains(&k) && values[k] != 0.0).then(|| values[k] / sum);
+            shares.extend((0..values.len()).map(share));
         })
     }
 
-    /// One group per node; `share` may change the shares of a point, which start as its values. Shares it makes zero are left out.
+    /// One group per node; `share` adds the shares of a point from its values, `None` for a node that has no part in it.
     fn of_nodes(
         volume: &VolumeRows,
-        mut share: impl FnMut(&[f64], &mut [f64]),
+        mut share: impl FnMut(&[f64], &mut Vec<Option<f64>>),
     ) -> Result<DilationGroups, ShapeError> {
         let rows = volume.rows();
         let mut all = Vec::with_capacity(rows.nodes().len());
         for q in 0..rows.len() {
-            let (values, first) = (rows.row(q).1, all.len());
-            all.extend_from_slice(values);
-            share(values, &mut all[first..]);
+            share(rows.row(q).1, &mut all);
         }
-        let keeps = |k: usize| all[k] != 0.0 || rows.values()[k] == 0.0;
         let mut next = vec![0; rows.node_count()];
-        for (k, &node) in rows.nodes().iter().enumerate() {
-            next[node as usize] += usize::from(keeps(k));
+        for (&node, share) in rows.nodes().iter().zip(&all) {
+            next[node as usize] += usize::from(share.is_some());
         }
         let mut offsets = vec![0];
         for next in &mut next {
@@ -128,9 +126,10 @@ impl DilationGroups {
         let entries = offsets[offsets.len() - 1];
         let (mut points, mut shares) = (vec![0; entries], vec![0.0; entries]);
         for q in 0..rows.len() {
-            for k in rows.range(q).filter(|&k| keeps(k)) {
+            for k in rows.range(q) {
+                let Some(share) = all[k] else { continue };
                 let at = &mut next[rows.nodes()[k] as usize];
-                (points[*at], shares[*at]) = (q as u32, all[k]);
+                (points[*at], shares[*at]) = (q as u32, share);
                 *at += 1;
             }
         }
@@ -176,13 +175,13 @@ mod tests {
     use super::*;
     use crate::{GradRows, Point3, Rows, Unity};
 
-    /// Two points of six nodes.
+    /// Three points of six nodes; the third sees two, of which one counts for nothing.
     fn volume() -> VolumeRows {
-        let values = vec![0.3, 0.05, 0.2, 0.2, -0.05, 0.3, 0.5, 0.25, 0.125, 0.0625, 0.0625, 0.0];
-        let nodes = (0..6).chain(0..6).collect();
-        let rows = Rows::new(6, vec![0, 6, 12], nodes, values, Unity::Within(1e-12)).unwrap();
-        let grads = GradRows::new(vec![Point3::origin(); 2], rows, vec![Vector3::zeros(); 12]).unwrap();
-        VolumeRows::new(grads, vec![2.0, 1.0]).unwrap()
+        let values = vec![0.3, 0.05, 0.2, 0.2, -0.05, 0.3, 0.5, 0.25, 0.125, 0.0625, 0.0625, 0.0, 1.0, 0.0];
+        let nodes = (0..6).chain(0..6).chain([0, 4]).collect();
+        let rows = Rows::new(6, vec![0, 6, 12, 14], nodes, values, Unity::Within(1e-12)).unwrap();
+        let grads = GradRows::new(vec![Point3::origin(); 3], rows, vec![Vector3::zeros(); 14]).unwrap();
+        VolumeRows::new(grads, vec![2.0, 1.0, 1.0]).unwrap()
     }
 
     #[test]
@@ -195,7 +194,7 @@ mod tests {
             };
             (0..groups.len()).map(share).collect::<Vec<_>>()
         };
-        // Node 4 counts for no point: of equal values the one of the first node does.
+        // Node 4 counts for no point, and has no group: of equal values the one of the first node does.
         assert_eq!(groups.len(), 5);
         let close = |found: &[Option<f64>], wanted: [f64; 5]| {
             found.iter().zip(wanted).all(|(f, w)| (f.unwrap_or(0.0) - w).abs() < 1e-15)
