@@ -49,7 +49,7 @@ fn kept_factors_lead_to_the_same_end() {
         let far = anew.u.iter().zip(&kept.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(far < 1e-8 * 3e-3, "{method:?}: {far}");
         assert!(anew.work.factorisations >= anew.work.assemblies, "{:?}", anew.work);
-        // One in double precision at the end of each step tells that it is stable.
+        // One in double precision at the end of each step shows that it is stable.
         let work = kept.work;
         assert!(
             work.factorisations < work.assemblies && work.factorisations >= 4 && work.inner > 0,

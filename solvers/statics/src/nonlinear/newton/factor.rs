@@ -154,7 +154,7 @@ impl Newton<'_> {
     }
 
     /// The factor with the least of some shifts that makes the matrix definite. Directions in which it is not, found with the last
-    /// factor, tell of most shifts that they are too small: what a try with them would tell for the price of a factor.
+    /// factor, show of most shifts that they are too small: what a try with them would show for the price of a factor.
     fn lifted(&mut self, matrix: &mut Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
@@ -163,7 +163,7 @@ impl Newton<'_> {
         if let (true, true, Some(factor)) = (searches, self.doubtful, self.factor.clone()) {
             known = self.curvature.shift(matrix, &diagonal, &factor, false)?;
             if known <= 0.0 {
-                // A factor that fails tells nothing more, this one where the matrix is not definite.
+                // A factor that fails shows nothing more, this one where the matrix is not definite.
                 if let Ok(factor) = self.numbers(matrix, Kind::Indefinite) {
                     if factor.negative_pivots() == 0 {
                         return Ok((factor, Kind::Indefinite));
