@@ -18,6 +18,14 @@ fn shapes() -> Vec<(&'static str, Box<dyn Shape>)> {
     ]
 }
 
+/// Numbers in [0, 1), by a linear congruence.
+fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
 /// Nearest distance of every node to another.
 fn gaps(points: &[Point3]) -> Vec<f64> {
     let search = Search::new(points).unwrap();
@@ -138,11 +146,7 @@ fn bad_requests_are_named() {
 
 #[test]
 fn shapes_hold_together() {
-    let mut state = 3u64;
-    let mut unit = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut unit = numbers(3);
     for (name, shape) in shapes() {
         let [min, max] = shape.bounds();
         let size = max - min;
@@ -192,11 +196,7 @@ fn kidney_surface_samples_are_uniform() {
             *share += if part(&middle) { a } else { 0.0 };
         }
     }
-    let mut state = 9u64;
-    let mut unit = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut unit = numbers(9);
     let samples: Vec<Point3> = (0..60_000).map(|_| Kidney.surface_sample(&mut unit)).collect();
     for (i, (share, part)) in share.iter().zip(parts).enumerate() {
         let found = samples.iter().filter(|p| part(p)).count() as f64 / samples.len() as f64;
@@ -222,11 +222,7 @@ fn kidney_map_and_box() {
 
 #[test]
 fn surface_samples_divide_by_area() {
-    let mut state = 5u64;
-    let mut unit = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut unit = numbers(5);
     let mut share = |shape: &dyn Shape, part: &dyn Fn(&Point3) -> bool| {
         (0..20_000).filter(|_| part(&shape.surface_sample(&mut unit))).count() as f64 / 20_000.0
     };
@@ -271,11 +267,7 @@ fn sizes_spend_the_nodes_where_the_error_is() {
 /// The half kidney's samples: on its face by its share of the surface, on its rim by length.
 #[test]
 fn half_kidney_samples_are_uniform() {
-    let mut state = 11u64;
-    let mut unit = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut unit = numbers(11);
     let mesh = geometry::generate::half_kidney_mesh(CellKind::Tet4, 8).unwrap();
     let area = |group| -> f64 {
         let facets = mesh.group(group).unwrap().iter();
