@@ -167,6 +167,28 @@ method = [
     assert!(codes(&reduced).contains(&"folded") && !codes(&full).contains(&"folded"), "{full}");
 }
 
+/// A law has no stress where the body is folded: no error of the stress, and a warning in its place.
+#[test]
+fn a_folded_cloud_has_no_stress_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = |poisson: f64| {
+        format!(
+            r#"title = "A block bent by one radian"
+body = {{ shape = "box", min = ["-5 mm", "0 mm", "0 mm"], max = ["5 mm", "20 mm", "5 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = {poisson} }}
+support = [{{ on = "y-max", move = "exact" }}, {{ on = "y-min", fix = "y" }}, {{ on = ["z-min", "z-max"], fix = "z" }}]
+procedure = {{ kind = "static", steps = 4 }}
+reference = {{ exact = "finite-bending", thickness = "10 mm", curvature = "50 /m" }}
+method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-spline", support_scale = 1.6, size = {{ cells = [2, 4, 1] }}, integration = {{ rule = "cell-smoothed", points = 1 }}, essential = "penalty" }}]
+"#
+        )
+    };
+    let folded = run(&dir, &text(0.4999)).remove(0);
+    assert!(metric(&folded, "smallest-fine-j") < 0.0 && codes(&folded).contains(&"folded"), "{folded}");
+    assert!(folded["metrics"]["stress"].is_null(), "{folded}");
+    assert!(metric(&run(&dir, &text(0.3)).remove(0), "stress") < 1.0);
+}
+
 /// A small ball on a coarse block stands on one point.
 #[test]
 fn a_tool_that_stands_on_a_point_or_two_is_told() {

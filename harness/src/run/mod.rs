@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use cases::scene::Procedure;
 use geometry::{Point3, Vector3};
+use reports::{Record, SurfaceField};
 
 use crate::Failure;
 use crate::discretise::Discretisation;
@@ -75,7 +76,15 @@ fn on_pool(
     } else {
         loaded(&mut outcome, &run, request, meters)?;
     }
+    readable(&outcome)?;
     Ok(Finished { outcome, prepared, u: solution.u })
+}
+
+/// Refuses a run with a number that is none: it costs that run, not the study whose tables it would be in.
+fn readable(outcome: &Outcome) -> Result<(), Failure> {
+    let numbers = outcome.records().iter().try_for_each(Record::check);
+    let all = numbers.and_then(|()| outcome.field.iter().try_for_each(SurfaceField::check));
+    all.map_err(|bad| Failure::Run(bad.to_string()))
 }
 
 /// What a pass over a run leaves.
