@@ -98,5 +98,9 @@ mod tests {
         assert!((swing(40, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
         assert!((swing(37, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
         assert_eq!((swing(40, 1.2), period(&[])), (None, None));
+        // Straight ways up and down, the first in two unequal steps: passages at 0.1, 0.5 and 0.9 s.
+        let ways = [(0.05, 0.5), (0.2, 2.0), (0.4, 0.0), (0.6, 2.0), (0.8, 0.0), (1.0, 2.0)];
+        let found = period(&ways.map(|(t, x)| (t, Vector3::new(x, 0.0, 0.0)))).unwrap();
+        assert!((found - 0.4).abs() < 1e-12, "{found}");
     }
 }

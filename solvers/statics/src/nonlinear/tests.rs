@@ -269,3 +269,24 @@ fn laws_that_part_give_what_pairs_give() {
         }
     }
 }
+
+/// Shares below zero can make the mean of positive J's negative: `J_a = 1 + 2 (-0.8) - 0` of points of one weight.
+#[test]
+fn a_group_turned_inside_out_is_refused_with_its_volume_change() {
+    let case = case();
+    let law = [Law::all(YOUNG, POISSON).unwrap().into_iter().find(|law| !law.is_small_strain()).unwrap()];
+    let count = case.volume.weights().len();
+    let mut points = vec![0, 1];
+    points.extend(0..count as u32);
+    let mut shares = vec![2.0, -1.0, -1.0, 2.0];
+    shares.resize(count + 2, 1.0);
+    let groups = DilationGroups::new(count, vec![0, 2, count + 2], points, shares).unwrap();
+    let solid = Solid { volume: &case.volume, laws: &law, region: &[], dilation: Dilation::Groups(&groups) };
+    let mut j_minus_1 = vec![0.0; count];
+    j_minus_1[0] = -0.8;
+    let weights = case.volume.weights();
+    let mean = -0.8 * 2.0 * weights[0] / (2.0 * weights[0] - weights[1]);
+    let refused = solid.group_dilations(&groups, &j_minus_1).unwrap_err();
+    assert_eq!(refused.point, 0);
+    assert!(refused.det < -0.5 && (refused.det - 1.0 - mean).abs() < 1e-12, "{}", refused.det);
+}
