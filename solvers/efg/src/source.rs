@@ -7,7 +7,7 @@ use geometry::shapes::Shape;
 use geometry::{Cloud, Facet, Mesh};
 use shape::{
     DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
-    SurfaceRows, TraceRows, Vector3, VolumeRows, equal_groups,
+    SurfaceRows, TraceRows, Vector3, VolumeRows,
 };
 
 use crate::facets::divided_surface_rows;
@@ -212,7 +212,8 @@ impl RowSource for CloudSource {
 
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError> {
         let cells = self.background.cell_count();
-        Ok(self.points_per_cell().map(|each| equal_groups(each * cells, cells)).transpose()?)
+        let of_cells = |each| DilationGroups::of_cells(std::iter::repeat_n(each, cells));
+        Ok(self.points_per_cell().map(of_cells).transpose()?)
     }
 
     fn pressure(&self) -> Result<Option<Rows>, SourceError> {

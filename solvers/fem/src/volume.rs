@@ -93,12 +93,8 @@ pub fn regions(mesh: &Mesh, rule: &VolumeRule) -> Vec<u16> {
 /// One dilation group per cell, for [`volume_rows`] with the same rule: mean dilatation (B-bar with one constant
 /// volume change per element; Nagtegaal, Parks & Rice 1974, Hughes 1980).
 pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups, FemError> {
-    let mut offsets = vec![0];
-    for cell in 0..mesh.cell_count() {
-        offsets.push(offsets[cell] + rule.points(mesh.kind(cell)));
-    }
-    let count = offsets[mesh.cell_count()];
-    Ok(DilationGroups::new(count, offsets, (0..count as u32).collect(), vec![1.0; count])?)
+    let points = (0..mesh.cell_count()).map(|cell| rule.points(mesh.kind(cell)));
+    Ok(DilationGroups::of_cells(points)?)
 }
 
 /// Linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`] with the same rule, over

@@ -54,6 +54,17 @@ impl DilationGroups {
         }
     }
 
+    /// One group for each cell, of the points in it; they stand together, cell after cell.
+    pub fn of_cells(points: impl IntoIterator<Item = usize>) -> Result<DilationGroups, ShapeError> {
+        let mut offsets = vec![0];
+        let mut count = 0;
+        for of_cell in points {
+            count += of_cell;
+            offsets.push(count);
+        }
+        DilationGroups::new(count, offsets, (0..count as u32).collect(), vec![1.0; count])
+    }
+
     /// Number of groups.
     pub fn len(&self) -> usize {
         self.offsets.len() - 1
@@ -202,5 +213,14 @@ mod tests {
         assert!(close(&of(0), [0.3, 0.0, 0.2, 0.2, 0.3]), "{:?}", of(0));
         let sum = 0.9375;
         assert!(close(&of(1), [0.5 / sum, 0.25 / sum, 0.125 / sum, 0.0625 / sum, 0.0]), "{:?}", of(1));
+    }
+
+    #[test]
+    fn cells_of_several_kinds_have_groups_of_their_own_points() {
+        let groups = DilationGroups::of_cells([4, 1, 8]).unwrap();
+        assert_eq!((groups.len(), groups.point_count()), (3, 13));
+        let points: Vec<Vec<u32>> = (0..3).map(|cell| groups.group(cell).0.to_vec()).collect();
+        assert_eq!(points, [(0..4).collect(), vec![4], (5..13).collect::<Vec<u32>>()]);
+        assert!((0..3).all(|cell| groups.group(cell).1.iter().all(|&share| share == 1.0)));
     }
 }

@@ -40,7 +40,7 @@ pub use family::{FamilyEntry, MeshFamily, OverMesh};
 pub use fixed::FixedDof;
 pub use order::locality_order;
 pub use rows::{Rows, ShapeError, Unity};
-pub use source::{Quadrature, RowSource, SourceError, equal_groups};
+pub use source::{Quadrature, RowSource, SourceError};
 pub use tables::{FluxRows, GradRows, Layout, PointRows, SurfaceRows, VolumeRows};
 pub use trace::TraceRows;
 

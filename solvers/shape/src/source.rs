@@ -6,8 +6,7 @@ use catalogue::metric::Metric;
 use geometry::{Facet, Mesh};
 
 use crate::{
-    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, ShapeError, SurfaceRows, TraceRows,
-    VolumeRows,
+    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, SurfaceRows, TraceRows, VolumeRows,
 };
 
 /// Why a table can't be filled; each family has errors of its own.
@@ -102,11 +101,4 @@ pub trait RowSource: Send + Sync {
 
     /// Values and gradients at points, as [`at_points`](RowSource::at_points).
     fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError>;
-}
-
-/// One group of points for each cell, of a quadrature with equally many points in every cell that stand together.
-pub fn equal_groups(points: usize, cells: usize) -> Result<DilationGroups, ShapeError> {
-    let each = points / cells;
-    let offsets = (0..=cells).map(|cell| cell * each).collect();
-    DilationGroups::new(points, offsets, (0..points as u32).collect(), vec![1.0; points])
 }

@@ -145,11 +145,12 @@ fn a_cycle_is_symmetric_and_positive() {
             .map(|i| std::array::from_fn(|a| ((3 * i + a) as f64 * seed).fract() as f32 - 0.5))
             .collect()
     };
-    let solve = |b: &[[f32; 3]]| {
+    let cycle = |b: &[[f32; 3]], cycle: Cycle| {
         let mut x = vec![[0.0; 3]; b.len()];
-        level.solve(b, &mut x, Cycle::W);
+        level.solve(b, &mut x, cycle);
         x
     };
+    let solve = |b: &[[f32; 3]]| cycle(b, Cycle::W);
     let inner = |a: &[[f32; 3]], b: &[[f32; 3]]| -> f64 {
         a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| f64::from(a * b)).sum()
     };
@@ -158,4 +159,8 @@ fn a_cycle_is_symmetric_and_positive() {
     let size = inner(&solve(&first), &first);
     assert!(size > 0.0 && inner(&solve(&second), &second) > 0.0);
     assert!((left - right).abs() < 1e-5 * size, "{left} and {right} of {size}");
+    // Cycles are below the inverse, and one that visits the coarser levels twice is nearer to it.
+    let smooth: Vec<[f32; 3]> = modes.iter().map(|rows| std::array::from_fn(|a| rows[a][0] as f32)).collect();
+    let (once, twice) = (inner(&cycle(&smooth, Cycle::V), &smooth), inner(&solve(&smooth), &smooth));
+    assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
 }
