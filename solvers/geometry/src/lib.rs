@@ -21,7 +21,7 @@ pub mod element;
 pub mod generate;
 mod locate;
 mod mesh;
-pub mod msh;
+pub mod files;
 pub mod quadrature;
 pub mod quality;
 mod random;

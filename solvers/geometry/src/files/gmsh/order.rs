@@ -11,7 +11,7 @@ const PLAIN: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// What an element of the file becomes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Element {
+pub(in crate::files) enum Element {
     Cell(CellKind),
     /// A face with this many corners and nodes.
     Face {

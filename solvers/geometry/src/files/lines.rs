@@ -2,15 +2,12 @@
 
 use std::str::FromStr;
 
-use super::error::MshProblem;
-
-/// A result whose error knows its line.
-pub(super) type Parsed<T> = Result<T, (usize, MshProblem)>;
+use super::error::{Parsed, Place, Problem};
 
 /// Lines with their numbers.
 pub(super) struct Lines<'a> {
     lines: std::str::Lines<'a>,
-    pub(super) number: usize,
+    number: usize,
 }
 
 impl<'a> Lines<'a> {
@@ -18,7 +15,7 @@ impl<'a> Lines<'a> {
         Lines { lines: text.lines(), number: 0 }
     }
 
-    /// The next line that isn't blank; after the last one, `number` is one past the end.
+    /// The next line that isn't blank; after the last one, the place is one past the end.
     pub(super) fn next(&mut self) -> Option<&'a str> {
         loop {
             self.number += 1;
@@ -29,31 +26,32 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// Where the last line was.
+    pub(super) fn place(&self) -> Place {
+        Place::Line(self.number)
+    }
+
     pub(super) fn need(&mut self, expected: &'static str) -> Parsed<&'a str> {
         match self.next() {
             Some(line) => Ok(line),
-            None => self.fail(MshProblem::End { expected }),
+            None => self.fail(Problem::End { expected }),
         }
     }
 
-    pub(super) fn fail<T>(&self, problem: MshProblem) -> Parsed<T> {
-        Err((self.number, problem))
+    pub(super) fn fail<T>(&self, problem: Problem) -> Parsed<T> {
+        Err((self.place(), problem))
     }
 
     pub(super) fn number<T: FromStr>(&self, token: Option<&str>, expected: &'static str) -> Parsed<T> {
         let found = token.unwrap_or("the end of the line");
         match token.and_then(|t| t.parse().ok()) {
             Some(value) => Ok(value),
-            None => self.fail(MshProblem::Expected { expected, found: found.into() }),
+            None => self.fail(Problem::Expected { expected, found: found.into() }),
         }
     }
 
     pub(super) fn exactly(&mut self, expected: &'static str) -> Parsed<()> {
         let line = self.need(expected)?;
-        if line == expected {
-            Ok(())
-        } else {
-            self.fail(MshProblem::Expected { expected, found: line.into() })
-        }
+        if line == expected { Ok(()) } else { self.fail(Problem::Expected { expected, found: line.into() }) }
     }
 }

@@ -1,27 +1,16 @@
-//! The writer.
+//! The writer of version 2.2 in text: regions and facet groups become physical groups by their names.
 
 use std::fmt::Write;
-use std::path::Path;
 
-use super::error::MshError;
 use super::order::{order, type_numbers};
 use crate::Mesh;
 
-/// Writes Gmsh 2.2 ASCII; `unit` is the length of the file's unit in metres (0.001 for millimetres). Regions and
-/// facet groups become physical groups by their names. Numbers are written so that they read back to the same bits
-/// (for `unit = 1`; else to the rounding of one division and one product).
-pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), MshError> {
-    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
-        return Err(MshError::Unit { file: file.to_path_buf(), unit });
-    }
+/// The file's text, in lengths of `unit` metres; or a name that it can't hold.
+pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
     if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r'])) {
-        return Err(MshError::Name { file: file.to_path_buf(), name: name.into() });
+        return Err(name.into());
     }
-    std::fs::write(file, text(mesh, unit)).map_err(|source| MshError::Io { file: file.to_path_buf(), source })
-}
-
-fn text(mesh: &Mesh, unit: f64) -> String {
     let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
     // Writing to a string can't fail.
     macro_rules! line {
@@ -66,5 +55,5 @@ fn text(mesh: &Mesh, unit: f64) -> String {
         out.push('\n');
     }
     out.push_str("$EndElements\n");
-    out
+    Ok(out)
 }

@@ -1,0 +1,187 @@
+//! A deck as a whole: parts, instances and files that it includes.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::super::content::Content;
+use super::super::error::{Parsed, Place, Problem};
+use super::cards::{Card, cards, real, split};
+use super::scope::Scope;
+use super::text;
+use crate::{Point3, Vector3};
+
+/// Files that include files: a deck that includes itself ends here.
+const DEEPEST: usize = 8;
+
+pub(super) struct Deck {
+    folder: PathBuf,
+    /// What stands outside of parts.
+    flat: Scope,
+    /// The part that is being read.
+    open: Option<(String, Scope)>,
+    parts: Vec<(String, Scope)>,
+    instances: Vec<Instance>,
+    in_instance: bool,
+    ended: bool,
+}
+
+/// A part placed in the assembly: moved, then turned about a line by an angle.
+struct Instance {
+    place: Place,
+    part: usize,
+    moved: Vector3,
+    turned: Option<(Point3, Vector3, f64)>,
+}
+
+impl Deck {
+    pub(super) fn new(folder: &Path) -> Deck {
+        Deck {
+            folder: folder.into(),
+            flat: Scope::default(),
+            open: None,
+            parts: Vec::new(),
+            instances: Vec::new(),
+            in_instance: false,
+            ended: false,
+        }
+    }
+
+    /// Reads a deck's text; `depth` counts the files that include it.
+    pub(super) fn read(&mut self, text: &str, depth: usize) -> Parsed<()> {
+        for card in cards(text)? {
+            if self.ended {
+                break;
+            }
+            self.card(&card, depth)?;
+        }
+        Ok(())
+    }
+
+    fn card(&mut self, card: &Card, depth: usize) -> Parsed<()> {
+        let placed = !self.instances.is_empty() && self.open.is_none();
+        let scope = self.open.as_mut().map_or(&mut self.flat, |(_, scope)| scope);
+        match card.keyword.as_str() {
+            "NODE" => scope.nodes(card),
+            "ELEMENT" => scope.elements(card),
+            // Sets of the assembly name instances; those of the parts are kept.
+            "ELSET" | "NSET" | "SURFACE" if placed || card.get("INSTANCE").is_some() => Ok(()),
+            "ELSET" | "NSET" => scope.set(card),
+            "SURFACE" => scope.surface(card),
+            "SOLID SECTION" => scope.section(card),
+            "INCLUDE" => self.include(card, depth),
+            "PART" => {
+                self.open = Some((card.need("NAME")?.to_ascii_uppercase(), Scope::default()));
+                Ok(())
+            }
+            "END PART" => self.close_part(card.place),
+            "INSTANCE" => self.instance(card),
+            "END INSTANCE" => {
+                self.in_instance = false;
+                Ok(())
+            }
+            "STEP" => {
+                self.ended = true;
+                Ok(())
+            }
+            "SYSTEM" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBMODEL" | "TRANSFORM SHELL" => {
+                let help = "write the deck with all nodes and elements in it, in one system of coordinates";
+                Err((card.place, Problem::Unread { what: format!("*{}", card.keyword), help }))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn close_part(&mut self, place: Place) -> Parsed<()> {
+        let Some((name, mut scope)) = self.open.take() else {
+            let expected = "*PART before *END PART";
+            return Err((place, Problem::Expected { expected, found: "none".into() }));
+        };
+        scope.close()?;
+        self.parts.push((name, scope));
+        Ok(())
+    }
+
+    /// `*INSTANCE, NAME, PART` with a shift, and a line to turn about with an angle in degrees.
+    fn instance(&mut self, card: &Card) -> Parsed<()> {
+        let name = card.need("PART")?;
+        let part = self.parts.iter().position(|(known, _)| known.eq_ignore_ascii_case(name));
+        let part = part.ok_or_else(|| {
+            let number = name.to_string();
+            (card.place, Problem::UnknownMember { what: "*INSTANCE", name: name.into(), of: "part", number })
+        })?;
+        let numbers = |line: usize, count: usize| -> Parsed<Vec<f64>> {
+            let Some(&(place, words)) = card.data.get(line) else { return Ok(Vec::new()) };
+            let words: Vec<String> = split(words).into_iter().filter(|word| !word.is_empty()).collect();
+            if words.len() != count {
+                let expected = if count == 3 { "a shift along x, y, z" } else { "two points of an axis and an angle" };
+                return Err((place, Problem::Expected { expected, found: words.join(", ") }));
+            }
+            words.iter().map(|word| real(place, word, "a number")).collect()
+        };
+        let shift = numbers(0, 3)?;
+        let turn = numbers(1, 7)?;
+        let turned = (!turn.is_empty()).then(|| {
+            let at = Point3::new(turn[0], turn[1], turn[2]);
+            (at, Point3::new(turn[3], turn[4], turn[5]) - at, turn[6].to_radians())
+        });
+        let moved = if shift.is_empty() { Vector3::zeros() } else { Vector3::new(shift[0], shift[1], shift[2]) };
+        if let Some((_, axis, _)) = turned
+            && axis.norm() == 0.0
+        {
+            let expected = "two different points of an axis";
+            return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
+        }
+        self.instances.push(Instance { place: card.place, part, moved, turned });
+        self.in_instance = true;
+        Ok(())
+    }
+
+    /// Another file in place of the line; it has to lie in the deck's folder.
+    fn include(&mut self, card: &Card, depth: usize) -> Parsed<()> {
+        let name = card.need("INPUT")?.to_string();
+        let unread = |help| Err((card.place, Problem::Unread { what: format!("*INCLUDE of {name}"), help }));
+        let path = Path::new(&name);
+        if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+            return unread("it has to lie in the folder of the deck");
+        }
+        if depth == DEEPEST {
+            return unread("files include files more than eight deep");
+        }
+        let Ok(bytes) = std::fs::read(self.folder.join(path)) else {
+            return unread("there is no such file that can be read");
+        };
+        let read = text(&bytes).and_then(|text| self.read(text, depth + 1));
+        read.map_err(|(place, problem)| {
+            (card.place, Problem::Included { file: name.clone(), place, problem: Box::new(problem) })
+        })
+    }
+
+    /// The whole mesh: the instances, or the flat deck.
+    pub(super) fn finish(mut self) -> Parsed<Content> {
+        let end = Place::Line(1);
+        if let Some((name, _)) = &self.open {
+            let found = format!("part {name} is still open");
+            return Err((end, Problem::Expected { expected: "*END PART", found }));
+        }
+        self.flat.close()?;
+        let mut whole = std::mem::take(&mut self.flat.content);
+        if self.instances.is_empty() && self.parts.len() == 1 {
+            // A part that is placed nowhere is meant as it is.
+            whole.append(end, &self.parts[0].1.content, |x| *x)?;
+        }
+        for Instance { place, part, moved, turned } in &self.instances {
+            let turn = turned.map(|(at, axis, angle)| {
+                (at, nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(axis), angle))
+            });
+            let put = |x: &Point3| {
+                let x = x + moved;
+                turn.map_or(x, |(at, turn)| at + turn * (x - at))
+            };
+            whole.append(*place, &self.parts[*part].1.content, put)?;
+        }
+        match (whole.has_nodes(), whole.cell_count()) {
+            (false, _) => Err((end, Problem::Missing { section: "*NODE" })),
+            (_, 0) => Err((end, Problem::NoCells)),
+            _ => Ok(whole),
+        }
+    }
+}

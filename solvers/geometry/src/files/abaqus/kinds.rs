@@ -1,0 +1,56 @@
+//! Element types of decks, and what face numbers mean. Corners and mid-edge nodes have our order.
+
+use crate::CellKind;
+
+/// Types whose elements are read, for the message of one whose are not.
+pub(super) const KNOWN: &str = "C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, M) are read, and shells, beams and others \
+                                that have no volume are read over";
+
+/// What an element type is.
+pub(super) enum Type {
+    Cell(CellKind),
+    /// Has no volume: read over.
+    Other,
+}
+
+pub(super) fn element_type(name: &str) -> Option<Type> {
+    let name = name.to_ascii_uppercase();
+    if let Some(rest) = name.strip_prefix("C3D") {
+        let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (count, variant) = rest.split_at(digits);
+        if !variant.chars().all(|c| "RIHMS".contains(c)) {
+            return None;
+        }
+        return Some(Type::Cell(match count {
+            "4" => CellKind::Tet4,
+            "8" => CellKind::Hex8,
+            "10" => CellKind::Tet10,
+            "20" => CellKind::Hex20,
+            _ => return None,
+        }));
+    }
+    let flat = [
+        "S3", "S4", "S6", "S8", "S9", "SC", "STRI", "SFM", "M3D", "R3D", "RB", "T3D", "T2D", "B2", "B3", "SPRING", "MASS",
+        "DASHPOT", "CONN", "GAP", "ROTARY", "CPS", "CPE", "CAX", "DC",
+    ];
+    flat.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
+}
+
+/// Name of a type.
+pub(super) fn name(kind: CellKind) -> &'static str {
+    match kind {
+        CellKind::Tet4 => "C3D4",
+        CellKind::Tet10 => "C3D10",
+        CellKind::Hex8 => "C3D8",
+        CellKind::Hex20 => "C3D20",
+    }
+}
+
+/// Corners of faces S1, S2, ..
+pub(super) fn faces(kind: CellKind) -> &'static [&'static [usize]] {
+    if kind.is_tet() {
+        &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]
+    } else {
+        &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]
+    }
+}

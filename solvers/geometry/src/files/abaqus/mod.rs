@@ -1,0 +1,30 @@
+//! Abaqus and CalculiX .inp decks: the mesh with its sets and surfaces, flat or in parts and instances.
+//!
+//! An element's region is the set of its `*SOLID SECTION`, else the `ELSET` on its `*ELEMENT`, else the first `*ELSET` that lists it,
+//! else "body". `*SURFACE` and `*NSET` become facet groups. Reading ends at the first `*STEP`. (Abaqus keywords reference; CalculiX
+//! CrunchiX manual, chapter 7.)
+
+mod cards;
+mod deck;
+mod kinds;
+mod scope;
+pub(super) mod write;
+
+use std::path::Path;
+
+use super::content::Content;
+use super::error::{Parsed, Place, Problem};
+
+pub(super) fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
+    let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
+    let mut deck = deck::Deck::new(&folder);
+    deck.read(text(bytes)?, 0)?;
+    deck.finish()
+}
+
+fn text(bytes: &[u8]) -> Parsed<&str> {
+    std::str::from_utf8(bytes).map_err(|bad| {
+        let place = Place::Line(super::line_of(bytes, bad.valid_up_to()));
+        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
+    })
+}

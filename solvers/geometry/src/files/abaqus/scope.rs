@@ -1,0 +1,263 @@
+//! A part of a deck, or a flat deck: nodes, elements, sets and surfaces under numbers of their own.
+
+use std::collections::HashMap;
+
+use super::super::content::Content;
+use super::super::error::{Parsed, Place, Problem};
+use super::super::rows::Row;
+use super::cards::{Card, real, split, unquoted, whole};
+use super::kinds::{KNOWN, Type, element_type, faces};
+use crate::{CellKind, Point3};
+
+/// Nodes, elements and what names them. Names count without their case; what is kept is as first written.
+#[derive(Default)]
+pub(super) struct Scope {
+    pub(super) content: Content,
+    kinds: Vec<CellKind>,
+    elsets: Sets,
+    nsets: Sets,
+    /// Sets that decide the region of their elements, the strongest last.
+    sections: Vec<(Place, String)>,
+    of_elements: Vec<String>,
+}
+
+/// Members by name in capitals, with the name as written.
+#[derive(Default)]
+struct Sets {
+    lists: HashMap<String, (String, Vec<u64>)>,
+    order: Vec<String>,
+}
+
+impl Sets {
+    fn of(&mut self, name: &str) -> &mut Vec<u64> {
+        let key = name.to_ascii_uppercase();
+        if !self.lists.contains_key(&key) {
+            self.order.push(key.clone());
+        }
+        &mut self.lists.entry(key).or_insert_with(|| (name.into(), Vec::new())).1
+    }
+
+    fn get(&self, name: &str) -> Option<&(String, Vec<u64>)> {
+        self.lists.get(&name.to_ascii_uppercase())
+    }
+}
+
+impl Scope {
+    pub(super) fn nodes(&mut self, card: &Card) -> Parsed<()> {
+        let mut numbers = Vec::new();
+        for &(place, line) in &card.data {
+            let words = split(line);
+            let number = whole(place, &words[0], "a node number")?;
+            let mut at = Point3::origin();
+            for d in 0..3 {
+                // Coordinates left out are 0.
+                match words.get(d + 1).map(String::as_str) {
+                    None | Some("") => {}
+                    Some(word) => at[d] = real(place, word, "a coordinate")?,
+                }
+            }
+            self.content.node(place, number, at)?;
+            numbers.push(number);
+        }
+        if let Some(set) = card.get("NSET") {
+            self.nsets.of(set).extend(numbers);
+        }
+        Ok(())
+    }
+
+    pub(super) fn elements(&mut self, card: &Card) -> Parsed<()> {
+        let name = card.need("TYPE")?;
+        let set = card.get("ELSET").map(String::from);
+        let mut numbers = Vec::new();
+        let mut lines = card.data.iter();
+        while let Some(&(place, line)) = lines.next() {
+            let mut words = split(line);
+            let number = whole(place, &words[0], "an element number")?;
+            let wanted = match element_type(name) {
+                Some(Type::Cell(kind)) => Some(kind),
+                Some(Type::Other) => None,
+                None => {
+                    let kind = name.to_string();
+                    return Err((place, Problem::UnknownType { element: number, kind, known: KNOWN }));
+                }
+            };
+            // A list goes on below where it is too short, or ends with a comma.
+            let short = |words: &Vec<String>| {
+                let open = words.last().is_some_and(String::is_empty);
+                wanted.map_or(open, |kind| words.iter().filter(|word| !word.is_empty()).count() <= kind.node_count())
+            };
+            while short(&words) {
+                let Some(&(_, more)) = lines.next() else { break };
+                words.extend(split(more));
+            }
+            words.retain(|word| !word.is_empty());
+            numbers.push(number);
+            let Some(kind) = wanted else {
+                self.content.element(place, number)?;
+                continue;
+            };
+            if words.len() != kind.node_count() + 1 {
+                let (found, expected) = (words.len(), kind.node_count() + 1);
+                let kind = name.to_string();
+                return Err((place, Problem::Length { element: number, kind, found, expected }));
+            }
+            let list: Vec<u64> =
+                words[1..].iter().map(|word| whole(place, word, "a node number")).collect::<Parsed<_>>()?;
+            let body = self.content.region(place, "body")?;
+            let row = Row { place, tag: number };
+            self.content.cell(row, kind, body, &list, &ORDER[..list.len()])?;
+            self.kinds.push(kind);
+        }
+        if let Some(set) = set {
+            self.elsets.of(&set).extend(numbers);
+            if !self.of_elements.contains(&set) {
+                self.of_elements.push(set);
+            }
+        }
+        Ok(())
+    }
+
+    /// `*ELSET` and `*NSET`.
+    pub(super) fn set(&mut self, card: &Card) -> Parsed<()> {
+        let of_elements = card.keyword == "ELSET";
+        let name = card.need(if of_elements { "ELSET" } else { "NSET" })?;
+        let what = if of_elements { "element set" } else { "node set" };
+        let mut found = Vec::new();
+        for &(place, line) in &card.data {
+            let words = split(line);
+            if card.get("GENERATE").is_some() {
+                found.extend(generated(place, &words)?);
+                continue;
+            }
+            for word in words.iter().filter(|word| !word.is_empty()) {
+                let sets = if of_elements { &self.elsets } else { &self.nsets };
+                let unknown = || {
+                    let of = if word.parse::<u64>().is_err() { "set" } else if of_elements { "element" } else { "node" };
+                    (place, Problem::UnknownMember { what, name: name.into(), of, number: word.clone() })
+                };
+                match word.parse::<u64>() {
+                    Ok(number) => {
+                        let known = if of_elements {
+                            self.content.knows_element(number)
+                        } else {
+                            self.content.node_of(number).is_some()
+                        };
+                        if !known {
+                            return Err(unknown());
+                        }
+                        found.push(number);
+                    }
+                    Err(_) => found.extend(&sets.get(&unquoted(word)).ok_or_else(unknown)?.1),
+                }
+            }
+        }
+        let sets = if of_elements { &mut self.elsets } else { &mut self.nsets };
+        sets.of(name).extend(found);
+        Ok(())
+    }
+
+    pub(super) fn section(&mut self, card: &Card) -> Parsed<()> {
+        self.sections.push((card.place, card.need("ELSET")?.into()));
+        Ok(())
+    }
+
+    /// `*SURFACE` by faces of elements, or by nodes.
+    pub(super) fn surface(&mut self, card: &Card) -> Parsed<()> {
+        let name = card.need("NAME")?;
+        let by_nodes = card.get("TYPE").is_some_and(|t| t.eq_ignore_ascii_case("NODE"));
+        for &(place, line) in &card.data {
+            let words = split(line);
+            let first = unquoted(&words[0]);
+            let unknown = |of| {
+                let number = first.clone();
+                (place, Problem::UnknownMember { what: "surface", name: name.into(), of, number })
+            };
+            let sets = if by_nodes { &self.nsets } else { &self.elsets };
+            let numbers = match first.parse::<u64>() {
+                Ok(number) => vec![number],
+                Err(_) => sets.get(&first).ok_or_else(|| unknown("set"))?.1.clone(),
+            };
+            if by_nodes {
+                let nodes = numbers.iter().filter_map(|&number| self.content.node_of(number)).collect();
+                self.content.node_set(name, nodes);
+                continue;
+            }
+            let face = words.get(1).map(|word| word.to_ascii_uppercase()).unwrap_or_default();
+            let face = face.strip_prefix('S').and_then(|face| face.parse::<usize>().ok()).filter(|face| *face > 0);
+            let Some(face) = face else {
+                let found = words.get(1).cloned().unwrap_or_default();
+                return Err((place, Problem::Expected { expected: "the face of an element, such as S1", found }));
+            };
+            let group = self.content.group(name);
+            for number in numbers {
+                if !self.content.knows_element(number) {
+                    return Err(unknown("element"));
+                }
+                let Some(cell) = self.content.cell_of(number) else { continue };
+                let corners = faces(self.kinds[cell as usize]).get(face - 1);
+                if !corners.is_some_and(|corners| self.content.facet(group, cell, corners)) {
+                    let found = format!("S{face} of element {number}");
+                    return Err((place, Problem::Expected { expected: "a face that the element has", found }));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives elements their regions, and node sets to the content.
+    pub(super) fn close(&mut self) -> Parsed<()> {
+        // The weakest first: what comes later overwrites.
+        let listed = self.elsets.order.iter().rev().cloned();
+        let of_elements = self.of_elements.iter().rev().cloned();
+        let weak: Vec<(Place, String)> = if self.sections.is_empty() {
+            listed.chain(of_elements).map(|name| (Place::Line(1), name)).collect()
+        } else {
+            Vec::new()
+        };
+        for (place, set) in weak.iter().chain(&self.sections) {
+            let Some((name, members)) = self.elsets.get(set) else {
+                let (what, name) = ("*SOLID SECTION", set.clone());
+                return Err((*place, Problem::UnknownMember { what, name, of: "set", number: set.clone() }));
+            };
+            let region = self.content.region(*place, name)?;
+            for &number in members {
+                if let Some(cell) = self.content.cell_of(number) {
+                    self.content.set_region(cell, region);
+                }
+            }
+        }
+        for key in &self.nsets.order {
+            let (name, members) = &self.nsets.lists[key];
+            let nodes = members.iter().filter_map(|&number| self.content.node_of(number)).collect();
+            self.content.node_set(name, nodes);
+        }
+        Ok(())
+    }
+}
+
+/// `first, last, step`, the step 1 unless given.
+fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64> + use<>> {
+    let word = |k: usize| words.get(k).map(String::as_str).filter(|word| !word.is_empty());
+    let first = whole(place, word(0).unwrap_or(""), "the first number")?;
+    let last = whole(place, word(1).unwrap_or(""), "the last number")?;
+    let step = word(2).map_or(Ok(1), |word| whole(place, word, "the step between numbers"))?;
+    let count = last.checked_sub(first).map(|span| span / step.max(1));
+    match count {
+        Some(count) if step > 0 && count >= MOST => {
+            Err((place, Problem::TooMany { what: "numbers to generate", count: count as usize }))
+        }
+        Some(count) if step > 0 => {
+            Ok((0..=count).map(move |k| first + k * step))
+        }
+        _ => {
+            let expected = "a first number, a last one not below it, and a step of 1 or more";
+            Err((place, Problem::Expected { expected, found: words.join(", ") }))
+        }
+    }
+}
+
+/// Numbers that one line may generate: more than decks have, and made in a moment.
+const MOST: u64 = 10_000_000;
+
+/// Corners and mid-edge nodes as they are.
+const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];

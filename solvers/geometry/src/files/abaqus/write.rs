@@ -1,0 +1,50 @@
+//! The writer of flat decks: a section for each region, a surface of elements' faces for each facet group.
+
+use std::fmt::Write;
+
+use super::kinds::{faces, name};
+use crate::{CellKind, Mesh};
+
+/// The file's text, in lengths of `unit` metres; or a name that it can't hold.
+pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
+    let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
+    if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r', ','])) {
+        return Err(name.into());
+    }
+    let mut out = String::from("*HEADING\nwritten by tissuebench\n*NODE\n");
+    // Writing to a string can't fail.
+    macro_rules! line {
+        ($($arg:tt)*) => { let _ = writeln!(out, $($arg)*); };
+    }
+    for (node, p) in mesh.points().iter().enumerate() {
+        line!("{}, {:e}, {:e}, {:e}", node + 1, p.x / unit, p.y / unit, p.z / unit);
+    }
+    // Cells keep their order: a block ends where the kind or the region changes.
+    let key = |cell: usize| (mesh.kind(cell), mesh.region(cell));
+    for cell in 0..mesh.cell_count() {
+        let (kind, region) = key(cell);
+        if cell == 0 || key(cell - 1) != (kind, region) {
+            line!("*ELEMENT, TYPE={}, ELSET=\"{}\"", name(kind), mesh.region_names()[region as usize]);
+        }
+        let nodes: Vec<String> = mesh.cell(cell).iter().map(|node| (node + 1).to_string()).collect();
+        // At most 16 numbers a line.
+        let lines: Vec<String> =
+            [vec![(cell + 1).to_string()], nodes].concat().chunks(15).map(|chunk| chunk.join(", ")).collect();
+        line!("{}", lines.join(",\n"));
+    }
+    for group in mesh.group_names() {
+        line!("*SURFACE, NAME=\"{group}\", TYPE=ELEMENT");
+        for facet in mesh.group(group).unwrap_or_default() {
+            let face = number(mesh.kind(facet.cell as usize), facet.face as usize);
+            line!("{}, S{face}", facet.cell + 1);
+        }
+    }
+    Ok(out)
+}
+
+/// The number that decks give a face of ours.
+fn number(kind: CellKind, face: usize) -> usize {
+    let corners = &kind.faces()[face][..kind.face_kind().corner_count()];
+    let same = |theirs: &&[usize]| theirs.iter().all(|corner| corners.contains(corner));
+    1 + faces(kind).iter().position(same).expect("every face has a number")
+}

@@ -1,0 +1,331 @@
+//! What a mesh file holds, as the readers find it, and the mesh that it makes.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+use super::error::{FileError, Parsed, Place, Problem};
+use super::numbers::Numbers;
+use super::rows::Row;
+use crate::{CellKind, Facet, Mesh, Point3};
+
+/// What a file holds so far. Nodes and elements are named by the file's own numbers.
+#[derive(Default)]
+pub(super) struct Content {
+    node_numbers: Numbers,
+    points: Vec<Point3>,
+    element_numbers: Numbers,
+    /// For each numbered element its cell; `u32::MAX` of others.
+    cell_of_element: Vec<u32>,
+    kinds: Vec<CellKind>,
+    nodes: Vec<u32>,
+    regions: Vec<u16>,
+    rows: Vec<Row>,
+    region_names: Vec<String>,
+    faces: Vec<Face>,
+    group_names: Vec<String>,
+    facets: Vec<(usize, Facet)>,
+    node_sets: Vec<(String, Vec<u32>)>,
+}
+
+/// A surface element waiting for its cell; corners sorted, filled up with `u32::MAX`.
+struct Face {
+    place: Place,
+    element: u64,
+    corners: [u32; 4],
+    group: usize,
+}
+
+impl Content {
+    /// Adds a node, in the file's unit.
+    pub(super) fn node(&mut self, place: Place, number: u64, at: Point3) -> Parsed<()> {
+        if !at.coords.iter().all(|c| c.is_finite()) {
+            return Err((place, Problem::NotFinite { number }));
+        }
+        let index = index(place, "nodes", self.points.len())?;
+        if !self.node_numbers.add(number, index) {
+            return Err((place, Problem::Duplicate { what: "node", number }));
+        }
+        self.points.push(at);
+        Ok(())
+    }
+
+    /// Whether there are nodes.
+    pub(super) fn has_nodes(&self) -> bool {
+        !self.points.is_empty()
+    }
+
+    /// Number of cells so far.
+    pub(super) fn cell_count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Notes an element that becomes no cell.
+    pub(super) fn element(&mut self, place: Place, number: u64) -> Parsed<()> {
+        self.numbered(place, number, u32::MAX)
+    }
+
+    fn numbered(&mut self, place: Place, number: u64, cell: u32) -> Parsed<()> {
+        let index = index(place, "elements", self.cell_of_element.len())?;
+        if !self.element_numbers.add(number, index) {
+            return Err((place, Problem::Duplicate { what: "element", number }));
+        }
+        self.cell_of_element.push(cell);
+        Ok(())
+    }
+
+    /// Adds a cell of a region; `list` are node numbers in the file's order, whose place g is our `order[g]`.
+    pub(super) fn cell(
+        &mut self,
+        row: Row,
+        kind: CellKind,
+        region: u16,
+        list: &[u64],
+        order: &[usize],
+    ) -> Parsed<()> {
+        self.numbered(row.place, row.tag, self.kinds.len() as u32)?;
+        let start = self.nodes.len();
+        self.nodes.resize(start + kind.node_count(), u32::MAX);
+        for (place, &number) in list.iter().enumerate() {
+            let Some(node) = self.node_numbers.get(number) else {
+                return Err((row.place, Problem::UnknownNode { element: row.tag, node: number }));
+            };
+            if list[..place].contains(&number) {
+                return Err((row.place, Problem::RepeatedNode { element: row.tag, node: number }));
+            }
+            self.nodes[start + order[place]] = node;
+        }
+        self.kinds.push(kind);
+        self.regions.push(region);
+        self.rows.push(row);
+        Ok(())
+    }
+
+    /// The cell of an element number.
+    pub(super) fn cell_of(&self, number: u64) -> Option<u32> {
+        let element = self.element_numbers.get(number)? as usize;
+        Some(self.cell_of_element[element]).filter(|&cell| cell != u32::MAX)
+    }
+
+    /// Puts a cell into another region.
+    pub(super) fn set_region(&mut self, cell: u32, region: u16) {
+        self.regions[cell as usize] = region;
+    }
+
+    /// The region of a name, made where it is new.
+    pub(super) fn region(&mut self, place: Place, name: &str) -> Parsed<u16> {
+        let at = place_of(&mut self.region_names, name);
+        u16::try_from(at).map_err(|_| (place, Problem::TooMany { what: "regions", count: at }))
+    }
+
+    /// The facet group of a name, made where it is new.
+    pub(super) fn group(&mut self, name: &str) -> usize {
+        place_of(&mut self.group_names, name)
+    }
+
+    /// Adds a surface element of some groups by the numbers of its corners; its cell may come later.
+    pub(super) fn face(&mut self, row: Row, groups: &[usize], corners: &[u64]) -> Parsed<()> {
+        self.element(row.place, row.tag)?;
+        let mut sorted = [u32::MAX; 4];
+        for (place, &number) in corners.iter().enumerate() {
+            let Some(node) = self.node_numbers.get(number) else {
+                return Err((row.place, Problem::UnknownNode { element: row.tag, node: number }));
+            };
+            if corners[..place].contains(&number) {
+                return Err((row.place, Problem::RepeatedNode { element: row.tag, node: number }));
+            }
+            sorted[place] = node;
+        }
+        sorted.sort_unstable();
+        let face = |&group: &usize| Face { place: row.place, element: row.tag, corners: sorted, group };
+        self.faces.extend(groups.iter().map(face));
+        Ok(())
+    }
+
+    /// Adds the face of a cell with these local corners to a group; `false` if the cell has no such face.
+    pub(super) fn facet(&mut self, group: usize, cell: u32, corners: &[usize]) -> bool {
+        let kind = self.kinds[cell as usize];
+        let corner_count = kind.face_kind().corner_count();
+        let is = |face: &&[usize]| {
+            corners.len() == corner_count && face[..corner_count].iter().all(|local| corners.contains(local))
+        };
+        let found = kind.faces().iter().position(|face| is(&&face[..]));
+        if let Some(face) = found {
+            self.facets.push((group, Facet { cell, face: face as u8 }));
+        }
+        found.is_some()
+    }
+
+    /// Whether an element of that number is known, cell or not.
+    pub(super) fn knows_element(&self, number: u64) -> bool {
+        self.element_numbers.get(number).is_some()
+    }
+
+    /// The place of a node number.
+    pub(super) fn node_of(&self, number: u64) -> Option<u32> {
+        self.node_numbers.get(number)
+    }
+
+    /// Nodes whose name the faces of the surface get that have all their corners among them.
+    pub(super) fn node_set(&mut self, name: &str, nodes: Vec<u32>) {
+        self.node_sets.push((name.into(), nodes));
+    }
+
+    /// Adds all of another content, moved: the first node and the first cell of it here. Its numbers stay its own.
+    pub(super) fn append(
+        &mut self,
+        place: Place,
+        other: &Content,
+        moved: impl Fn(&Point3) -> Point3,
+    ) -> Parsed<(u32, u32)> {
+        let first_node = index(place, "nodes", self.points.len() + other.points.len())? - other.points.len() as u32;
+        let first_cell = index(place, "elements", self.kinds.len() + other.kinds.len())? - other.kinds.len() as u32;
+        self.points.extend(other.points.iter().map(moved));
+        self.kinds.extend_from_slice(&other.kinds);
+        self.nodes.extend(other.nodes.iter().map(|node| node + first_node));
+        self.rows.extend_from_slice(&other.rows);
+        let regions: Vec<u16> =
+            other.region_names.iter().map(|name| self.region(place, name)).collect::<Parsed<_>>()?;
+        self.regions.extend(other.regions.iter().map(|&region| regions[region as usize]));
+        let groups: Vec<usize> = other.group_names.iter().map(|name| self.group(name)).collect();
+        let facet = |f: &Facet| Facet { cell: f.cell + first_cell, ..*f };
+        self.facets.extend(other.facets.iter().map(|(group, f)| (groups[*group], facet(f))));
+        let sets = other.node_sets.iter();
+        self.node_sets.extend(sets.map(|(name, nodes)| {
+            (name.clone(), nodes.iter().map(|node| node + first_node).collect())
+        }));
+        Ok((first_node, first_cell))
+    }
+
+    /// The mesh, with lengths times `unit`, and the row of each cell.
+    pub(super) fn into_mesh(mut self, unit: f64, file: &Path) -> Result<(Mesh, Vec<Row>), FileError> {
+        let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+        self.refuse_twins().map_err(at)?;
+        self.attach().map_err(at)?;
+        let wrong = |source| FileError::Mesh { file: file.to_path_buf(), source };
+        let mut used = vec![u32::MAX; self.points.len()];
+        for &node in &self.nodes {
+            used[node as usize] = 0;
+        }
+        let mut points = Vec::new();
+        for (slot, p) in used.iter_mut().zip(&self.points).filter(|(slot, _)| **slot == 0) {
+            *slot = points.len() as u32;
+            points.push(Point3::from(p.coords * unit));
+        }
+        let nodes = self.nodes.iter().map(|&n| used[n as usize]).collect();
+        let (regions, names) = without_empty(self.regions, self.region_names);
+        let mut mesh = Mesh::from_flat(points, self.kinds, nodes).map_err(wrong)?.with_regions(regions, names);
+        let mut groups: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
+        for (group, facet) in self.facets {
+            groups.entry(self.group_names[group].clone()).or_default().push(facet);
+        }
+        for (name, nodes) in &self.node_sets {
+            let facets = faces_of(&mesh, nodes.iter().map(|&node| used[node as usize]));
+            // A set of a few nodes is no surface.
+            if !facets.is_empty() {
+                groups.entry(name.clone()).or_default().extend(facets);
+            }
+        }
+        for (name, mut facets) in groups {
+            facets.sort_unstable();
+            facets.dedup();
+            mesh = mesh.with_group(&name, facets).map_err(wrong)?;
+        }
+        Ok((mesh, self.rows))
+    }
+
+    /// Refuses cells of the same corners: their volume would count twice.
+    fn refuse_twins(&self) -> Parsed<()> {
+        let mut keys: Vec<([u32; 8], u32)> = Vec::with_capacity(self.kinds.len());
+        let mut start = 0;
+        for (cell, kind) in self.kinds.iter().enumerate() {
+            let mut key = [u32::MAX; 8];
+            let corners = kind.corner_count();
+            key[..corners].copy_from_slice(&self.nodes[start..start + corners]);
+            key[..corners].sort_unstable();
+            keys.push((key, cell as u32));
+            start += kind.node_count();
+        }
+        keys.sort_unstable();
+        let twins = keys.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        let Some((first, second)) = twins.map(|pair| (pair[0].1, pair[1].1)).min_by_key(|pair| pair.1) else {
+            return Ok(());
+        };
+        let (first, second) = (self.rows[first as usize], self.rows[second as usize]);
+        let problem = Problem::SameNodes { element: second.tag, first: first.tag, place: first.place };
+        Err((second.place, problem))
+    }
+
+    /// Finds the cell face of every surface element; between two cells, that of the first.
+    fn attach(&mut self) -> Parsed<()> {
+        if self.faces.is_empty() {
+            return Ok(());
+        }
+        // Of a large mesh most faces touch no surface: those are passed by without a look into the table.
+        let mut near = vec![false; self.points.len()];
+        let mut owners: HashMap<[u32; 4], Option<Facet>> = HashMap::with_capacity(self.faces.len());
+        for face in &self.faces {
+            face.corners.iter().filter(|&&c| c != u32::MAX).for_each(|&c| near[c as usize] = true);
+            owners.insert(face.corners, None);
+        }
+        let mut start = 0;
+        for (cell, kind) in self.kinds.iter().enumerate() {
+            let corner_count = kind.face_kind().corner_count();
+            for (face, local) in kind.faces().iter().enumerate() {
+                let mut key = [u32::MAX; 4];
+                for (slot, &local) in key.iter_mut().zip(&local[..corner_count]) {
+                    *slot = self.nodes[start + local];
+                }
+                if !key[..corner_count].iter().all(|&c| near[c as usize]) {
+                    continue;
+                }
+                key.sort_unstable();
+                if let Some(owner @ None) = owners.get_mut(&key) {
+                    *owner = Some(Facet { cell: cell as u32, face: face as u8 });
+                }
+            }
+            start += kind.node_count();
+        }
+        for Face { place, element, corners, group } in &self.faces {
+            match owners[corners] {
+                Some(facet) => self.facets.push((*group, facet)),
+                None => return Err((*place, Problem::LooseFace { element: *element })),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The boundary faces with all corners among some nodes.
+fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
+    let mut within = vec![false; mesh.points().len()];
+    nodes.filter(|&node| node != u32::MAX).for_each(|node| within[node as usize] = true);
+    let all = |facet: &Facet| {
+        let corners = mesh.kind(facet.cell as usize).face_kind().corner_count();
+        mesh.facet_nodes(*facet).take(corners).all(|node| within[node as usize])
+    };
+    mesh.boundary().iter().copied().filter(all).collect()
+}
+
+/// Regions that no cell has are left out.
+fn without_empty(regions: Vec<u16>, names: Vec<String>) -> (Vec<u16>, Vec<String>) {
+    let mut has = vec![false; names.len()];
+    regions.iter().for_each(|&r| has[r as usize] = true);
+    let mut next = 0;
+    let new: Vec<u16> = has.iter().map(|&has| if has { next += 1; next - 1 } else { u16::MAX }).collect();
+    let kept = names.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name).collect();
+    (regions.into_iter().map(|r| new[r as usize]).collect(), kept)
+}
+
+fn index(place: Place, what: &'static str, count: usize) -> Parsed<u32> {
+    // The last value means none.
+    let index = u32::try_from(count).ok().filter(|&index| index != u32::MAX);
+    index.ok_or((place, Problem::TooMany { what, count }))
+}
+
+/// The place of a name in the list, added at the end if it is new.
+fn place_of(names: &mut Vec<String>, name: &str) -> usize {
+    names.iter().position(|known| known == name).unwrap_or_else(|| {
+        names.push(name.into());
+        names.len() - 1
+    })
+}

@@ -1,0 +1,240 @@
+//! What can be wrong with a mesh file, and where.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use crate::MeshError;
+
+/// A result whose error knows its place.
+pub(super) type Parsed<T> = Result<T, (Place, Problem)>;
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Line number from 1; one past the last line where the file ends too early.
+    Line(usize),
+    /// Byte number from 0, of a binary file.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+/// A mesh file that can't be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The operating system refused.
+    #[error("{file}: {source}", file = file.display())]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// What the file holds breaks its format.
+    #[error("{file}:{place}: {problem}", file = file.display(), place = short(*place))]
+    At {
+        /// The file.
+        file: PathBuf,
+        /// Where.
+        place: Place,
+        /// What is wrong there.
+        problem: Problem,
+    },
+    /// The cells make no valid mesh.
+    #[error("{file}: {source}", file = file.display())]
+    Mesh {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: MeshError,
+    },
+    /// A region or group name that the format can't hold.
+    #[error("{file}: the name {name:?} is empty or holds a quotation mark, a comma or a line break", file = file.display())]
+    Name {
+        /// The file.
+        file: PathBuf,
+        /// The name.
+        name: String,
+    },
+    /// A length unit that is not a positive number.
+    #[error("{file}: the length unit is {unit} m; it has to be positive", file = file.display())]
+    Unit {
+        /// The file.
+        file: PathBuf,
+        /// Metres per unit of the file.
+        unit: f64,
+    },
+    /// A name from which no format follows.
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2) and .inp (Abaqus, CalculiX); end the name with one of them", file = file.display())]
+    Suffix {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+/// A line as compilers name it, `file:12`; a byte by its word.
+fn short(place: Place) -> String {
+    match place {
+        Place::Line(line) => line.to_string(),
+        Place::Byte(_) => format!(" {place}"),
+    }
+}
+
+/// What is wrong with a place in a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Problem {
+    /// None of the formats that are read.
+    #[error("'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1) and Abaqus .inp (*HEADING, *NODE) are")]
+    Format {
+        /// The beginning of the file.
+        found: String,
+    },
+    /// A version of a format that is not understood.
+    #[error("format '{found}'; of Gmsh 2.2, 4.0 and 4.1 are read")]
+    Version {
+        /// The line found.
+        found: String,
+    },
+    /// Not what comes next in the format.
+    #[error("expected {expected}, found '{found}'")]
+    Expected {
+        /// What belongs here.
+        expected: &'static str,
+        /// What is there.
+        found: String,
+    },
+    /// The file stops in the middle.
+    #[error("the file ends where {expected} should come")]
+    End {
+        /// What belongs here.
+        expected: &'static str,
+    },
+    /// A part that comes twice.
+    #[error("section {section} comes a second time")]
+    Repeated {
+        /// Its name.
+        section: &'static str,
+    },
+    /// A part that is needed is not there.
+    #[error("the file has no {section} section")]
+    Missing {
+        /// Its name.
+        section: &'static str,
+    },
+    /// A number given twice.
+    #[error("{what} {number} comes a second time")]
+    Duplicate {
+        /// Node or element.
+        what: &'static str,
+        /// Its number in the file.
+        number: u64,
+    },
+    /// Two solids of the same nodes: their volume would count twice.
+    #[error("element {element} has the same nodes as element {first} ({place})")]
+    SameNodes {
+        /// Number of the later element in the file.
+        element: u64,
+        /// Number of the first one.
+        first: u64,
+        /// Where the first one is.
+        place: Place,
+    },
+    /// A coordinate that is not finite.
+    #[error("node {number} has a coordinate that is not finite")]
+    NotFinite {
+        /// Node number in the file.
+        number: u64,
+    },
+    /// An element whose node isn't in the file.
+    #[error("element {element} names node {node}, which the file does not have")]
+    UnknownNode {
+        /// Element number in the file.
+        element: u64,
+        /// Node number in the file.
+        node: u64,
+    },
+    /// An element that names one node twice.
+    #[error("element {element} names node {node} twice")]
+    RepeatedNode {
+        /// Element number in the file.
+        element: u64,
+        /// Node number in the file.
+        node: u64,
+    },
+    /// An element type that is not understood.
+    #[error("element {element} has type {kind}; {known}")]
+    UnknownType {
+        /// Element number in the file.
+        element: u64,
+        /// The type as the file has it.
+        kind: String,
+        /// The types that are.
+        known: &'static str,
+    },
+    /// An element with too few or too many numbers.
+    #[error("element {element} of type {kind} has {found} numbers on its line instead of {expected}")]
+    Length {
+        /// Element number in the file.
+        element: u64,
+        /// The type as the file has it.
+        kind: String,
+        /// Numbers found.
+        found: usize,
+        /// Numbers needed.
+        expected: usize,
+    },
+    /// A surface element that is no face of a cell.
+    #[error("surface element {element} is not a face of any cell")]
+    LooseFace {
+        /// Element number in the file.
+        element: u64,
+    },
+    /// A set or a group that names what the file does not have.
+    #[error("{what} '{name}' names {of} {number}, which the file does not have")]
+    UnknownMember {
+        /// Set or surface.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// Element or set.
+        of: &'static str,
+        /// What it names.
+        number: String,
+    },
+    /// A keyword of the format that changes the mesh and is not read.
+    #[error("{what} is not read; {help}")]
+    Unread {
+        /// The keyword.
+        what: String,
+        /// What to do.
+        help: &'static str,
+    },
+    /// Something in a file that this one includes.
+    #[error("in {file}, {place}: {problem}")]
+    Included {
+        /// The included file as it is named.
+        file: String,
+        /// Where in it.
+        place: Place,
+        /// What is wrong there.
+        problem: Box<Problem>,
+    },
+    /// No cells.
+    #[error("the file has no tetrahedra or hexahedra")]
+    NoCells,
+    /// More than can be counted, or than the file has bytes for.
+    #[error("too many {what}: {count}")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+}

@@ -1,0 +1,49 @@
+//! Physical groups: their names, and what they become.
+
+use std::collections::HashMap;
+
+use super::super::content::Content;
+use super::super::error::{Parsed, Place, Problem};
+use super::super::lines::Lines;
+
+/// Names of physical groups by dimension and tag.
+#[derive(Default)]
+pub(super) struct Names(HashMap<(u64, u64), String>);
+
+impl Names {
+    pub(super) fn add(&mut self, place: Place, dimension: u64, tag: u64, name: &str) -> Parsed<()> {
+        match self.0.insert((dimension, tag), name.into()) {
+            Some(_) => Err((place, Problem::Duplicate { what: "physical tag", number: tag })),
+            None => Ok(()),
+        }
+    }
+
+    /// The region of a solid's physical tag; 0 is none.
+    pub(super) fn region(&self, content: &mut Content, place: Place, tag: u64) -> Parsed<u16> {
+        match self.0.get(&(3, tag)) {
+            _ if tag == 0 => content.region(place, "body"),
+            Some(name) => content.region(place, name),
+            None => content.region(place, &format!("region-{tag}")),
+        }
+    }
+
+    /// The facet group of a surface's physical tag.
+    pub(super) fn group(&self, content: &mut Content, tag: u64) -> usize {
+        match self.0.get(&(2, tag)) {
+            Some(name) => content.group(name),
+            None => content.group(&format!("surface-{tag}")),
+        }
+    }
+}
+
+/// Reads `DIMENSION TAG "NAME"`.
+pub(super) fn named(lines: &Lines, line: &str) -> Parsed<(u64, u64, String)> {
+    let mut tokens = line.splitn(3, char::is_whitespace);
+    let dimension = lines.number(tokens.next(), "the dimension of a physical name")?;
+    let tag = lines.number(tokens.next(), "the tag of a physical name")?;
+    let rest = tokens.next().unwrap_or("").trim();
+    match rest.strip_prefix('"').and_then(|r| r.strip_suffix('"')).filter(|n| !n.is_empty()) {
+        Some(name) => Ok((dimension, tag, name.into())),
+        None => lines.fail(Problem::Expected { expected: "a name in quotes", found: rest.into() }),
+    }
+}

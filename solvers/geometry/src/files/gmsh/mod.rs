@@ -1,0 +1,49 @@
+//! Gmsh's .msh files.
+//!
+//! The physical group of a solid element becomes its region, that of a surface element a facet group; groups without a name are
+//! called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh reference manual, "MSH file format".)
+
+mod groups;
+mod order;
+mod scanner;
+mod sections;
+mod text2;
+pub(super) mod write;
+
+use super::content::Content;
+use super::error::{Parsed, Place, Problem};
+
+/// Types whose elements are read, for the message of one whose are not.
+const KNOWN: &str = "types 4, 5, 11, 17 (solids), 2, 3, 9, 16 (faces) and lines and points are read";
+
+/// Version 2 in text goes by lines, as its writers and people who mend files by hand do; all others by numbers.
+pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
+    let mut lines = bytes.split(|&b| b == b'\n').enumerate();
+    let mut next = || {
+        let blank = |line: &[u8]| line.iter().all(u8::is_ascii_whitespace);
+        let (index, line) = lines.find(|(_, line)| !blank(line))?;
+        Some((Place::Line(index + 1), String::from_utf8_lossy(&line[..line.len().min(60)]).trim().to_string()))
+    };
+    let (place, found) = next().unwrap_or((Place::Line(1), String::new()));
+    if found != "$MeshFormat" {
+        return Err((place, Problem::Expected { expected: "$MeshFormat", found }));
+    }
+    let Some((place, found)) = next() else {
+        return Err((place, Problem::End { expected: "the format version" }));
+    };
+    let mut words = found.split_whitespace();
+    match (words.next(), words.next()) {
+        (Some(version), Some("0")) if version.starts_with("2.") => {
+            let text = std::str::from_utf8(bytes).map_err(|bad| {
+                let place = Place::Line(super::line_of(bytes, bad.valid_up_to()));
+                (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
+            })?;
+            text2::parse(text)
+        }
+        (Some(version), Some(kind @ ("0" | "1"))) => match version {
+            "2.1" | "2.2" | "2" | "4.0" | "4" | "4.1" => sections::parse(bytes, version, kind == "1"),
+            _ => Err((place, Problem::Version { found })),
+        },
+        _ => Err((place, Problem::Version { found })),
+    }
+}

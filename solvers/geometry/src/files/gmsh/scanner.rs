@@ -1,0 +1,152 @@
+//! Numbers of a file in text or in binary, and the lines between them.
+
+use super::super::error::{Parsed, Place, Problem};
+
+/// A place in the file and how its numbers are written.
+pub(super) struct Scanner<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+    binary: bool,
+    /// Written on a machine of the other byte order.
+    swapped: bool,
+}
+
+impl<'a> Scanner<'a> {
+    pub(super) fn new(bytes: &'a [u8], binary: bool) -> Scanner<'a> {
+        Scanner { bytes, at: 0, line: 1, binary, swapped: false }
+    }
+
+    /// The line in text, the byte in binary.
+    pub(super) fn place(&self) -> Place {
+        if self.binary { Place::Byte(self.at) } else { Place::Line(self.line) }
+    }
+
+    pub(super) fn fail<T>(&self, problem: Problem) -> Parsed<T> {
+        Err((self.place(), problem))
+    }
+
+    fn skip_blanks(&mut self) {
+        while let Some(byte) = self.bytes.get(self.at).filter(|b| b.is_ascii_whitespace()) {
+            self.line += usize::from(*byte == b'\n');
+            self.at += 1;
+        }
+    }
+
+    /// The next line that isn't blank; `None` at the end.
+    pub(super) fn line(&mut self) -> Option<String> {
+        self.skip_blanks();
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        self.at += length;
+        (length > 0).then(|| String::from_utf8_lossy(&rest[..length]).trim_end().to_string())
+    }
+
+    pub(super) fn exactly(&mut self, expected: &'static str) -> Parsed<()> {
+        match self.line() {
+            Some(line) if line == expected => Ok(()),
+            Some(mut found) => {
+                found.truncate(found.char_indices().nth(40).map_or(found.len(), |(at, _)| at));
+                self.fail(Problem::Expected { expected, found })
+            }
+            None => self.fail(Problem::End { expected }),
+        }
+    }
+
+    /// Goes on behind the section of a name.
+    pub(super) fn skip(&mut self, name: &str) -> Parsed<()> {
+        let end = format!("$End{name}");
+        let rest = &self.bytes[self.at..];
+        let Some(found) = rest.windows(end.len()).position(|w| w == end.as_bytes()) else {
+            return self.fail(Problem::End { expected: "the end of a section" });
+        };
+        self.line += rest[..found].iter().filter(|&&b| b == b'\n').count();
+        self.at += found + end.len();
+        Ok(())
+    }
+
+    /// Finds the byte order by the 1 that stands behind the version.
+    pub(super) fn byte_order(&mut self) -> Parsed<()> {
+        // The line break behind the version.
+        self.at += 1;
+        match self.take::<4>("the number 1 of the byte order")? {
+            [1, 0, 0, 0] => self.swapped = false,
+            [0, 0, 0, 1] => self.swapped = true,
+            found => {
+                let expected = "the number 1 of the byte order";
+                return self.fail(Problem::Expected { expected, found: format!("{found:?}") });
+            }
+        }
+        Ok(())
+    }
+
+    /// Behind the line of a count or a section's name, where binary numbers begin.
+    pub(super) fn behind_line(&mut self) {
+        if self.binary && self.bytes.get(self.at) == Some(&b'\n') {
+            self.at += 1;
+        }
+    }
+
+    fn take<const N: usize>(&mut self, expected: &'static str) -> Parsed<[u8; N]> {
+        let Some(found) = self.bytes.get(self.at..self.at + N) else {
+            return self.fail(Problem::End { expected });
+        };
+        self.at += N;
+        let mut found: [u8; N] = found.try_into().expect("as long");
+        if self.swapped {
+            found.reverse();
+        }
+        Ok(found)
+    }
+
+    fn token<T: std::str::FromStr>(&mut self, expected: &'static str) -> Parsed<T> {
+        self.skip_blanks();
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        if length == 0 {
+            return self.fail(Problem::End { expected });
+        }
+        let found = String::from_utf8_lossy(&rest[..length.min(40)]);
+        let Ok(value) = found.parse() else {
+            return self.fail(Problem::Expected { expected, found: found.into() });
+        };
+        self.at += length;
+        Ok(value)
+    }
+
+    /// A 32-bit number in binary.
+    pub(super) fn int(&mut self, expected: &'static str) -> Parsed<i64> {
+        if !self.binary {
+            return self.token(expected);
+        }
+        Ok(i32::from_le_bytes(self.take(expected)?).into())
+    }
+
+    /// A number of 64 bits without sign in binary.
+    pub(super) fn size(&mut self, expected: &'static str) -> Parsed<u64> {
+        if self.binary { Ok(u64::from_le_bytes(self.take(expected)?)) } else { self.token(expected) }
+    }
+
+    pub(super) fn real(&mut self, expected: &'static str) -> Parsed<f64> {
+        if self.binary { Ok(f64::from_le_bytes(self.take(expected)?)) } else { self.token(expected) }
+    }
+
+    /// A number that can't be negative: of 32 bits, or of 64.
+    pub(super) fn tag(&mut self, wide: bool, expected: &'static str) -> Parsed<u64> {
+        if wide {
+            return self.size(expected);
+        }
+        let found = self.int(expected)?;
+        u64::try_from(found).or_else(|_| self.fail(Problem::Expected { expected, found: found.to_string() }))
+    }
+
+    /// How many of something come, which the rest of the file has to have room for: `least` bytes each in binary, two in text.
+    pub(super) fn counted(&self, count: u64, least: usize, what: &'static str) -> Parsed<usize> {
+        let least = if self.binary { least } else { 2 };
+        let room = (self.bytes.len() - self.at) / least + 1;
+        match usize::try_from(count) {
+            Ok(count) if count <= room => Ok(count),
+            _ => self.fail(Problem::TooMany { what, count: usize::try_from(count).unwrap_or(usize::MAX) }),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Version 2 in text: one pass over the lines, every complaint with its line number.
+
+use super::super::content::Content;
+use super::super::error::{Parsed, Problem};
+use super::super::lines::Lines;
+use super::super::rows::Row;
+use super::KNOWN;
+use super::groups::{Names, named};
+use super::order::{Element, element, order};
+use crate::Point3;
+
+pub(super) fn parse(text: &str) -> Parsed<Content> {
+    let mut lines = Lines::new(text);
+    let mut content = Content::default();
+    let mut names = Names::default();
+    let (mut nodes, mut elements) = (false, false);
+    lines.exactly("$MeshFormat")?;
+    lines.need("the format version")?;
+    lines.exactly("$EndMeshFormat")?;
+    while let Some(line) = lines.next() {
+        match line {
+            "$PhysicalNames" => physical_names(&mut lines, &mut names)?,
+            "$Nodes" if nodes => return lines.fail(Problem::Repeated { section: "$Nodes" }),
+            "$Nodes" => {
+                read_nodes(&mut lines, &mut content)?;
+                nodes = true;
+            }
+            "$Elements" if elements => return lines.fail(Problem::Repeated { section: "$Elements" }),
+            "$Elements" if !nodes => return lines.fail(Problem::Missing { section: "$Nodes" }),
+            "$Elements" => {
+                read_elements(&mut lines, &names, &mut content)?;
+                elements = true;
+            }
+            _ if line.starts_with('$') && !line.starts_with("$End") => skip(&mut lines, line)?,
+            _ => {
+                return lines.fail(Problem::Expected { expected: "the start of a section", found: line.into() });
+            }
+        }
+    }
+    if !elements {
+        let section = if nodes { "$Elements" } else { "$Nodes" };
+        return lines.fail(Problem::Missing { section });
+    }
+    Ok(content)
+}
+
+fn skip(lines: &mut Lines, start: &str) -> Parsed<()> {
+    let name = start.trim_start_matches('$');
+    loop {
+        if lines.need("the end of a section")?.strip_prefix("$End") == Some(name) {
+            return Ok(());
+        }
+    }
+}
+
+fn count(lines: &mut Lines, expected: &'static str) -> Parsed<usize> {
+    let line = lines.need(expected)?;
+    lines.number(Some(line), expected)
+}
+
+fn physical_names(lines: &mut Lines, names: &mut Names) -> Parsed<()> {
+    for _ in 0..count(lines, "the number of physical names")? {
+        let line = lines.need("a physical name")?;
+        let (dimension, tag, name) = named(lines, line)?;
+        names.add(lines.place(), dimension, tag, &name)?;
+    }
+    lines.exactly("$EndPhysicalNames")
+}
+
+fn read_nodes(lines: &mut Lines, content: &mut Content) -> Parsed<()> {
+    for _ in 0..count(lines, "the number of nodes")? {
+        let line = lines.need("a node")?;
+        let mut tokens = line.split_whitespace();
+        let number = lines.number(tokens.next(), "a node number")?;
+        let mut at = Point3::origin();
+        for d in 0..3 {
+            at[d] = lines.number(tokens.next(), "a coordinate")?;
+        }
+        if let Some(extra) = tokens.next() {
+            return lines.fail(Problem::Expected { expected: "the end of the line", found: extra.into() });
+        }
+        content.node(lines.place(), number, at)?;
+    }
+    lines.exactly("$EndNodes")
+}
+
+fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Parsed<()> {
+    let mut list = Vec::new();
+    for _ in 0..count(lines, "the number of elements")? {
+        let line = lines.need("an element")?;
+        let mut tokens = line.split_whitespace();
+        let number: u64 = lines.number(tokens.next(), "an element number")?;
+        let kind: u64 = lines.number(tokens.next(), "an element type")?;
+        let tags: usize = lines.number(tokens.next(), "a number of tags")?;
+        let Some(element) = element(kind) else {
+            let kind = kind.to_string();
+            return lines.fail(Problem::UnknownType { element: number, kind, known: KNOWN });
+        };
+        let (found, expected) =
+            (line.split_whitespace().count(), tags.saturating_add(3 + element.node_count()));
+        if found != expected {
+            let kind = kind.to_string();
+            return lines.fail(Problem::Length { element: number, kind, found, expected });
+        }
+        let mut group = 0;
+        for tag in 0..tags {
+            let value: i64 = lines.number(tokens.next(), "a tag")?;
+            if tag == 0 {
+                // Gmsh marks a reversed surface by a negative tag.
+                group = value.unsigned_abs();
+            }
+        }
+        list.clear();
+        for _ in 0..element.node_count() {
+            list.push(lines.number(tokens.next(), "a node number")?);
+        }
+        add(content, names, Row { place: lines.place(), tag: number }, element, &[group], &list)?;
+    }
+    lines.exactly("$EndElements")?;
+    if content.cell_count() == 0 { lines.fail(Problem::NoCells) } else { Ok(()) }
+}
+
+/// Adds an element of physical groups, 0 being none; a solid is of the first.
+pub(super) fn add(
+    content: &mut Content,
+    names: &Names,
+    row: Row,
+    element: Element,
+    groups: &[u64],
+    list: &[u64],
+) -> Parsed<()> {
+    match element {
+        Element::Cell(kind) => {
+            let group = groups.first().copied().unwrap_or(0);
+            let region = names.region(content, row.place, group)?;
+            content.cell(row, kind, region, list, order(kind))
+        }
+        Element::Face { corners, .. } if groups.iter().any(|&group| group != 0) => {
+            let named = groups.iter().filter(|&&group| group != 0);
+            let groups: Vec<usize> = named.map(|&group| names.group(content, group)).collect();
+            content.face(row, &groups, &list[..corners])
+        }
+        Element::Face { .. } | Element::Ignored { .. } => content.element(row.place, row.tag),
+    }
+}

@@ -1,0 +1,86 @@
+//! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp).
+//!
+//! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one [`content::Content`],
+//! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
+//! file has for it.
+
+mod abaqus;
+mod content;
+mod error;
+mod gmsh;
+mod lines;
+mod numbers;
+mod rows;
+
+use std::path::Path;
+
+use crate::Mesh;
+use content::Content;
+use error::Parsed;
+
+pub use error::{FileError, Place, Problem};
+pub use rows::{Row, inverted, row_of_cell};
+
+/// Reads a mesh file by what it holds, whatever its name; `unit` is the length of the file's unit in metres (0.001 for millimetres).
+///
+/// Points, lines and parts of a file that are no mesh are read over, and so are nodes that no solid uses. Nodes and cells keep the
+/// order of the file.
+///
+/// # Errors
+/// A file that is none of the formats, broken, or no valid mesh: with the line or the byte, and the file's own number of the node or
+/// the element.
+pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
+    Ok(read_bytes(&bytes(file)?, file, unit)?.0)
+}
+
+/// As [`read`], from memory, with the place of every cell; `file` is the name used in errors.
+pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row>), FileError> {
+    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
+        return Err(FileError::Unit { file: file.to_path_buf(), unit });
+    }
+    let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+    let content = parse(bytes, file).map_err(at)?;
+    content.into_mesh(unit, file)
+}
+
+/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2) or `.inp`. Numbers are written so that they read back to the
+/// same bits (for `unit = 1`; else to the rounding of one division and one product).
+///
+/// # Errors
+/// Another suffix, a name that the format can't hold, or a folder that can't be written.
+pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
+    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
+        return Err(FileError::Unit { file: file.to_path_buf(), unit });
+    }
+    let suffix = file.extension().map(|s| s.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let text = match suffix.as_str() {
+        "msh" => gmsh::write::text(mesh, unit),
+        "inp" => abaqus::write::text(mesh, unit),
+        _ => return Err(FileError::Suffix { file: file.to_path_buf() }),
+    };
+    let text = text.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
+    std::fs::write(file, text).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
+    std::fs::read(file).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
+}
+
+/// By what a file begins with: `$MeshFormat` is Gmsh's, `*KEYWORD` Abaqus's.
+fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
+    let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
+    match &bytes[start..] {
+        [b'$', ..] => gmsh::parse(bytes),
+        [b'*', ..] => abaqus::parse(bytes, file),
+        rest => {
+            let line = rest.split(|&b| b == b'\n').next().unwrap_or_default();
+            let found = String::from_utf8_lossy(&line[..line.len().min(40)]).trim().to_string();
+            Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
+        }
+    }
+}
+
+/// The number of the line, from 1, that holds a byte.
+fn line_of(bytes: &[u8], at: usize) -> usize {
+    1 + bytes[..at.min(bytes.len())].iter().filter(|&&b| b == b'\n').count()
+}
