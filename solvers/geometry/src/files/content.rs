@@ -33,6 +33,8 @@ struct Face {
     element: u64,
     corners: [u32; 4],
     group: usize,
+    /// May be no face of a solid: a shell of its own.
+    loose: bool,
 }
 
 impl Content {
@@ -125,20 +127,33 @@ impl Content {
     /// Adds a surface element of some groups by the numbers of its corners; its cell may come later.
     pub(super) fn face(&mut self, row: Row, groups: &[usize], corners: &[u64]) -> Parsed<()> {
         self.element(row.place, row.tag)?;
+        let corners = self.corners(row, corners)?;
+        let face = |&group: &usize| Face { place: row.place, element: row.tag, corners, group, loose: false };
+        self.faces.extend(groups.iter().map(face));
+        Ok(())
+    }
+
+    /// Adds a shell, whose number is known, to a group if it is the face of a cell.
+    pub(super) fn shell(&mut self, row: Row, group: usize, corners: &[u64]) -> Parsed<()> {
+        let corners = self.corners(row, corners)?;
+        self.faces.push(Face { place: row.place, element: row.tag, corners, group, loose: true });
+        Ok(())
+    }
+
+    /// Nodes by number, sorted and filled up.
+    fn corners(&self, row: Row, numbers: &[u64]) -> Parsed<[u32; 4]> {
         let mut sorted = [u32::MAX; 4];
-        for (place, &number) in corners.iter().enumerate() {
+        for (place, &number) in numbers.iter().enumerate() {
             let Some(node) = self.node_numbers.get(number) else {
                 return Err((row.place, Problem::UnknownNode { element: row.tag, node: number }));
             };
-            if corners[..place].contains(&number) {
+            if numbers[..place].contains(&number) {
                 return Err((row.place, Problem::RepeatedNode { element: row.tag, node: number }));
             }
             sorted[place] = node;
         }
         sorted.sort_unstable();
-        let face = |&group: &usize| Face { place: row.place, element: row.tag, corners: sorted, group };
-        self.faces.extend(groups.iter().map(face));
-        Ok(())
+        Ok(sorted)
     }
 
     /// Adds the face of a cell with these local corners to a group; `false` if the cell has no such face.
@@ -189,6 +204,12 @@ impl Content {
         let groups: Vec<usize> = other.group_names.iter().map(|name| self.group(name)).collect();
         let facet = |f: &Facet| Facet { cell: f.cell + first_cell, ..*f };
         self.facets.extend(other.facets.iter().map(|(group, f)| (groups[*group], facet(f))));
+        let corner = |c: u32| if c == u32::MAX { c } else { c + first_node };
+        self.faces.extend(other.faces.iter().map(|face| Face {
+            corners: face.corners.map(corner),
+            group: groups[face.group],
+            ..*face
+        }));
         let sets = other.node_sets.iter();
         self.node_sets.extend(sets.map(|(name, nodes)| {
             (name.clone(), nodes.iter().map(|node| node + first_node).collect())
@@ -285,9 +306,10 @@ impl Content {
             }
             start += kind.node_count();
         }
-        for Face { place, element, corners, group } in &self.faces {
+        for Face { place, element, corners, group, loose } in &self.faces {
             match owners[corners] {
                 Some(facet) => self.facets.push((*group, facet)),
+                None if *loose => {}
                 None => return Err((*place, Problem::LooseFace { element: *element })),
             }
         }

@@ -3,13 +3,15 @@
 use crate::CellKind;
 
 /// Types whose elements are read, for the message of one whose are not.
-pub(super) const KNOWN: &str = "C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, M) are read, and shells, beams and others \
-                                that have no volume are read over";
+pub(super) const KNOWN: &str = "C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, M) are read, shells as faces, beams and others \
+                                are read over";
 
 /// What an element type is.
 pub(super) enum Type {
     Cell(CellKind),
-    /// Has no volume: read over.
+    /// A shell or a plane element, which may lie on a face of a solid: corners, nodes.
+    Face(usize, usize),
+    /// Has neither volume nor area: read over.
     Other,
 }
 
@@ -29,11 +31,18 @@ pub(super) fn element_type(name: &str) -> Option<Type> {
             _ => return None,
         }));
     }
-    let flat = [
-        "S3", "S4", "S6", "S8", "S9", "SC", "STRI", "SFM", "M3D", "R3D", "RB", "T3D", "T2D", "B2", "B3", "SPRING", "MASS",
-        "DASHPOT", "CONN", "GAP", "ROTARY", "CPS", "CPE", "CAX", "DC",
-    ];
-    flat.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
+    let flat = ["STRI", "SFM3D", "M3D", "R3D", "CPS", "CPE", "CAX", "S"];
+    if let Some(rest) = flat.iter().find_map(|prefix| name.strip_prefix(prefix)) {
+        match rest.bytes().next() {
+            Some(b'3') => return Some(Type::Face(3, 3)),
+            Some(b'4') => return Some(Type::Face(4, 4)),
+            Some(b'6') => return Some(Type::Face(3, 6)),
+            Some(b'8') => return Some(Type::Face(4, 8)),
+            _ => {}
+        }
+    }
+    let thin = ["T2D", "T3D", "B2", "B3", "RB", "SPRING", "MASS", "DASHPOT", "CONN", "GAP", "ROTARY", "DC", "STRI", "SAX"];
+    thin.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
 }
 
 /// Name of a type.

@@ -1,7 +1,7 @@
 //! Abaqus and CalculiX .inp decks: the mesh with its sets and surfaces, flat or in parts and instances.
 //!
-//! An element's region is the set of its `*SOLID SECTION`, else the `ELSET` on its `*ELEMENT`, else the first `*ELSET` that lists it,
-//! else "body". `*SURFACE` and `*NSET` become facet groups. Reading ends at the first `*STEP`. (Abaqus keywords reference; CalculiX
+//! An element's region is the set of its `*SOLID SECTION`; without sections the smallest set it is in, of equally large ones the last;
+//! else "body". `*SURFACE`, `*NSET` and sets of shells on the faces of solids become facet groups. Reading ends at the first `*STEP`. (Abaqus keywords reference; CalculiX
 //! CrunchiX manual, chapter 7.)
 
 mod cards;

@@ -16,9 +16,10 @@ pub(super) struct Scope {
     kinds: Vec<CellKind>,
     elsets: Sets,
     nsets: Sets,
-    /// Sets that decide the region of their elements, the strongest last.
+    /// Sets that decide the region of their elements.
     sections: Vec<(Place, String)>,
-    of_elements: Vec<String>,
+    /// Shells, by number: where they are and their corners.
+    shells: HashMap<u64, (Place, Vec<u64>)>,
 }
 
 /// Members by name in capitals, with the name as written.
@@ -73,18 +74,19 @@ impl Scope {
         while let Some(&(place, line)) = lines.next() {
             let mut words = split(line);
             let number = whole(place, &words[0], "an element number")?;
-            let wanted = match element_type(name) {
-                Some(Type::Cell(kind)) => Some(kind),
-                Some(Type::Other) => None,
-                None => {
-                    let kind = name.to_string();
-                    return Err((place, Problem::UnknownType { element: number, kind, known: KNOWN }));
-                }
+            let Some(of_type) = element_type(name) else {
+                let kind = name.to_string();
+                return Err((place, Problem::UnknownType { element: number, kind, known: KNOWN }));
+            };
+            let wanted = match of_type {
+                Type::Cell(kind) => Some(kind.node_count()),
+                Type::Face(_, nodes) => Some(nodes),
+                Type::Other => None,
             };
             // A list goes on below where it is too short, or ends with a comma.
             let short = |words: &Vec<String>| {
                 let open = words.last().is_some_and(String::is_empty);
-                wanted.map_or(open, |kind| words.iter().filter(|word| !word.is_empty()).count() <= kind.node_count())
+                wanted.map_or(open, |nodes| words.iter().filter(|word| !word.is_empty()).count() <= nodes)
             };
             while short(&words) {
                 let Some(&(_, more)) = lines.next() else { break };
@@ -92,17 +94,23 @@ impl Scope {
             }
             words.retain(|word| !word.is_empty());
             numbers.push(number);
-            let Some(kind) = wanted else {
+            let Some(nodes) = wanted else {
                 self.content.element(place, number)?;
                 continue;
             };
-            if words.len() != kind.node_count() + 1 {
-                let (found, expected) = (words.len(), kind.node_count() + 1);
+            if words.len() != nodes + 1 {
+                let (found, expected) = (words.len(), nodes + 1);
                 let kind = name.to_string();
                 return Err((place, Problem::Length { element: number, kind, found, expected }));
             }
             let list: Vec<u64> =
                 words[1..].iter().map(|word| whole(place, word, "a node number")).collect::<Parsed<_>>()?;
+            let Type::Cell(kind) = of_type else {
+                self.content.element(place, number)?;
+                let corners = if let Type::Face(corners, _) = of_type { corners } else { 0 };
+                self.shells.insert(number, (place, list[..corners].to_vec()));
+                continue;
+            };
             let body = self.content.region(place, "body")?;
             let row = Row { place, tag: number };
             self.content.cell(row, kind, body, &list, &ORDER[..list.len()])?;
@@ -110,9 +118,6 @@ impl Scope {
         }
         if let Some(set) = set {
             self.elsets.of(&set).extend(numbers);
-            if !self.of_elements.contains(&set) {
-                self.of_elements.push(set);
-            }
         }
         Ok(())
     }
@@ -206,24 +211,33 @@ impl Scope {
 
     /// Gives elements their regions, and node sets to the content.
     pub(super) fn close(&mut self) -> Parsed<()> {
-        // The weakest first: what comes later overwrites.
-        let listed = self.elsets.order.iter().rev().cloned();
-        let of_elements = self.of_elements.iter().rev().cloned();
-        let weak: Vec<(Place, String)> = if self.sections.is_empty() {
-            listed.chain(of_elements).map(|name| (Place::Line(1), name)).collect()
-        } else {
-            Vec::new()
-        };
-        for (place, set) in weak.iter().chain(&self.sections) {
+        let mut deciding = self.sections.clone();
+        if deciding.is_empty() {
+            // What comes later overwrites: the smallest last.
+            let cells = |key: &String| {
+                let members = &self.elsets.lists[key].1;
+                members.iter().filter(|&&number| self.content.cell_of(number).is_some()).count()
+            };
+            let mut by_size: Vec<(usize, &String)> = self.elsets.order.iter().map(|key| (cells(key), key)).collect();
+            by_size.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
+            deciding = by_size.into_iter().map(|(_, key)| (Place::Line(1), key.clone())).collect();
+        }
+        for (place, set) in &deciding {
             let Some((name, members)) = self.elsets.get(set) else {
                 let (what, name) = ("*SOLID SECTION", set.clone());
                 return Err((*place, Problem::UnknownMember { what, name, of: "set", number: set.clone() }));
             };
-            let region = self.content.region(*place, name)?;
-            for &number in members {
-                if let Some(cell) = self.content.cell_of(number) {
-                    self.content.set_region(cell, region);
-                }
+            let cells: Vec<u32> = members.iter().filter_map(|&number| self.content.cell_of(number)).collect();
+            if !cells.is_empty() {
+                let region = self.content.region(*place, name)?;
+                cells.into_iter().for_each(|cell| self.content.set_region(cell, region));
+            }
+        }
+        for key in &self.elsets.order {
+            let (name, members) = &self.elsets.lists[key];
+            for (number, (place, corners)) in members.iter().filter_map(|n| Some((n, self.shells.get(n)?))) {
+                let group = self.content.group(name);
+                self.content.shell(Row { place: *place, tag: *number }, group, corners)?;
             }
         }
         for key in &self.nsets.order {

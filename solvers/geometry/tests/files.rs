@@ -1,0 +1,263 @@
+//! Mesh files that other programs wrote, round trips between formats, and broken decks.
+
+use std::path::{Path, PathBuf};
+
+use geometry::generate::{box_mesh, kidney_mesh};
+use geometry::{CellKind, Mesh, Point3, files, quality};
+
+/// The files that `make.py` beside them made, of one kind.
+fn made(kind: CellKind) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.file_name().unwrap().to_string_lossy().starts_with(&format!("{}-", kind.name())));
+    files.sort();
+    files
+}
+
+fn sizes(mesh: &Mesh, names: [&str; 2]) -> [Option<usize>; 2] {
+    names.map(|name| mesh.group(name).map(<[_]>::len))
+}
+
+/// Two cubes side by side: two halves of equally many cells, of 2 m^3 in all, held at one end and pressed at the other.
+#[test]
+fn files_of_other_programs_hold_two_cubes() {
+    for kind in CellKind::ALL {
+        let files = made(kind);
+        assert_eq!(files.len(), 8, "{files:?}");
+        let first = files::read(&files[0], 1.0).unwrap();
+        for file in &files {
+            let mesh = files::read(file, 1.0).unwrap_or_else(|bad| panic!("{bad}"));
+            let name = file.display();
+            assert_eq!(mesh.uniform_kind(), Some(kind), "{name}");
+            assert_eq!((mesh.points().len(), mesh.cell_count()), (first.points().len(), first.cell_count()), "{name}");
+            let quality = quality::check(&mesh).unwrap_or_else(|bad| panic!("{name}: {bad}"));
+            assert!((quality.volume - 2.0).abs() < 1e-12, "{name}: {}", quality.volume);
+            // What meshio writes has no groups.
+            if ["meshio", "4.0-binary"].iter().any(|by| name.to_string().contains(by)) {
+                assert_eq!(mesh.region_names(), ["body"], "{name}");
+                continue;
+            }
+            let left = if name.to_string().contains("inp") { "left_half" } else { "left half" };
+            let mut names = mesh.region_names().to_vec();
+            names.sort();
+            assert_eq!(names, [left, "right"], "{name}");
+            let of_left = names_of(&mesh).filter(|name| *name == left).count();
+            assert_eq!(2 * of_left, mesh.cell_count(), "{name}");
+            let faces = if kind.is_tet() { 8 } else { 4 };
+            assert_eq!(sizes(&mesh, ["held", "pressed"]), [Some(faces); 2], "{name}");
+            let held = mesh.group("held").unwrap();
+            let at_end = |&facet| mesh.facet_nodes(facet).all(|node| mesh.points()[node as usize].x.abs() < 1e-12);
+            assert!(held.iter().all(at_end), "{name}");
+        }
+    }
+}
+
+fn names_of(mesh: &Mesh) -> impl Iterator<Item = &str> {
+    (0..mesh.cell_count()).map(|cell| mesh.region_names()[mesh.region(cell) as usize].as_str())
+}
+
+#[test]
+fn round_trips_keep_every_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in CellKind::ALL {
+        let mesh = kidney_mesh(kind, 2).unwrap();
+        let count = mesh.cell_count();
+        let regions = (0..count).map(|c| u16::from(c % 3 == 1)).collect();
+        let mesh = mesh.with_regions(regions, vec!["cortex".into(), "inner medulla".into()]);
+        let some = mesh.boundary()[..7].to_vec();
+        let mesh = mesh.with_group("a few faces", some).unwrap();
+        let [msh, inp] = ["round.msh", "round.inp"].map(|name| folder.path().join(name));
+        files::write(&mesh, &msh, 1.0).unwrap();
+        files::write(&files::read(&msh, 1.0).unwrap(), &inp, 1.0).unwrap();
+        let back = files::read(&inp, 1.0).unwrap();
+        assert_eq!(back, mesh, "{}", kind.name());
+    }
+    let bad = files::write(&kidney_mesh(CellKind::Tet4, 2).unwrap(), Path::new("mesh.vtp"), 1.0).unwrap_err();
+    assert!(bad.to_string().contains("mesh.vtp: meshes are written as .msh"), "{bad}");
+}
+
+fn deck(text: &str) -> Result<Mesh, String> {
+    files::read_bytes(text.as_bytes(), Path::new("deck.inp"), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
+}
+
+const DECK: &str = "*heading
+ a block, *not a keyword
+** a comment
+*Node, NSET=\"All Nodes\"
+1, 0.0, 0.0, 0.0
+ 2, 1.D0 , 0., 0.
+3, 0, 1.0d+0, 0
+4, 0, 0, 1
+5, 1., 1., 1.
+*ELEMENT,
+TYPE=C3D4, ELSET=Two
+11, 1, 2,
+3, 4
+12, 2, 3, 4,5
+*ELEMENT, TYPE=S3, ELSET=skin
+13, 1,3,2
+*Elset, elset=second
+ 12
+*ELSET, ELSET=both, GENERATE
+11, 12, 1
+*NSET, NSET=bottom
+1, 2, 3
+*SURFACE, NAME=\"slanted face\", TYPE=ELEMENT
+SECOND, s3
+*MATERIAL, NAME=tissue
+*ELASTIC
+20e3, 0.45
+*STEP
+*NODE
+not read any more
+";
+
+#[test]
+fn decks_are_read_as_people_write_them() {
+    for text in [DECK.to_string(), DECK.replace('\n', "\r\n")] {
+        let mesh = deck(&text).unwrap();
+        assert_eq!((mesh.points().len(), mesh.cell_count()), (5, 2));
+        assert_eq!(mesh.points()[1], Point3::new(1.0, 0.0, 0.0));
+        assert_eq!(names_of(&mesh).collect::<Vec<_>>(), ["both", "second"]);
+        let groups: Vec<(&str, usize)> = mesh.group_names().map(|name| (name, mesh.group(name).unwrap().len())).collect();
+        assert_eq!(groups, [("All Nodes", 6), ("bottom", 1), ("skin", 1), ("slanted face", 1)]);
+        assert_eq!(mesh.group("bottom"), mesh.group("skin"));
+        let slanted = mesh.group("slanted face").unwrap()[0];
+        let mut nodes: Vec<u32> = mesh.facet_nodes(slanted).collect();
+        nodes.sort_unstable();
+        // S3 of nodes 2 3 4 5 has 2-4-5... of the deck: the second, the fourth and the third of the element.
+        assert_eq!(nodes, [2, 3, 4]);
+    }
+    let sections = DECK.replace("*MATERIAL", "*SOLID SECTION, ELSET=Two, MATERIAL=tissue\n*MATERIAL");
+    assert_eq!(deck(&sections).unwrap().region_names(), ["Two"]);
+}
+
+/// A part placed twice, the second turned by a right angle about the z axis and then 3 along x.
+#[test]
+fn parts_are_placed_and_turned() {
+    let text = "*PART, NAME=corner
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 0, 2, 0
+4, 0, 0, 1
+*ELEMENT, TYPE=C3D4, ELSET=solid
+1, 1, 2, 3, 4
+*END PART
+*ASSEMBLY, NAME=all
+*INSTANCE, NAME=a, PART=corner
+*END INSTANCE
+*INSTANCE, NAME=b, PART=Corner
+ 3, 0, 0
+ 3, 0, 0, 3, 0, 1, 90
+*END INSTANCE
+*NSET, NSET=held, INSTANCE=a
+1, 2
+*END ASSEMBLY
+";
+    let mesh = deck(text).unwrap();
+    assert_eq!((mesh.points().len(), mesh.cell_count()), (8, 2));
+    let wanted = [[3.0, 0.0, 0.0], [3.0, 1.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]];
+    for (x, wanted) in mesh.points()[4..].iter().zip(wanted) {
+        assert!((x - Point3::from(wanted)).norm() < 1e-15, "{x}");
+    }
+    assert!((quality::check(&mesh).unwrap().volume - 2.0 / 3.0).abs() < 1e-15);
+}
+
+#[test]
+fn broken_decks_name_the_line() {
+    let cases = [
+        ("*heading", "heading", 1, "'heading' begins no mesh file"),
+        ("*Node, NSET", "*Nodes, NSET", 12, "element 11 names node 1"),
+        ("1.D0", "1,D0", 6, "expected a coordinate, found 'D0'"),
+        ("1.0d+0", "nan", 7, "expected a coordinate, found 'nan'"),
+        ("1.0d+0", "1e999", 7, "node 3 has a coordinate that is not finite"),
+        ("4, 0, 0, 1", "3, 0, 0, 1", 8, "node 3 comes a second time"),
+        ("4, 0, 0, 1", "-4, 0, 0, 1", 8, "expected a node number, found '-4'"),
+        ("TYPE=C3D4", "TYPE=C3D6", 12, "element 11 has type C3D6; C3D4, C3D10"),
+        ("TYPE=C3D4, ", "", 10, "expected TYPE, found '*ELEMENT'"),
+        ("12, 2, 3, 4,5", "12, 2, 3, 4,5,6", 14, "element 12 of type C3D4 has 6 numbers"),
+        ("12, 2, 3, 4,5", "12, 2, 3, 4,6", 14, "element 12 names node 6"),
+        ("12, 2, 3, 4,5", "12, 2, 3, 4,4", 14, "element 12 names node 4 twice"),
+        ("12, 2, 3, 4,5", "11, 2, 3, 4,5", 14, "element 11 comes a second time"),
+        ("12, 2, 3, 4,5", "12, 4, 3, 2, 1", 14, "element 12 has the same nodes as element 11 (line 12)"),
+        ("\n 12\n", "\n 14\n", 18, "element set 'second' names element 14"),
+        ("\n 12\n", "\n first\n", 18, "element set 'second' names set first"),
+        ("11, 12, 1", "12, 11, 1", 20, "a last one not below it"),
+        ("11, 12, 1", "11, 12, 0", 20, "a step of 1 or more"),
+        ("11, 12, 1", "1, 4000000000", 20, "too many numbers to generate: 3999999999"),
+        ("SECOND, s3", "SECOND, s5", 24, "expected a face that the element has"),
+        ("SECOND, s3", "SECOND", 24, "expected the face of an element, such as S1, found ''"),
+        ("SECOND, s3", "third, s3", 24, "surface 'slanted face' names set third"),
+        ("*MATERIAL", "*SOLID SECTION, ELSET=none\n*MATERIAL", 25, "'none' names set none"),
+        ("*MATERIAL", "*NGEN\n*MATERIAL", 25, "*NGEN is not read; write the deck with all nodes"),
+        ("*MATERIAL", "*INCLUDE, INPUT=../other.inp\n*MATERIAL", 25, "lie in the folder of the deck"),
+        ("*MATERIAL", "*INCLUDE, INPUT=/etc/passwd\n*MATERIAL", 25, "lie in the folder of the deck"),
+        ("*MATERIAL", "*INCLUDE, INPUT=nothing.inp\n*MATERIAL", 25, "there is no such file"),
+        ("*MATERIAL", "*INSTANCE, NAME=a, PART=b\n*MATERIAL", 25, "names part b"),
+        ("*MATERIAL", "*END PART\n*MATERIAL", 25, "expected *PART before *END PART"),
+        ("*ELEMENT,\nTYPE=C3D4", "*ELEMENT,\n TYPE=T3D2", 1, "no tetrahedra or hexahedra"),
+    ];
+    for (from, to, line, words) in cases {
+        assert!(DECK.contains(from), "{from}");
+        let message = deck(&DECK.replacen(from, to, 1)).unwrap_err();
+        let start = format!("deck.inp:{line}: ");
+        assert!(message.starts_with(&start) && message.contains(words), "{from} -> {to}: {message}");
+    }
+}
+
+#[test]
+fn files_that_decks_include_are_read_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let nodes = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n";
+    write("nodes.inp", nodes);
+    write("deck.inp", "*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n");
+    let file = folder.path().join("deck.inp");
+    assert_eq!(files::read(&file, 1.0).unwrap().cell_count(), 1);
+    write("nodes.inp", &nodes.replace("3, 0", "2, 0"));
+    let bad = files::read(&file, 1.0).unwrap_err().to_string();
+    assert!(bad.ends_with("deck.inp:1: in nodes.inp, line 4: node 2 comes a second time"), "{bad}");
+    write("deck.inp", "*INCLUDE, INPUT=deck.inp\n");
+    let bad = files::read(&file, 1.0).unwrap_err().to_string();
+    assert!(bad.contains("more than eight deep"), "{bad}");
+}
+
+/// Every file cut anywhere, and with bytes changed, is read or refused: no panic.
+#[test]
+fn cut_and_spoiled_files_are_refused() {
+    for kind in [CellKind::Tet4, CellKind::Hex20] {
+        for file in made(kind) {
+            let bytes = std::fs::read(&file).unwrap();
+            // Behind the elements nothing is needed; a deck may end behind any of them.
+            let end = bytes.windows(12).position(|w| w == b"$EndElements").unwrap_or(0);
+            let whole = end + 12;
+            let mut at = 7;
+            let mut seed = 1u64;
+            while at < bytes.len() {
+                let cut = files::read_bytes(&bytes[..at], &file, 1.0);
+                assert!(at >= whole || cut.is_err(), "{}: {at}", file.display());
+                let mut spoiled = bytes.clone();
+                seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                spoiled[at] = (seed >> 33) as u8;
+                let _ = files::read_bytes(&spoiled, &file, 1.0);
+                at += 1 + bytes.len() / 300;
+            }
+        }
+    }
+}
+
+/// A claim beyond the file's size takes no memory: the nodes of a binary file, a set of a block.
+#[test]
+fn claims_beyond_the_size_are_refused() {
+    let box_of = box_mesh(CellKind::Tet4, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [1; 3], [1.0; 3], None);
+    assert!(box_of.is_ok());
+    let file = &made(CellKind::Tet4)[4];
+    let bytes = std::fs::read(file).unwrap();
+    assert!(file.ends_with("tet4-4.1-binary.msh"), "{}", file.display());
+    let nodes = bytes.windows(7).position(|w| w == b"$Nodes\n").unwrap() + 7;
+    let mut claimed = bytes.clone();
+    claimed[nodes..nodes + 8].copy_from_slice(&u64::MAX.to_le_bytes());
+    let bad = files::read_bytes(&claimed, file, 1.0).unwrap_err().to_string();
+    assert!(bad.contains(&format!("byte {}: too many blocks of nodes: {}", nodes + 8, u64::MAX)), "{bad}");
+}

@@ -1,0 +1,58 @@
+"""Makes the mesh files beside this script with Gmsh and meshio: two boxes of 1 x 1 x 1 and 1 x 1 x 1, side by side.
+
+    pip install gmsh meshio && python make.py
+"""
+import gmsh
+import meshio
+
+
+def model(kind):
+    gmsh.clear()
+    gmsh.model.add(kind)
+    occ = gmsh.model.occ
+    left, right = occ.addBox(0, 0, 0, 1, 1, 1), occ.addBox(1, 0, 0, 1, 1, 1)
+    occ.fragment([(3, left)], [(3, right)])
+    occ.synchronize()
+    for curve in gmsh.model.getEntities(1):
+        gmsh.model.mesh.setTransfiniteCurve(curve[1], 3)
+    for surface in gmsh.model.getEntities(2):
+        gmsh.model.mesh.setTransfiniteSurface(surface[1])
+        if kind.startswith("hex"):
+            gmsh.model.mesh.setRecombine(*surface)
+    if kind.startswith("hex"):
+        for volume in gmsh.model.getEntities(3):
+            gmsh.model.mesh.setTransfiniteVolume(volume[1])
+
+    def at(dimension, x):
+        found = gmsh.model.getEntities(dimension)
+        return [tag for _, tag in found if abs(occ.getCenterOfMass(dimension, tag)[0] - x) < 1e-6]
+
+    gmsh.model.addPhysicalGroup(3, at(3, 0.5), 11, "left half")
+    gmsh.model.addPhysicalGroup(3, at(3, 1.5), 12, "right")
+    gmsh.model.addPhysicalGroup(2, at(2, 0.0), 21, "held")
+    gmsh.model.addPhysicalGroup(2, at(2, 2.0), 22, "pressed")
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
+    gmsh.model.mesh.generate(3)
+    if kind in ("tet10", "hex20"):
+        gmsh.model.mesh.setOrder(2)
+
+
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+for kind in ("tet4", "tet10", "hex8", "hex20"):
+    model(kind)
+    for version in (2.2, 4.0, 4.1):
+        # Gmsh writes 4.0 in text only; meshio writes it in binary.
+        for binary in (0, 1) if version != 4.0 else (0,):
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            gmsh.write(f"{kind}-{version}-{'binary' if binary else 'text'}.msh")
+    gmsh.option.setNumber("Mesh.SaveGroupsOfElements", 1)
+    gmsh.write(f"{kind}-gmsh.inp")
+    mesh = meshio.read(f"{kind}-4.1-binary.msh")
+    mesh.point_data = {}
+    meshio.gmsh.write(f"{kind}-4.0-binary.msh", mesh, fmt_version="4.0", binary=True)
+    solid = [block for block in mesh.cells if block.type in ("tetra", "tetra10", "hexahedron", "hexahedron20")]
+    plain = meshio.Mesh(mesh.points, [(b.type, b.data) for b in solid])
+    plain.write(f"{kind}-meshio.inp")
+gmsh.finalize()
