@@ -81,7 +81,7 @@ fn a_mesh_file_is_described_in_its_own_unit() {
             "  extent      x = 0 to 40.000, y = 0 to 40.000, z = 0 to 20.000 mm",
             "  volume      16.000 cm^3; of a cell 5.333 to 10.667 cm^3",
             "  angles      35.3 to 109.5 degrees between two faces of a cell",
-            "  worst cell  aspect 1.86 (a regular cell has 1), line 14, tag 7",
+            "  worst cell  aspect 1.86 (a regular cell has 1), line 14, element 7",
         ]
     );
 }
@@ -91,8 +91,8 @@ fn inverted_cells_are_counted_and_the_rest_of_the_mesh_is_described() {
     let dir = tempfile::tempdir().unwrap();
     let one = MESH.replace("1 2 3 4\n", "1 3 2 4\n");
     for (text, says) in [
-        (one.clone(), "1 of 2 cells is inverted (line 14, tag 7)"),
-        (one.replace("2 3 4 5\n", "3 2 4 5\n"), "all 2 cells are inverted (first: line 14, tag 7)"),
+        (one.clone(), "1 of 2 cells is inverted (line 14, element 7)"),
+        (one.replace("2 3 4 5\n", "3 2 4 5\n"), "all 2 cells are inverted (first: line 14, element 7)"),
     ] {
         let done = tissuebench(&["mesh", "info", &write(&dir, "bad.msh", &text)]);
         assert_fails(&done, 2, says);

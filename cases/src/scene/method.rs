@@ -156,7 +156,7 @@ pub enum Size {
         /// Ratio of the last to the first cell along x, y, z; 1 is uniform.
         grading: [f64; 3],
     },
-    /// A Gmsh file.
+    /// A mesh file.
     File(MeshFile),
 }
 
@@ -206,7 +206,7 @@ pub enum Cloud {
     },
     /// The nodes of a file.
     File {
-        /// Lines of x, y, z, or a Gmsh file.
+        /// Lines of x, y, z, or a mesh file.
         file: MeshFile,
         /// How many nodes the scene says it has.
         nodes: Option<usize>,

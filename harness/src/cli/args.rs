@@ -104,7 +104,7 @@ pub struct ReferenceArgs {
     /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
     #[arg(long, alias = "beside", value_name = "FILE")]
     pub alongside: Vec<PathBuf>,
-    /// Store the displacement at the end at the nodes of this Gmsh 2.2 file
+    /// Store the displacement at the end at the nodes of this mesh file
     #[arg(long, value_name = "MESH")]
     pub points: PathBuf,
     /// Length unit of that file
@@ -151,7 +151,7 @@ pub enum Format {
 pub enum MeshAction {
     /// Print counts, surfaces, extent, volume and quality
     Info {
-        /// Gmsh 2.2 files
+        /// Mesh files: Gmsh (.msh) and Abaqus or CalculiX (.inp)
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
@@ -160,9 +160,9 @@ pub enum MeshAction {
     },
     /// Read one mesh file, write it as another kind of cells
     Convert {
-        /// The file to read (Gmsh 2.2)
+        /// The file to read: Gmsh 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp)
         from: PathBuf,
-        /// The file to write (Gmsh 2.2), another one than FROM
+        /// The file to write, by its suffix Gmsh 2.2 (.msh) or Abaqus (.inp); another one than FROM
         to: PathBuf,
         /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
         #[arg(long)]

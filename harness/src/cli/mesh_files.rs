@@ -4,7 +4,7 @@ use std::path::Path;
 
 use geometry::generate::{raise_order, to_tets};
 use geometry::quality::Extreme;
-use geometry::{CellKind, Mesh, msh, quality};
+use geometry::{CellKind, Mesh, files, quality};
 
 use crate::Failure;
 use crate::cli::args::{LengthUnit, MeshAction};
@@ -29,7 +29,7 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
 }
 
 fn convert(from: &Path, to: &Path, element: Option<&str>) -> Result<(), Failure> {
-    let mesh = msh::read(from, MILLIMETRE).map_err(input)?;
+    let mesh = files::read(from, MILLIMETRE).map_err(input)?;
     let real = |path: &Path| path.canonicalize().ok();
     if real(from) == real(to) {
         return Err(input(format!("{}: is the file that is read; give another name", to.display())));
@@ -38,7 +38,7 @@ fn convert(from: &Path, to: &Path, element: Option<&str>) -> Result<(), Failure>
         None => mesh,
         Some(name) => into(&mesh, name)?,
     };
-    msh::write(&mesh, to, MILLIMETRE).map_err(input)?;
+    files::write(&mesh, to, MILLIMETRE).map_err(input)?;
     println!("{}: {} nodes, {} cells", to.display(), mesh.points().len(), mesh.cell_count());
     Ok(())
 }
@@ -62,7 +62,7 @@ fn into(mesh: &Mesh, name: &str) -> Result<Mesh, Failure> {
 
 /// Prints what a file holds and how good its cells are.
 fn info(file: &Path, unit: LengthUnit) -> Result<(), Failure> {
-    let mesh = msh::read(file, unit.metres).map_err(input)?;
+    let mesh = files::read(file, unit.metres).map_err(input)?;
     println!("{}: {} nodes, {} cells", file.display(), mesh.points().len(), mesh.cell_count());
     let count = |kind| (0..mesh.cell_count()).filter(|&c| mesh.kind(c) == kind).count();
     let kinds = CellKind::ALL.map(|kind| (kind.name(), count(kind)));
@@ -73,14 +73,14 @@ fn info(file: &Path, unit: LengthUnit) -> Result<(), Failure> {
     row("surfaces", if surfaces.is_empty() { "none (select with where)" } else { &surfaces });
     row("extent", &extent(&mesh, unit));
     let quality = quality::check(&mesh)
-        .map_err(|bad| input(format!("{}: {}", file.display(), msh::inverted(file, &bad))))?;
+        .map_err(|bad| input(format!("{}: {}", file.display(), files::inverted(file, &bad))))?;
     let volume = |value: f64| digits(value / CENTIMETRE.powi(3));
     let (least, most) = (volume(quality.min_volume.value), volume(quality.max_volume.value));
     row("volume", &format!("{} cm^3; of a cell {least} to {most} cm^3", volume(quality.volume)));
     let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
     row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));
     let Extreme { element, value } = quality.max_aspect;
-    let place = msh::row_of_cell(file, element).map_or_else(String::new, |row| format!(", {row}"));
+    let place = files::row_of_cell(file, element).map_or_else(String::new, |row| format!(", {row}"));
     row("worst cell", &format!("aspect {value:.2} (a regular cell has 1){place}"));
     Ok(())
 }

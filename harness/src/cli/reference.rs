@@ -14,7 +14,7 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, _) = open(&args.scene, &args.methods)?;
     folder::ready_file(&args.out).map_err(|problem| fail(&Failure::Input(problem)))?;
     let text = scene.text().to_string();
-    let mesh = geometry::msh::read(&args.points, args.unit.metres)
+    let mesh = geometry::files::read(&args.points, args.unit.metres)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     let read = |path: &PathBuf| -> Result<Stored, u8> {
         let of_file = |problem| fail(&Failure::Input(format!("{}: {problem}", path.display())));

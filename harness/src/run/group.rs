@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
-use geometry::{Point3, msh};
+use geometry::{Point3, files};
 use interp::Scheme;
 
 use super::mirror::Mirror;
@@ -266,10 +266,10 @@ fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
             Target::ReferenceNodes => {}
             Target::Probes => return Ok(probes.to_vec()),
             Target::File(file) => {
-                let mesh = msh::read(&file.path, file.unit).map_err(|bad| {
+                let mesh = files::read(&file.path, file.unit).map_err(|bad| {
                     let (key, problem) =
                         (transfer_key(scene, index, "to.file"), format!("can't be read: {bad}"));
-                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, "give a Gmsh 2.2 ASCII file")
+                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, files::READ)
                 })?;
                 return Ok(mesh.points().to_vec());
             }

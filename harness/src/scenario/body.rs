@@ -9,7 +9,7 @@ use geometry::generate::{
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
-use geometry::{CellKind, Mesh, Point3, msh, quality};
+use geometry::{CellKind, Mesh, Point3, files, quality};
 
 use super::same_body;
 use crate::Failure;
@@ -135,7 +135,7 @@ fn cuboid(
 fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
     let (key, help) = match (size, jitter) {
         (Size::File(file), _) => {
-            let problem = format!("gives a mesh in which {}", msh::inverted(&file.path, &bad));
+            let problem = format!("gives a mesh in which {}", files::inverted(&file.path, &bad));
             let help = "corners have to be in the order of the format";
             return Failure::input(Key::Size("file"), problem, help);
         }
@@ -200,8 +200,8 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
 
 /// A mesh file as it is.
 pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
-    msh::read(&file.path, file.unit)
-        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file"))
+    files::read(&file.path, file.unit)
+        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), files::READ))
 }
 
 /// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use cases::scene::MeshFile;
 use geometry::shapes::Shape;
-use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, locate, msh, read_points};
+use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, files, locate, read_points};
 
 use crate::Failure;
 use crate::error::Key;
@@ -77,13 +77,11 @@ fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
     if shape.inside(p) { 0.0 } else { (shape.project_to_surface(p) - p).norm() }
 }
 
-/// Reads the nodes of a `.msh` file or of lines `x, y, z`; `nodes` is how many the scene says there are.
+/// Reads the nodes of a mesh file or of lines `x, y, z`; `nodes` is how many the scene says there are.
 pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
-    let is_mesh = file.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh"));
-    let (points, lines, mesh) = if is_mesh {
-        let mesh = msh::read(&file.path, file.unit).map_err(|bad| {
-            Failure::input(FILE, format!("can't be read: {bad}"), "give a Gmsh 2.2 ASCII file")
-        })?;
+    let (points, lines, mesh) = if files::is_mesh(&file.path) {
+        let mesh = files::read(&file.path, file.unit)
+            .map_err(|bad| Failure::input(FILE, format!("can't be read: {bad}"), files::READ))?;
         (mesh.points().to_vec(), Vec::new(), Some(mesh))
     } else {
         let read = read_points(&file.path, file.unit).map_err(|bad| {

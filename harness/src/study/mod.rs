@@ -468,6 +468,8 @@ fn files(scene: &Scene) -> Vec<PathBuf> {
     if let Some(scene::Reference::Record(path)) = &scene.reference {
         found.push(path.clone());
     }
+    let included: Vec<PathBuf> = found.iter().flat_map(|file| geometry::files::included(file)).collect();
+    found.extend(included);
     found.sort();
     found.dedup();
     found

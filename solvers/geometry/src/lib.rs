@@ -18,10 +18,10 @@
 mod cell;
 mod cloud;
 pub mod element;
+pub mod files;
 pub mod generate;
 mod locate;
 mod mesh;
-pub mod files;
 pub mod quadrature;
 pub mod quality;
 mod random;

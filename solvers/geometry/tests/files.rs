@@ -8,8 +8,10 @@ use geometry::{CellKind, Mesh, Point3, files, quality};
 /// The files that `make.py` beside them made, of one kind.
 fn made(kind: CellKind) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|file| file.file_name().unwrap().to_string_lossy().starts_with(&format!("{}-", kind.name())));
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files
+        .retain(|file| file.file_name().unwrap().to_string_lossy().starts_with(&format!("{}-", kind.name())));
     files.sort();
     files
 }
@@ -29,7 +31,11 @@ fn files_of_other_programs_hold_two_cubes() {
             let mesh = files::read(file, 1.0).unwrap_or_else(|bad| panic!("{bad}"));
             let name = file.display();
             assert_eq!(mesh.uniform_kind(), Some(kind), "{name}");
-            assert_eq!((mesh.points().len(), mesh.cell_count()), (first.points().len(), first.cell_count()), "{name}");
+            assert_eq!(
+                (mesh.points().len(), mesh.cell_count()),
+                (first.points().len(), first.cell_count()),
+                "{name}"
+            );
             let quality = quality::check(&mesh).unwrap_or_else(|bad| panic!("{name}: {bad}"));
             assert!((quality.volume - 2.0).abs() < 1e-12, "{name}: {}", quality.volume);
             // What meshio writes has no groups.
@@ -46,7 +52,8 @@ fn files_of_other_programs_hold_two_cubes() {
             let faces = if kind.is_tet() { 8 } else { 4 };
             assert_eq!(sizes(&mesh, ["held", "pressed"]), [Some(faces); 2], "{name}");
             let held = mesh.group("held").unwrap();
-            let at_end = |&facet| mesh.facet_nodes(facet).all(|node| mesh.points()[node as usize].x.abs() < 1e-12);
+            let at_end =
+                |&facet| mesh.facet_nodes(facet).all(|node| mesh.points()[node as usize].x.abs() < 1e-12);
             assert!(held.iter().all(at_end), "{name}");
         }
     }
@@ -77,7 +84,9 @@ fn round_trips_keep_every_bit() {
 }
 
 fn deck(text: &str) -> Result<Mesh, String> {
-    files::read_bytes(text.as_bytes(), Path::new("deck.inp"), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
+    files::read_bytes(text.as_bytes(), Path::new("deck.inp"), 1.0)
+        .map(|(mesh, _)| mesh)
+        .map_err(|bad| bad.to_string())
 }
 
 const DECK: &str = "*heading
@@ -119,7 +128,8 @@ fn decks_are_read_as_people_write_them() {
         assert_eq!((mesh.points().len(), mesh.cell_count()), (5, 2));
         assert_eq!(mesh.points()[1], Point3::new(1.0, 0.0, 0.0));
         assert_eq!(names_of(&mesh).collect::<Vec<_>>(), ["both", "second"]);
-        let groups: Vec<(&str, usize)> = mesh.group_names().map(|name| (name, mesh.group(name).unwrap().len())).collect();
+        let groups: Vec<(&str, usize)> =
+            mesh.group_names().map(|name| (name, mesh.group(name).unwrap().len())).collect();
         assert_eq!(groups, [("All Nodes", 6), ("bottom", 1), ("skin", 1), ("slanted face", 1)]);
         assert_eq!(mesh.group("bottom"), mesh.group("skin"));
         let slanted = mesh.group("slanted face").unwrap()[0];
@@ -215,6 +225,7 @@ fn files_that_decks_include_are_read_and_named() {
     write("deck.inp", "*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n");
     let file = folder.path().join("deck.inp");
     assert_eq!(files::read(&file, 1.0).unwrap().cell_count(), 1);
+    assert_eq!(files::included(&file), [folder.path().join("nodes.inp")]);
     write("nodes.inp", &nodes.replace("3, 0", "2, 0"));
     let bad = files::read(&file, 1.0).unwrap_err().to_string();
     assert!(bad.ends_with("deck.inp:1: in nodes.inp, line 4: node 2 comes a second time"), "{bad}");
@@ -250,7 +261,8 @@ fn cut_and_spoiled_files_are_refused() {
 /// A claim beyond the file's size takes no memory: the nodes of a binary file, a set of a block.
 #[test]
 fn claims_beyond_the_size_are_refused() {
-    let box_of = box_mesh(CellKind::Tet4, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [1; 3], [1.0; 3], None);
+    let box_of =
+        box_mesh(CellKind::Tet4, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [1; 3], [1.0; 3], None);
     assert!(box_of.is_ok());
     let file = &made(CellKind::Tet4)[4];
     let bytes = std::fs::read(file).unwrap();

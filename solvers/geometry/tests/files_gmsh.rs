@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use geometry::generate::{box_mesh, kidney_mesh};
 use geometry::files::{self, FileError, Problem};
+use geometry::generate::{box_mesh, kidney_mesh};
 use geometry::{CellKind, Mesh, Point3, quality};
 use proptest::prelude::*;
 
@@ -221,7 +221,10 @@ fn files_units_and_names_that_cannot_be() {
         .unwrap();
     let named = folder.path().join("named.msh");
     for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(files::read_bytes(GOOD.as_bytes(), Path::new(NAME), unit), Err(FileError::Unit { .. })));
+        assert!(matches!(
+            files::read_bytes(GOOD.as_bytes(), Path::new(NAME), unit),
+            Err(FileError::Unit { .. })
+        ));
         assert!(matches!(files::write(&mesh, &named, unit), Err(FileError::Unit { .. })));
     }
     let quoted = mesh.with_group("a \"b\"", vec![]).unwrap();

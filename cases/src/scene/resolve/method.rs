@@ -47,8 +47,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
         Some(Source::File(file)) => Some(file),
         _ => None,
     };
-    let with_cells = keys.size.is_some()
-        || file.is_some_and(|f| f.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh")));
+    let with_cells = keys.size.is_some() || file.is_some_and(|f| geometry::files::is_mesh(&f.path));
     let layout = Layout {
         nodes: keys.nodes.map(|n| count(n, &at("nodes"), report)),
         size: keys.size.map(|s| size(s, &at("size"), report)),

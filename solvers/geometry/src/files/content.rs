@@ -192,8 +192,10 @@ impl Content {
         other: &Content,
         moved: impl Fn(&Point3) -> Point3,
     ) -> Parsed<(u32, u32)> {
-        let first_node = index(place, "nodes", self.points.len() + other.points.len())? - other.points.len() as u32;
-        let first_cell = index(place, "elements", self.kinds.len() + other.kinds.len())? - other.kinds.len() as u32;
+        let first_node =
+            index(place, "nodes", self.points.len() + other.points.len())? - other.points.len() as u32;
+        let first_cell =
+            index(place, "elements", self.kinds.len() + other.kinds.len())? - other.kinds.len() as u32;
         self.points.extend(other.points.iter().map(moved));
         self.kinds.extend_from_slice(&other.kinds);
         self.nodes.extend(other.nodes.iter().map(|node| node + first_node));
@@ -211,9 +213,9 @@ impl Content {
             ..*face
         }));
         let sets = other.node_sets.iter();
-        self.node_sets.extend(sets.map(|(name, nodes)| {
-            (name.clone(), nodes.iter().map(|node| node + first_node).collect())
-        }));
+        self.node_sets.extend(
+            sets.map(|(name, nodes)| (name.clone(), nodes.iter().map(|node| node + first_node).collect())),
+        );
         Ok((first_node, first_cell))
     }
 
@@ -234,7 +236,8 @@ impl Content {
         }
         let nodes = self.nodes.iter().map(|&n| used[n as usize]).collect();
         let (regions, names) = without_empty(self.regions, self.region_names);
-        let mut mesh = Mesh::from_flat(points, self.kinds, nodes).map_err(wrong)?.with_regions(regions, names);
+        let mut mesh =
+            Mesh::from_flat(points, self.kinds, nodes).map_err(wrong)?.with_regions(regions, names);
         let mut groups: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
         for (group, facet) in self.facets {
             groups.entry(self.group_names[group].clone()).or_default().push(facet);
@@ -333,7 +336,17 @@ fn without_empty(regions: Vec<u16>, names: Vec<String>) -> (Vec<u16>, Vec<String
     let mut has = vec![false; names.len()];
     regions.iter().for_each(|&r| has[r as usize] = true);
     let mut next = 0;
-    let new: Vec<u16> = has.iter().map(|&has| if has { next += 1; next - 1 } else { u16::MAX }).collect();
+    let new: Vec<u16> = has
+        .iter()
+        .map(|&has| {
+            if has {
+                next += 1;
+                next - 1
+            } else {
+                u16::MAX
+            }
+        })
+        .collect();
     let kept = names.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name).collect();
     (regions.into_iter().map(|r| new[r as usize]).collect(), kept)
 }

@@ -91,7 +91,9 @@ fn short(place: Place) -> String {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
     /// None of the formats that are read.
-    #[error("'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1) and Abaqus .inp (*HEADING, *NODE) are")]
+    #[error(
+        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1) and Abaqus .inp (*HEADING, *NODE) are"
+    )]
     Format {
         /// The beginning of the file.
         found: String,

@@ -12,7 +12,7 @@ mod lines;
 mod numbers;
 mod rows;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::Mesh;
 use content::Content;
@@ -20,6 +20,25 @@ use error::Parsed;
 
 pub use error::{FileError, Place, Problem};
 pub use rows::{Row, inverted, row_of_cell};
+
+/// What [`read`] takes, for messages.
+pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp";
+
+/// Whether a file is a mesh by its name, where it may be a list of points too.
+pub fn is_mesh(file: &Path) -> bool {
+    ["msh", "inp"].iter().any(|known| suffix(file) == *known)
+}
+
+fn suffix(file: &Path) -> String {
+    file.extension().map(|s| s.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// The files that a mesh file includes, by their names in it, as far as they can be read; most have none.
+pub fn included(file: &Path) -> Vec<PathBuf> {
+    let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
+    let is_deck = suffix(file) == "inp";
+    if is_deck { abaqus::included(file, &folder, 0) } else { Vec::new() }
+}
 
 /// Reads a mesh file by what it holds, whatever its name; `unit` is the length of the file's unit in metres (0.001 for millimetres).
 ///
@@ -52,8 +71,7 @@ pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
     if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
         return Err(FileError::Unit { file: file.to_path_buf(), unit });
     }
-    let suffix = file.extension().map(|s| s.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let text = match suffix.as_str() {
+    let text = match suffix(file).as_str() {
         "msh" => gmsh::write::text(mesh, unit),
         "inp" => abaqus::write::text(mesh, unit),
         _ => return Err(FileError::Suffix { file: file.to_path_buf() }),

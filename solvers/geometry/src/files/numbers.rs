@@ -20,7 +20,10 @@ impl Numbers {
         if self.get(number).is_some() {
             return false;
         }
-        if self.others.is_empty() && u64::from(place) == self.run && number.checked_sub(self.first) == Some(self.run) {
+        if self.others.is_empty()
+            && u64::from(place) == self.run
+            && number.checked_sub(self.first) == Some(self.run)
+        {
             self.run += 1;
         } else {
             self.others.insert(number, place);

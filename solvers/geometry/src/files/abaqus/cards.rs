@@ -29,11 +29,16 @@ pub(super) fn cards(text: &str) -> Parsed<Vec<Card<'_>>> {
         } else if let Some(card) = cards.last_mut() {
             card.data.push((place, line));
         } else {
-            return Err((place, Problem::Expected { expected: "a keyword", found: line.chars().take(40).collect() }));
+            return Err((
+                place,
+                Problem::Expected { expected: "a keyword", found: line.chars().take(40).collect() },
+            ));
         }
     }
     match head {
-        Some((place, _)) => Err((place, Problem::End { expected: "the rest of a keyword line that ends with a comma" })),
+        Some((place, _)) => {
+            Err((place, Problem::End { expected: "the rest of a keyword line that ends with a comma" }))
+        }
         None => Ok(cards),
     }
 }
@@ -91,7 +96,9 @@ impl Card<'_> {
     pub(super) fn need(&self, key: &'static str) -> Parsed<&str> {
         match self.get(key).filter(|value| !value.is_empty()) {
             Some(value) => Ok(value),
-            None => Err((self.place, Problem::Expected { expected: key, found: format!("*{}", self.keyword) })),
+            None => {
+                Err((self.place, Problem::Expected { expected: key, found: format!("*{}", self.keyword) }))
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use super::text;
 use crate::{Point3, Vector3};
 
 /// Files that include files: a deck that includes itself ends here.
-const DEEPEST: usize = 8;
+pub(super) const DEEPEST: usize = 8;
 
 pub(super) struct Deck {
     folder: PathBuf,
@@ -20,7 +20,6 @@ pub(super) struct Deck {
     open: Option<(String, Scope)>,
     parts: Vec<(String, Scope)>,
     instances: Vec<Instance>,
-    in_instance: bool,
     ended: bool,
 }
 
@@ -40,7 +39,6 @@ impl Deck {
             open: None,
             parts: Vec::new(),
             instances: Vec::new(),
-            in_instance: false,
             ended: false,
         }
     }
@@ -74,15 +72,12 @@ impl Deck {
             }
             "END PART" => self.close_part(card.place),
             "INSTANCE" => self.instance(card),
-            "END INSTANCE" => {
-                self.in_instance = false;
-                Ok(())
-            }
             "STEP" => {
                 self.ended = true;
                 Ok(())
             }
-            "SYSTEM" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBMODEL" | "TRANSFORM SHELL" => {
+            "SYSTEM" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBMODEL"
+            | "TRANSFORM SHELL" => {
                 let help = "write the deck with all nodes and elements in it, in one system of coordinates";
                 Err((card.place, Problem::Unread { what: format!("*{}", card.keyword), help }))
             }
@@ -112,7 +107,8 @@ impl Deck {
             let Some(&(place, words)) = card.data.get(line) else { return Ok(Vec::new()) };
             let words: Vec<String> = split(words).into_iter().filter(|word| !word.is_empty()).collect();
             if words.len() != count {
-                let expected = if count == 3 { "a shift along x, y, z" } else { "two points of an axis and an angle" };
+                let expected =
+                    if count == 3 { "a shift along x, y, z" } else { "two points of an axis and an angle" };
                 return Err((place, Problem::Expected { expected, found: words.join(", ") }));
             }
             words.iter().map(|word| real(place, word, "a number")).collect()
@@ -123,7 +119,8 @@ impl Deck {
             let at = Point3::new(turn[0], turn[1], turn[2]);
             (at, Point3::new(turn[3], turn[4], turn[5]) - at, turn[6].to_radians())
         });
-        let moved = if shift.is_empty() { Vector3::zeros() } else { Vector3::new(shift[0], shift[1], shift[2]) };
+        let moved =
+            if shift.is_empty() { Vector3::zeros() } else { Vector3::new(shift[0], shift[1], shift[2]) };
         if let Some((_, axis, _)) = turned
             && axis.norm() == 0.0
         {
@@ -131,7 +128,6 @@ impl Deck {
             return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
         }
         self.instances.push(Instance { place: card.place, part, moved, turned });
-        self.in_instance = true;
         Ok(())
     }
 

@@ -41,7 +41,10 @@ pub(super) fn element_type(name: &str) -> Option<Type> {
             _ => {}
         }
     }
-    let thin = ["T2D", "T3D", "B2", "B3", "RB", "SPRING", "MASS", "DASHPOT", "CONN", "GAP", "ROTARY", "DC", "STRI", "SAX"];
+    let thin = [
+        "T2D", "T3D", "B2", "B3", "RB", "SPRING", "MASS", "DASHPOT", "CONN", "GAP", "ROTARY", "DC", "STRI",
+        "SAX",
+    ];
     thin.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
 }
 

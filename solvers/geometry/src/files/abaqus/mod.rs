@@ -10,7 +10,7 @@ mod kinds;
 mod scope;
 pub(super) mod write;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
@@ -20,6 +20,22 @@ pub(super) fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let mut deck = deck::Deck::new(&folder);
     deck.read(text(bytes)?, 0)?;
     deck.finish()
+}
+
+/// Files below a deck, in the order of their lines.
+pub(super) fn included(file: &Path, folder: &Path, depth: usize) -> Vec<PathBuf> {
+    let Ok(bytes) = std::fs::read(file) else { return Vec::new() };
+    let cards = text(&bytes).and_then(cards::cards).unwrap_or_default();
+    let names = cards.iter().filter(|card| card.keyword == "INCLUDE").filter_map(|card| card.get("INPUT"));
+    let mut found = Vec::new();
+    for path in names.map(|name| folder.join(name)) {
+        if depth < deck::DEEPEST {
+            let below = included(&path, folder, depth + 1);
+            found.push(path);
+            found.extend(below);
+        }
+    }
+    found
 }
 
 fn text(bytes: &[u8]) -> Parsed<&str> {

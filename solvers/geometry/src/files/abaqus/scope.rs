@@ -137,7 +137,13 @@ impl Scope {
             for word in words.iter().filter(|word| !word.is_empty()) {
                 let sets = if of_elements { &self.elsets } else { &self.nsets };
                 let unknown = || {
-                    let of = if word.parse::<u64>().is_err() { "set" } else if of_elements { "element" } else { "node" };
+                    let of = if word.parse::<u64>().is_err() {
+                        "set"
+                    } else if of_elements {
+                        "element"
+                    } else {
+                        "node"
+                    };
                     (place, Problem::UnknownMember { what, name: name.into(), of, number: word.clone() })
                 };
                 match word.parse::<u64>() {
@@ -188,10 +194,14 @@ impl Scope {
                 continue;
             }
             let face = words.get(1).map(|word| word.to_ascii_uppercase()).unwrap_or_default();
-            let face = face.strip_prefix('S').and_then(|face| face.parse::<usize>().ok()).filter(|face| *face > 0);
+            let face =
+                face.strip_prefix('S').and_then(|face| face.parse::<usize>().ok()).filter(|face| *face > 0);
             let Some(face) = face else {
                 let found = words.get(1).cloned().unwrap_or_default();
-                return Err((place, Problem::Expected { expected: "the face of an element, such as S1", found }));
+                return Err((
+                    place,
+                    Problem::Expected { expected: "the face of an element, such as S1", found },
+                ));
             };
             let group = self.content.group(name);
             for number in numbers {
@@ -202,7 +212,10 @@ impl Scope {
                 let corners = faces(self.kinds[cell as usize]).get(face - 1);
                 if !corners.is_some_and(|corners| self.content.facet(group, cell, corners)) {
                     let found = format!("S{face} of element {number}");
-                    return Err((place, Problem::Expected { expected: "a face that the element has", found }));
+                    return Err((
+                        place,
+                        Problem::Expected { expected: "a face that the element has", found },
+                    ));
                 }
             }
         }
@@ -218,7 +231,8 @@ impl Scope {
                 let members = &self.elsets.lists[key].1;
                 members.iter().filter(|&&number| self.content.cell_of(number).is_some()).count()
             };
-            let mut by_size: Vec<(usize, &String)> = self.elsets.order.iter().map(|key| (cells(key), key)).collect();
+            let mut by_size: Vec<(usize, &String)> =
+                self.elsets.order.iter().map(|key| (cells(key), key)).collect();
             by_size.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
             deciding = by_size.into_iter().map(|(_, key)| (Place::Line(1), key.clone())).collect();
         }
@@ -260,9 +274,7 @@ fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64>
         Some(count) if step > 0 && count >= MOST => {
             Err((place, Problem::TooMany { what: "numbers to generate", count: count as usize }))
         }
-        Some(count) if step > 0 => {
-            Ok((0..=count).map(move |k| first + k * step))
-        }
+        Some(count) if step > 0 => Ok((0..=count).map(move |k| first + k * step)),
         _ => {
             let expected = "a first number, a last one not below it, and a step of 1 or more";
             Err((place, Problem::Expected { expected, found: words.join(", ") }))

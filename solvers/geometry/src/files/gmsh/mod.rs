@@ -22,7 +22,10 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     let mut next = || {
         let blank = |line: &[u8]| line.iter().all(u8::is_ascii_whitespace);
         let (index, line) = lines.find(|(_, line)| !blank(line))?;
-        Some((Place::Line(index + 1), String::from_utf8_lossy(&line[..line.len().min(60)]).trim().to_string()))
+        Some((
+            Place::Line(index + 1),
+            String::from_utf8_lossy(&line[..line.len().min(60)]).trim().to_string(),
+        ))
     };
     let (place, found) = next().unwrap_or((Place::Line(1), String::new()));
     if found != "$MeshFormat" {

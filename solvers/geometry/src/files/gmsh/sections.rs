@@ -72,7 +72,9 @@ impl Reader<'_> {
                     self.nodes()?;
                     nodes = true;
                 }
-                "$Elements" if elements => return self.scanner.fail(Problem::Repeated { section: "$Elements" }),
+                "$Elements" if elements => {
+                    return self.scanner.fail(Problem::Repeated { section: "$Elements" });
+                }
                 "$Elements" if !nodes => return self.scanner.fail(Problem::Missing { section: "$Nodes" }),
                 "$Elements" => {
                     self.elements()?;
@@ -269,7 +271,9 @@ impl Reader<'_> {
             let count = usize::try_from(count).ok().filter(|count| (1..=left).contains(count));
             let (Some(count), 0..=64) = (count, tags) else {
                 let expected = "as many elements as the section has, with a few tags";
-                return self.scanner.fail(Problem::Expected { expected, found: format!("{count:?}, {tags} tags") });
+                return self
+                    .scanner
+                    .fail(Problem::Expected { expected, found: format!("{count:?}, {tags} tags") });
             };
             for _ in 0..count {
                 let number = self.scanner.tag(false, "an element number")?;

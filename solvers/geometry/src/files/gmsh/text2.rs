@@ -33,7 +33,8 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
             }
             _ if line.starts_with('$') && !line.starts_with("$End") => skip(&mut lines, line)?,
             _ => {
-                return lines.fail(Problem::Expected { expected: "the start of a section", found: line.into() });
+                return lines
+                    .fail(Problem::Expected { expected: "the start of a section", found: line.into() });
             }
         }
     }
