@@ -51,9 +51,14 @@ impl Content {
         Ok(())
     }
 
-    /// Whether there are nodes.
-    pub(super) fn has_nodes(&self) -> bool {
-        !self.points.is_empty()
+    /// Number of nodes so far.
+    pub(super) fn node_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Number of elements so far, cells or not.
+    pub(super) fn element_count(&self) -> usize {
+        self.cell_of_element.len()
     }
 
     /// Number of cells so far.

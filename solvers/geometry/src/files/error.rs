@@ -15,6 +15,8 @@ pub enum Place {
     Line(usize),
     /// Byte number from 0, of a binary file.
     Byte(usize),
+    /// Cell number from 0, of a file that has arrays of cells.
+    Cell(usize),
 }
 
 impl fmt::Display for Place {
@@ -22,6 +24,7 @@ impl fmt::Display for Place {
         match self {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
+            Place::Cell(cell) => write!(f, "cell {cell}"),
         }
     }
 }
@@ -72,7 +75,7 @@ pub enum FileError {
         unit: f64,
     },
     /// A name from which no format follows.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2) and .inp (Abaqus, CalculiX); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX) and .vtu (VTK); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
@@ -83,7 +86,7 @@ pub enum FileError {
 fn short(place: Place) -> String {
     match place {
         Place::Line(line) => line.to_string(),
-        Place::Byte(_) => format!(" {place}"),
+        Place::Byte(_) | Place::Cell(_) => format!(" {place}"),
     }
 }
 
@@ -92,7 +95,7 @@ fn short(place: Place) -> String {
 pub enum Problem {
     /// None of the formats that are read.
     #[error(
-        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1) and Abaqus .inp (*HEADING, *NODE) are"
+        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1), Abaqus .inp (*HEADING, *NODE) and VTK .vtu (<VTKFile) are"
     )]
     Format {
         /// The beginning of the file.
@@ -217,6 +220,20 @@ pub enum Problem {
         what: String,
         /// What to do.
         help: &'static str,
+    },
+    /// Text that is no XML.
+    #[error("{problem}")]
+    Xml {
+        /// What the parser says.
+        problem: String,
+    },
+    /// An array of another length than its file says elsewhere.
+    #[error("an array of {found} where {expected} should be (numbers in text, bytes else)")]
+    ArrayLength {
+        /// Its length.
+        found: usize,
+        /// The length wanted.
+        expected: usize,
     },
     /// Something in a file that this one includes.
     #[error("in {file}, {place}: {problem}")]

@@ -1,4 +1,4 @@
-//! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp).
+//! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu).
 //!
 //! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one [`content::Content`],
 //! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
@@ -11,6 +11,7 @@ mod gmsh;
 mod lines;
 mod numbers;
 mod rows;
+mod vtu;
 
 use std::path::{Path, PathBuf};
 
@@ -22,11 +23,11 @@ pub use error::{FileError, Place, Problem};
 pub use rows::{Row, inverted, row_of_cell};
 
 /// What [`read`] takes, for messages.
-pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp";
+pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu";
 
 /// Whether a file is a mesh by its name, where it may be a list of points too.
 pub fn is_mesh(file: &Path) -> bool {
-    ["msh", "inp"].iter().any(|known| suffix(file) == *known)
+    ["msh", "inp", "vtu"].iter().any(|known| suffix(file) == *known)
 }
 
 fn suffix(file: &Path) -> String {
@@ -62,7 +63,7 @@ pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row
     content.into_mesh(unit, file)
 }
 
-/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2) or `.inp`. Numbers are written so that they read back to the
+/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`. Numbers are written so that they read back to the
 /// same bits (for `unit = 1`; else to the rounding of one division and one product).
 ///
 /// # Errors
@@ -71,25 +72,27 @@ pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
     if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
         return Err(FileError::Unit { file: file.to_path_buf(), unit });
     }
-    let text = match suffix(file).as_str() {
-        "msh" => gmsh::write::text(mesh, unit),
-        "inp" => abaqus::write::text(mesh, unit),
+    let bytes = match suffix(file).as_str() {
+        "msh" => gmsh::write::text(mesh, unit).map(String::into_bytes),
+        "inp" => abaqus::write::text(mesh, unit).map(String::into_bytes),
+        "vtu" => vtu::write::bytes(mesh, unit),
         _ => return Err(FileError::Suffix { file: file.to_path_buf() }),
     };
-    let text = text.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
-    std::fs::write(file, text).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
+    let bytes = bytes.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
+    std::fs::write(file, bytes).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
 fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     std::fs::read(file).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
-/// By what a file begins with: `$MeshFormat` is Gmsh's, `*KEYWORD` Abaqus's.
+/// By what a file begins with: `$MeshFormat` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
         [b'$', ..] => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
+        [b'<', ..] => vtu::parse(bytes),
         rest => {
             let line = rest.split(|&b| b == b'\n').next().unwrap_or_default();
             let found = String::from_utf8_lossy(&line[..line.len().min(40)]).trim().to_string();

@@ -10,7 +10,7 @@ use crate::quality::InvertedElement;
 /// Where a file has a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// Line or byte.
+    /// Line, byte or cell.
     pub place: Place,
     /// The number that the file gives the element.
     pub tag: u64,
@@ -18,7 +18,11 @@ pub struct Row {
 
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, element {}", self.place, self.tag)
+        match self.place {
+            // Such files have no other number.
+            Place::Cell(_) => write!(f, "{}", self.place),
+            _ => write!(f, "{}, element {}", self.place, self.tag),
+        }
     }
 }
 

@@ -1,9 +1,10 @@
 """Makes the mesh files beside this script with Gmsh and meshio: two boxes of 1 x 1 x 1 and 1 x 1 x 1, side by side.
 
-    pip install gmsh meshio && python make.py
+    pip install gmsh meshio vtk && python make.py
 """
 import gmsh
 import meshio
+import vtk
 
 
 def model(kind):
@@ -37,6 +38,35 @@ def model(kind):
         gmsh.model.mesh.setOrder(2)
 
 
+def vtus(kind):
+    """Every encoding that VTK writes, of a grid that meshio made."""
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(f"{kind}-meshio-text.vtu")
+    reader.Update()
+    for name, mode, encode, pack, big, wide in [
+        ("text", "Ascii", 0, None, 0, 0),
+        ("base64", "Binary", 0, None, 0, 0),
+        ("base64-zlib-64", "Binary", 0, "ZLib", 0, 1),
+        ("raw", "Appended", 0, None, 0, 1),
+        ("raw-big", "Appended", 0, None, 1, 0),
+        ("raw-zlib", "Appended", 0, "ZLib", 0, 0),
+        ("raw-lz4", "Appended", 0, "LZ4", 0, 1),
+        ("raw-zlib-big", "Appended", 0, "ZLib", 1, 1),
+        ("appended-base64-lz4", "Appended", 1, "LZ4", 0, 0),
+    ]:
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        writer.SetInputData(reader.GetOutput())
+        writer.SetFileName(f"{kind}-vtk-{name}.vtu")
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.SetEncodeAppendedData(encode)
+        getattr(writer, f"SetCompressorTypeTo{pack or 'None'}")()
+        (writer.SetByteOrderToBigEndian if big else writer.SetByteOrderToLittleEndian)()
+        (writer.SetHeaderTypeToUInt64 if wide else writer.SetHeaderTypeToUInt32)()
+        # Several blocks of the smallest size.
+        writer.SetBlockSize(8 * 64)
+        writer.Write()
+
+
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 for kind in ("tet4", "tet10", "hex8", "hex20"):
@@ -55,4 +85,12 @@ for kind in ("tet4", "tet10", "hex8", "hex20"):
     solid = [block for block in mesh.cells if block.type in ("tetra", "tetra10", "hexahedron", "hexahedron20")]
     plain = meshio.Mesh(mesh.points, [(b.type, b.data) for b in solid])
     plain.write(f"{kind}-meshio.inp")
+    kinds = ("tetra", "tetra10", "hexahedron", "hexahedron20", "triangle", "triangle6", "quad", "quad8")
+    kept = [at for at, block in enumerate(mesh.cells) if block.type in kinds]
+    groups = {"gmsh:physical": [mesh.cell_data["gmsh:physical"][at] for at in kept]}
+    whole = meshio.Mesh(mesh.points, [(mesh.cells[at].type, mesh.cells[at].data) for at in kept], cell_data=groups)
+    meshio.vtu.write(f"{kind}-meshio-text.vtu", whole, binary=False)
+    meshio.vtu.write(f"{kind}-meshio-zlib.vtu", whole, binary=True, compression="zlib")
+    if kind in ("tet10", "hex8"):
+        vtus(kind)
 gmsh.finalize()

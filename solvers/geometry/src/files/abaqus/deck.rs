@@ -174,8 +174,8 @@ impl Deck {
             };
             whole.append(*place, &self.parts[*part].1.content, put)?;
         }
-        match (whole.has_nodes(), whole.cell_count()) {
-            (false, _) => Err((end, Problem::Missing { section: "*NODE" })),
+        match (whole.node_count(), whole.cell_count()) {
+            (0, _) => Err((end, Problem::Missing { section: "*NODE" })),
             (_, 0) => Err((end, Problem::NoCells)),
             _ => Ok(whole),
         }

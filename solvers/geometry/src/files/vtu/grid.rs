@@ -1,0 +1,303 @@
+//! The grid: points, cells and what they are named by.
+
+use std::collections::HashMap;
+
+use roxmltree::{Document, Node};
+
+use super::super::content::Content;
+use super::super::error::{Parsed, Place, Problem};
+use super::super::rows::Row;
+use super::array::{Coding, Compressor, Numbers, Source, read};
+use crate::{CellKind, Point3};
+
+/// Arrays of cells that name regions, by the programs that write them; ours first.
+const REGIONS: [&str; 10] = [
+    "region",
+    "gmsh:physical",
+    "physical",
+    "medit:ref",
+    "CellEntityIds",
+    "MaterialIDs",
+    "material",
+    "Material",
+    "RegionId",
+    "ElementBlockIds",
+];
+
+/// Types whose cells are read, for the message of one whose are not.
+const KNOWN: &str = "types 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points are read";
+
+/// The order of nodes is ours.
+const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+
+struct File<'a> {
+    bytes: &'a [u8],
+    document: &'a Document<'a>,
+    coding: Coding,
+    /// Bytes behind the `_` of appended data, and whether they are base64.
+    appended: Option<(usize, bool)>,
+}
+
+pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
+    // Raw data is no XML: what comes before it is closed by hand.
+    let tag = b"<AppendedData";
+    let cut = bytes.windows(tag.len()).position(|w| w == tag);
+    let text = std::str::from_utf8(&bytes[..cut.unwrap_or(bytes.len())]).map_err(|bad| {
+        let place = Place::Line(super::super::line_of(bytes, bad.valid_up_to()));
+        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
+    })?;
+    let closed = if cut.is_some() { format!("{text}</VTKFile>") } else { text.to_string() };
+    let document = Document::parse(&closed)
+        .map_err(|bad| (Place::Line(bad.pos().row as usize), Problem::Xml { problem: bad.to_string() }))?;
+    let root = document.root_element();
+    let here = Place::Line(1);
+    if !root.has_tag_name("VTKFile") || root.attribute("type") != Some("UnstructuredGrid") {
+        let found = root.attribute("type").unwrap_or(root.tag_name().name()).to_string();
+        return Err((here, Problem::Expected { expected: "<VTKFile type=\"UnstructuredGrid\">", found }));
+    }
+    let compressor = match root.attribute("compressor") {
+        None | Some("") => Compressor::None,
+        Some("vtkZLibDataCompressor") => Compressor::Zlib,
+        Some("vtkLZ4DataCompressor") => Compressor::Lz4,
+        Some(other) => {
+            let help = "write the file with zlib, lz4 or no compression";
+            return Err((here, Problem::Unread { what: other.to_string(), help }));
+        }
+    };
+    let head = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
+    let coding = Coding { big_endian: root.attribute("byte_order") == Some("BigEndian"), head, compressor };
+    let appended = cut.map(|cut| appended(bytes, cut)).transpose()?;
+    File { bytes, document: &document, coding, appended }.content()
+}
+
+/// Where the appended data begins, behind its `_`.
+fn appended(bytes: &[u8], cut: usize) -> Parsed<(usize, bool)> {
+    let close = bytes[cut..].iter().position(|&b| b == b'>').map(|at| cut + at + 1);
+    let start = close.and_then(|close| Some(close + bytes[close..].iter().position(|&b| b == b'_')? + 1));
+    let (Some(close), Some(start)) = (close, start) else {
+        return Err((Place::Byte(cut), Problem::End { expected: "_ and the appended data" }));
+    };
+    Ok((start, bytes[cut..close].windows(6).any(|w| w == b"base64")))
+}
+
+impl<'a> File<'a> {
+    fn content(&self) -> Parsed<Content> {
+        let mut content = Content::default();
+        let all = self.document.root_element();
+        let region_names = self.names(all, "region-names")?;
+        let surface_names = self.names(all, "surface-names")?;
+        let mut pieces = 0;
+        for piece in all.descendants().filter(|node| node.has_tag_name("Piece")) {
+            pieces += 1;
+            self.piece(piece, &mut content, &region_names, &surface_names)?;
+        }
+        match (pieces, content.cell_count()) {
+            (0, _) => Err((Place::Line(1), Problem::Missing { section: "<Piece>" })),
+            (_, 0) => Err((Place::Line(1), Problem::NoCells)),
+            _ => Ok(content),
+        }
+    }
+
+    fn place(&self, node: Node) -> Place {
+        Place::Line(self.document.text_pos_at(node.range().start).row as usize)
+    }
+
+    fn count(&self, piece: Node, name: &'static str) -> Parsed<usize> {
+        let found = piece.attribute(name).unwrap_or_default();
+        let count = found.trim().parse::<usize>();
+        count.map_err(|_| (self.place(piece), Problem::Expected { expected: name, found: found.into() }))
+    }
+
+    /// One piece; its points come behind those of the pieces before.
+    fn piece(
+        &self,
+        piece: Node,
+        content: &mut Content,
+        region_names: &[String],
+        surface_names: &[String],
+    ) -> Parsed<()> {
+        let (points, cells) = (self.count(piece, "NumberOfPoints")?, self.count(piece, "NumberOfCells")?);
+        let first = content.node_count() as u64;
+        let section = |name: &'static str| {
+            let found = piece.children().find(|node| node.has_tag_name(name));
+            found.ok_or((self.place(piece), Problem::Missing { section: name }))
+        };
+        let coordinates = section("Points")?.children().find(|node| node.has_tag_name("DataArray"));
+        let coordinates = coordinates.ok_or((self.place(piece), Problem::Missing { section: "Points" }))?;
+        let three = points
+            .checked_mul(3)
+            .ok_or((self.place(piece), Problem::TooMany { what: "nodes", count: points }))?;
+        let at = reals(self.array(coordinates, three)?);
+        for (number, x) in at.chunks_exact(3).enumerate() {
+            content.node(self.place(coordinates), first + number as u64, Point3::new(x[0], x[1], x[2]))?;
+        }
+        let of_cells = section("Cells")?;
+        let named = |name: &'static str| {
+            let mut arrays = of_cells.children().filter(|node| node.has_tag_name("DataArray"));
+            let found = arrays.find(|node| node.attribute("Name") == Some(name));
+            found.ok_or((self.place(of_cells), Problem::Missing { section: name }))
+        };
+        let types = whole(self.array(named("types")?, cells)?, self.place(of_cells))?;
+        let offsets = whole(self.array(named("offsets")?, cells)?, self.place(of_cells))?;
+        let ends: Option<Vec<usize>> = offsets.iter().map(|&end| usize::try_from(end).ok()).collect();
+        let ends = ends.filter(|ends| ends.is_sorted());
+        let Some(ends) = ends else {
+            let expected = "offsets that grow";
+            return Err((
+                self.place(named("offsets")?),
+                Problem::Expected { expected, found: "others".into() },
+            ));
+        };
+        let length = ends.last().copied().unwrap_or(0);
+        let list = whole(self.array(named("connectivity")?, length)?, self.place(of_cells))?;
+        let regions = self.cell_array(piece, cells, &REGIONS)?;
+        let surfaces = self.cell_array(piece, cells, &["surface"])?;
+        let value = |of: &Option<Vec<i64>>, cell: usize| of.as_ref().map(|values| values[cell]);
+        let offset = content.element_count() as u64;
+        let mut start = 0;
+        for (cell, (&kind, end)) in types.iter().zip(ends).enumerate() {
+            let row = Row { place: Place::Cell(cell), tag: offset + cell as u64 };
+            let nodes: Option<Vec<u64>> =
+                list[start..end].iter().map(|&node| Some(first + u64::try_from(node).ok()?)).collect();
+            let Some(nodes) = nodes else {
+                let expected = "nodes from 0 on";
+                return Err((
+                    row.place,
+                    Problem::Expected { expected, found: format!("{:?}", &list[start..end]) },
+                ));
+            };
+            start = end;
+            match of_type(kind) {
+                Some((count, _)) if count != nodes.len() => {
+                    let (kind, found) = (kind.to_string(), nodes.len());
+                    return Err((
+                        row.place,
+                        Problem::Length { element: row.tag, kind, found, expected: count },
+                    ));
+                }
+                Some((_, What::Cell(kind))) => {
+                    let name =
+                        value(&regions, cell).map_or("body".into(), |v| name_of(region_names, v, "region"));
+                    let region = content.region(row.place, &name)?;
+                    content.cell(row, kind, region, &nodes, &ORDER[..nodes.len()])?;
+                }
+                Some((_, What::Face(corners))) => {
+                    let group = value(&surfaces, cell).or_else(|| value(&regions, cell)).filter(|&v| v >= 0);
+                    match group {
+                        Some(v) => {
+                            let group = content.group(&name_of(surface_names, v, "surface"));
+                            content.face(row, &[group], &nodes[..corners])?;
+                        }
+                        None => content.element(row.place, row.tag)?,
+                    }
+                }
+                None if THIN.contains(&kind) => content.element(row.place, row.tag)?,
+                None => {
+                    let kind = kind.to_string();
+                    return Err((row.place, Problem::UnknownType { element: row.tag, kind, known: KNOWN }));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whole numbers per cell by the first name that is there.
+    fn cell_array(&self, piece: Node, cells: usize, names: &[&str]) -> Parsed<Option<Vec<i64>>> {
+        let data = piece.children().filter(|node| node.has_tag_name("CellData"));
+        let arrays: HashMap<&str, Node> = data
+            .flat_map(|data| data.children())
+            .filter_map(|node| Some((node.attribute("Name")?, node)))
+            .collect();
+        let Some(found) = names.iter().find_map(|name| arrays.get(name)) else { return Ok(None) };
+        Ok(Some(match self.array(*found, cells)? {
+            Numbers::Whole(values) => values,
+            // Some programs write numbers of regions as reals.
+            Numbers::Real(values) => values.into_iter().map(|value| value.round() as i64).collect(),
+        }))
+    }
+
+    /// Texts of field data: numbers of characters with a zero behind each text.
+    fn names(&self, root: Node, name: &str) -> Parsed<Vec<String>> {
+        let mut arrays = root.descendants().filter(|node| node.has_tag_name("Array"));
+        let Some(found) = arrays.find(|node| node.attribute("Name") == Some(name)) else {
+            return Ok(Vec::new());
+        };
+        let bad = || (self.place(found), Problem::Expected { expected: "names in text", found: name.into() });
+        let codes = found.text().unwrap_or_default().split_ascii_whitespace().map(str::parse::<u8>);
+        let codes: Vec<u8> = codes.collect::<Result<_, _>>().map_err(|_| bad())?;
+        let mut names = codes.split(|&code| code == 0).map(|name| String::from_utf8_lossy(name).into_owned());
+        let mut names: Vec<String> = names.by_ref().collect();
+        names.pop();
+        Ok(names)
+    }
+
+    fn array(&self, node: Node, count: usize) -> Parsed<Numbers> {
+        let kind = node.attribute("type").unwrap_or_default();
+        let (format, text) = (node.attribute("format").unwrap_or("ascii"), node.text().unwrap_or_default());
+        let place = self.place(node);
+        match (format, self.appended) {
+            ("ascii", _) => read(&Source::Text(text), kind, count, self.coding, place),
+            ("binary", _) => read(&Source::Base64(text.trim().as_bytes()), kind, count, self.coding, place),
+            ("appended", Some((start, base64))) => {
+                let offset = node.attribute("offset").and_then(|offset| offset.trim().parse::<usize>().ok());
+                let bytes = offset.and_then(|offset| self.bytes.get(start.checked_add(offset)?..));
+                let Some(bytes) = bytes else {
+                    let found = node.attribute("offset").unwrap_or_default().into();
+                    return Err((place, Problem::Expected { expected: "an offset within the file", found }));
+                };
+                let source = if base64 { Source::Base64(bytes) } else { Source::Raw(bytes) };
+                read(&source, kind, count, self.coding, place)
+            }
+            ("appended", None) => Err((place, Problem::Missing { section: "<AppendedData>" })),
+            _ => Err((
+                place,
+                Problem::Expected { expected: "ascii, binary or appended", found: format.into() },
+            )),
+        }
+    }
+}
+
+/// What a VTK cell is: its number of nodes, and what it becomes.
+fn of_type(kind: i64) -> Option<(usize, What)> {
+    Some(match kind {
+        10 => (4, What::Cell(CellKind::Tet4)),
+        12 => (8, What::Cell(CellKind::Hex8)),
+        24 => (10, What::Cell(CellKind::Tet10)),
+        25 => (20, What::Cell(CellKind::Hex20)),
+        5 => (3, What::Face(3)),
+        9 => (4, What::Face(4)),
+        22 => (6, What::Face(3)),
+        23 => (8, What::Face(4)),
+        _ => return None,
+    })
+}
+
+enum What {
+    Cell(CellKind),
+    /// With so many corners.
+    Face(usize),
+}
+
+/// Points and lines.
+const THIN: [i64; 5] = [1, 2, 3, 4, 21];
+
+fn name_of(names: &[String], value: i64, plain: &str) -> String {
+    let known = usize::try_from(value).ok().and_then(|at| names.get(at));
+    known.cloned().unwrap_or_else(|| format!("{plain}-{value}"))
+}
+
+fn reals(numbers: Numbers) -> Vec<f64> {
+    match numbers {
+        Numbers::Real(values) => values,
+        Numbers::Whole(values) => values.into_iter().map(|value| value as f64).collect(),
+    }
+}
+
+fn whole(numbers: Numbers, place: Place) -> Parsed<Vec<i64>> {
+    match numbers {
+        Numbers::Whole(values) => Ok(values),
+        Numbers::Real(_) => {
+            Err((place, Problem::Expected { expected: "whole numbers", found: "reals".into() }))
+        }
+    }
+}
