@@ -218,7 +218,8 @@ impl<'a> File<'a> {
 
     /// Texts of field data: numbers of characters with a zero behind each text.
     fn names(&self, root: Node, name: &str) -> Parsed<Vec<String>> {
-        let mut arrays = root.descendants().filter(|node| node.has_tag_name("Array"));
+        let of_field = root.descendants().filter(|node| node.has_tag_name("FieldData"));
+        let mut arrays = of_field.flat_map(|field| field.children());
         let Some(found) = arrays.find(|node| node.attribute("Name") == Some(name)) else {
             return Ok(Vec::new());
         };

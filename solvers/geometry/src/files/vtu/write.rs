@@ -100,16 +100,15 @@ fn little<T: Copy, const N: usize>(values: &[T], bytes: impl Fn(T) -> [u8; N]) -
     values.iter().flat_map(|&value| bytes(value)).collect()
 }
 
-/// Texts as VTK writes them in text: numbers of characters, a zero behind each.
-fn text_array<'a>(name: &str, texts: impl ExactSizeIterator<Item = &'a str>) -> String {
-    let count = texts.len();
+/// Texts as numbers of their characters, a zero behind each. An array of texts, which VTK has too, stops other readers (meshio).
+fn text_array<'a>(name: &str, texts: impl Iterator<Item = &'a str>) -> String {
     let codes: Vec<String> = texts
         .flat_map(|text| text.bytes().chain([0]).collect::<Vec<_>>())
         .map(|code| code.to_string())
         .collect();
-    let codes = codes.join(" ");
+    let (count, codes) = (codes.len(), codes.join(" "));
     format!(
-        "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\">\n{codes}\n</Array>\n"
+        "<DataArray type=\"UInt8\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\">\n{codes}\n</DataArray>\n"
     )
 }
 
