@@ -151,7 +151,7 @@ pub enum Format {
 pub enum MeshAction {
     /// Print counts, surfaces, extent, volume and quality
     Info {
-        /// Mesh files: Gmsh (.msh) and Abaqus or CalculiX (.inp)
+        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
@@ -160,9 +160,9 @@ pub enum MeshAction {
     },
     /// Read one mesh file, write it as another kind of cells
     Convert {
-        /// The file to read: Gmsh 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp)
+        /// The file to read: Gmsh 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
         from: PathBuf,
-        /// The file to write, by its suffix Gmsh 2.2 (.msh) or Abaqus (.inp); another one than FROM
+        /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp) or VTK (.vtu); another one than FROM
         to: PathBuf,
         /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
         #[arg(long)]
