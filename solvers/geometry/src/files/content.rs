@@ -20,9 +20,9 @@ pub(super) struct Content {
     nodes: Vec<u32>,
     regions: Vec<u16>,
     rows: Vec<Row>,
-    region_names: Vec<String>,
+    region_names: Names,
     faces: Vec<Face>,
-    group_names: Vec<String>,
+    group_names: Names,
     facets: Vec<(usize, Facet)>,
     node_sets: Vec<(String, Vec<u32>)>,
 }
@@ -120,13 +120,13 @@ impl Content {
 
     /// The region of a name, made where it is new.
     pub(super) fn region(&mut self, place: Place, name: &str) -> Parsed<u16> {
-        let at = place_of(&mut self.region_names, name);
+        let at = self.region_names.place(name);
         u16::try_from(at).map_err(|_| (place, Problem::TooMany { what: "regions", count: at }))
     }
 
     /// The facet group of a name, made where it is new.
     pub(super) fn group(&mut self, name: &str) -> usize {
-        place_of(&mut self.group_names, name)
+        self.group_names.place(name)
     }
 
     /// Adds a surface element of some groups by the numbers of its corners; its cell may come later.
@@ -206,9 +206,9 @@ impl Content {
         self.nodes.extend(other.nodes.iter().map(|node| node + first_node));
         self.rows.extend_from_slice(&other.rows);
         let regions: Vec<u16> =
-            other.region_names.iter().map(|name| self.region(place, name)).collect::<Parsed<_>>()?;
+            other.region_names.list.iter().map(|name| self.region(place, name)).collect::<Parsed<_>>()?;
         self.regions.extend(other.regions.iter().map(|&region| regions[region as usize]));
-        let groups: Vec<usize> = other.group_names.iter().map(|name| self.group(name)).collect();
+        let groups: Vec<usize> = other.group_names.list.iter().map(|name| self.group(name)).collect();
         let facet = |f: &Facet| Facet { cell: f.cell + first_cell, ..*f };
         self.facets.extend(other.facets.iter().map(|(group, f)| (groups[*group], facet(f))));
         let corner = |c: u32| if c == u32::MAX { c } else { c + first_node };
@@ -240,12 +240,12 @@ impl Content {
             points.push(Point3::from(p.coords * unit));
         }
         let nodes = self.nodes.iter().map(|&n| used[n as usize]).collect();
-        let (regions, names) = without_empty(self.regions, self.region_names);
+        let (regions, names) = without_empty(self.regions, self.region_names.list);
         let mut mesh =
             Mesh::from_flat(points, self.kinds, nodes).map_err(wrong)?.with_regions(regions, names);
         let mut groups: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
         for (group, facet) in self.facets {
-            groups.entry(self.group_names[group].clone()).or_default().push(facet);
+            groups.entry(self.group_names.list[group].clone()).or_default().push(facet);
         }
         for (name, nodes) in &self.node_sets {
             let facets = faces_of(&mesh, nodes.iter().map(|&node| used[node as usize]));
@@ -362,10 +362,21 @@ fn index(place: Place, what: &'static str, count: usize) -> Parsed<u32> {
     index.ok_or((place, Problem::TooMany { what, count }))
 }
 
-/// The place of a name in the list, added at the end if it is new.
-fn place_of(names: &mut Vec<String>, name: &str) -> usize {
-    names.iter().position(|known| known == name).unwrap_or_else(|| {
-        names.push(name.into());
-        names.len() - 1
-    })
+/// Names in the order in which they come: a file may have thousands.
+#[derive(Default)]
+struct Names {
+    list: Vec<String>,
+    places: HashMap<String, usize>,
+}
+
+impl Names {
+    /// The place of a name in the list, added at the end if it is new.
+    fn place(&mut self, name: &str) -> usize {
+        if let Some(&place) = self.places.get(name) {
+            return place;
+        }
+        self.list.push(name.into());
+        self.places.insert(name.into(), self.list.len() - 1);
+        self.list.len() - 1
+    }
 }
