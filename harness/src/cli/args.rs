@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::study::VerifyArgs;
+use crate::study::{ExperimentArgs, VerifyArgs};
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
 /// same scenes.
@@ -37,6 +37,9 @@ pub enum Command {
     },
     /// Run a study: many scenes and methods; its checks gate the exit code
     Verify(VerifyArgs),
+    /// One run of a study in a process of its own
+    #[command(hide = true)]
+    Experiment(ExperimentArgs),
     /// Render tables, figures and the report of stored results
     Report {
         /// A folder that `verify` or `run --out` wrote

@@ -1,8 +1,10 @@
 //! Which runs of a study are made, and where their results go.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+
+use super::apart::ApartArgs;
 
 /// Arguments of `verify`.
 #[derive(Args)]
@@ -24,9 +26,33 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
+    /// Work on the study together with other processes in the same folder, which give this too: each run is made once. Keeps
+    /// stored results as --resume does
+    #[arg(long)]
+    pub join: bool,
+    /// How runs are kept apart.
+    #[command(flatten)]
+    pub apart: ApartArgs,
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+}
+
+impl VerifyArgs {
+    /// What is meant where nothing but the study is given.
+    pub(super) fn of(study: &Path) -> VerifyArgs {
+        VerifyArgs {
+            study: Some(study.into()),
+            quick: false,
+            filter: None,
+            shard: None,
+            jobs: 1,
+            resume: false,
+            join: false,
+            apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
+            out: PathBuf::new(),
+        }
+    }
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {
