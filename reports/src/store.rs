@@ -18,8 +18,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 use crate::frame;
@@ -136,8 +136,12 @@ fn once(records: &[Record]) -> Result<(), ReportError> {
 /// The study's or scene's file that the results in a folder are of, or are to be of; `None` where there are none.
 pub fn source_of(dir: &Path) -> Option<String> {
     let begun = read_json::<Mark>(&dir.join(MARK)).ok().map(|mark| mark.source);
-    let held = || read_json::<Provenance>(&dir.join("provenance.json")).ok().map(|held| held.source);
-    begun.or_else(held)
+    begun.or_else(|| provenance_of(dir).map(|held| held.source))
+}
+
+/// Where the results in a folder come from, be they whole or not.
+pub fn provenance_of(dir: &Path) -> Option<Provenance> {
+    read_json(&dir.join("provenance.json")).ok()
 }
 
 /// Reads a run back from its folder; surface fields in the order of their file names.

@@ -6,6 +6,7 @@ mod baseline;
 mod interrupt;
 mod json;
 mod list;
+mod merge;
 mod mesh_files;
 mod plan;
 mod reference;
@@ -20,10 +21,12 @@ use catalogue::nearest;
 use reports::ReportError;
 
 use crate::Failure;
+use crate::scenario::with_reference;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
 use list::list;
+use merge::merge;
 use plan::plan;
 use reference::reference;
 use run::run;
@@ -45,8 +48,9 @@ fn act(cli: Cli) -> u8 {
     }
     match cli.command {
         Command::Run(args) => run(&args),
-        Command::Plan { scene, methods } => plan(&scene, &methods),
+        Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify(args) => verify(&args),
+        Command::Merge(args) => merge(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out } => {
             let out = out.unwrap_or_else(|| results.join("report"));
@@ -117,6 +121,27 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
         chosen = (0..scene.methods.len()).collect();
     }
     Ok((scene, chosen))
+}
+
+/// Refuses what takes more than anyone means to spend, unless that is said; `found` are messages of it.
+fn affordable(found: &[String], force: bool) -> Result<(), u8> {
+    for words in found {
+        eprintln!(
+            "{words}{}",
+            if force { "" } else { "; make it coarser or shorter, or give --force to run it" }
+        );
+    }
+    if found.is_empty() || force { Ok(()) } else { Err(2) }
+}
+
+/// The same for some methods of a scene.
+fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<(), u8> {
+    let excess = |&index: &usize| {
+        let method = &scene.methods[index];
+        let words = with_reference(scene, &method.family).excess()?;
+        Some(format!("{} '{}' {words}", scene.file(), method.id))
+    };
+    affordable(&chosen.iter().filter_map(excess).collect::<Vec<_>>(), force)
 }
 
 fn report(results: &Path, out: &Path) -> u8 {

@@ -8,7 +8,7 @@ use reports::{RunSet, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{interrupt, open, report, take, text, unreported};
+use crate::cli::{affordable_methods, interrupt, open, report, take, text, unreported};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
@@ -23,6 +23,9 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
+        return code;
+    }
     let machine = provenance::machine();
     let folder = match args.out.as_ref().map(|out| take(&args.scene, out)).transpose() {
         Ok(folder) => folder,

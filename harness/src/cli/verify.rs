@@ -5,7 +5,7 @@ use std::path::Path;
 use cases::scene;
 use reports::Status;
 
-use crate::cli::{fail, interrupt, refuse, report, take, text, unreported};
+use crate::cli::{affordable, fail, interrupt, refuse, report, take, text, unreported};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, Finished, Plan, VerifyArgs};
 
@@ -32,7 +32,13 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
     }
-    let folder = match enter(args, &path) {
+    if let Err(code) = affordable(&plan.too_large(), args.force) {
+        return code;
+    }
+    let entered = enter(args, &path).and_then(|folder| {
+        study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
+    });
+    let folder = match entered {
         Ok(folder) => folder,
         Err(code) => return code,
     };

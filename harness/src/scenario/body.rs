@@ -158,7 +158,7 @@ fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failu
 }
 
 /// Cells across the narrowest extent at level 1. Levels double it.
-fn base(body: &Body) -> usize {
+pub(super) fn base(body: &Body) -> usize {
     match body {
         // Two cells of depth: one cannot bend.
         Body::Box { .. }
@@ -171,7 +171,7 @@ fn base(body: &Body) -> usize {
 }
 
 /// The extent (m) that a size's number of cells divides.
-fn narrowest(body: &Body) -> f64 {
+pub(super) fn narrowest(body: &Body) -> f64 {
     match *body {
         Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
         Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,

@@ -103,6 +103,7 @@ impl<'a> Apart<'a> {
     pub(super) fn run(&self, plan: &Plan, index: usize, key: &str) -> TaskResult {
         let task = &plan.tasks[index];
         let answer = self.store.answer(key);
+        let _ = std::fs::remove_file(&answer);
         let ended = self.command(&task.runs, key, &answer).and_then(|command| self.watch(command));
         // It is whole or not there.
         let result = std::fs::read_to_string(&answer).ok().and_then(|text| serde_json::from_str(&text).ok());
@@ -193,6 +194,9 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
     let index = index.ok_or_else(|| Failure::Input("its scene has changed since the study began".into()))?;
     let result = plan.run(index, &verify, &mut None);
+    if let Some(folder) = args.answer.parent() {
+        std::fs::create_dir_all(folder).map_err(|bad| Failure::Run(bad.to_string()))?;
+    }
     let text = serde_json::to_string(&result).map_err(|bad| Failure::Run(bad.to_string()))?;
     reports::write_text(&args.answer, text).map_err(|bad| Failure::Run(bad.to_string()))
 }

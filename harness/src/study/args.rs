@@ -17,7 +17,7 @@ pub struct VerifyArgs {
     /// Only runs whose case or method contains this text
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Only the K-th of N equal shares of the runs
+    /// Only the K-th of N shares of the runs, of about equal cost
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
     /// Runs at a time; more than 1 spoils the timings
@@ -33,6 +33,9 @@ pub struct VerifyArgs {
     /// How runs are kept apart.
     #[command(flatten)]
     pub apart: ApartArgs,
+    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    #[arg(long)]
+    pub force: bool,
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
@@ -50,6 +53,7 @@ impl VerifyArgs {
             resume: false,
             join: false,
             apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
+            force: true,
             out: PathBuf::new(),
         }
     }

@@ -120,7 +120,8 @@ impl Work<'_> {
             Ok(Some(claim)) => stored().unwrap_or(Turn::Ours(Some(claim))),
             Ok(None) => Turn::Theirs,
             Err(bad) => {
-                self.progress.warn(format!("warning: a run could not be claimed and may be run twice: {bad}"));
+                self.progress
+                    .warn(format!("warning: a run could not be claimed and may be run twice: {bad}"));
                 Turn::Ours(None)
             }
         }
@@ -156,7 +157,8 @@ impl Plan {
         let repeats = if args.quick { QUICK } else { REPEATS };
         let Task { method, level, poisson, .. } = task;
         let RunOptions { picture, frames, split } = options;
-        let what = format!("{method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
+        let case = case_name(scene);
+        let what = format!("{case} {method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
         key(text, &files(scene), &what)
     }
 

@@ -38,7 +38,9 @@ pub(crate) fn take(file: &Path, out: &Path) -> Result<Folder, Failure> {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return Err(in_use(out, &mut lock)),
         // A file system without locks: as before there were any.
-        Err(TryLockError::Error(_)) => eprintln!("{}: can't be locked; see that no other process uses it", out.display()),
+        Err(TryLockError::Error(_)) => {
+            eprintln!("{}: can't be locked; see that no other process uses it", out.display())
+        }
     }
     enter(out, lock, true)
 }
@@ -60,7 +62,8 @@ pub(crate) fn join(file: &Path, out: &Path, prepare: impl FnOnce()) -> Result<Fo
             }
             Err(TryLockError::WouldBlock) => return Err(in_use(out, &mut lock)),
             Err(TryLockError::Error(bad)) => {
-                let problem = format!("--out {}: can't be locked: {bad}; use --shard and merge", out.display());
+                let problem =
+                    format!("--out {}: can't be locked: {bad}; use --shard and merge", out.display());
                 return Err(Failure::Run(problem));
             }
         }

@@ -6,10 +6,12 @@ pub mod check;
 mod execute;
 pub(crate) mod folder;
 pub(crate) mod make_reference;
+pub(crate) mod merge;
 pub(crate) mod process_group;
 mod progress;
 #[cfg(test)]
 mod project;
+mod shards;
 mod store;
 mod task;
 mod tasks;
@@ -25,7 +27,7 @@ use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
-use crate::scenario::purpose;
+use crate::scenario::{purpose, with_reference};
 use apart::Apart;
 use execute::Work;
 use progress::Progress;
@@ -36,6 +38,7 @@ use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
 pub use args::VerifyArgs;
+pub use merge::MergeArgs;
 pub(crate) use task::stalled;
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
@@ -157,13 +160,26 @@ impl Plan {
     pub fn select(&mut self, args: &VerifyArgs) {
         let (runs, scenes) = (&self.study.runs, &self.scenes);
         self.tasks.retain_mut(|task| {
-            // Shares deal out whole run tables, so that orders see all their levels.
-            let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
-            task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
+            task.runs.retain(|&run| !args.quick || runs[run].quick);
             let fits =
                 |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
             !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
         });
+        if let Some(shard) = args.shard {
+            let mine = self.share(args, shard);
+            let mut index = 0..;
+            self.tasks.retain(|_| index.next().is_some_and(|index| mine.contains(&index)));
+        }
+    }
+
+    /// Runs that take more than anyone means to spend, each with what it takes.
+    pub(crate) fn too_large(&self) -> Vec<String> {
+        let excess = |task: &Task| {
+            let scene = &self.scenes[task.scene].2;
+            let words = with_reference(scene, &task.method.family).excess()?;
+            Some(format!("{} '{}' {words}", scene.file(), task.method.id))
+        };
+        self.tasks.iter().filter_map(excess).collect()
     }
 
     /// The run tables that ask for a task.

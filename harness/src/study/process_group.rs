@@ -79,12 +79,11 @@ fn kill(_: u32) {}
 /// The limit is of what is written to, not of addresses: an allocator reserves 64 MB of these for each thread.
 #[cfg(target_os = "linux")]
 pub(super) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
-    use rustix::process::{
-        Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit,
-    };
+    use rustix::process::{Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit};
     set_parent_process_death_signal(Some(Signal::KILL))?;
     // It may have died before.
-    if getppid().map(rustix::process::Pid::as_raw_nonzero).map(|id| id.get().cast_unsigned()) != Some(parent) {
+    if getppid().map(rustix::process::Pid::as_raw_nonzero).map(|id| id.get().cast_unsigned()) != Some(parent)
+    {
         return Err(io::Error::other("the study that started it has ended"));
     }
     if let Some(bytes) = memory {

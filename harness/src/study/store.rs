@@ -1,5 +1,6 @@
 //! Results of single runs in the folder of a study: one file each, written as soon as the run is finished.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -129,6 +130,35 @@ impl Store {
     }
 }
 
+/// Who made the results of the shares of a study.
+#[derive(Default)]
+pub(super) struct Share {
+    program: Option<String>,
+    /// The machines that they were made on.
+    pub(super) machines: BTreeSet<String>,
+}
+
+impl Share {
+    /// A result in a folder with its text, or why it can't be joined with those before; `None` where there is none.
+    pub(super) fn take(&mut self, out: &Path, key: &str) -> Option<Result<(String, TaskResult), String>> {
+        let path = out.join(TASKS).join(format!("{key}.json"));
+        let text = fs::read_to_string(&path).ok()?;
+        let Read { by, result } = serde_json::from_str(&text).ok()?;
+        if *self.program.get_or_insert_with(|| by.program.clone()) != by.program {
+            return Some(Err(format!("{} was made by another build of the program", path.display())));
+        }
+        self.machines.insert(by.machine);
+        Some(Ok((text, result)))
+    }
+}
+
+/// Keeps the text of a result from another folder.
+pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError> {
+    let folder = out.join(TASKS);
+    fs::create_dir_all(&folder).map_err(|source| ReportError::Unwritten { path: folder.clone(), source })?;
+    reports::write_text(&folder.join(format!("{key}.json")), text)
+}
+
 /// Removes what killed processes left in a folder of results. Only for a process that is alone in it.
 pub(super) fn clean(out: &Path) {
     for path in files(&out.join(TASKS), &["partial", "claim", "answer"]) {
@@ -162,10 +192,9 @@ mod tests {
         let later = Machine { load: Some(3.0), quiet: Some(false), ..machine.clone() };
         assert!(found(&program, &later, Accept::Finished));
         assert!(!found(&program, &later, Accept::Nothing));
-        for other in [
-            Machine { threads: 1, ..machine.clone() },
-            Machine { cpu: "another".into(), ..machine.clone() },
-        ] {
+        for other in
+            [Machine { threads: 1, ..machine.clone() }, Machine { cpu: "another".into(), ..machine.clone() }]
+        {
             assert!(!found(&program, &other, Accept::Finished));
             assert!(found(&program, &other, Accept::All));
         }
@@ -198,7 +227,9 @@ mod tests {
         for (name, text) in [("half.json", "{"), ("killed.json.partial", ""), ("killed.claim", "")] {
             fs::write(store.folder.join(name), text).unwrap();
         }
-        assert!(store.load("failed", Accept::All).is_some() && store.load("failed", Accept::Finished).is_none());
+        assert!(
+            store.load("failed", Accept::All).is_some() && store.load("failed", Accept::Finished).is_none()
+        );
         store.sweep();
         clean(dir.path());
         assert_eq!(files(&store.folder, &["json", "partial", "claim"]), [store.file("finished")]);
