@@ -11,7 +11,7 @@ use crate::study::{self, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs) -> u8 {
-    let path = args.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into());
+    let path = args.path();
     let study = match scene::load_study(&path) {
         Ok(study) => study,
         Err(errors) => {
@@ -44,7 +44,7 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
     };
     eprintln!("{}: {} runs", path.display(), plan.len());
     interrupt::install(Some(&args.out), true);
-    let mut finished = plan.execute(args, &path);
+    let mut finished = plan.execute(args);
     finished.set.provenance.source = folder::source(&path);
     let code = write(&finished, &folder, &args.out);
     folder.close(|| study::clean(args));

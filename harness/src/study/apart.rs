@@ -83,7 +83,7 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
 /// Starts a process for each run.
 pub(super) struct Apart<'a> {
     args: &'a VerifyArgs,
-    study: &'a Path,
+    study: PathBuf,
     store: &'a Store,
 }
 
@@ -95,8 +95,8 @@ struct Ended {
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(args: &'a VerifyArgs, study: &'a Path, store: &'a Store) -> Apart<'a> {
-        Apart { args, study, store }
+    pub(super) fn new(args: &'a VerifyArgs, store: &'a Store) -> Apart<'a> {
+        Apart { args, study: args.path(), store }
     }
 
     /// Runs a task; its result, or the failure that the end of its process means.
@@ -119,7 +119,7 @@ impl<'a> Apart<'a> {
     fn command(&self, tables: &[usize], key: &str, answer: &Path) -> std::io::Result<Command> {
         let mut command = Command::new(std::env::current_exe()?);
         let tables: Vec<String> = tables.iter().map(usize::to_string).collect();
-        command.arg("experiment").arg(self.study).arg("--tables").arg(tables.join(","));
+        command.arg("experiment").arg(&self.study).arg("--tables").arg(tables.join(","));
         command.args(["--key", key]).arg("--answer").arg(answer);
         command.args(["--parent", &std::process::id().to_string()]);
         command.args(["--threads", &rayon::current_num_threads().to_string()]);
@@ -190,7 +190,8 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     let unreadable = |errors: Vec<cases::scene::SceneError>| {
         Failure::Input(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     };
-    let study = cases::scene::load_study(&args.study).map_err(unreadable)?;
+    let first = args.tables.first().copied().unwrap_or_default();
+    let study = cases::scene::load_study_for(&args.study, first).map_err(unreadable)?;
     let plan = Plan::of_tables(study, &args.tables).map_err(unreadable)?;
     let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);

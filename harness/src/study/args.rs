@@ -42,8 +42,13 @@ pub struct VerifyArgs {
 }
 
 impl VerifyArgs {
+    /// The study file.
+    pub fn path(&self) -> PathBuf {
+        self.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into())
+    }
+
     /// What is meant where nothing but the study is given.
-    pub(super) fn of(study: &Path) -> VerifyArgs {
+    pub fn of(study: &Path) -> VerifyArgs {
         VerifyArgs {
             study: Some(study.into()),
             quick: false,

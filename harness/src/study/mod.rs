@@ -50,6 +50,10 @@ const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 pub struct Plan {
     study: Study,
     scenes: Vec<(PathBuf, String, Scene)>,
+    /// Where among these the scenes as they are in their files are, by path.
+    as_they_are: BTreeMap<PathBuf, usize>,
+    /// The files of the cases by name.
+    cases: BTreeMap<String, PathBuf>,
     tasks: Vec<Task>,
     /// Values of axes at which there is no scene.
     refused: Vec<RefusedScene>,
@@ -87,7 +91,14 @@ impl Plan {
 
     /// Reads the scenes of the run tables that are wanted.
     fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
-        let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
+        let mut plan = Plan {
+            study,
+            scenes: Vec::new(),
+            as_they_are: BTreeMap::new(),
+            cases: BTreeMap::new(),
+            tasks: Vec::new(),
+            refused: Vec::new(),
+        };
         let mut errors = Vec::new();
         let runs = plan.study.runs.clone();
         for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
@@ -107,26 +118,31 @@ impl Plan {
         if errors.is_empty() { Ok(plan) } else { Err(errors) }
     }
 
+    /// A run's scene as it is in its file.
+    fn read_scene(&self, run: &scene::Run) -> Result<Scene, Vec<scene::SceneError>> {
+        match self.study.scenes.get(&run.scene) {
+            Some(scene) => Ok(scene.clone()),
+            None => scene::load(&run.scene),
+        }
+    }
+
     /// The place of a run's scene among those read.
     fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
-        let as_it_is =
-            |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
-        if let Some(at) = self.scenes.iter().position(as_it_is) {
+        if let Some(&at) = self.as_they_are.get(&run.scene) {
             return Ok(at);
         }
-        let scene = scene::load(&run.scene)?;
-        self.add(&run.scene, scene)
+        let at = self.add(&run.scene, self.read_scene(run)?)?;
+        self.as_they_are.insert(run.scene.clone(), at);
+        Ok(at)
     }
 
     fn add(&mut self, path: &Path, scene: Scene) -> Result<usize, Vec<scene::SceneError>> {
         if !scene.unavailable().is_empty() {
             return Err(scene.unavailable());
         }
-        let named = |(other, _, with): &&(PathBuf, String, Scene)| {
-            *other != path && case_name(with) == case_name(&scene)
-        };
-        if let Some((path, ..)) = self.scenes.iter().find(named) {
-            let problem = format!("is in a file of the same name as {}", path.display());
+        let other = self.cases.entry(case_name(&scene)).or_insert_with(|| path.into());
+        if other != path {
+            let problem = format!("is in a file of the same name as {}", other.display());
             let help = "rename one of them: results are filed under the names of scenes";
             return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
         }
@@ -142,9 +158,10 @@ impl Plan {
         run: &scene::Run,
         axis: &scene::Axis,
     ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let base = self.read_scene(run)?;
         let mut found = Vec::new();
         for &value in &axis.values {
-            match axis.at(&run.scene, &run.methods, value) {
+            match axis.at(&base, &run.methods, value) {
                 Ok(scene) => found.push(self.add(&run.scene, scene)?),
                 Err(bad) if value == axis.base => return Err(bad),
                 Err(bad) => {
@@ -231,14 +248,14 @@ impl Plan {
     }
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
-    pub fn execute(&self, args: &VerifyArgs, path: &Path) -> Finished {
+    pub fn execute(&self, args: &VerifyArgs) -> Finished {
         let machine = provenance::machine();
         let store = store(args);
         let work = Work {
             plan: self,
             args,
             store: &store,
-            apart: args.apart.isolate.then(|| Apart::new(args, path, &store)),
+            apart: args.apart.isolate.then(|| Apart::new(args, &store)),
             progress: Progress::new(self.tasks.len()),
             done: Mutex::default(),
         };
