@@ -11,12 +11,12 @@ use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, msh, quality};
 
-use super::same_body;
+use super::{estimate, same_body};
 use crate::Failure;
 use crate::error::Key;
 
 /// More nodes than this are a typing error rather than a wish on one machine.
-const MOST_NODES: usize = 3_000_000;
+pub(super) const MOST_NODES: usize = 3_000_000;
 
 /// A mesh of the body in cells of one kind, checked for inverted cells.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
@@ -55,6 +55,9 @@ pub(super) fn unchecked(
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
+        if !matches!(body, Body::Box { .. }) {
+            few(body, n)?;
+        }
         let mesh = match *body {
             Body::Box { min, max } => {
                 let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
@@ -69,6 +72,7 @@ pub(super) fn unchecked(
                     let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
                     return Err(Failure::input(Key::Scene("body".into()), problem, help));
                 }
+                few(body, n)?;
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
             Body::Cylinder { radius, height } => {
@@ -117,6 +121,16 @@ pub(super) fn unchecked(
         },
         Size::File(_) => unreachable!("returned above"),
     }
+}
+
+/// Refuses a mesh of far too many nodes before it is made; the estimate is good to a third.
+fn few(body: &Body, across: usize) -> Result<(), Failure> {
+    let about = estimate::nodes_across(body, across);
+    if about < 2.0 * MOST_NODES as f64 {
+        return Ok(());
+    }
+    let problem = format!("asks for about {about:.1e} nodes; at most {MOST_NODES} are made");
+    Err(Failure::input(Key::Size(""), problem, "make it coarser"))
 }
 
 fn cuboid(

@@ -2,11 +2,13 @@
 //! time by what both took elsewhere. Good to a factor of about three: enough to deal out the runs of a study, and to refuse one
 //! that a slip of the pen has made a thousand times too large.
 
-use cases::scene::{Body, Cloud, Element, Family, MeshFile, Procedure, Reference, Scene, Size};
+use cases::scene::{
+    Body, Cloud, Element, ErrorKind, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
+};
 use geometry::shapes::Shape;
 use material::Material as _;
 
-use super::body::{base, narrowest, shape};
+use super::body::{self, base, narrowest, shape};
 
 /// Bytes of a mesh file for a node with its cells.
 const FILE_BYTES: f64 = 250.0;
@@ -17,8 +19,9 @@ const CLOUD: f64 = 8.0;
 /// Seconds to assemble and factor a matrix of N unknowns over N^1.5; for each node and explicit step.
 const FACTOR: f64 = 1e-7;
 const EXPLICIT: f64 = 1e-7;
-/// A run of more seconds is refused.
+/// A run of more seconds is refused; one of more explicit steps is by itself.
 const MOST_SECONDS: f64 = 12.0 * 3600.0;
+const MOST_STEPS: f64 = 1e7;
 /// Seconds of the smallest run.
 const LEAST: f64 = 1e-3;
 
@@ -36,17 +39,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Both one after the other.
-    fn and(self, other: Estimate) -> Estimate {
-        Estimate {
-            bytes: self.bytes.max(other.bytes),
-            seconds: self.seconds + other.seconds,
-            ..if self.nodes < other.nodes { other } else { self }
-        }
-    }
-
     /// What it is, in words, if it is more than anyone means to run: twice the memory of the machine, or half a day.
-    pub fn excess(&self) -> Option<String> {
+    fn excess(&self) -> Option<String> {
         let too_large = self.bytes > 2.0 * memory() || self.seconds > MOST_SECONDS;
         too_large.then(|| {
             let Estimate { nodes, steps, bytes, seconds } = self;
@@ -60,6 +54,37 @@ impl Estimate {
     }
 }
 
+/// Refuses a method of a scene that takes more than anyone means to spend, or the reference that it needs. What no `--force` lifts is
+/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps.
+pub fn too_large(scene: &Scene, method: &Method) -> Option<SceneError> {
+    let of_reference = || {
+        let (method, size) = reference(scene)?;
+        refuse(scene, &method, size.map(|_| "reference.size".into()))
+    };
+    refuse(scene, method, None).or_else(of_reference)
+}
+
+/// The same of a method alone, whose size is at this key unless it is the method's own.
+fn refuse(scene: &Scene, method: &Method, size: Option<String>) -> Option<SceneError> {
+    let found = estimate(scene, &method.family);
+    let explicit = matches!(scene.procedure, Procedure::Explicit(_));
+    let counted = matches!(method.size(), Some(Size::Cells { .. }));
+    if explicit && found.steps > MOST_STEPS || !counted && found.nodes > body::MOST_NODES as f64 {
+        return None;
+    }
+    let problem = found.excess()?;
+    let at = scene.methods.iter().position(|other| other.id == method.id).unwrap_or_default();
+    let key = match &scene.procedure {
+        Procedure::Static(_) if found.steps > 1e3 => "procedure.steps".into(),
+        Procedure::Explicit(_) | Procedure::ImplicitDynamic(_) if found.steps > 1e3 => {
+            "procedure.duration".into()
+        }
+        _ => size.unwrap_or_else(|| format!("method[{at}].size")),
+    };
+    let help = "make it coarser or shorter, or give --force to run it";
+    Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
+}
+
 /// Memory of this machine in bytes; where the system does not say, that of a large one.
 fn memory() -> f64 {
     let known = || {
@@ -70,23 +95,22 @@ fn memory() -> f64 {
     known().unwrap_or(256e9)
 }
 
-/// The reference that all methods of a scene are compared with, where that is solved.
-pub fn of_reference(scene: &Scene) -> Option<Estimate> {
+/// The method that all others of a scene are compared with, where that is solved, and the size that is given for it.
+fn reference(scene: &Scene) -> Option<(Method, Option<&Size>)> {
     let Some(Reference::Method { id, size }) = &scene.reference else { return None };
     let mut method = scene.method(id)?.clone();
     if let Some(size) = size {
         method.resize(size);
     }
-    Some(estimate(scene, &method.family))
+    Some((method, size.as_ref()))
 }
 
-/// Of a method with the reference of its scene.
-pub fn with_reference(scene: &Scene, family: &Family) -> Estimate {
-    let own = estimate(scene, family);
-    of_reference(scene).map_or(own, |reference| own.and(reference))
+/// Of the reference that all methods of a scene are compared with, where that is solved.
+pub fn of_reference(scene: &Scene) -> Option<Estimate> {
+    reference(scene).map(|(method, _)| estimate(scene, &method.family))
 }
 
-/// Of one of a scene's methods alone.
+/// Of one of a scene's methods.
 pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (nodes, across, rows) = size(scene, family);
     let steps = steps(scene, across);
@@ -161,6 +185,11 @@ fn cells(body: &Body, size: &Size) -> (f64, f64) {
     (volume(body) / (narrowest(body) / across).powi(3), across)
 }
 
+/// Nodes at the corners of so many cells across the narrowest extent.
+pub(super) fn nodes_across(body: &Body, across: usize) -> f64 {
+    nodes(volume(body) / (narrowest(body) / across as f64).powi(3), 1.0)
+}
+
 /// Corners of so many cells, each edge cut in so many parts.
 fn nodes(cells: f64, parts: f64) -> f64 {
     (parts * cells.cbrt() + 1.0).powi(3)
@@ -202,7 +231,7 @@ mod tests {
 
     const BLOCK: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
-material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }
+material = { law = "LAW", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }
 support = [{ where = "z == 0 mm", fix = "xyz" }]
 load = [{ on = "z-max", pressure = "1 kPa" }]
 procedure = PROCEDURE
@@ -210,9 +239,14 @@ method = [{ id = "m", family = "fem", element = "ELEMENT", size = SIZE }]
 "#;
 
     fn of(procedure: &str, element: &str, size: &str) -> Estimate {
-        let text = BLOCK.replace("PROCEDURE", procedure).replace("ELEMENT", element).replace("SIZE", size);
+        let law = if procedure.contains("linear") { "linear" } else { "neo-hookean" };
+        let text = BLOCK
+            .replace("LAW", law)
+            .replace("PROCEDURE", procedure)
+            .replace("ELEMENT", element)
+            .replace("SIZE", size);
         let scene = cases::scene::parse(&text, "block.toml").unwrap();
-        with_reference(&scene, &scene.methods[0].family)
+        estimate(&scene, &scene.methods[0].family)
     }
 
     #[test]
@@ -240,7 +274,7 @@ method = [{ id = "m", family = "fem", element = "ELEMENT", size = SIZE }]
         }
         for (procedure, size) in [
             ("{ kind = \"static\", steps = 1000000000 }", level),
-            ("{ kind = \"linear\" }", "{ cells = [2000, 2000, 2000] }"),
+            ("{ kind = \"linear\" }", "{ cells = [270, 270, 270] }"),
             ("{ kind = \"explicit\", duration = \"1e9 s\" }", level),
             ("{ kind = \"static\", steps = 10 }", "{ level = 8 }"),
         ] {

@@ -27,7 +27,7 @@ use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
-use crate::scenario::{purpose, with_reference};
+use crate::scenario::{purpose, too_large};
 use apart::Apart;
 use execute::Work;
 use progress::Progress;
@@ -189,14 +189,10 @@ impl Plan {
         }
     }
 
-    /// Runs that take more than anyone means to spend, each with what it takes.
-    pub(crate) fn too_large(&self) -> Vec<String> {
-        let excess = |task: &Task| {
-            let scene = &self.scenes[task.scene].2;
-            let words = with_reference(scene, &task.method.family).excess()?;
-            Some(format!("{} '{}' {words}", scene.file(), task.method.id))
-        };
-        self.tasks.iter().filter_map(excess).collect()
+    /// Refusals of runs that take more than anyone means to spend.
+    pub(crate) fn too_large(&self) -> Vec<scene::SceneError> {
+        let of = |task: &Task| too_large(&self.scenes[task.scene].2, &task.method);
+        self.tasks.iter().filter_map(of).collect()
     }
 
     /// The run tables that ask for a task.
