@@ -46,6 +46,9 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
     interrupt::install(Some(&args.out), true);
     let mut finished = plan.execute(args);
     finished.set.provenance.source = folder::source(&path);
+    if finished.stored > 0 {
+        eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
+    }
     let code = write(&finished, &folder, &args.out);
     folder.close(|| study::clean(args));
     code

@@ -30,6 +30,8 @@ pub(super) struct Work<'a> {
     pub(super) apart: Option<Apart<'a>>,
     pub(super) progress: Progress,
     pub(super) done: Mutex<BTreeMap<usize, TaskResult>>,
+    /// Results that were there already, or that other processes made.
+    pub(super) stored: AtomicUsize,
 }
 
 /// Whose turn a task is.
@@ -80,7 +82,10 @@ impl Work<'_> {
         for (at, &index) in members.iter().enumerate() {
             let key = self.plan.key(index, self.args);
             match self.turn(&key) {
-                Turn::Stored(result) => self.finished(index, *result),
+                Turn::Stored(result) => {
+                    self.stored.fetch_add(1, Ordering::Relaxed);
+                    self.finished(index, *result);
+                }
                 Turn::Theirs if thorough => left.push(index),
                 Turn::Theirs => {
                     left.extend(&members[at..]);

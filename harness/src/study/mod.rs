@@ -20,6 +20,7 @@ mod trials;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::AtomicUsize;
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
@@ -67,6 +68,8 @@ pub struct Finished {
     pub failed: Vec<u8>,
     /// Runs done.
     pub ran: usize,
+    /// How many of them were stored, by an earlier study or by other processes.
+    pub stored: usize,
     /// Counts of what was done now, references included; stored runs took none.
     pub counters: Counters,
 }
@@ -254,9 +257,11 @@ impl Plan {
             apart: args.apart.isolate.then(|| Apart::new(args, &store)),
             progress: Progress::new(self.tasks.len()),
             done: Mutex::default(),
+            stored: AtomicUsize::new(0),
         };
         work.all();
-        self.collect(work.done.into_inner().expect("no worker panicked"), machine)
+        let finished = self.collect(work.done.into_inner().expect("no worker panicked"), machine);
+        Finished { stored: work.stored.into_inner(), ..finished }
     }
 
     fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
@@ -305,7 +310,7 @@ impl Plan {
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
-        Finished { set, failed, ran: results.len(), counters }
+        Finished { set, failed, ran: results.len(), stored: 0, counters }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
