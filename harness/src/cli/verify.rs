@@ -1,14 +1,17 @@
 //! `tissuebench verify`: a study, whose checks gate the exit code.
 
+use std::path::Path;
+
 use cases::scene;
 use reports::Status;
 
-use crate::cli::{refuse, report, take, text};
-use crate::study::{Plan, VerifyArgs, folder};
+use crate::cli::{affordable, fail, interrupt, refuse, report, take, text, unreported};
+use crate::study::folder::{self, Folder};
+use crate::study::{self, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs) -> u8 {
-    let path = args.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into());
+    let path = args.path();
     let study = match scene::load_study(&path) {
         Ok(study) => study,
         Err(errors) => {
@@ -29,18 +32,51 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
     }
-    if let Err(code) = take(&path, &args.out) {
+    if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
+    let entered = enter(args, &path).and_then(|folder| {
+        study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
+    });
+    let folder = match entered {
+        Ok(folder) => folder,
+        Err(code) => return code,
+    };
     eprintln!("{}: {} runs", path.display(), plan.len());
-    let finished = plan.execute(args);
-    let mut set = finished.set;
-    set.provenance.source = folder::source(&path);
-    if let Err(bad) = reports::write_run(&args.out, &set) {
-        eprintln!("tissuebench: {bad}");
-        return 3;
+    interrupt::install(Some(&args.out), true);
+    let mut finished = plan.execute(args);
+    finished.set.provenance.source = folder::source(&path);
+    if finished.stored > 0 {
+        eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
     }
-    let rendered = report(&args.out, &args.out.join("report"));
+    let code = write(&finished, &folder, &args.out);
+    folder.close(|| study::clean(args));
+    code
+}
+
+/// Takes the folder of results, or joins those that work in it.
+fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
+    if !args.join {
+        return take(path, &args.out).inspect(|_| study::clean(args));
+    }
+    let joined = folder::join(path, &args.out, || study::sweep(args));
+    let begun = joined.and_then(|folder| folder.begin(path).map(|()| folder));
+    begun.map_err(|failure| fail(&failure))
+}
+
+/// Writes the results and the report, and says what held; the exit code.
+pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path) -> u8 {
+    let set = &finished.set;
+    // Of several processes that work on a study one writes what all of them have.
+    let (lock, written) = folder.writing();
+    let rendered = match written {
+        true => 0,
+        false => match reports::write_run(out, set) {
+            Ok(()) => report(out, &out.join("report")),
+            Err(bad) => return unreported(&bad),
+        },
+    };
+    drop(lock);
     for failure in &set.failures {
         let word = match failure.carried {
             None => "could not run".into(),
@@ -62,8 +98,8 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         count(Status::KnownFailure),
         not_run
     );
-    println!("records  {}", args.out.join("records.csv").display());
-    println!("report   {}", args.out.join("report").join("report.html").display());
+    println!("records  {}", out.join("records.csv").display());
+    println!("report   {}", out.join("report").join("report.html").display());
     match () {
         () if failed > 0 => 1,
         () if !finished.failed.is_empty() => finished.failed.iter().copied().max().unwrap_or(3),

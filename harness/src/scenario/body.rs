@@ -11,12 +11,12 @@ use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, files, quality};
 
-use super::same_body;
+use super::{estimate, same_body};
 use crate::Failure;
 use crate::error::Key;
 
 /// More nodes than this are a typing error rather than a wish on one machine.
-const MOST_NODES: usize = 3_000_000;
+pub(super) const MOST_NODES: usize = 3_000_000;
 
 /// A mesh of the body in cells of one kind, checked for inverted cells.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
@@ -55,6 +55,9 @@ pub(super) fn unchecked(
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
+        if !matches!(body, Body::Box { .. }) {
+            few(body, n)?;
+        }
         let mesh = match *body {
             Body::Box { min, max } => {
                 let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
@@ -69,6 +72,7 @@ pub(super) fn unchecked(
                     let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
                     return Err(Failure::input(Key::Scene("body".into()), problem, help));
                 }
+                few(body, n)?;
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
             Body::Cylinder { radius, height } => {
@@ -119,6 +123,16 @@ pub(super) fn unchecked(
     }
 }
 
+/// Refuses a mesh of far too many nodes before it is made; the estimate is good to a third.
+fn few(body: &Body, across: usize) -> Result<(), Failure> {
+    let about = estimate::nodes_across(body, across);
+    if about < 2.0 * MOST_NODES as f64 {
+        return Ok(());
+    }
+    let problem = format!("asks for about {about:.1e} nodes; at most {MOST_NODES} are made");
+    Err(Failure::input(Key::Size(""), problem, "make it coarser"))
+}
+
 fn cuboid(
     kind: CellKind,
     min: [f64; 3],
@@ -158,7 +172,7 @@ fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failu
 }
 
 /// Cells across the narrowest extent at level 1. Levels double it.
-fn base(body: &Body) -> usize {
+pub(super) fn base(body: &Body) -> usize {
     match body {
         // Two cells of depth: one cannot bend.
         Body::Box { .. }
@@ -171,7 +185,7 @@ fn base(body: &Body) -> usize {
 }
 
 /// The extent (m) that a size's number of cells divides.
-fn narrowest(body: &Body) -> f64 {
+pub(super) fn narrowest(body: &Body) -> f64 {
     match *body {
         Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
         Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,

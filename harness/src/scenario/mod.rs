@@ -4,6 +4,7 @@ mod body;
 mod cloud;
 mod cloud_file;
 mod discretise;
+mod estimate;
 mod grading;
 mod identity;
 mod law;
@@ -14,6 +15,7 @@ pub(crate) mod setup;
 mod tools;
 
 pub(crate) use body::point;
+pub(crate) use estimate::{estimate, of_reference, too_large};
 pub(crate) use identity::{purpose, rule};
 pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;

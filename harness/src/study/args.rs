@@ -1,8 +1,10 @@
 //! Which runs of a study are made, and where their results go.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+
+use super::apart::ApartArgs;
 
 /// Arguments of `verify`.
 #[derive(Args)]
@@ -15,7 +17,7 @@ pub struct VerifyArgs {
     /// Only runs whose case or method contains this text
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Only the K-th of N equal shares of the runs
+    /// Only the K-th of N shares of the runs, of about equal cost
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
     /// Runs at a time; more than 1 spoils the timings
@@ -24,9 +26,42 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
+    /// Work on the study together with other processes in the same folder, which give this too: each run is made once. Keeps
+    /// stored results as --resume does
+    #[arg(long)]
+    pub join: bool,
+    /// How runs are kept apart.
+    #[command(flatten)]
+    pub apart: ApartArgs,
+    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    #[arg(long)]
+    pub force: bool,
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+}
+
+impl VerifyArgs {
+    /// The study file.
+    pub fn path(&self) -> PathBuf {
+        self.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into())
+    }
+
+    /// What is meant where nothing but the study is given.
+    pub fn of(study: &Path) -> VerifyArgs {
+        VerifyArgs {
+            study: Some(study.into()),
+            quick: false,
+            filter: None,
+            shard: None,
+            jobs: 1,
+            resume: false,
+            join: false,
+            apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
+            force: true,
+            out: PathBuf::new(),
+        }
+    }
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {

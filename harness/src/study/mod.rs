@@ -1,12 +1,18 @@
 //! A study: many scenes and methods, run in a fixed order, checked, written out.
 
+pub(crate) mod apart;
 mod args;
 pub mod check;
+mod execute;
 pub(crate) mod folder;
 pub(crate) mod make_reference;
+pub(crate) mod merge;
+pub(crate) mod process_group;
 mod progress;
 #[cfg(test)]
 mod project;
+mod shards;
+mod store;
 mod task;
 mod tasks;
 mod trials;
@@ -14,22 +20,26 @@ mod trials;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::AtomicUsize;
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
-use crate::Failure;
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
-use crate::run::{Group, Repeats, RunOptions, case_name};
-use crate::scenario::purpose;
+use crate::run::{Repeats, case_name};
+use crate::scenario::{purpose, too_large};
+use apart::Apart;
+use execute::Work;
 use progress::Progress;
+use store::{Maker, Store};
 use task::TaskResult;
 use tasks::{Task, list};
 use trials::RefusedScene;
 
+pub use apart::ExperimentArgs;
 pub use args::VerifyArgs;
+pub use merge::MergeArgs;
 pub(crate) use task::stalled;
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
@@ -41,6 +51,10 @@ const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 pub struct Plan {
     study: Study,
     scenes: Vec<(PathBuf, String, Scene)>,
+    /// Where among these the scenes as they are in their files are, by path.
+    as_they_are: BTreeMap<PathBuf, usize>,
+    /// The files of the cases by name.
+    cases: BTreeMap<String, PathBuf>,
     tasks: Vec<Task>,
     /// Values of axes at which there is no scene.
     refused: Vec<RefusedScene>,
@@ -54,6 +68,8 @@ pub struct Finished {
     pub failed: Vec<u8>,
     /// Runs done.
     pub ran: usize,
+    /// How many of them were stored, by an earlier study or by other processes.
+    pub stored: usize,
     /// Counts of what was done now, references included; stored runs took none.
     pub counters: Counters,
 }
@@ -61,9 +77,34 @@ pub struct Finished {
 impl Plan {
     /// Reads the scenes of a study and lists its runs.
     pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
-        let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
+        Plan::read(study, |_| true)
+    }
+
+    /// Reads the scene of these run tables alone, and lists its runs that they ask for.
+    pub(crate) fn of_tables(study: Study, tables: &[usize]) -> Result<Plan, Vec<scene::SceneError>> {
+        let first = tables.first().and_then(|&table| study.runs.get(table));
+        let scene = first.map(|run| run.scene.clone());
+        let mut plan = Plan::read(study, |run| Some(&run.scene) == scene.as_ref())?;
+        plan.tasks.retain_mut(|task| {
+            task.runs.retain(|run| tables.contains(run));
+            !task.runs.is_empty()
+        });
+        Ok(plan)
+    }
+
+    /// Reads the scenes of the run tables that are wanted.
+    fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
+        let mut plan = Plan {
+            study,
+            scenes: Vec::new(),
+            as_they_are: BTreeMap::new(),
+            cases: BTreeMap::new(),
+            tasks: Vec::new(),
+            refused: Vec::new(),
+        };
         let mut errors = Vec::new();
-        for (index, run) in plan.study.runs.clone().iter().enumerate() {
+        let runs = plan.study.runs.clone();
+        for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
             let read = match &run.axis {
                 None => plan.scene(run).map(|at| vec![at]),
                 Some(axis) => plan.along(index, run, axis),
@@ -80,26 +121,31 @@ impl Plan {
         if errors.is_empty() { Ok(plan) } else { Err(errors) }
     }
 
+    /// A run's scene as it is in its file.
+    fn read_scene(&self, run: &scene::Run) -> Result<Scene, Vec<scene::SceneError>> {
+        match self.study.scenes.get(&run.scene) {
+            Some(scene) => Ok(scene.clone()),
+            None => scene::load(&run.scene),
+        }
+    }
+
     /// The place of a run's scene among those read.
     fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
-        let as_it_is =
-            |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
-        if let Some(at) = self.scenes.iter().position(as_it_is) {
+        if let Some(&at) = self.as_they_are.get(&run.scene) {
             return Ok(at);
         }
-        let scene = scene::load(&run.scene)?;
-        self.add(&run.scene, scene)
+        let at = self.add(&run.scene, self.read_scene(run)?)?;
+        self.as_they_are.insert(run.scene.clone(), at);
+        Ok(at)
     }
 
     fn add(&mut self, path: &Path, scene: Scene) -> Result<usize, Vec<scene::SceneError>> {
         if !scene.unavailable().is_empty() {
             return Err(scene.unavailable());
         }
-        let named = |(other, _, with): &&(PathBuf, String, Scene)| {
-            *other != path && case_name(with) == case_name(&scene)
-        };
-        if let Some((path, ..)) = self.scenes.iter().find(named) {
-            let problem = format!("is in a file of the same name as {}", path.display());
+        let other = self.cases.entry(case_name(&scene)).or_insert_with(|| path.into());
+        if other != path {
+            let problem = format!("is in a file of the same name as {}", other.display());
             let help = "rename one of them: results are filed under the names of scenes";
             return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
         }
@@ -115,9 +161,10 @@ impl Plan {
         run: &scene::Run,
         axis: &scene::Axis,
     ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let base = self.read_scene(run)?;
         let mut found = Vec::new();
         for &value in &axis.values {
-            match axis.at(&run.scene, &run.methods, value) {
+            match axis.at(&base, &run.methods, value) {
                 Ok(scene) => found.push(self.add(&run.scene, scene)?),
                 Err(bad) if value == axis.base => return Err(bad),
                 Err(bad) => {
@@ -133,13 +180,22 @@ impl Plan {
     pub fn select(&mut self, args: &VerifyArgs) {
         let (runs, scenes) = (&self.study.runs, &self.scenes);
         self.tasks.retain_mut(|task| {
-            // Shares deal out whole run tables, so that orders see all their levels.
-            let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
-            task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
+            task.runs.retain(|&run| !args.quick || runs[run].quick);
             let fits =
                 |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
             !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
         });
+        if let Some(shard) = args.shard {
+            let mine = self.share(args, shard);
+            let mut index = 0..;
+            self.tasks.retain(|_| index.next().is_some_and(|index| mine.contains(&index)));
+        }
+    }
+
+    /// Refusals of runs that take more than anyone means to spend.
+    pub(crate) fn too_large(&self) -> Vec<scene::SceneError> {
+        let of = |task: &Task| too_large(&self.scenes[task.scene].2, &task.method);
+        self.tasks.iter().filter_map(of).collect()
     }
 
     /// The run tables that ask for a task.
@@ -192,105 +248,20 @@ impl Plan {
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
     pub fn execute(&self, args: &VerifyArgs) -> Finished {
-        let store = args.out.join("tasks");
         let machine = provenance::machine();
-        let runner = task::runner(&provenance::program(), &machine);
-        let progress = Progress::new(self.tasks.len());
-        let groups = self.groups();
-        let next = AtomicUsize::new(0);
-        let done: Mutex<BTreeMap<usize, TaskResult>> = Mutex::new(BTreeMap::new());
-        std::thread::scope(|scope| {
-            for _ in 0..args.jobs {
-                scope.spawn(|| {
-                    while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        self.group(members, args, &store, &runner, &progress, &done);
-                    }
-                });
-            }
-        });
-        progress.finish();
-        self.collect(done.into_inner().expect("no worker panicked"), machine)
-    }
-
-    /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
-    fn groups(&self) -> Vec<Vec<usize>> {
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        for (index, task) in self.tasks.iter().enumerate() {
-            let same = |other: &Task| other.scene == task.scene && other.poisson == task.poisson;
-            match groups.iter_mut().find(|g| same(&self.tasks[g[0]])) {
-                Some(group) => group.push(index),
-                None => groups.push(vec![index]),
-            }
-        }
-        groups
-    }
-
-    fn group(
-        &self,
-        members: &[usize],
-        args: &VerifyArgs,
-        store: &Path,
-        runner: &str,
-        progress: &Progress,
-        done: &Mutex<BTreeMap<usize, TaskResult>>,
-    ) {
-        let first = &self.tasks[members[0]];
-        let (_, text, scene) = &self.scenes[first.scene];
-        let case = case_name(scene);
-        // Made when first needed: with all members stored, not even the reference is run.
-        let mut group: Option<Result<Group, Failure>> = None;
-        for &index in members {
-            let task = &self.tasks[index];
-            progress.running(format!("{case} {}", task.method.id));
-            let split = self.tables(task).find_map(|run| run.split);
-            // Clouds of many seeds are of one kind: one loop is enough for them all.
-            let frames = !args.quick && !self.is_one_of_many(task);
-            let repeats = if args.quick { QUICK } else { REPEATS };
-            let Task { method, level, poisson, picture, .. } = task;
-            let what = format!("{method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
-            let key = task::key(runner, text, &files(scene), &what);
-            let stored = if args.resume { TaskResult::load(store, &key) } else { None };
-            let known = stored.is_some();
-            let result = stored.unwrap_or_else(|| {
-                let mut shared = Counters::default();
-                let group = group.get_or_insert_with(|| {
-                    let group = Group::new(scene, task.poisson, repeats);
-                    shared = group.as_ref().map_or(shared, Group::reference_counters);
-                    group
-                });
-                let outcome = match group {
-                    Ok(group) => {
-                        let options = RunOptions { picture: task.picture, frames, split };
-                        group.run(&group.scenario(task.method.clone(), task.level), options)
-                    }
-                    Err(failure) => Err(failure.clone().into()),
-                };
-                let mut result = match outcome {
-                    Ok(outcome) => TaskResult::finished(&outcome),
-                    Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
-                };
-                result.counters += shared;
-                if let (Ok(Some(stalled)), None) =
-                    (group.as_ref().map(Group::reference_stalled), &result.failure)
-                {
-                    let reason = format!("reference stalled: {stalled}");
-                    let carried = group.as_ref().ok().and_then(|group| group.reference_carried());
-                    let run = reports::Failure {
-                        case: case.clone(),
-                        method: task.method.id.clone(),
-                        reason,
-                        carried,
-                    };
-                    result.failure = Some((run, stalled.exit_code()));
-                }
-                result
-            });
-            if !known && let Err(bad) = result.store(store, &key) {
-                progress.warn(format!("warning: {} could not be stored: {bad}", store.display()));
-            }
-            done.lock().expect("no worker panicked").insert(index, result);
-            progress.done();
-        }
+        let store = store(args);
+        let work = Work {
+            plan: self,
+            args,
+            store: &store,
+            apart: args.apart.isolate.then(|| Apart::new(args, &store)),
+            progress: Progress::new(self.tasks.len()),
+            done: Mutex::default(),
+            stored: AtomicUsize::new(0),
+        };
+        work.all();
+        let finished = self.collect(work.done.into_inner().expect("no worker panicked"), machine);
+        Finished { stored: work.stored.into_inner(), ..finished }
     }
 
     fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
@@ -339,7 +310,7 @@ impl Plan {
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
-        Finished { set, failed, ran: results.len(), counters }
+        Finished { set, failed, ran: results.len(), stored: 0, counters }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
@@ -431,6 +402,22 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
         ..Record::default()
     };
     Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
+}
+
+/// Removes what killed processes left among the stored results. Only for a process that is alone in the folder.
+pub(crate) fn clean(args: &VerifyArgs) {
+    store::clean(&args.out);
+}
+
+/// Keeps nothing but finished results of this program on this machine. Only for the first of the processes that work on a study.
+pub(crate) fn sweep(args: &VerifyArgs) {
+    clean(args);
+    store(args).sweep();
+}
+
+/// Where the results of single runs are stored.
+fn store(args: &VerifyArgs) -> Store {
+    Store::new(&args.out, Maker::new(&provenance::program(), &provenance::machine()))
 }
 
 /// Method id with what tells this run from others of the same id.
