@@ -62,6 +62,8 @@ pub struct Run {
     pub axis: Option<Axis>,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
+    /// Words to choose it by.
+    pub tags: Vec<String>,
     /// What must hold, beside the scene's own checks.
     pub checks: Vec<Check>,
 }
@@ -115,6 +117,9 @@ pub(crate) struct RunKeys {
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
+    /// Words to choose the run by: `tissuebench verify --tag WORD`, and `--not WORD` to leave it out
+    #[serde(default)]
+    pub tags: Vec<String>,
     #[serde(default)]
     pub check: Vec<CheckKeys>,
 }
@@ -197,6 +202,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         seeds: keys.seeds.into(),
         axis: keys.axis.and_then(|keys| axis(keys, &at("axis"), report)),
         quick: keys.quick,
+        tags: keys.tags,
         checks: checks(keys.check, &at("check"), report),
     }
 }

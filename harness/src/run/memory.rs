@@ -2,6 +2,8 @@
 
 use peak_alloc::PeakAlloc;
 
+use crate::outcome::yardstick::yardstick;
+
 /// The process's allocator, with a count on it: a relaxed add per allocation.
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
@@ -11,8 +13,10 @@ pub struct Baseline(usize);
 
 impl Baseline {
     /// Forgets the peak so far, and what the libraries keep for good.
+    #[allow(clippy::new_without_default)] // it is taken at a moment
     pub fn new() -> Baseline {
         algebra::reserve_workspaces();
+        yardstick();
         ALLOCATOR.reset_peak_usage();
         Baseline(ALLOCATOR.current_usage())
     }

@@ -11,6 +11,7 @@ use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, msh, quality};
 
+use super::expected::{self, narrowest};
 use super::same_body;
 use crate::Failure;
 use crate::error::Key;
@@ -55,6 +56,7 @@ pub(super) fn unchecked(
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
+        few_enough(expected::of_family(body, kind, n as f64))?;
         let mesh = match *body {
             Body::Box { min, max } => {
                 let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
@@ -89,15 +91,15 @@ pub(super) fn unchecked(
             }
         };
         let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;
-        if mesh.points().len() > MOST_NODES {
-            let problem = format!("asks for {} nodes; at most {MOST_NODES} are made", mesh.points().len());
-            return Err(Failure::input(Key::Size(""), problem, "make it coarser"));
-        }
+        few_enough(mesh.points().len() as f64)?;
         Ok(mesh)
     };
     match *size {
         Size::Level(level) => family(base(body) << (level - 1).min(16)),
-        Size::Nodes(wanted) => nearest_count(family, wanted),
+        Size::Nodes(wanted) => {
+            few_enough(wanted as f64)?;
+            nearest_count(family, wanted)
+        }
         Size::Spacing(spacing) => {
             let n = narrowest(body) / spacing;
             if !(n.is_finite() && n < 1e3) {
@@ -108,6 +110,7 @@ pub(super) fn unchecked(
         }
         Size::Cells { cells, grading } => match *body {
             Body::Box { min, max } => {
+                few_enough(expected::of_box(kind, cells.map(|n| n as f64)))?;
                 cuboid(kind, min, max, cells, grading, jitter).map_err(|bad| ungenerated(bad, size, jitter))
             }
             _ => {
@@ -117,6 +120,15 @@ pub(super) fn unchecked(
         },
         Size::File(_) => unreachable!("returned above"),
     }
+}
+
+/// Refuses what no mesh is made of; asked before one is made, which takes seconds and gigabytes.
+fn few_enough(nodes: f64) -> Result<(), Failure> {
+    if nodes <= MOST_NODES as f64 {
+        return Ok(());
+    }
+    let problem = format!("asks for {nodes:.0} nodes; at most {MOST_NODES} are made");
+    Err(Failure::input(Key::Size(""), problem, "make it coarser"))
 }
 
 fn cuboid(
@@ -167,17 +179,6 @@ fn base(body: &Body) -> usize {
         | Body::Kidney { .. }
         | Body::SphereShell { .. } => 2,
         Body::File(_) => 1,
-    }
-}
-
-/// The extent (m) that a size's number of cells divides.
-fn narrowest(body: &Body) -> f64 {
-    match *body {
-        Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
-        Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
-        Body::SphereShell { inner, outer, .. } => outer - inner,
-        Body::Kidney { .. } => Kidney::C,
-        Body::File(_) => 0.0,
     }
 }
 

@@ -4,6 +4,7 @@ mod body;
 mod cloud;
 mod cloud_file;
 mod discretise;
+mod expected;
 mod grading;
 mod identity;
 mod law;

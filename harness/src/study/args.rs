@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::Filters;
+
 /// Arguments of `verify`.
 #[derive(Args)]
 pub struct VerifyArgs {
@@ -15,6 +17,9 @@ pub struct VerifyArgs {
     /// Only runs whose case or method contains this text
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
+    /// Further choices
+    #[command(flatten)]
+    pub filters: Filters,
     /// Only the K-th of N equal shares of the runs
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
@@ -24,9 +29,38 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
+    /// Errors only
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// A line for each run
+    #[arg(short, long, conflicts_with = "quiet")]
+    pub verbose: bool,
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+}
+
+impl VerifyArgs {
+    /// How much is said of its progress.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Plain,
+        }
+    }
+}
+
+/// How much is said of a study's progress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loudness {
+    /// Errors only.
+    Quiet,
+    /// A bar, or a line now and then.
+    #[default]
+    Plain,
+    /// A line for each run.
+    Verbose,
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {

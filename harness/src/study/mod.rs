@@ -2,11 +2,14 @@
 
 mod args;
 pub mod check;
+pub(crate) mod events;
+mod filters;
 pub(crate) mod folder;
 pub(crate) mod make_reference;
 mod progress;
 #[cfg(test)]
 mod project;
+mod summary;
 mod task;
 mod tasks;
 mod trials;
@@ -24,12 +27,15 @@ use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::scenario::purpose;
+use events::Events;
 use progress::Progress;
 use task::TaskResult;
 use tasks::{Task, list};
 use trials::RefusedScene;
 
-pub use args::VerifyArgs;
+pub use args::{Loudness, VerifyArgs};
+pub use filters::Filters;
+pub use summary::RunSummary;
 pub(crate) use task::stalled;
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
@@ -52,6 +58,8 @@ pub struct Finished {
     pub set: RunSet,
     /// Exit codes of runs that failed.
     pub failed: Vec<u8>,
+    /// What became of each run, then of the checks of several runs together.
+    pub runs: Vec<RunSummary>,
     /// Runs done.
     pub ran: usize,
     /// Counts of what was done now, references included; stored runs took none.
@@ -136,9 +144,12 @@ impl Plan {
             // Shares deal out whole run tables, so that orders see all their levels.
             let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
             task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
-            let fits =
-                |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
-            !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
+            let (case, method) = (case_name(&scenes[task.scene].2), &task.method.id);
+            let contains = |text: &str| case.contains(text) || method.contains(text);
+            let tags = tags(task, runs, &scenes[task.scene].2);
+            !task.runs.is_empty()
+                && args.filter.as_deref().is_none_or(contains)
+                && args.filters.fits(&case, method, &tags)
         });
     }
 
@@ -192,10 +203,15 @@ impl Plan {
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
     pub fn execute(&self, args: &VerifyArgs) -> Finished {
+        self.execute_watched(args, None)
+    }
+
+    /// As [`execute`](Plan::execute), with what happens reported as it happens.
+    pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
         let store = args.out.join("tasks");
         let machine = provenance::machine();
         let runner = task::runner(&provenance::program(), &machine);
-        let progress = Progress::new(self.tasks.len());
+        let progress = Progress::new(self.tasks.len(), args.loudness(), events);
         let groups = self.groups();
         let next = AtomicUsize::new(0);
         let done: Mutex<BTreeMap<usize, TaskResult>> = Mutex::new(BTreeMap::new());
@@ -241,7 +257,7 @@ impl Plan {
         let mut group: Option<Result<Group, Failure>> = None;
         for &index in members {
             let task = &self.tasks[index];
-            progress.running(format!("{case} {}", task.method.id));
+            let running = progress.running(&case, &task.method.id, index);
             let split = self.tables(task).find_map(|run| run.split);
             // Clouds of many seeds are of one kind: one loop is enough for them all.
             let frames = !args.quick && !self.is_one_of_many(task);
@@ -288,8 +304,8 @@ impl Plan {
             if !known && let Err(bad) = result.store(store, &key) {
                 progress.warn(format!("warning: {} could not be stored: {bad}", store.display()));
             }
+            progress.done(running, &result, known);
             done.lock().expect("no worker panicked").insert(index, result);
-            progress.done();
         }
     }
 
@@ -297,6 +313,7 @@ impl Plan {
         let mut set = RunSet::default();
         let mut failed = Vec::new();
         let mut counters = Counters::default();
+        let mut runs = Vec::new();
         for (&index, result) in &results {
             let task = &self.tasks[index];
             counters += result.counters;
@@ -314,6 +331,7 @@ impl Plan {
                 }
             }
             let verdicts = self.verdicts(task, result);
+            let mut run = self.summary(task, result, &verdicts);
             // Along an axis it is a result how a run ends.
             if let Some((failure, code)) = result.failure.as_ref().filter(|_| !self.is_driven(task)) {
                 set.failures.push(failure.clone());
@@ -324,22 +342,55 @@ impl Plan {
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
                 if !counted && !verdicts.iter().any(known) {
                     failed.push(*code);
+                    run.failure = Some(failure.reason.clone());
                 }
             }
+            runs.push(run);
             set.checks.extend(verdicts);
         }
         for (_, _, scene) in &self.scenes {
             set.records.extend(reference_records(scene));
         }
         let families = self.families(&results);
-        set.checks.extend(self.family_verdicts(&families));
+        let mut together = self.family_verdicts(&families);
         failed.extend(self.without_any(&families));
         set.axes = self.axes(&results);
-        set.checks.extend(set.axes.iter().flat_map(trials::verdicts));
+        together.extend(set.axes.iter().flat_map(trials::verdicts));
+        runs.extend(together.iter().map(|check| self.together(check)));
+        set.checks.extend(together);
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
-        Finished { set, failed, ran: results.len(), counters }
+        Finished { set, failed, runs, ran: results.len(), counters }
+    }
+
+    fn summary(&self, task: &Task, result: &TaskResult, checks: &[Verdict]) -> RunSummary {
+        let (file, _, scene) = &self.scenes[task.scene];
+        RunSummary {
+            case: case_name(scene),
+            file: file.clone(),
+            label: label(task, &result.records, self.is_one_of_many(task)),
+            seconds: summary::seconds(result),
+            failure: None,
+            checks: checks.to_vec(),
+        }
+    }
+
+    /// A check of several runs together, beside the runs.
+    fn together(&self, check: &Verdict) -> RunSummary {
+        // Along an axis the case has its name behind it.
+        let own = |(_, _, scene): &&(PathBuf, String, Scene)| {
+            let behind = check.case.strip_prefix(&case_name(scene));
+            behind.is_some_and(|text| text.is_empty() || text.starts_with(" along "))
+        };
+        RunSummary {
+            case: check.case.clone(),
+            file: self.scenes.iter().find(own).map(|(file, ..)| file.clone()).unwrap_or_default(),
+            label: format!("{} {}", check.method, check.metric),
+            seconds: 0.0,
+            failure: None,
+            checks: vec![check.clone()],
+        }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
@@ -411,6 +462,15 @@ impl Plan {
         none.filter_map(|f| f.members.iter().find_map(|m| m.failure.as_ref()).map(|(_, code)| *code))
             .collect()
     }
+}
+
+/// What a run can be chosen by, beside its names.
+fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) -> Vec<&'a str> {
+    let own = task.runs.iter().map(|&run| &runs[run]);
+    let named = own.clone().flat_map(|run| run.tags.iter().map(String::as_str));
+    let quick = own.clone().any(|run| run.quick).then_some("quick");
+    let of_scene = [scene.purpose.name(), scene.procedure.kind().name(), task.method.family_name()];
+    named.chain(quick).chain(of_scene).collect()
 }
 
 /// The runs that a run table has of one method at one Poisson's ratio: its levels, or its clouds.
