@@ -3,6 +3,9 @@
 
 mod args;
 mod baseline;
+mod ci;
+mod colour;
+mod compare;
 mod json;
 mod list;
 mod mesh_files;
@@ -16,10 +19,12 @@ use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
+use clap::CommandFactory;
 
 use crate::Failure;
 use crate::study::folder;
 use baseline::baseline;
+use compare::compare;
 use list::list;
 use plan::plan;
 use reference::reference;
@@ -36,10 +41,11 @@ pub fn main(cli: Cli) -> u8 {
         eprintln!("tissuebench: {bad}");
         return 3;
     }
+    colour::choose(cli.color);
     match cli.command {
         Command::Run(args) => run(&args),
         Command::Plan { scene, methods } => plan(&scene, &methods),
-        Command::Verify(args) => verify(&args),
+        Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Report { results, out } => {
             let out = out.unwrap_or_else(|| results.join("report"));
             report(&results, &out)
@@ -58,10 +64,43 @@ pub fn main(cli: Cli) -> u8 {
             println!("{schema:#}");
             0
         }
+        Command::Compare(args) => compare(&args),
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Cli::command(), "tissuebench", &mut std::io::stdout());
+            0
+        }
+        Command::Man { command } => manual(command.as_deref()),
         Command::Mesh { action } => match mesh_files::act(&action) {
             Ok(()) => 0,
             Err(failure) => fail(&failure),
         },
+    }
+}
+
+/// Prints the manual page of a command, or of the program.
+fn manual(command: Option<&str>) -> u8 {
+    let root = Cli::command();
+    let page = match command {
+        None => root,
+        Some(name) => match root.find_subcommand(name) {
+            Some(command) => {
+                let name = format!("tissuebench-{name}");
+                command.clone().bin_name(name.replacen('-', " ", 1)).display_name(name)
+            }
+            None => {
+                let near = nearest(name, root.get_subcommands().map(clap::Command::get_name));
+                let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+                eprintln!("tissuebench: no command '{name}'{near}");
+                return 2;
+            }
+        },
+    };
+    match clap_mangen::Man::new(page).render(&mut std::io::stdout()) {
+        Ok(()) => 0,
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            3
+        }
     }
 }
 

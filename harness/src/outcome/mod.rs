@@ -8,7 +8,6 @@ pub mod provenance;
 mod records;
 pub(crate) mod timing;
 mod warning;
-pub(crate) mod yardstick;
 
 use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};

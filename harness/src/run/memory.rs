@@ -2,8 +2,6 @@
 
 use peak_alloc::PeakAlloc;
 
-use crate::outcome::yardstick::yardstick;
-
 /// The process's allocator, with a count on it: a relaxed add per allocation.
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
@@ -16,7 +14,6 @@ impl Baseline {
     #[allow(clippy::new_without_default)] // it is taken at a moment
     pub fn new() -> Baseline {
         algebra::reserve_workspaces();
-        yardstick();
         ALLOCATOR.reset_peak_usage();
         Baseline(ALLOCATOR.current_usage())
     }

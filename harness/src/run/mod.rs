@@ -18,7 +18,7 @@ use crate::measure::{
     probe_history, probes, report_modes, report_steps, transfers, warnings,
 };
 use crate::outcome::timing::Timed;
-use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName, yardstick};
+use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
 use crate::prepare::{Prepared, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::scenario::setup::Setup;
@@ -96,7 +96,6 @@ fn passes(
     meters: &mut Meters,
 ) -> Result<Pass, Failure> {
     let start = Instant::now();
-    meters.timings.time(yardstick::PHASE, yardstick::yardstick);
     let mut pass = once(method, setup, plan, request, meters)?;
     for _ in 1..request.repeats.most {
         if start.elapsed().as_secs_f64() > request.repeats.seconds {
@@ -127,7 +126,6 @@ fn once(
     let prepared = timings.time("prepare", || prepare(current, setup, plan, counters))?;
     let problem = Problem { method: current, setup, prepared: &prepared, plan, watch: request.watch };
     let solution = procedure::solve(&problem, meters)?;
-    meters.timings.time(yardstick::PHASE, yardstick::yardstick);
     Ok(Pass { refined, prepared, solution })
 }
 

@@ -65,12 +65,13 @@ fn name<'a>(task: &Task, tables: impl Iterator<Item = &'a scene::Run>) -> String
     let (nodes, seed) = match &efg.cloud {
         Cloud::Mesh { size: Size::Nodes(nodes), jitter } => (Some(*nodes), jitter.map(|j| j.seed)),
         Cloud::Mesh { jitter, .. } => (None, jitter.map(|j| j.seed)),
-        Cloud::Uniform { nodes, seed } | Cloud::Refined { nodes, seed, .. } | Cloud::Graded { nodes, seed, .. } => {
-            (Some(*nodes), Some(*seed))
-        }
+        Cloud::Uniform { nodes, seed }
+        | Cloud::Refined { nodes, seed, .. }
+        | Cloud::Graded { nodes, seed, .. } => (Some(*nodes), Some(*seed)),
         Cloud::File { nodes, .. } => (*nodes, None),
     };
-    let (mut kernels, mut scales, mut essentials, mut counts, mut seeds) = (false, false, false, false, false);
+    let (mut kernels, mut scales, mut essentials, mut counts, mut seeds) =
+        (false, false, false, false, false);
     for run in tables {
         kernels |= !run.kernels.is_empty();
         scales |= !run.support_scales.is_empty();

@@ -5,6 +5,7 @@ pub mod check;
 pub(crate) mod events;
 mod filters;
 pub(crate) mod folder;
+mod listing;
 pub(crate) mod make_reference;
 mod progress;
 #[cfg(test)]
@@ -35,6 +36,7 @@ use trials::RefusedScene;
 
 pub use args::{Loudness, VerifyArgs};
 pub use filters::Filters;
+pub use listing::Planned;
 pub use summary::RunSummary;
 pub(crate) use task::stalled;
 

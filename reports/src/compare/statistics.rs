@@ -59,7 +59,7 @@ pub(super) fn scale(values: &[f64]) -> f64 {
 }
 
 /// What Student's t of so many degrees of freedom exceeds, upwards or downwards, once in `1 / risk`.
-fn student(freedom: usize, risk: f64) -> f64 {
+pub(super) fn student(freedom: usize, risk: f64) -> f64 {
     let n = freedom.max(1) as f64;
     // Gamma((n + 1) / 2) / Gamma(n / 2), from one degree of freedom on.
     let mut ratio = 1.0 / std::f64::consts::PI.sqrt();

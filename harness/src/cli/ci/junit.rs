@@ -42,7 +42,8 @@ fn test(out: &mut String, run: &RunSummary) {
     }
     for check in failed(run) {
         let message = escaped(&text::verdict(check));
-        let _ = writeln!(inside, "      <failure type=\"{}\" message=\"{message}\"/>", escaped(&check.metric));
+        let _ =
+            writeln!(inside, "      <failure type=\"{}\" message=\"{message}\"/>", escaped(&check.metric));
     }
     let known: Vec<String> = of(run, Status::KnownFailure).map(text::verdict).collect();
     let not_run = of(run, Status::NotRun).count();
@@ -143,7 +144,10 @@ mod tests {
         );
         assert!(text.contains("name=\"tet4\" file=\"cases/block.toml\" time=\"0.250000\"/>"), "{text}");
         assert!(text.contains("is not &lt; 1 &amp; &quot;so&quot;"), "{text}");
-        assert!(text.contains("<error message=\"no support\"/>") && text.contains("<system-out>known"), "{text}");
+        assert!(
+            text.contains("<error message=\"no support\"/>") && text.contains("<system-out>known"),
+            "{text}"
+        );
         assert_eq!(text.matches("<testcase ").count(), 4);
     }
 
