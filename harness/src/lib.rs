@@ -29,6 +29,9 @@
 //! # Ok::<(), harness::Failure>(())
 //! ```
 
+#[macro_use]
+mod print;
+
 pub mod cli;
 mod discretise;
 mod error;

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::ReportError;
 use crate::history::step;
 use crate::record::Record;
+use crate::store::write_text;
 
 pub use compare::{Change, Comparison};
 
@@ -63,7 +64,7 @@ impl Baseline {
                 text += &format!("{quantity:?} = [{}]\n", values.join(", "));
             }
         }
-        std::fs::write(path, text).map_err(|source| ReportError::Io { path: path.into(), source })
+        write_text(path, text)
     }
 
     /// Number of numbers.

@@ -10,6 +10,14 @@ pub enum ReportError {
     /// A folder without results.
     #[error("{path} holds no results (no provenance.json); `tissuebench run SCENE --out {path}` or `tissuebench verify --out {path}` writes some", path = .0.display())]
     NoResults(PathBuf),
+    /// A folder whose study or run was begun and has not ended.
+    #[error("{path} is incomplete: the results of {of} were begun there and are not all written; run it again, a study with --resume to keep what is finished", path = .path.display())]
+    Incomplete {
+        /// The folder.
+        path: PathBuf,
+        /// Name of the study's or scene's file.
+        of: String,
+    },
     /// A record holds a number that isn't finite.
     #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
     NotFinite {
@@ -46,7 +54,15 @@ pub enum ReportError {
         /// What doesn't fit.
         reason: String,
     },
-    /// A file or folder couldn't be read or written.
+    /// A file or folder couldn't be written.
+    #[error("{} can't be written: {source}", path.display())]
+    Unwritten {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// A file or folder couldn't be read.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.

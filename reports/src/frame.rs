@@ -1,5 +1,6 @@
 //! The long table to and from CSV. The only file that names the CSV library.
 
+use std::io;
 use std::path::Path;
 
 use serde::Serialize;
@@ -7,6 +8,7 @@ use serde::Serialize;
 use crate::error::ReportError;
 use crate::provenance::Provenance;
 use crate::record::Record;
+use crate::store::replace;
 
 /// What every row of the file carries beyond its record, so that tables of several machines can be joined.
 #[derive(Serialize)]
@@ -23,8 +25,10 @@ struct Origin<'a> {
 /// Writes `records.csv`: the fields of a record, then those of its origin. Numbers have the fewest digits that give the same
 /// bits when they are read again.
 pub(crate) fn write(dir: &Path, records: &[Record], from: &Provenance) -> Result<(), ReportError> {
-    let path = dir.join("records.csv");
-    let mut file = csv::Writer::from_path(&path).map_err(|e| content(&path, &e))?;
+    replace(&dir.join("records.csv"), |file| rows(csv::Writer::from_writer(file), records, from))
+}
+
+fn rows<W: io::Write>(mut file: csv::Writer<W>, records: &[Record], from: &Provenance) -> io::Result<()> {
     let (program, machine, commit) = (&from.program, &from.machine, from.program.revision());
     for record in records {
         let origin = Origin {
@@ -35,9 +39,9 @@ pub(crate) fn write(dir: &Path, records: &[Record], from: &Provenance) -> Result
             instructions: &machine.instructions,
             threads: if record.is_measured() { machine.threads } else { 0 },
         };
-        file.serialize((record, origin)).map_err(|e| content(&path, &e))?;
+        file.serialize((record, origin))?;
     }
-    file.flush().map_err(|source| ReportError::Io { path, source })
+    file.flush()
 }
 
 /// Reads the records of `records.csv`; their provenance is in a file of its own.

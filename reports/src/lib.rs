@@ -53,4 +53,4 @@ pub use render::{Rendered, render};
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
 };
-pub use store::{read_run, source_of, write_run};
+pub use store::{begin, end, is_incomplete, provenance_of, read_run, source_of, write_run, write_text};

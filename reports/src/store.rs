@@ -9,15 +9,17 @@
 //! | `warnings.json` | what is to be said against the numbers of runs |
 //! | `axes.json` | how methods fare along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |
+//! | `incomplete.json` | there from the beginning of a study or run until all of the above is written |
 //!
-//! Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
+//! Each file is written beside its place and renamed: it is whole, the older one, or not there. Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
 
 use std::collections::HashSet;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 use crate::frame;
@@ -25,6 +27,37 @@ use crate::provenance::Provenance;
 use crate::record::Record;
 use crate::run_set::RunSet;
 use crate::table::csv_line;
+
+/// There while the results in a folder are not those of the last study or run that was begun there.
+const MARK: &str = "incomplete.json";
+
+/// What is said of results that are yet to come.
+#[derive(Serialize, Deserialize)]
+struct Mark {
+    /// Name of the study's or scene's file.
+    source: String,
+}
+
+/// Marks a folder as one whose results are being made, until [`write_run`] has written them.
+/// Records of an earlier run there are no longer read: they would pass for the new ones if this run were killed.
+pub fn begin(dir: &Path, source: &str) -> Result<(), ReportError> {
+    make_dir(dir)?;
+    write_json(&dir.join(MARK), &Mark { source: source.to_string() })
+}
+
+/// Whether a folder is marked so.
+pub fn is_incomplete(dir: &Path) -> bool {
+    dir.join(MARK).exists()
+}
+
+/// Takes the mark away, of results that are whole: all written, or none of them touched.
+pub fn end(dir: &Path) -> Result<(), ReportError> {
+    let mark = dir.join(MARK);
+    match fs::remove_file(&mark) {
+        Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(&mark, bad)),
+        _ => Ok(()),
+    }
+}
 
 /// Writes a run to a folder, which is created where missing; surface fields of an earlier run there are removed.
 pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
@@ -42,7 +75,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
             });
         }
     }
-    make_dir(dir)?;
+    begin(dir, &run.provenance.source)?;
     let mut records = run.records.clone();
     records.sort_by(|a, b| a.order(b));
     frame::write(dir, &records, &run.provenance)?;
@@ -83,7 +116,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
         write_json(&fields.join(&name), field)?;
         taken.push(name);
     }
-    Ok(())
+    end(dir)
 }
 
 /// Refuses rows that nothing tells apart.
@@ -100,14 +133,24 @@ fn once(records: &[Record]) -> Result<(), ReportError> {
     }
 }
 
-/// The study's or scene's file that the results in a folder are of; `None` where there are none.
+/// The study's or scene's file that the results in a folder are of, or are to be of; `None` where there are none.
 pub fn source_of(dir: &Path) -> Option<String> {
-    read_json::<Provenance>(&dir.join("provenance.json")).ok().map(|provenance| provenance.source)
+    let begun = read_json::<Mark>(&dir.join(MARK)).ok().map(|mark| mark.source);
+    begun.or_else(|| provenance_of(dir).map(|held| held.source))
+}
+
+/// Where the results in a folder come from, be they whole or not.
+pub fn provenance_of(dir: &Path) -> Option<Provenance> {
+    read_json(&dir.join("provenance.json")).ok()
 }
 
 /// Reads a run back from its folder; surface fields in the order of their file names.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     let provenance = dir.join("provenance.json");
+    if is_incomplete(dir) {
+        let of = source_of(dir).unwrap_or_else(|| "a study".into());
+        return Err(ReportError::Incomplete { path: dir.into(), of });
+    }
     if !provenance.exists() {
         return Err(ReportError::NoResults(dir.into()));
     }
@@ -129,11 +172,37 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
 }
 
 pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
-    fs::create_dir_all(dir).map_err(|source| ReportError::Io { path: dir.into(), source })
+    fs::create_dir_all(dir).map_err(|source| unwritten(dir, source))
 }
 
-pub(crate) fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
-    fs::write(path, text).map_err(|source| ReportError::Io { path: path.into(), source })
+/// Writes a file, whole or not at all.
+pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
+    replace(path, |file| file.write_all(text.as_ref()))
+}
+
+/// Writes a file beside its place and renames it, so that what stands there is never half of it.
+pub(crate) fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), ReportError> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    let all = || {
+        let mut file = BufWriter::new(File::create(&partial)?);
+        write(&mut file)?;
+        file.flush()?;
+        drop(file);
+        fs::rename(&partial, path)
+    };
+    all().map_err(|source| {
+        let _ = fs::remove_file(&partial);
+        unwritten(path, source)
+    })
+}
+
+fn unwritten(path: &Path, source: io::Error) -> ReportError {
+    ReportError::Unwritten { path: path.into(), source }
 }
 
 /// Lower case letters, digits, dots and dashes only: safe as a file name.
@@ -145,7 +214,7 @@ pub(crate) fn slug(name: &str) -> String {
 /// Removes what an earlier run left but for what is kept, so that no file of it passes for one of this run.
 pub(crate) fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), ReportError> {
     for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
-        fs::remove_file(old).map_err(|source| ReportError::Io { path: old.clone(), source })?;
+        fs::remove_file(old).map_err(|source| unwritten(old, source))?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use super::ci::CiArgs;
-use crate::study::VerifyArgs;
+use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
 /// same scenes.
@@ -38,6 +38,9 @@ pub enum Command {
         /// Only this method (may be given several times)
         #[arg(long = "method", value_name = "ID")]
         methods: Vec<String>,
+        /// Plan what is estimated to take more than twice the memory of this machine or half a day
+        #[arg(long)]
+        force: bool,
     },
     /// Run a study: many scenes and methods; its checks gate the exit code
     Verify {
@@ -48,6 +51,11 @@ pub enum Command {
         #[command(flatten)]
         ci: CiArgs,
     },
+    /// One run of a study in a process of its own
+    #[command(hide = true)]
+    Experiment(ExperimentArgs),
+    /// Join the shares of a study that were run by --shard, or by several machines, to the results of one run
+    Merge(MergeArgs),
     /// Render tables, figures and the report of stored results
     Report {
         /// A folder that `verify` or `run --out` wrote
@@ -107,6 +115,9 @@ pub struct RunArgs {
     /// Time each run once; by default runs that take less than a second are repeated, up to five times
     #[arg(long)]
     pub once: bool,
+    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    #[arg(long)]
+    pub force: bool,
     /// What to print on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,

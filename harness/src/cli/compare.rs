@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use anstream::println;
 use reports::RunSet;
 use reports::compare::{Comparison, NumberChange, Numbers, Ratio, Scope, Times};
 
 use super::args::{CompareArgs, Format};
-use super::colour::{BAD, DOUBTFUL, GOOD, painted};
+use super::colour::{self, BAD, DOUBTFUL, GOOD};
 
 /// Lines of a list before the rest is only counted.
 const SHOWN: usize = 40;
@@ -68,7 +67,7 @@ fn numbers(found: &Numbers) {
     let Numbers { tolerance, compared, only_before, only_after, changes } = found;
     println!("numbers: {compared} compared, {} changed by more than {tolerance:e}", changes.len());
     for (runs, side) in [(only_before, "only before"), (only_after, "only after")] {
-        shown(runs, |run| println!("  {}  {run}", painted(DOUBTFUL, side)));
+        shown(runs, |run| println!("  {}  {run}", colour::out(DOUBTFUL, side)));
     }
     shown(changes, |change| println!("{}", describe(change)));
 }
@@ -81,8 +80,8 @@ fn describe(change: &NumberChange) -> String {
     };
     let value = |v: Option<f64>| v.map_or("none".into(), |v| format!("{v:.6e}"));
     format!(
-        "  {:7}  {}\n           {}: {} -> {} ({:.1e})",
-        painted(style, change.verdict),
+        "  {}  {}\n           {}: {} -> {} ({:.1e})",
+        colour::out(style, &format!("{:7}", change.verdict)),
         change.run,
         change.quantity,
         value(change.before),
@@ -126,8 +125,8 @@ fn row(ratio: &Ratio) {
     };
     let verdict = match (ratio.called, ratio.ratio > 1.0) {
         (false, _) => String::new(),
-        (true, true) => format!("  {}", painted(BAD, "slower")),
-        (true, false) => format!("  {}", painted(GOOD, "faster")),
+        (true, true) => format!("  {}", colour::out(BAD, "slower")),
+        (true, false) => format!("  {}", colour::out(GOOD, "faster")),
     };
     let Ratio { name, count, ratio, limit, .. } = ratio;
     println!("  {scope:8} {name:32} {count:>6} {ratio:>12.3}  {:.3} to {limit:.3}{verdict}", 1.0 / limit);

@@ -6,8 +6,10 @@ mod baseline;
 mod ci;
 mod colour;
 mod compare;
+mod interrupt;
 mod json;
 mod list;
+mod merge;
 mod mesh_files;
 mod plan;
 mod reference;
@@ -20,12 +22,16 @@ use std::path::Path;
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
 use clap::CommandFactory;
+use reports::ReportError;
 
 use crate::Failure;
-use crate::study::folder;
+use crate::scenario::with_reference;
+use crate::study::apart::experiment;
+use crate::study::folder::{self, Folder};
 use baseline::baseline;
 use compare::compare;
 use list::list;
+use merge::merge;
 use plan::plan;
 use reference::reference;
 use run::run;
@@ -35,6 +41,10 @@ pub use args::{Cli, Command};
 
 /// Runs one command and returns its exit code.
 pub fn main(cli: Cli) -> u8 {
+    crate::print::code(act(cli))
+}
+
+fn act(cli: Cli) -> u8 {
     if let Some(threads) = cli.threads
         && let Err(bad) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
     {
@@ -44,16 +54,15 @@ pub fn main(cli: Cli) -> u8 {
     colour::choose(cli.color);
     match cli.command {
         Command::Run(args) => run(&args),
-        Command::Plan { scene, methods } => plan(&scene, &methods),
+        Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
+        Command::Merge(args) => merge(&args),
+        Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out } => {
             let out = out.unwrap_or_else(|| results.join("report"));
             report(&results, &out)
         }
-        Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| {
-            eprintln!("tissuebench: {bad}");
-            2
-        }),
+        Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| unreported(&bad)),
         Command::Reference(args) => match reference(&args) {
             Ok(()) => 0,
             Err(code) => code,
@@ -66,7 +75,9 @@ pub fn main(cli: Cli) -> u8 {
         }
         Command::Compare(args) => compare(&args),
         Command::Completions { shell } => {
-            clap_complete::generate(shell, &mut Cli::command(), "tissuebench", &mut std::io::stdout());
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "tissuebench", &mut script);
+            print!("{}", String::from_utf8_lossy(&script));
             0
         }
         Command::Man { command } => manual(command.as_deref()),
@@ -95,8 +106,12 @@ fn manual(command: Option<&str>) -> u8 {
             }
         },
     };
-    match clap_mangen::Man::new(page).render(&mut std::io::stdout()) {
-        Ok(()) => 0,
+    let mut text = Vec::new();
+    match clap_mangen::Man::new(page).render(&mut text) {
+        Ok(()) => {
+            print!("{}", String::from_utf8_lossy(&text));
+            0
+        }
         Err(bad) => {
             eprintln!("tissuebench: {bad}");
             3
@@ -117,16 +132,14 @@ fn refuse(errors: &[SceneError]) -> u8 {
     if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
 }
 
-/// Makes the folder of results ready for those of a scene or study, and says what they replace; 2 if it can't take them.
-fn take(file: &Path, out: &Path) -> Result<(), u8> {
-    folder::ready(file, out).map_err(|problem| {
-        eprintln!("tissuebench: {problem}");
-        2
-    })?;
+/// Takes the folder of results for those of a scene or study, and says what they replace; an exit code if it can't take them.
+fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
+    let folder = folder::take(file, out).map_err(|failure| fail(&failure))?;
     if let Some(what) = folder::replaced(out) {
         eprintln!("{}: replaces the results of {what}", out.display());
     }
-    Ok(())
+    folder.begin(file).map_err(|failure| fail(&failure))?;
+    Ok(folder)
 }
 
 /// The scene, and the indices of the methods asked for.
@@ -155,15 +168,42 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
     Ok((scene, chosen))
 }
 
+/// Refuses what takes more than anyone means to spend, unless that is said; `found` are messages of it.
+fn affordable(found: &[String], force: bool) -> Result<(), u8> {
+    for words in found {
+        eprintln!(
+            "{words}{}",
+            if force { "" } else { "; make it coarser or shorter, or give --force to run it" }
+        );
+    }
+    if found.is_empty() || force { Ok(()) } else { Err(2) }
+}
+
+/// The same for some methods of a scene.
+fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<(), u8> {
+    let excess = |&index: &usize| {
+        let method = &scene.methods[index];
+        let words = with_reference(scene, &method.family).excess()?;
+        Some(format!("{} '{}' {words}", scene.file(), method.id))
+    };
+    affordable(&chosen.iter().filter_map(excess).collect::<Vec<_>>(), force)
+}
+
 fn report(results: &Path, out: &Path) -> u8 {
     match reports::render(results, out) {
         Ok(rendered) => {
             eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
             0
         }
-        Err(bad) => {
-            eprintln!("tissuebench: {bad}");
-            2
-        }
+        Err(bad) => unreported(&bad),
+    }
+}
+
+/// Says why results could not be read or written, and returns the exit code.
+fn unreported(bad: &ReportError) -> u8 {
+    eprintln!("tissuebench: {bad}");
+    match bad {
+        ReportError::Incomplete { .. } | ReportError::Unwritten { .. } => 5,
+        _ => 2,
     }
 }

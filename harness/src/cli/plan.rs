@@ -2,15 +2,18 @@
 
 use std::path::Path;
 
-use crate::cli::{open, text};
+use crate::cli::{affordable_methods, open, text};
 use crate::run::{Group, Repeats};
 
 /// Prints what each method would do; returns the exit code.
-pub(super) fn plan(path: &Path, methods: &[String]) -> u8 {
+pub(super) fn plan(path: &Path, methods: &[String], force: bool) -> u8 {
     let (scene, chosen) = match open(path, methods) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if let Err(code) = affordable_methods(&scene, &chosen, force) {
+        return code;
+    }
     let mut code = 0;
     for index in chosen {
         let method = &scene.methods[index];

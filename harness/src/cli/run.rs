@@ -8,10 +8,11 @@ use reports::{RunSet, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{open, report, take, text};
+use crate::cli::{affordable_methods, interrupt, open, report, take, text, unreported};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
-use crate::study::{self, check, folder, stalled};
+use crate::study::folder::{self, Folder};
+use crate::study::{self, check, stalled};
 
 /// Repeats of a single run's timings.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
@@ -22,12 +23,15 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Ok(opened) => opened,
         Err(code) => return code,
     };
-    let machine = provenance::machine();
-    if let Some(out) = &args.out
-        && let Err(code) = take(&args.scene, out)
-    {
+    if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
         return code;
     }
+    let machine = provenance::machine();
+    let folder = match args.out.as_ref().map(|out| take(&args.scene, out)).transpose() {
+        Ok(folder) => folder,
+        Err(code) => return code,
+    };
+    interrupt::install(args.out.as_deref(), false);
     let mut made = Made {
         args,
         case: case_name(&scene),
@@ -39,7 +43,10 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     let repeats = if args.once { Repeats::ONCE } else { REPEATS };
     let group = match Group::new(&scene, None, repeats) {
         Ok(group) => group,
-        Err(failure) => return made.unreferenced(&chosen, &failure),
+        Err(failure) => {
+            folder.into_iter().for_each(Folder::leave);
+            return made.unreferenced(&chosen, &failure);
+        }
     };
     if let Some(failure) = group.reference_stalled() {
         made.reference_stalled(failure, group.reference_carried());
@@ -139,7 +146,7 @@ impl Made<'_> {
             print!("{}", text::warnings(&self.outcomes));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-            eprintln!("{}", text::verdict(check));
+            eprintln!("{}", text::painted_verdict(check));
             self.code = self.code.max(1);
         }
         let Some(out) = &self.args.out else { return self.code };
@@ -149,10 +156,7 @@ impl Made<'_> {
         self.set.provenance.source = folder::source(&self.args.scene);
         match reports::write_run(out, &self.set) {
             Ok(()) => self.code.max(report(out, &out.join("report"))),
-            Err(bad) => {
-                eprintln!("tissuebench: {bad}");
-                3
-            }
+            Err(bad) => unreported(&bad),
         }
     }
 }

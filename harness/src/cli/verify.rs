@@ -6,9 +6,10 @@ use cases::scene;
 use reports::Status;
 
 use crate::cli::ci::{self, CiArgs};
-use crate::cli::{refuse, report, take, text};
+use crate::cli::{affordable, colour, fail, interrupt, refuse, report, take, text, unreported};
 use crate::study::events::{Event, Events};
-use crate::study::{Finished, Plan, VerifyArgs, folder};
+use crate::study::folder::{self, Folder};
+use crate::study::{self, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
@@ -34,16 +35,23 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
         return 4;
     }
     if ci.list {
-        print!("{}", ci::names(&plan.planned(&args.out)));
+        print!("{}", ci::names(&plan.planned()));
         return 0;
     }
     if ci.dry_run {
-        print!("{}", ci::forecast(&plan.planned(&args.out)));
+        print!("{}", ci::forecast(&plan.planned()));
         return 0;
     }
-    if let Err(code) = take(&path, &args.out) {
+    if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
+    let entered = enter(args, &path).and_then(|folder| {
+        study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
+    });
+    let folder = match entered {
+        Ok(folder) => folder,
+        Err(code) => return code,
+    };
     let events = match ci.events.as_deref().map(Events::to).transpose() {
         Ok(events) => events,
         Err(bad) => {
@@ -55,59 +63,80 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if !args.quiet {
         eprintln!("{}: {} runs", path.display(), plan.len());
     }
-    let finished = plan.execute_watched(args, events.as_ref());
-    let (code, counts) = conclude(args, &path, &finished);
-    if let Some(events) = &events {
-        let [passed, failed, known, not_run] = counts;
-        events.send(&Event::End { passed, failed, known, not_run, code });
-    }
-    match ci::write(ci, &path, &finished.runs) {
-        Ok(()) => code,
-        Err(bad) => {
+    interrupt::install(Some(&args.out), true);
+    let mut finished = plan.execute_watched(args, &path, events.as_ref());
+    finished.set.provenance.source = folder::source(&path);
+    let code = write(&finished, &folder, &args.out, args.quiet);
+    let code = ci::write(ci, &path, &finished.runs).map_or_else(
+        |bad| {
             eprintln!("tissuebench: {bad}");
             code.max(3)
-        }
+        },
+        |()| code,
+    );
+    if let Some(events) = &events {
+        let [passed, failed, known, not_run] = counts(&finished);
+        events.send(&Event::End { passed, failed, known, not_run, code });
     }
+    folder.close(|| study::clean(args));
+    code
 }
 
-/// Writes the results and the report, and says what did not hold; returns the exit code, and the checks that passed, failed, are
-/// known not to pass and did not run.
-fn conclude(args: &VerifyArgs, path: &Path, finished: &Finished) -> (u8, [usize; 4]) {
-    let mut set = finished.set.clone();
-    set.provenance.source = folder::source(path);
-    let count = |status| set.checks.iter().filter(|c| c.status == status).count();
-    let statuses = [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun];
-    let counts @ [passed, failed, known, not_run] = statuses.map(count);
-    if let Err(bad) = reports::write_run(&args.out, &set) {
-        eprintln!("tissuebench: {bad}");
-        return (3, counts);
+/// Checks that passed, failed, are known not to pass, and did not run.
+fn counts(finished: &Finished) -> [usize; 4] {
+    let count = |status| finished.set.checks.iter().filter(|c| c.status == status).count();
+    [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun].map(count)
+}
+
+/// Takes the folder of results, or joins those that work in it.
+fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
+    if !args.join {
+        return take(path, &args.out).inspect(|_| study::clean(args));
     }
-    let rendered = report(&args.out, &args.out.join("report"));
+    let joined = folder::join(path, &args.out, || study::sweep(args));
+    let begun = joined.and_then(|folder| folder.begin(path).map(|()| folder));
+    begun.map_err(|failure| fail(&failure))
+}
+
+/// Writes the results and the report, and says what held, of what did not hold alone if it is to be `quiet`; the exit code.
+pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path, quiet: bool) -> u8 {
+    let set = &finished.set;
+    // Of several processes that work on a study one writes what all of them have.
+    let (lock, written) = folder.writing();
+    let rendered = match written {
+        true => 0,
+        false => match reports::write_run(out, set) {
+            Ok(()) => report(out, &out.join("report")),
+            Err(bad) => return unreported(&bad),
+        },
+    };
+    drop(lock);
     for failure in &set.failures {
         let word = match failure.carried {
             None => "could not run".into(),
             Some(load) => format!("ended at {load:.4} of the load"),
         };
+        let word = colour::err(colour::DOUBTFUL, &word);
         eprintln!("{word}: {} {}: {}", failure.case, failure.method, failure.reason);
     }
     for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-        eprintln!("{}", text::verdict(check));
+        eprintln!("{}", text::painted_verdict(check));
     }
-    if !args.quiet {
+    let [passed, failed, known, not_run] = counts(finished);
+    if !quiet {
         println!(
             "{} runs, {} records; checks: {passed} passed, {failed} failed, {known} known not to pass, {not_run} not run",
             finished.ran,
             set.records.len(),
         );
-        println!("records  {}", args.out.join("records.csv").display());
-        println!("report   {}", args.out.join("report").join("report.html").display());
+        println!("records  {}", out.join("records.csv").display());
+        println!("report   {}", out.join("report").join("report.html").display());
     }
-    let code = match () {
+    match () {
         () if failed > 0 => 1,
         () if !finished.failed.is_empty() => finished.failed.iter().copied().max().unwrap_or(3),
         () if rendered != 0 => rendered,
         () if not_run > 0 => 5,
         () => 0,
-    };
-    (code, counts)
+    }
 }

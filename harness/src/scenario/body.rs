@@ -170,7 +170,7 @@ fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failu
 }
 
 /// Cells across the narrowest extent at level 1. Levels double it.
-fn base(body: &Body) -> usize {
+pub(super) fn base(body: &Body) -> usize {
     match body {
         // Two cells of depth: one cannot bend.
         Body::Box { .. }

@@ -4,6 +4,7 @@ mod body;
 mod cloud;
 mod cloud_file;
 mod discretise;
+mod estimate;
 mod expected;
 mod grading;
 mod identity;
@@ -15,6 +16,7 @@ pub(crate) mod setup;
 mod tools;
 
 pub(crate) use body::point;
+pub(crate) use estimate::{Estimate, estimate, of_reference, with_reference};
 pub(crate) use identity::{purpose, rule};
 pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;

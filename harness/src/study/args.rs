@@ -1,10 +1,11 @@
 //! Which runs of a study are made, and where their results go.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::Filters;
+use super::apart::ApartArgs;
 
 /// Arguments of `verify`.
 #[derive(Args)]
@@ -20,7 +21,7 @@ pub struct VerifyArgs {
     /// Further choices
     #[command(flatten)]
     pub filters: Filters,
-    /// Only the K-th of N equal shares of the runs
+    /// Only the K-th of N shares of the runs, of about equal cost
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
     /// Runs at a time; more than 1 spoils the timings
@@ -29,6 +30,16 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
+    /// Work on the study together with other processes in the same folder, which give this too: each run is made once. Keeps
+    /// stored results as --resume does
+    #[arg(long)]
+    pub join: bool,
+    /// How runs are kept apart.
+    #[command(flatten)]
+    pub apart: ApartArgs,
+    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    #[arg(long)]
+    pub force: bool,
     /// Errors only
     #[arg(short, long)]
     pub quiet: bool,
@@ -41,6 +52,25 @@ pub struct VerifyArgs {
 }
 
 impl VerifyArgs {
+    /// What is meant where nothing but the study is given.
+    pub(super) fn of(study: &Path) -> VerifyArgs {
+        VerifyArgs {
+            study: Some(study.into()),
+            quick: false,
+            filter: None,
+            filters: Filters::default(),
+            quiet: false,
+            verbose: false,
+            shard: None,
+            jobs: 1,
+            resume: false,
+            join: false,
+            apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
+            force: true,
+            out: PathBuf::new(),
+        }
+    }
+
     /// How much is said of its progress.
     pub fn loudness(&self) -> Loudness {
         match (self.quiet, self.verbose) {

@@ -1,9 +1,10 @@
 //! Which runs of a study are made: by case, method and tag.
 
 use clap::Args;
+use serde::{Deserialize, Serialize};
 
 /// Choices of runs by their names; a run is made that fits all of them.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Filters {
     /// Only these cases; `*` stands for any text (may be given several times)
     #[arg(long = "case", value_name = "NAME")]

@@ -1,14 +1,11 @@
 //! The runs of a study by name, before they are made.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
 use cases::scene::{self, Cloud, Family, Functions, Size, SupportRule};
-use reports::Record;
 
 use super::Plan;
 use super::tasks::Task;
-use crate::run::{Group, Repeats, case_name};
+use crate::run::case_name;
+use crate::scenario::{Estimate, estimate};
 
 /// A run that would be made.
 pub struct Planned {
@@ -16,40 +13,22 @@ pub struct Planned {
     pub case: String,
     /// The method, with what the study changes of it.
     pub name: String,
-    /// About how many nodes it has; nothing where they are in a file.
-    pub nodes: Option<f64>,
-    /// What a pass over it took in the results that are there, s.
-    pub seconds: Option<f64>,
+    /// What it is about to take.
+    pub(crate) takes: Estimate,
 }
 
 impl Plan {
-    /// The runs in their order. Their times are those of earlier results in `out`, if there are any.
-    pub fn planned(&self, out: &Path) -> Vec<Planned> {
-        let before = reports::read_run(out).map_or(BTreeMap::new(), |run| totals(&run.records));
-        self.tasks.iter().map(|task| self.one(task, &before)).collect()
+    /// The runs in their order.
+    pub fn planned(&self) -> Vec<Planned> {
+        self.tasks.iter().map(|task| self.one(task)).collect()
     }
 
-    fn one(&self, task: &Task, before: &BTreeMap<(String, String, u32), f64>) -> Planned {
+    fn one(&self, task: &Task) -> Planned {
         let scene = &self.scenes[task.scene].2;
-        let case = case_name(scene);
-        let group = Group::unreferenced(scene, Repeats::ONCE).ok();
-        let nodes = group.map(|group| group.scenario(task.method.clone(), task.level).expected_nodes());
-        let key = (case.clone(), task.method.id.clone(), task.level);
         let varied = scene.varied.as_ref().map(|(axis, value)| format!(" {axis}={value}"));
         let name = name(task, self.tables(task)) + &varied.unwrap_or_default();
-        Planned { name, nodes: nodes.filter(|n| *n > 0.0), seconds: before.get(&key).copied(), case }
+        Planned { case: case_name(scene), name, takes: estimate(scene, &task.method.family) }
     }
-}
-
-/// Mean of the total times of the runs of a method at a level: what a study varies else hardly changes them.
-fn totals(records: &[Record]) -> BTreeMap<(String, String, u32), f64> {
-    let mut sums: BTreeMap<_, (f64, f64)> = BTreeMap::new();
-    let total = |r: &&Record| r.quantity == "time" && r.phase == "total" && r.statistic == "median";
-    for record in records.iter().filter(total) {
-        let sum = sums.entry((record.case.clone(), record.method.clone(), record.level)).or_default();
-        *sum = (sum.0 + record.value, sum.1 + 1.0);
-    }
-    sums.into_iter().map(|(key, (sum, count))| (key, sum / count)).collect()
 }
 
 /// The method's id with what the tables vary.

@@ -1,15 +1,21 @@
 //! A study: many scenes and methods, run in a fixed order, checked, written out.
 
+pub(crate) mod apart;
 mod args;
 pub mod check;
 pub(crate) mod events;
+mod execute;
 mod filters;
 pub(crate) mod folder;
 mod listing;
 pub(crate) mod make_reference;
+pub(crate) mod merge;
+pub(crate) mod process_group;
 mod progress;
 #[cfg(test)]
 mod project;
+mod shards;
+mod store;
 mod summary;
 mod task;
 mod tasks;
@@ -18,25 +24,28 @@ mod trials;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
-use crate::Failure;
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
-use crate::run::{Group, Repeats, RunOptions, case_name};
-use crate::scenario::purpose;
+use crate::run::{Repeats, case_name};
+use crate::scenario::{purpose, with_reference};
+use apart::Apart;
 use events::Events;
+use execute::Work;
 use progress::Progress;
+use store::{Maker, Store};
 use task::TaskResult;
 use tasks::{Task, list};
 use trials::RefusedScene;
 
+pub use apart::ExperimentArgs;
 pub use args::{Loudness, VerifyArgs};
 pub use filters::Filters;
 pub use listing::Planned;
+pub use merge::MergeArgs;
 pub use summary::RunSummary;
 pub(crate) use task::stalled;
 
@@ -71,9 +80,27 @@ pub struct Finished {
 impl Plan {
     /// Reads the scenes of a study and lists its runs.
     pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
+        Plan::read(study, |_| true)
+    }
+
+    /// Reads the scene of these run tables alone, and lists its runs that they ask for.
+    pub(crate) fn of_tables(study: Study, tables: &[usize]) -> Result<Plan, Vec<scene::SceneError>> {
+        let first = tables.first().and_then(|&table| study.runs.get(table));
+        let scene = first.map(|run| run.scene.clone());
+        let mut plan = Plan::read(study, |run| Some(&run.scene) == scene.as_ref())?;
+        plan.tasks.retain_mut(|task| {
+            task.runs.retain(|run| tables.contains(run));
+            !task.runs.is_empty()
+        });
+        Ok(plan)
+    }
+
+    /// Reads the scenes of the run tables that are wanted.
+    fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
         let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
         let mut errors = Vec::new();
-        for (index, run) in plan.study.runs.clone().iter().enumerate() {
+        let runs = plan.study.runs.clone();
+        for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
             let read = match &run.axis {
                 None => plan.scene(run).map(|at| vec![at]),
                 Some(axis) => plan.along(index, run, axis),
@@ -143,9 +170,7 @@ impl Plan {
     pub fn select(&mut self, args: &VerifyArgs) {
         let (runs, scenes) = (&self.study.runs, &self.scenes);
         self.tasks.retain_mut(|task| {
-            // Shares deal out whole run tables, so that orders see all their levels.
-            let mine = |run: usize| args.shard.is_none_or(|(k, n)| run % n == k - 1);
-            task.runs.retain(|&run| (!args.quick || runs[run].quick) && mine(run));
+            task.runs.retain(|&run| !args.quick || runs[run].quick);
             let (case, method) = (case_name(&scenes[task.scene].2), &task.method.id);
             let contains = |text: &str| case.contains(text) || method.contains(text);
             let tags = tags(task, runs, &scenes[task.scene].2);
@@ -153,6 +178,21 @@ impl Plan {
                 && args.filter.as_deref().is_none_or(contains)
                 && args.filters.fits(&case, method, &tags)
         });
+        if let Some(shard) = args.shard {
+            let mine = self.share(args, shard);
+            let mut index = 0..;
+            self.tasks.retain(|_| index.next().is_some_and(|index| mine.contains(&index)));
+        }
+    }
+
+    /// Runs that take more than anyone means to spend, each with what it takes.
+    pub(crate) fn too_large(&self) -> Vec<String> {
+        let excess = |task: &Task| {
+            let scene = &self.scenes[task.scene].2;
+            let words = with_reference(scene, &task.method.family).excess()?;
+            Some(format!("{} '{}' {words}", scene.file(), task.method.id))
+        };
+        self.tasks.iter().filter_map(excess).collect()
     }
 
     /// The run tables that ask for a task.
@@ -204,111 +244,29 @@ impl Plan {
     }
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
-    pub fn execute(&self, args: &VerifyArgs) -> Finished {
-        self.execute_watched(args, None)
+    pub fn execute(&self, args: &VerifyArgs, path: &Path) -> Finished {
+        self.execute_watched(args, path, None)
     }
 
     /// As [`execute`](Plan::execute), with what happens reported as it happens.
-    pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
-        let store = args.out.join("tasks");
-        let machine = provenance::machine();
-        let runner = task::runner(&provenance::program(), &machine);
-        let progress = Progress::new(self.tasks.len(), args.loudness(), events);
-        let groups = self.groups();
-        let next = AtomicUsize::new(0);
-        let done: Mutex<BTreeMap<usize, TaskResult>> = Mutex::new(BTreeMap::new());
-        std::thread::scope(|scope| {
-            for _ in 0..args.jobs {
-                scope.spawn(|| {
-                    while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        self.group(members, args, &store, &runner, &progress, &done);
-                    }
-                });
-            }
-        });
-        progress.finish();
-        self.collect(done.into_inner().expect("no worker panicked"), machine)
-    }
-
-    /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
-    fn groups(&self) -> Vec<Vec<usize>> {
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        for (index, task) in self.tasks.iter().enumerate() {
-            let same = |other: &Task| other.scene == task.scene && other.poisson == task.poisson;
-            match groups.iter_mut().find(|g| same(&self.tasks[g[0]])) {
-                Some(group) => group.push(index),
-                None => groups.push(vec![index]),
-            }
-        }
-        groups
-    }
-
-    fn group(
+    pub(crate) fn execute_watched(
         &self,
-        members: &[usize],
         args: &VerifyArgs,
-        store: &Path,
-        runner: &str,
-        progress: &Progress,
-        done: &Mutex<BTreeMap<usize, TaskResult>>,
-    ) {
-        let first = &self.tasks[members[0]];
-        let (_, text, scene) = &self.scenes[first.scene];
-        let case = case_name(scene);
-        // Made when first needed: with all members stored, not even the reference is run.
-        let mut group: Option<Result<Group, Failure>> = None;
-        for &index in members {
-            let task = &self.tasks[index];
-            let running = progress.running(&case, &task.method.id, index);
-            let split = self.tables(task).find_map(|run| run.split);
-            // Clouds of many seeds are of one kind: one loop is enough for them all.
-            let frames = !args.quick && !self.is_one_of_many(task);
-            let repeats = if args.quick { QUICK } else { REPEATS };
-            let Task { method, level, poisson, picture, .. } = task;
-            let what = format!("{method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
-            let key = task::key(runner, text, &files(scene), &what);
-            let stored = if args.resume { TaskResult::load(store, &key) } else { None };
-            let known = stored.is_some();
-            let result = stored.unwrap_or_else(|| {
-                let mut shared = Counters::default();
-                let group = group.get_or_insert_with(|| {
-                    let group = Group::new(scene, task.poisson, repeats);
-                    shared = group.as_ref().map_or(shared, Group::reference_counters);
-                    group
-                });
-                let outcome = match group {
-                    Ok(group) => {
-                        let options = RunOptions { picture: task.picture, frames, split };
-                        group.run(&group.scenario(task.method.clone(), task.level), options)
-                    }
-                    Err(failure) => Err(failure.clone().into()),
-                };
-                let mut result = match outcome {
-                    Ok(outcome) => TaskResult::finished(&outcome),
-                    Err(unfinished) => TaskResult::failed(&case, &task.method.id, &unfinished.failure),
-                };
-                result.counters += shared;
-                if let (Ok(Some(stalled)), None) =
-                    (group.as_ref().map(Group::reference_stalled), &result.failure)
-                {
-                    let reason = format!("reference stalled: {stalled}");
-                    let carried = group.as_ref().ok().and_then(|group| group.reference_carried());
-                    let run = reports::Failure {
-                        case: case.clone(),
-                        method: task.method.id.clone(),
-                        reason,
-                        carried,
-                    };
-                    result.failure = Some((run, stalled.exit_code()));
-                }
-                result
-            });
-            if !known && let Err(bad) = result.store(store, &key) {
-                progress.warn(format!("warning: {} could not be stored: {bad}", store.display()));
-            }
-            progress.done(running, &result, known);
-            done.lock().expect("no worker panicked").insert(index, result);
-        }
+        path: &Path,
+        events: Option<&Events>,
+    ) -> Finished {
+        let machine = provenance::machine();
+        let store = store(args);
+        let work = Work {
+            plan: self,
+            args,
+            store: &store,
+            apart: args.apart.isolate.then(|| Apart::new(args, path, &store)),
+            progress: Progress::new(self.tasks.len(), args.loudness(), events),
+            done: Mutex::default(),
+        };
+        work.all();
+        self.collect(work.done.into_inner().expect("no worker panicked"), machine)
     }
 
     fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
@@ -493,6 +451,22 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
         ..Record::default()
     };
     Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
+}
+
+/// Removes what killed processes left among the stored results. Only for a process that is alone in the folder.
+pub(crate) fn clean(args: &VerifyArgs) {
+    store::clean(&args.out);
+}
+
+/// Keeps nothing but finished results of this program on this machine. Only for the first of the processes that work on a study.
+pub(crate) fn sweep(args: &VerifyArgs) {
+    clean(args);
+    store(args).sweep();
+}
+
+/// Where the results of single runs are stored.
+fn store(args: &VerifyArgs) -> Store {
+    Store::new(&args.out, Maker::new(&provenance::program(), &provenance::machine()))
 }
 
 /// Method id with what tells this run from others of the same id.

@@ -22,12 +22,11 @@ pub(crate) struct Progress<'a> {
 }
 
 /// A run under way.
-#[derive(Clone, Copy)]
-pub(crate) struct Running<'a> {
-    pub(crate) case: &'a str,
-    pub(crate) method: &'a str,
+pub(crate) struct Running {
+    case: String,
+    method: String,
     /// Its place in the study.
-    pub(crate) run: usize,
+    run: usize,
     begin: Instant,
 }
 
@@ -49,17 +48,17 @@ impl<'a> Progress<'a> {
     }
 
     /// What is running now.
-    pub(crate) fn running<'r>(&self, case: &'r str, method: &'r str, run: usize) -> Running<'r> {
+    pub(crate) fn running(&self, case: String, method: String, run: usize) -> Running {
         self.bar.set_message(format!("{case} {method}"));
         if let Some(events) = self.events {
-            events.send(&Event::Start { case, method, run });
+            events.send(&Event::Start { case: &case, method: &method, run });
         }
         Running { case, method, run, begin: Instant::now() }
     }
 
     /// One more run is done.
-    pub(crate) fn done(&self, running: Running, result: &TaskResult, stored: bool) {
-        let Running { case, method, run, begin } = running;
+    pub(crate) fn done(&self, running: &Running, result: &TaskResult, stored: bool) {
+        let (Running { case, method, begin, .. }, run) = (running, running.run);
         let reason = result.failure.as_ref().map(|(failure, _)| failure.reason.as_str());
         if let Some(events) = self.events {
             let seconds = begin.elapsed().as_secs_f64();

@@ -1,0 +1,221 @@
+//! `--isolate`: each run of a study in a process of its own. The program starts itself with the hidden command `experiment`; what
+//! ends that process, or the time it may take, costs its run alone.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{ChildStderr, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::process_group::{self, Started};
+use super::store::Store;
+use super::task::TaskResult;
+use super::{Plan, VerifyArgs};
+use crate::Failure;
+use crate::run::case_name;
+
+/// Most of what a process said last that is kept.
+const LAST_WORDS: usize = 4096;
+
+/// How runs are kept apart from each other.
+#[derive(Args)]
+pub struct ApartArgs {
+    /// Run each experiment in a process of its own: a crash, an endless run or one that takes too much memory costs that one
+    /// alone. Its reference is solved there too
+    #[arg(long)]
+    pub isolate: bool,
+    /// Seconds that a run may take, its reference included
+    #[arg(long, value_name = "SECONDS", requires = "isolate", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Memory that a run may allocate, such as 500MB or 2GB (Linux)
+    #[arg(long, value_name = "BYTES", requires = "isolate", value_parser = bytes)]
+    pub memory_limit: Option<u64>,
+}
+
+/// Arguments of the hidden command `experiment`: one run of a study in a process of its own.
+#[derive(Args)]
+pub struct ExperimentArgs {
+    /// The study file
+    pub study: PathBuf,
+    /// The run tables that ask for it
+    #[arg(long, value_delimiter = ',')]
+    pub tables: Vec<usize>,
+    /// What its result is stored under
+    #[arg(long)]
+    pub key: String,
+    /// Where to write the result
+    #[arg(long)]
+    pub answer: PathBuf,
+    /// Whether the study is run in its quick tier
+    #[arg(long)]
+    pub quick: bool,
+    /// Who started it: it ends with that process
+    #[arg(long)]
+    pub parent: u32,
+    /// Memory that it may allocate
+    #[arg(long)]
+    pub memory_limit: Option<u64>,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let fix = "give seconds above 0, such as 60";
+    let seconds: f64 = text.parse().map_err(|_| fix)?;
+    let limit = Duration::try_from_secs_f64(seconds).map_err(|_| fix)?;
+    if limit.is_zero() { Err(fix.into()) } else { Ok(limit) }
+}
+
+/// A size as people write it.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    let fix = "give a size such as 500MB or 2GB";
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = match text[digits.len()..].trim().to_ascii_uppercase().as_str() {
+        "" | "B" => 1,
+        "KB" | "K" => 1 << 10,
+        "MB" | "M" => 1 << 20,
+        "GB" | "G" => 1 << 30,
+        _ => return Err(fix.into()),
+    };
+    let count: u64 = digits.parse().map_err(|_| fix)?;
+    count.checked_mul(unit).filter(|bytes| *bytes > 0).ok_or_else(|| fix.into())
+}
+
+/// Starts a process for each run.
+pub(super) struct Apart<'a> {
+    args: &'a VerifyArgs,
+    study: &'a Path,
+    store: &'a Store,
+}
+
+/// How a process ended.
+struct Ended {
+    /// `None` if it took too long.
+    status: Option<ExitStatus>,
+    last_words: String,
+}
+
+impl<'a> Apart<'a> {
+    pub(super) fn new(args: &'a VerifyArgs, study: &'a Path, store: &'a Store) -> Apart<'a> {
+        Apart { args, study, store }
+    }
+
+    /// Runs a task; its result, or the failure that the end of its process means.
+    pub(super) fn run(&self, plan: &Plan, index: usize, key: &str) -> TaskResult {
+        let task = &plan.tasks[index];
+        let answer = self.store.answer(key);
+        let _ = std::fs::remove_file(&answer);
+        let ended = self.command(&task.runs, key, &answer).and_then(|command| self.watch(command));
+        // It is whole or not there.
+        let result = std::fs::read_to_string(&answer).ok().and_then(|text| serde_json::from_str(&text).ok());
+        let _ = std::fs::remove_file(&answer);
+        let failure = match (ended, result) {
+            (Ok(Ended { status: Some(_), .. }), Some(result)) => return result,
+            (Ok(ended), _) => self.failure(&ended),
+            (Err(bad), _) => Failure::Run(format!("could not be started: {bad}")),
+        };
+        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method.id, &failure)
+    }
+
+    fn command(&self, tables: &[usize], key: &str, answer: &Path) -> std::io::Result<Command> {
+        let mut command = Command::new(std::env::current_exe()?);
+        let tables: Vec<String> = tables.iter().map(usize::to_string).collect();
+        command.arg("experiment").arg(self.study).arg("--tables").arg(tables.join(","));
+        command.args(["--key", key]).arg("--answer").arg(answer);
+        command.args(["--parent", &std::process::id().to_string()]);
+        command.args(["--threads", &rayon::current_num_threads().to_string()]);
+        command.args(self.args.quick.then_some("--quick"));
+        if let Some(bytes) = self.args.apart.memory_limit {
+            command.args(["--memory-limit", &bytes.to_string()]);
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+        Ok(command)
+    }
+
+    /// Waits for a process as long as it may take, then ends all that it has started.
+    fn watch(&self, mut command: Command) -> std::io::Result<Ended> {
+        let mut started = Started::new(&mut command)?;
+        let stderr = started.child().stderr.take();
+        let reader = std::thread::spawn(move || stderr.map_or_else(String::new, last_words));
+        let began = Instant::now();
+        let mut pause = Duration::from_micros(500);
+        let in_time = loop {
+            if started.has_ended().unwrap_or(true) {
+                break true;
+            }
+            if self.args.apart.time_limit.is_some_and(|limit| began.elapsed() > limit) {
+                break false;
+            }
+            std::thread::sleep(pause);
+            pause = (pause * 2).min(Duration::from_millis(20));
+        };
+        let status = started.end()?;
+        let last_words = reader.join().unwrap_or_default();
+        Ok(Ended { status: in_time.then_some(status), last_words })
+    }
+
+    fn failure(&self, ended: &Ended) -> Failure {
+        let said = ended.last_words.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("");
+        let limits = &self.args.apart;
+        let memory = ended.last_words.lines().find(|line| line.contains("memory allocation of"));
+        Failure::Run(match (&ended.status, memory) {
+            (None, _) => {
+                let limit = limits.time_limit.unwrap_or_default().as_secs_f64();
+                format!("out of time: ended after {limit} s (--time-limit)")
+            }
+            (Some(_), Some(line)) => match limits.memory_limit {
+                Some(bytes) => format!("out of memory: {line} within {bytes} bytes (--memory-limit)"),
+                None => format!("out of memory: {line}"),
+            },
+            (Some(status), None) => format!("crashed ({status}): {said}"),
+        })
+    }
+}
+
+/// The end of what a process writes, however much that is.
+fn last_words(mut stderr: ChildStderr) -> String {
+    let (mut kept, mut buffer) = (Vec::new(), [0; LAST_WORDS]);
+    while let Ok(read @ 1..) = stderr.read(&mut buffer) {
+        kept.extend(&buffer[..read]);
+        let old = kept.len().saturating_sub(LAST_WORDS);
+        kept.drain(..old);
+    }
+    String::from_utf8_lossy(&kept).into_owned()
+}
+
+/// The command `experiment`: runs the task and writes its result.
+pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
+    process_group::limit(args.parent, args.memory_limit).map_err(|bad| Failure::Run(bad.to_string()))?;
+    let unreadable = |errors: Vec<cases::scene::SceneError>| {
+        Failure::Input(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    };
+    let study = cases::scene::load_study(&args.study).map_err(unreadable)?;
+    let plan = Plan::of_tables(study, &args.tables).map_err(unreadable)?;
+    let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
+    let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
+    let index = index.ok_or_else(|| Failure::Input("its scene has changed since the study began".into()))?;
+    let result = plan.run(index, &verify, &mut None);
+    if let Some(folder) = args.answer.parent() {
+        std::fs::create_dir_all(folder).map_err(|bad| Failure::Run(bad.to_string()))?;
+    }
+    let text = serde_json::to_string(&result).map_err(|bad| Failure::Run(bad.to_string()))?;
+    reports::write_text(&args.answer, text).map_err(|bad| Failure::Run(bad.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_as_people_write_them() {
+        for (text, size) in [("4096", 4096), ("500MB", 500 << 20), ("2 GB", 2 << 30), ("3k", 3 << 10)] {
+            assert_eq!(bytes(text), Ok(size), "{text}");
+        }
+        for text in ["", "0", "MB", "-1GB", "1.5GB", "2TB", "99999999999GB"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        for text in ["0", "-1", "nan", "inf", "soon", "1e300"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The runs of a study, one after the other or by several processes together; each is stored as soon as it is finished.
+
+use std::any::Any;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::apart::Apart;
+use super::progress::{Progress, Running};
+use super::store::{Accept, Store};
+use super::task::{TaskResult, key};
+use super::tasks::Task;
+use super::{Plan, QUICK, REPEATS, VerifyArgs, files};
+use crate::Failure;
+use crate::outcome::Counters;
+use crate::run::{Group, RunOptions, case_name};
+
+/// Time between two looks for the result of another process.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// A study that is being run.
+pub(super) struct Work<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) args: &'a VerifyArgs,
+    pub(super) store: &'a Store,
+    /// Runs each task in a process of its own, where asked for.
+    pub(super) apart: Option<Apart<'a>>,
+    pub(super) progress: Progress<'a>,
+    pub(super) done: Mutex<BTreeMap<usize, TaskResult>>,
+}
+
+/// Whose turn a task is.
+enum Turn {
+    /// It has a result.
+    Stored(Box<TaskResult>),
+    /// This process's; nobody else may run it until the file is closed.
+    Ours(Option<File>),
+    /// Another process is at it.
+    Theirs,
+}
+
+impl Work<'_> {
+    /// Runs everything.
+    pub(super) fn all(&self) {
+        let groups = self.plan.groups();
+        let next = AtomicUsize::new(0);
+        let left: Mutex<Vec<Vec<usize>>> = Mutex::new(Vec::new());
+        std::thread::scope(|scope| {
+            for _ in 0..self.args.jobs {
+                scope.spawn(|| {
+                    while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        // Another process is at this scene: its reference is made once, if there are others to do.
+                        let rest = self.group(members, false);
+                        left.lock().expect("no worker panicked").push(rest);
+                    }
+                    while let Some(members) = left.lock().expect("no worker panicked").pop() {
+                        let rest = self.group(&members, true);
+                        if !rest.is_empty() {
+                            left.lock().expect("no worker panicked").push(rest);
+                            std::thread::sleep(LOOK);
+                        }
+                    }
+                });
+            }
+        });
+        self.progress.finish();
+    }
+
+    /// Runs tasks that share a reference; returns those that others are at. Unless it is to be `thorough`, it leaves all after
+    /// the first of these.
+    fn group(&self, members: &[usize], thorough: bool) -> Vec<usize> {
+        // Made when first needed: with all members stored, not even the reference is run.
+        let mut group: Option<Result<Group, Failure>> = None;
+        let mut left = Vec::new();
+        for (at, &index) in members.iter().enumerate() {
+            let key = self.plan.key(index, self.args);
+            match self.turn(&key) {
+                Turn::Stored(result) => self.finished(index, *result, self.running(index), true),
+                Turn::Theirs if thorough => left.push(index),
+                Turn::Theirs => {
+                    left.extend(&members[at..]);
+                    break;
+                }
+                Turn::Ours(_claim) => {
+                    let running = self.running(index);
+                    let result = match &self.apart {
+                        Some(apart) => apart.run(self.plan, index, &key),
+                        None => self.plan.run(index, self.args, &mut group),
+                    };
+                    if let Err(bad) = self.store.save(&key, &result) {
+                        self.progress.warn(format!("warning: a result could not be stored: {bad}"));
+                    }
+                    self.finished(index, result, running, false);
+                }
+            }
+        }
+        left
+    }
+
+    fn turn(&self, key: &str) -> Turn {
+        let accept = match (self.args.join, self.args.resume) {
+            (true, _) => Accept::All,
+            (false, true) => Accept::Finished,
+            (false, false) => Accept::Nothing,
+        };
+        let stored = || self.store.load(key, accept).map(|result| Turn::Stored(Box::new(result)));
+        if let Some(stored) = stored() {
+            return stored;
+        }
+        if !self.args.join {
+            return Turn::Ours(None);
+        }
+        match self.store.claim(key) {
+            // It may have been finished since.
+            Ok(Some(claim)) => stored().unwrap_or(Turn::Ours(Some(claim))),
+            Ok(None) => Turn::Theirs,
+            Err(bad) => {
+                self.progress
+                    .warn(format!("warning: a run could not be claimed and may be run twice: {bad}"));
+                Turn::Ours(None)
+            }
+        }
+    }
+
+    fn running(&self, index: usize) -> Running {
+        let task = &self.plan.tasks[index];
+        let case = case_name(&self.plan.scenes[task.scene].2);
+        self.progress.running(case, task.method.id.clone(), index)
+    }
+
+    fn finished(&self, index: usize, result: TaskResult, running: Running, stored: bool) {
+        self.progress.done(&running, &result, stored);
+        self.done.lock().expect("no worker panicked").insert(index, result);
+    }
+}
+
+impl Plan {
+    /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut known = BTreeMap::new();
+        for (index, task) in self.tasks.iter().enumerate() {
+            let which = (task.scene, task.poisson.map(f64::to_bits));
+            let at = *known.entry(which).or_insert(groups.len());
+            if at == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[at].push(index);
+        }
+        groups
+    }
+
+    /// What a task's result is stored under: a hash of all that it depends on but who runs it.
+    pub(super) fn key(&self, index: usize, args: &VerifyArgs) -> String {
+        let task = &self.tasks[index];
+        let (_, text, scene) = &self.scenes[task.scene];
+        let options = self.options(task, args);
+        let repeats = if args.quick { QUICK } else { REPEATS };
+        let Task { method, level, poisson, .. } = task;
+        let RunOptions { picture, frames, split } = options;
+        let case = case_name(scene);
+        let what = format!("{case} {method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
+        key(text, &files(scene), &what)
+    }
+
+    fn options(&self, task: &Task, args: &VerifyArgs) -> RunOptions {
+        let split = self.tables(task).find_map(|run| run.split);
+        // Clouds of many seeds are of one kind: one loop is enough for them all.
+        let frames = !args.quick && !self.is_one_of_many(task);
+        RunOptions { picture: task.picture, frames, split }
+    }
+
+    /// Runs a task with the reference of its group. A panic is the failure of this run alone.
+    pub(super) fn run<'a>(
+        &'a self,
+        index: usize,
+        args: &VerifyArgs,
+        group: &mut Option<Result<Group<'a>, Failure>>,
+    ) -> TaskResult {
+        let task = &self.tasks[index];
+        let (_, _, scene) = &self.scenes[task.scene];
+        let repeats = if args.quick { QUICK } else { REPEATS };
+        let mut shared = Counters::default();
+        let group = group.get_or_insert_with(|| {
+            let group = caught(|| Group::new(scene, task.poisson, repeats)).unwrap_or_else(Err);
+            shared = group.as_ref().map_or(shared, Group::reference_counters);
+            group
+        });
+        let mut result = match group {
+            Ok(group) => self.compared(task, group, self.options(task, args)),
+            Err(failure) => TaskResult::failed(&case_name(scene), &task.method.id, failure),
+        };
+        result.counters += shared;
+        result
+    }
+
+    /// The result of one method; where its reference ended early that is its failure.
+    fn compared(&self, task: &Task, group: &Group, options: RunOptions) -> TaskResult {
+        let (case, method) = (case_name(&self.scenes[task.scene].2), &task.method.id);
+        let run = || group.run(&group.scenario(task.method.clone(), task.level), options);
+        let mut result = match caught(run) {
+            Ok(Ok(outcome)) => TaskResult::finished(&outcome),
+            Ok(Err(unfinished)) => TaskResult::failed(&case, method, &unfinished.failure),
+            Err(panic) => TaskResult::failed(&case, method, &panic),
+        };
+        if let (Some(stalled), None) = (group.reference_stalled(), &result.failure) {
+            let reason = format!("reference stalled: {stalled}");
+            let carried = group.reference_carried();
+            let run = reports::Failure { case, method: method.clone(), reason, carried };
+            result.failure = Some((run, stalled.exit_code()));
+        }
+        result
+    }
+}
+
+/// What a function returns, or the failure of one that panics.
+fn caught<T>(function: impl FnOnce() -> T) -> Result<T, Failure> {
+    let message = |panic: Box<dyn Any + Send>| {
+        let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        Failure::Run(format!("panicked: {}", text.unwrap_or_else(|| "no message".into())))
+    };
+    catch_unwind(AssertUnwindSafe(function)).map_err(message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_failure_with_its_message() {
+        assert_eq!(caught(|| 1).unwrap(), 1);
+        for failure in [caught(|| panic!("at {}", 3)), caught(|| panic!("at 3"))] {
+            let failure: Failure = failure.map(|()| ()).unwrap_err();
+            assert_eq!((failure.to_string().as_str(), failure.exit_code()), ("panicked: at 3", 3));
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The shares of a study, each run into a folder of its own, joined to the results of one run.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use cases::scene::{self, SceneError};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+
+use super::store::Share;
+use super::task::TaskResult;
+use super::{Filters, Finished, Plan, VerifyArgs, store};
+use crate::Failure;
+use crate::outcome::provenance;
+use crate::run::case_name;
+
+/// Says in a folder of results what study they are a share of.
+const NOTE: &str = "study.json";
+
+/// Arguments of `merge`.
+#[derive(Args)]
+pub struct MergeArgs {
+    /// Where to put the results of the whole study
+    pub out: PathBuf,
+    /// The folders of the shares
+    #[arg(required = true)]
+    pub shares: Vec<PathBuf>,
+    /// The study file, where it is elsewhere now
+    #[arg(long, value_name = "FILE")]
+    pub study: Option<PathBuf>,
+}
+
+/// What selects the runs of a study, but for the share.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Note {
+    study: PathBuf,
+    quick: bool,
+    filter: Option<String>,
+    #[serde(default)]
+    filters: Filters,
+}
+
+/// Why shares can't be joined.
+pub(crate) enum Unmerged {
+    Scenes(Vec<SceneError>),
+    Other(Failure),
+}
+
+/// The results of the shares together.
+pub(crate) struct Merged {
+    pub(crate) finished: Finished,
+    /// Runs that no share has.
+    pub(crate) missing: Vec<String>,
+    /// Kinds of machines that they were made on.
+    pub(crate) machines: usize,
+}
+
+/// Notes in a folder of results what study they are of.
+pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
+    let study = study.canonicalize().unwrap_or_else(|_| study.into());
+    let note = Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() };
+    let text = serde_json::to_string_pretty(&note).map_err(|bad| Failure::Run(bad.to_string()))?;
+    reports::write_text(&args.out.join(NOTE), text + "\n").map_err(|bad| Failure::Run(bad.to_string()))
+}
+
+fn noted(share: &Path) -> Result<Note, Failure> {
+    let wrong = |bad: String| {
+        let path = share.join(NOTE);
+        Failure::Input(format!(
+            "{}: {bad}; give folders that `tissuebench verify --shard K/N` wrote",
+            path.display()
+        ))
+    };
+    let text = std::fs::read_to_string(share.join(NOTE)).map_err(|bad| wrong(bad.to_string()))?;
+    serde_json::from_str(&text).map_err(|bad| wrong(bad.to_string()))
+}
+
+/// The study that the folders are shares of, with its runs.
+pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unmerged> {
+    let other = Unmerged::Other;
+    let mut notes = Vec::new();
+    for share in &args.shares {
+        notes.push(noted(share).map_err(other)?);
+    }
+    let same = |a: &Note, b: &Note| {
+        (a.study.file_name(), a.quick, &a.filter, &a.filters)
+            == (b.study.file_name(), b.quick, &b.filter, &b.filters)
+    };
+    if let Some(at) = notes.iter().position(|note| !same(note, &notes[0])) {
+        let (a, b) = (args.shares[0].display(), args.shares[at].display());
+        return Err(other(Failure::Input(format!(
+            "{a} and {b} are shares of different studies or selections"
+        ))));
+    }
+    let Note { study, quick, filter, filters } = notes.swap_remove(0);
+    let study = args.study.clone().unwrap_or(study);
+    let mut plan = scene::load_study(&study).and_then(Plan::new).map_err(Unmerged::Scenes)?;
+    let verify = VerifyArgs { quick, filter, filters, out: args.out.clone(), ..VerifyArgs::of(&study) };
+    plan.select(&verify);
+    Ok((study, plan, verify))
+}
+
+impl Plan {
+    /// Takes every result from the first share that has it, and keeps a copy in the folder of the whole.
+    pub(crate) fn merge(&self, args: &VerifyArgs, shares: &[PathBuf]) -> Result<Merged, Failure> {
+        let unwritten = |bad: reports::ReportError| Failure::Run(bad.to_string());
+        let mut found = Share::default();
+        let mut results: BTreeMap<usize, TaskResult> = BTreeMap::new();
+        let mut missing = Vec::new();
+        for (index, task) in self.tasks.iter().enumerate() {
+            let key = self.key(index, args);
+            match shares.iter().find_map(|share| found.take(share, &key)) {
+                Some(Ok((text, result))) => {
+                    store::keep(&args.out, &key, &text).map_err(unwritten)?;
+                    results.insert(index, result);
+                }
+                Some(Err(problem)) => return Err(Failure::Input(problem)),
+                None => {
+                    let level = if task.level > 0 { format!(" level {}", task.level) } else { String::new() };
+                    missing.push(format!(
+                        "{} {}{level}",
+                        case_name(&self.scenes[task.scene].2),
+                        task.method.id
+                    ));
+                }
+            }
+        }
+        let machine = shares.iter().find_map(|share| reports::provenance_of(share));
+        let machine = machine.map_or_else(provenance::machine, |from| from.machine);
+        Ok(Merged { finished: self.collect(results, machine), missing, machines: found.machines.len() })
+    }
+}

@@ -1,0 +1,101 @@
+//! A process with all that it starts: limited, ended as a whole, and gone with the process that started it.
+
+use std::io;
+use std::process::{Child, Command, ExitStatus};
+use std::sync::{Mutex, PoisonError};
+
+/// Numbers of the processes that run now. Locked while one is started, so that none is missed when all are ended.
+static RUNNING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
+
+fn running() -> std::sync::MutexGuard<'static, Vec<u32>> {
+    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A process in a group of its own.
+pub(super) struct Started {
+    child: Child,
+}
+
+impl Started {
+    pub(super) fn new(command: &mut Command) -> io::Result<Started> {
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        let mut running = running();
+        let child = command.spawn()?;
+        running.push(child.id());
+        Ok(Started { child })
+    }
+
+    pub(super) fn child(&mut self) -> &mut Child {
+        &mut self.child
+    }
+
+    /// Whether it has ended. It is not waited for: its number stays its own until its group is ended too.
+    #[cfg(unix)]
+    pub(super) fn has_ended(&mut self) -> io::Result<bool> {
+        use rustix::process::{WaitId, WaitIdOptions, waitid};
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        Ok(waitid(WaitId::Pid(pid(self.child.id())), options)?.is_some())
+    }
+
+    #[cfg(not(unix))]
+    pub(super) fn has_ended(&mut self) -> io::Result<bool> {
+        Ok(self.child.try_wait()?.is_some())
+    }
+
+    /// Ends what is left of it and of its group.
+    pub(super) fn end(mut self) -> io::Result<ExitStatus> {
+        let mut running = running();
+        kill(self.child.id());
+        let _ = self.child.kill();
+        let status = self.child.wait();
+        running.retain(|id| *id != self.child.id());
+        status
+    }
+}
+
+/// Ends all groups, and lets no other one begin: for a program that is about to exit.
+pub(crate) fn end_all() {
+    let running = running();
+    running.iter().for_each(|id| kill(*id));
+    std::mem::forget(running);
+}
+
+#[cfg(unix)]
+fn pid(id: u32) -> rustix::process::Pid {
+    rustix::process::Pid::from_raw(id.cast_signed()).expect("the number of a process that was started")
+}
+
+#[cfg(unix)]
+fn kill(id: u32) {
+    let _ = rustix::process::kill_process_group(pid(id), rustix::process::Signal::KILL);
+}
+
+#[cfg(not(unix))]
+fn kill(_: u32) {}
+
+/// Ends this process with its parent and limits what it may allocate.
+///
+/// The limit is of what is written to, not of addresses: an allocator reserves 64 MB of these for each thread.
+#[cfg(target_os = "linux")]
+pub(super) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
+    use rustix::process::{Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit};
+    set_parent_process_death_signal(Some(Signal::KILL))?;
+    // It may have died before.
+    if getppid().map(rustix::process::Pid::as_raw_nonzero).map(|id| id.get().cast_unsigned()) != Some(parent)
+    {
+        return Err(io::Error::other("the study that started it has ended"));
+    }
+    if let Some(bytes) = memory {
+        setrlimit(Resource::Data, Rlimit { current: Some(bytes), maximum: Some(bytes) })?;
+    }
+    Ok(())
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(super) fn limit(_: u32, memory: Option<u64>) -> io::Result<()> {
+    match memory {
+        None => Ok(()),
+        Some(_) => Err(io::Error::other("--memory-limit is for Linux only")),
+    }
+}

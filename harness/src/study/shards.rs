@@ -1,0 +1,93 @@
+//! The shares of a study that several machines run: equal in what they take, as far as that is known before.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::tasks::Task;
+use super::{Plan, QUICK, REPEATS, VerifyArgs};
+use crate::scenario::{estimate, of_reference};
+
+/// Tasks that belong together, and the seconds that they take.
+struct Unit {
+    tasks: Vec<usize>,
+    seconds: f64,
+    /// The groups, of one reference each, that they are of.
+    groups: BTreeSet<(usize, Option<u64>)>,
+}
+
+impl Unit {
+    fn with(mut self, other: Unit) -> Unit {
+        self.tasks.extend(other.tasks);
+        self.seconds += other.seconds;
+        self.groups.extend(other.groups);
+        self
+    }
+}
+
+impl Plan {
+    /// The tasks of the k-th of n shares. The costliest unit goes first, each to the share that is ready first with it.
+    pub(super) fn share(&self, args: &VerifyArgs, (k, n): (usize, usize)) -> BTreeSet<usize> {
+        let mut units = self.units(args);
+        units.sort_by(|a, b| b.seconds.total_cmp(&a.seconds).then(a.tasks.cmp(&b.tasks)));
+        let mut shares: Vec<Unit> =
+            (0..n).map(|_| Unit { tasks: vec![], seconds: 0.0, groups: BTreeSet::new() }).collect();
+        for unit in units {
+            let with = |share: &Unit| {
+                let new = unit.groups.difference(&share.groups);
+                share.seconds + unit.seconds + new.map(|group| self.reference_seconds(group.0)).sum::<f64>()
+            };
+            let seconds: Vec<f64> = shares.iter().map(with).collect();
+            let first = (0..n).min_by(|&a, &b| seconds[a].total_cmp(&seconds[b])).unwrap_or(0);
+            shares[first].seconds = seconds[first];
+            shares[first].tasks.extend(unit.tasks);
+            shares[first].groups.extend(unit.groups);
+        }
+        shares.swap_remove(k - 1).tasks.into_iter().collect()
+    }
+
+    /// Seconds that the reference of a scene takes.
+    fn reference_seconds(&self, scene: usize) -> f64 {
+        of_reference(&self.scenes[scene].2).map_or(0.0, |reference| reference.seconds)
+    }
+
+    /// Orders and shares of clouds are of all runs that a run table has of a method at a Poisson's ratio: these stay together,
+    /// and so do families that have a run in common.
+    fn units(&self, args: &VerifyArgs) -> Vec<Unit> {
+        let repeats = if args.quick { QUICK } else { REPEATS };
+        let mut units: Vec<Option<Unit>> = Vec::new();
+        let mut of_family: BTreeMap<Family, usize> = BTreeMap::new();
+        for (index, task) in self.tasks.iter().enumerate() {
+            let once = estimate(&self.scenes[task.scene].2, &task.method.family).seconds;
+            // Short runs are repeated for their times.
+            let seconds = once * (1.0 + repeats.seconds / once).min(repeats.most as f64);
+            let ratio = task.poisson.map(f64::to_bits);
+            let mut unit =
+                Unit { tasks: vec![index], seconds, groups: BTreeSet::from([(task.scene, ratio)]) };
+            let known: BTreeSet<usize> =
+                families(task).filter_map(|family| of_family.get(&family).copied()).collect();
+            let at = known.first().copied().unwrap_or(units.len());
+            for other in known.iter().rev().filter_map(|&at| units[at].take()) {
+                unit = other.with(unit);
+            }
+            match known.len() {
+                0 => units.push(Some(unit)),
+                1 => units[at] = Some(unit),
+                _ => {
+                    // Whatever pointed to the units that were joined points here.
+                    let all = unit.tasks.iter().flat_map(|&task| families(&self.tasks[task]));
+                    of_family.extend(all.map(|family| (family, at)));
+                    units[at] = Some(unit);
+                }
+            }
+            of_family.extend(families(task).map(|family| (family, at)));
+        }
+        units.into_iter().flatten().collect()
+    }
+}
+
+/// Run table, method and Poisson's ratio.
+type Family<'a> = (usize, &'a str, Option<u64>);
+
+fn families(task: &Task) -> impl Iterator<Item = Family<'_>> {
+    let ratio = task.poisson.map(f64::to_bits);
+    task.runs.iter().map(move |&run| (run, task.method.id.as_str(), ratio))
+}

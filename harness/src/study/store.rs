@@ -1,0 +1,237 @@
+//! Results of single runs in the folder of a study: one file each, written as soon as the run is finished.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use reports::{Machine, Program, ReportError};
+use serde::{Deserialize, Serialize};
+
+use super::task::TaskResult;
+
+/// Below the folder of results.
+const TASKS: &str = "tasks";
+
+/// Who made a result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Maker {
+    /// The program by its version and bytes: results of another build are not taken for this one's.
+    program: String,
+    /// Processor and number of threads: times of another machine are not taken for this one's. The load is none of it: a study
+    /// is resumed at another moment.
+    machine: String,
+}
+
+impl Maker {
+    /// The running program on this machine.
+    pub(super) fn new(program: &Program, machine: &Machine) -> Maker {
+        let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
+        let Machine { cpu, instructions, threads, .. } = machine;
+        Maker {
+            program: format!("{program:?}, {}", blake3::hash(&bytes).to_hex()),
+            machine: format!("{cpu}, {instructions}, {threads} threads"),
+        }
+    }
+}
+
+/// Which results are as good as those of a run of one's own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Accept {
+    /// None.
+    Nothing,
+    /// Those of this program on this machine that did not fail.
+    Finished,
+    /// All of this program: those of other processes that work on the study.
+    All,
+}
+
+#[derive(Serialize)]
+struct Stored<'a> {
+    by: &'a Maker,
+    result: &'a TaskResult,
+}
+
+#[derive(Deserialize)]
+struct Read {
+    by: Maker,
+    result: TaskResult,
+}
+
+/// The folder of stored results.
+pub(super) struct Store {
+    folder: PathBuf,
+    by: Maker,
+}
+
+impl Store {
+    pub(super) fn new(out: &Path, by: Maker) -> Store {
+        Store { folder: out.join(TASKS), by }
+    }
+
+    fn file(&self, key: &str) -> PathBuf {
+        self.folder.join(format!("{key}.json"))
+    }
+
+    /// Where a process of its own writes the result under a key, before it is accepted.
+    pub(super) fn answer(&self, key: &str) -> PathBuf {
+        self.folder.join(format!("{key}.answer"))
+    }
+
+    /// The result under a key, if there is a readable one that is accepted.
+    pub(super) fn load(&self, key: &str, accept: Accept) -> Option<TaskResult> {
+        if accept == Accept::Nothing {
+            return None;
+        }
+        let text = fs::read_to_string(self.file(key)).ok()?;
+        let Read { by, result } = serde_json::from_str(&text).ok()?;
+        let good = match accept {
+            Accept::Nothing => false,
+            Accept::Finished => by == self.by && result.failure.is_none(),
+            Accept::All => by.program == self.by.program,
+        };
+        good.then_some(result)
+    }
+
+    /// Stores a result; written beside and renamed, so that a stop leaves no half file.
+    pub(super) fn save(&self, key: &str, result: &TaskResult) -> Result<(), ReportError> {
+        let path = self.file(key);
+        let unwritten = |source| ReportError::Unwritten { path: path.clone(), source };
+        fs::create_dir_all(&self.folder).map_err(unwritten)?;
+        let text = serde_json::to_string(&Stored { by: &self.by, result });
+        reports::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
+    }
+
+    /// Takes the right to run a task, as long as the file is open; `None` where another process has it. The system gives back
+    /// what a process that dies had.
+    ///
+    /// # Errors
+    /// A file that can't be made or locked.
+    pub(super) fn claim(&self, key: &str) -> io::Result<Option<File>> {
+        fs::create_dir_all(&self.folder)?;
+        let path = self.folder.join(format!("{key}.claim"));
+        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            Ok(()) => Ok(Some(file)),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(bad)) => Err(bad),
+        }
+    }
+
+    /// Removes results that are no finished ones of this program on this machine, so that all that is there from now on is of the
+    /// processes that work on it together. Only for the first of them.
+    pub(super) fn sweep(&self) {
+        for path in files(&self.folder, &["json"]) {
+            let key = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            if self.load(&key, Accept::Finished).is_none() {
+                let _ = fs::remove_file(path);
+            }
+        }
+    }
+}
+
+/// Who made the results of the shares of a study.
+#[derive(Default)]
+pub(super) struct Share {
+    program: Option<String>,
+    /// The machines that they were made on.
+    pub(super) machines: BTreeSet<String>,
+}
+
+impl Share {
+    /// A result in a folder with its text, or why it can't be joined with those before; `None` where there is none.
+    pub(super) fn take(&mut self, out: &Path, key: &str) -> Option<Result<(String, TaskResult), String>> {
+        let path = out.join(TASKS).join(format!("{key}.json"));
+        let text = fs::read_to_string(&path).ok()?;
+        let Read { by, result } = serde_json::from_str(&text).ok()?;
+        if *self.program.get_or_insert_with(|| by.program.clone()) != by.program {
+            return Some(Err(format!("{} was made by another build of the program", path.display())));
+        }
+        self.machines.insert(by.machine);
+        Some(Ok((text, result)))
+    }
+}
+
+/// Keeps the text of a result from another folder.
+pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError> {
+    let folder = out.join(TASKS);
+    fs::create_dir_all(&folder).map_err(|source| ReportError::Unwritten { path: folder.clone(), source })?;
+    reports::write_text(&folder.join(format!("{key}.json")), text)
+}
+
+/// Removes what killed processes left in a folder of results. Only for a process that is alone in it.
+pub(super) fn clean(out: &Path) {
+    for path in files(&out.join(TASKS), &["partial", "claim", "answer"]) {
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    paths.filter(|path| path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn store(dir: &Path, program: &Program, machine: &Machine) -> Store {
+        Store::new(dir, Maker::new(program, machine))
+    }
+
+    #[test]
+    fn another_program_machine_or_number_of_threads_runs_anew() {
+        let dir = tempfile::tempdir().unwrap();
+        let (program, machine) = (Program::default(), Machine { threads: 2, ..Machine::default() });
+        let known = store(dir.path(), &program, &machine);
+        known.save("key", &TaskResult::default()).unwrap();
+        let found = |program: &Program, machine: &Machine, accept| {
+            store(dir.path(), program, machine).load("key", accept).is_some()
+        };
+        let later = Machine { load: Some(3.0), quiet: Some(false), ..machine.clone() };
+        assert!(found(&program, &later, Accept::Finished));
+        assert!(!found(&program, &later, Accept::Nothing));
+        for other in
+            [Machine { threads: 1, ..machine.clone() }, Machine { cpu: "another".into(), ..machine.clone() }]
+        {
+            assert!(!found(&program, &other, Accept::Finished));
+            assert!(found(&program, &other, Accept::All));
+        }
+        for other in [
+            Program { commit: "another".into(), ..program.clone() },
+            Program { dirty: true, ..program.clone() },
+        ] {
+            assert!(!found(&other, &machine, Accept::Finished) && !found(&other, &machine, Accept::All));
+        }
+    }
+
+    #[test]
+    fn a_task_is_claimed_once_and_free_again_after_its_holder() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = store(dir.path(), &Program::default(), &Machine::default());
+        let free = |key| store.claim(key).unwrap();
+        let claim = free("key");
+        assert!(claim.is_some() && free("key").is_none() && free("other").is_some());
+        drop(claim);
+        assert!(free("key").is_some());
+    }
+
+    #[test]
+    fn a_sweep_leaves_finished_results_only() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = store(dir.path(), &Program::default(), &Machine::default());
+        store.save("finished", &TaskResult::default()).unwrap();
+        let failure = crate::Failure::Run("rigid".into());
+        store.save("failed", &TaskResult::failed("case", "method", &failure)).unwrap();
+        for (name, text) in [("half.json", "{"), ("killed.json.partial", ""), ("killed.claim", "")] {
+            fs::write(store.folder.join(name), text).unwrap();
+        }
+        assert!(
+            store.load("failed", Accept::All).is_some() && store.load("failed", Accept::Finished).is_none()
+        );
+        store.sweep();
+        clean(dir.path());
+        assert_eq!(files(&store.folder, &["json", "partial", "claim"]), [store.file("finished")]);
+    }
+}
