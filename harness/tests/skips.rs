@@ -158,19 +158,8 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
 /// Work of a study of one run.
 fn work(study: &str, dir: &tempfile::TempDir, resume: bool) -> Counters {
     let plan = Plan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
-    let args = VerifyArgs {
-        study: None,
-        quick: false,
-        filter: None,
-        filters: Default::default(),
-        quiet: true,
-        verbose: false,
-        shard: None,
-        jobs: 1,
-        resume,
-        out: inside(dir, "out").into(),
-    };
-    let finished = plan.execute(&args);
+    let args = VerifyArgs { resume, out: inside(dir, "out").into(), ..VerifyArgs::of(Path::new(study)) };
+    let finished = plan.execute(&args, Path::new(study));
     assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
     finished.counters
 }

@@ -53,7 +53,7 @@ pub struct VerifyArgs {
 
 impl VerifyArgs {
     /// What is meant where nothing but the study is given.
-    pub(super) fn of(study: &Path) -> VerifyArgs {
+    pub fn of(study: &Path) -> VerifyArgs {
         VerifyArgs {
             study: Some(study.into()),
             quick: false,
