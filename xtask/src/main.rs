@@ -70,6 +70,9 @@ enum Task {
         /// Only these, by name
         names: Vec<String>,
     },
+    /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
+    /// run twice or changed
+    Survive,
     /// What continuous integration runs: format, lints, docs, tests, quick verification
     Ci,
 }
@@ -105,6 +108,11 @@ fn run(task: Task) -> Result<u8> {
         }
         Task::Book => book(),
         Task::Mutants { names } => mutants::mutants(&root(), &names),
+        Task::Survive => {
+            let test =
+                ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
+            cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
+        }
         Task::Ci => ci(),
     }
 }

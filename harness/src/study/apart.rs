@@ -184,6 +184,8 @@ fn last_words(mut stderr: ChildStderr) -> String {
 
 /// The command `experiment`: runs the task and writes its result.
 pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
+    // What the libraries keep for good is not the run's.
+    algebra::reserve_workspaces();
     process_group::limit(args.parent, args.memory_limit).map_err(|bad| Failure::Run(bad.to_string()))?;
     let unreadable = |errors: Vec<cases::scene::SceneError>| {
         Failure::Input(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))

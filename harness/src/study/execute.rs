@@ -56,7 +56,9 @@ impl Work<'_> {
                         let rest = self.group(members, false);
                         left.lock().expect("no worker panicked").push(rest);
                     }
-                    while let Some(members) = left.lock().expect("no worker panicked").pop() {
+                    // The lock is not held while they are run.
+                    let pop = || left.lock().expect("no worker panicked").pop();
+                    while let Some(members) = pop() {
                         let rest = self.group(&members, true);
                         if !rest.is_empty() {
                             left.lock().expect("no worker panicked").push(rest);

@@ -74,9 +74,9 @@ fn kill(id: u32) {
 #[cfg(not(unix))]
 fn kill(_: u32) {}
 
-/// Ends this process with its parent and limits what it may allocate.
+/// Ends this process with its parent and limits what it may allocate from now on.
 ///
-/// The limit is of what is written to, not of addresses: an allocator reserves 64 MB of these for each thread.
+/// The limit is of what can be written to, not of addresses: an allocator reserves 64 MB of these for each thread.
 #[cfg(target_os = "linux")]
 pub(super) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
     use rustix::process::{Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit};
@@ -87,9 +87,19 @@ pub(super) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
         return Err(io::Error::other("the study that started it has ended"));
     }
     if let Some(bytes) = memory {
-        setrlimit(Resource::Data, Rlimit { current: Some(bytes), maximum: Some(bytes) })?;
+        let most = Some(allocated()?.saturating_add(bytes));
+        setrlimit(Resource::Data, Rlimit { current: most, maximum: most })?;
     }
     Ok(())
+}
+
+/// Bytes that this process has by now.
+#[cfg(target_os = "linux")]
+fn allocated() -> io::Result<u64> {
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmData:")).unwrap_or_default();
+    let kilobytes: Option<u64> = line.split_whitespace().next().and_then(|word| word.parse().ok());
+    kilobytes.map(|kb| kb << 10).ok_or_else(|| io::Error::other("/proc/self/status has no VmData"))
 }
 
 #[cfg(not(target_os = "linux"))]

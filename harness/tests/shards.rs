@@ -1,0 +1,145 @@
+//! Studies in shares: of equal cost, joined to the results of one run.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use common::{assert_fails, cases, inside, tissuebench, write};
+use reports::{Record, RunSet, read_run};
+use tempfile::TempDir;
+
+/// Levels whose orders are checked, clouds of many seeds, and runs that two tables ask for.
+fn study(dir: &TempDir) -> String {
+    let (bending, first) = (cases("pure-bending.toml"), cases("first.toml"));
+    let text = format!(
+        r#"title = "Levels and seeds"
+
+[[run]]
+scene = '{bending}'
+methods = ["tet10", "hex8-mean", "efg-gauss"]
+levels = [1, 2]
+poisson = [0.3, 0.495]
+
+[[run.check]]
+metric = "order-l2"
+method = "hex8-mean"
+at_least = 0.5
+
+[[run]]
+scene = '{bending}'
+methods = ["hex8-mean"]
+levels = [2]
+
+[[run]]
+scene = '{first}'
+methods = ["efg"]
+seeds = 3
+
+[[run]]
+scene = '{first}'
+"#
+    );
+    write(dir, "study.toml", &text)
+}
+
+/// All that two runs of one study share to the bit.
+fn exact(set: &RunSet) -> impl PartialEq + use<> {
+    let rows = set.records.iter().filter(|r| !r.is_measured());
+    let rows: Vec<(Record, u64)> = rows.map(|r| (r.clone(), r.value.to_bits())).collect();
+    (rows, set.checks.clone(), set.plans.clone(), set.fields.clone(), set.provenance.scenes.clone())
+}
+
+fn results(out: &str) -> RunSet {
+    read_run(Path::new(out)).unwrap()
+}
+
+fn runs(set: &RunSet) -> BTreeSet<String> {
+    set.records.iter().map(|r| r.run.clone()).collect()
+}
+
+#[test]
+fn shares_are_joined_to_the_results_of_one_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, whole) = (study(&dir), inside(&dir, "whole"));
+    let done = tissuebench(&["verify", &study, "--out", &whole]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let whole = results(&whole);
+    let mut shares = Vec::new();
+    let mut together = BTreeSet::new();
+    for k in 1..=3 {
+        let out = inside(&dir, &format!("share{k}"));
+        let done = tissuebench(&["verify", &study, "--shard", &format!("{k}/3"), "--out", &out]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let runs = runs(&results(&out));
+        assert!(!runs.is_empty() && runs.is_disjoint(&together), "each run is in one share");
+        together.extend(runs);
+        shares.push(out);
+    }
+    assert!(together == runs(&whole));
+    let out = inside(&dir, "merged");
+    let merge = |shares: &[&str]| tissuebench(&[&["merge", &out], shares].concat());
+    let [one, two, three] = [&shares[0][..], &shares[1], &shares[2]];
+    // Without one of them it is incomplete, and says what is missing.
+    let part = merge(&[one, three]);
+    assert_fails(&part, 5, "runs are in no share");
+    assert!(part.stderr.contains("missing: "), "{}", part.stderr);
+    assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");
+    let done = merge(&[three, one, two]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(exact(&results(&out)) == exact(&whole));
+    // Its runs are stored like those of one run.
+    assert_eq!(tissuebench(&["verify", &study, "--resume", "--out", &out]).code, 0);
+    let (again, joined) = (results(&out), results(&out));
+    assert!(again.records == joined.records);
+}
+
+#[test]
+fn what_is_no_share_is_not_joined() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let share = |name: &str, options: &[&str]| {
+        let out = inside(&dir, name);
+        assert_eq!(tissuebench(&[&["verify", &study, "--out", &out], options].concat()).code, 0);
+        out
+    };
+    let (tet, hex) = (share("tet", &["--filter", "tet10"]), share("hex", &["--filter", "hex8"]));
+    assert_fails(
+        &tissuebench(&["merge", &out, &tet, &hex]),
+        2,
+        "are shares of different studies or selections",
+    );
+    let nothing = inside(&dir, "nothing");
+    assert_fails(&tissuebench(&["merge", &out, &tet, &nothing]), 2, "give folders that");
+    assert!(!Path::new(&out).exists());
+}
+
+/// A script of the book by the name in its first line.
+#[cfg(unix)]
+fn script(name: &str) -> String {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/guide/long-studies.md");
+    let text = std::fs::read_to_string(page).unwrap();
+    let from = text.find(&format!("# {name}: ")).expect("a script of that name");
+    text[from..].split("```").next().unwrap().into()
+}
+
+/// Two workers by `xargs -P 2`, as the book has it, against a single run.
+#[cfg(unix)]
+#[test]
+fn the_scripts_of_the_book_give_the_results_of_one_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, whole) = (study(&dir), inside(&dir, "whole"));
+    let done = tissuebench(&["verify", &study, "--out", &whole]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let program = Path::new(env!("CARGO_BIN_EXE_tissuebench")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    for name in ["two-workers.sh", "shards.sh"] {
+        let mut bash = std::process::Command::new("bash");
+        bash.args(["-e", "-c", &script(name)]).env("PATH", &path).current_dir(dir.path());
+        let output = bash.output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let results = inside(&dir, "results");
+        assert!(exact(&self::results(&results)) == exact(&self::results(&whole)), "{name}");
+        std::fs::remove_dir_all(results).unwrap();
+    }
+}

@@ -1,0 +1,313 @@
+//! Studies that are killed, interrupted, out of space, time or memory: what is finished stays, and the rest says so.
+#![cfg(target_os = "linux")]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::{BLOCK, assert_fails, inside, tissuebench, write};
+use reports::{Record, RunSet, read_run};
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_tissuebench");
+
+/// Scenes of one block each, with different stiffness, and the study of them all.
+fn study(dir: &TempDir, scenes: usize) -> String {
+    let mut text = String::from("title = \"Blocks\"\n");
+    for index in 0..scenes {
+        write(
+            dir,
+            &format!("b{index}.toml"),
+            &BLOCK.replace("young = \"20 kPa\"", &format!("young = \"{} kPa\"", 20 + index)),
+        );
+        text += &format!("[[run]]\nscene = \"b{index}.toml\"\n");
+    }
+    write(dir, "study.toml", &text)
+}
+
+/// [`BLOCK`] in explicit dynamics for so long that it takes minutes: millions of steps of 1280 elements.
+fn endless() -> String {
+    BLOCK
+        .replace("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }")
+        .replace("cells = [2, 2, 1]", "cells = [8, 8, 4]")
+        .replace("law = \"linear\"", "law = \"neo-hookean\"")
+        .replace(
+            "method =",
+            "procedure = { kind = \"explicit\", duration = \"3000 s\", steps = 2 }\nmethod =",
+        )
+}
+
+fn results(out: &str) -> RunSet {
+    read_run(Path::new(out)).unwrap()
+}
+
+/// What two runs of one study share to the bit.
+fn exact(out: &str) -> (Vec<(Record, u64)>, Vec<reports::Check>, Vec<reports::PlanEntry>) {
+    let set = results(out);
+    let rows = set.records.iter().filter(|r| !r.is_measured());
+    (rows.map(|r| (r.clone(), r.value.to_bits())).collect(), set.checks, set.plans)
+}
+
+fn start(args: &[&str]) -> Child {
+    let mut command = Command::new(PROGRAM);
+    command.args(args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits until it is so, at most a minute.
+fn wait_until(so: impl Fn() -> bool) {
+    let began = Instant::now();
+    while !so() {
+        assert!(began.elapsed() < Duration::from_secs(60), "it never was so");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The stored results of single runs, by their files.
+fn stored(out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+    let Ok(entries) = std::fs::read_dir(Path::new(out).join("tasks")) else { return BTreeMap::new() };
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let results = paths.filter(|path| path.extension().is_some_and(|e| e == "json"));
+    results.filter_map(|path| Some((path.clone(), std::fs::read(path).ok()?))).collect()
+}
+
+/// The end of a process, and what it said.
+fn end(child: Child) -> (Option<i32>, String) {
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+fn ends(args: &[&str], stdout: Stdio) -> (Option<i32>, String) {
+    let child = Command::new(PROGRAM).args(args).stdout(stdout).stderr(Stdio::piped()).spawn().unwrap();
+    end(child)
+}
+
+/// Processes whose command line names this folder.
+fn processes_of(dir: &TempDir) -> Vec<String> {
+    let name = dir.path().to_str().unwrap();
+    let of = |entry: std::fs::DirEntry| std::fs::read(entry.path().join("cmdline")).ok();
+    let lines = std::fs::read_dir("/proc").unwrap().filter_map(|entry| of(entry.ok()?));
+    lines.map(|line| String::from_utf8_lossy(&line).into_owned()).filter(|line| line.contains(name)).collect()
+}
+
+/// Numbers from 0 to below 1, the same in every run of the test.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Kills one of two workers on a folder again and again and starts it anew. In between nothing that is finished changes or goes,
+/// and at the end all is as in a study that nobody disturbed.
+fn survives(scenes: usize, kills: usize, options: &[&str]) {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out, calm) = (study(&dir, scenes), inside(&dir, "out"), inside(&dir, "calm"));
+    let began = Instant::now();
+    assert_eq!(tissuebench(&[&["verify", &study, "--out", &calm], options].concat()).code, 0);
+    let whole = began.elapsed().as_secs_f64();
+    let args = [&["verify", &study, "--out", &out, "--join"], options].concat();
+    let mut chance = Chance(20);
+    let mut known = BTreeMap::new();
+    let mut workers = [start(&args), start(&args)];
+    let mut killed = 0;
+    while killed < kills {
+        // A study that is done is begun anew but for half of its results: there have to be runs to be killed.
+        if let [Some(_), Some(_)] = workers.each_mut().map(|worker| worker.try_wait().unwrap()) {
+            for worker in workers {
+                assert_eq!(end(worker).0, Some(0));
+            }
+            known = stored(&out);
+            assert_eq!(known.len(), scenes);
+            assert!(exact(&out) == exact(&calm), "after {killed} kills");
+            for path in known.keys().step_by(2) {
+                std::fs::remove_file(path).unwrap();
+            }
+            known = stored(&out);
+            workers = [start(&args), start(&args)];
+        }
+        std::thread::sleep(Duration::from_secs_f64(chance.next() * whole / 2.0));
+        let which = &mut workers[usize::from(chance.next() < 0.5)];
+        which.kill().unwrap();
+        which.wait().unwrap();
+        killed += 1;
+        let now = stored(&out);
+        for (path, bytes) in &known {
+            // A second run would have left other times.
+            assert!(now.get(path) == Some(bytes), "{} after {killed} kills", path.display());
+        }
+        known = now;
+        *which = start(&args);
+    }
+    for worker in workers {
+        let (code, said) = end(worker);
+        assert_eq!(code, Some(0), "{said}");
+    }
+    let now = stored(&out);
+    assert!(known.iter().all(|(path, bytes)| now.get(path) == Some(bytes)) && now.len() == scenes);
+    assert!(exact(&out) == exact(&calm));
+    assert_eq!(tissuebench(&["report", &out]).code, 0);
+    assert_eq!(processes_of(&dir), [""; 0]);
+}
+
+#[test]
+fn two_workers_survive_being_killed() {
+    survives(24, 6, &[]);
+}
+
+/// `cargo xtask survive`.
+#[test]
+#[ignore = "takes minutes"]
+fn two_workers_survive_a_hundred_kills() {
+    survives(60, 100, &[]);
+    survives(60, 100, &["--isolate"]);
+}
+
+#[test]
+fn results_of_a_killed_study_are_incomplete() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 3), inside(&dir, "out"));
+    let verify = ["verify", &study, "--out", &out];
+    assert_eq!(tissuebench(&verify).code, 0);
+    let before = exact(&out);
+    // The last scene never ends: the two others are finished before.
+    write(&dir, "b2.toml", &endless());
+    let mut killed = start(&verify);
+    let first = stored(&out);
+    wait_until(|| stored(&out).iter().filter(|(path, bytes)| first.get(*path) != Some(bytes)).count() == 2);
+    // Nobody else may use the folder meanwhile.
+    let (code, said) = end(start(&verify));
+    assert_eq!(code, Some(2));
+    assert!(said.contains(&format!("{out} is in use by process {};", killed.id())), "{said}");
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    for args in [vec!["report", &out], vec!["baseline", &out, "--file", &inside(&dir, "b.toml"), "--accept"]]
+    {
+        let done = tissuebench(&args);
+        assert_fails(&done, 5, &format!("{out} is incomplete: the results of study.toml were begun there"));
+    }
+    write(&dir, "b2.toml", &BLOCK.replace("young = \"20 kPa\"", "young = \"22 kPa\""));
+    assert_eq!(tissuebench(&[&verify[..], &["--resume"]].concat()).code, 0);
+    assert!(exact(&out) == before);
+}
+
+#[test]
+fn an_interrupt_ends_with_a_word_and_keeps_what_is_finished() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 2), inside(&dir, "out"));
+    write(&dir, "b1.toml", &endless());
+    for options in [&[][..], &["--isolate"]] {
+        let child = start(&[&["verify", &study, "--out", &out, "--resume"], options].concat());
+        wait_until(|| stored(&out).len() == 1);
+        std::thread::sleep(Duration::from_millis(200));
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+        let (code, said) = end(child);
+        assert_eq!(code, Some(5), "{said}");
+        assert!(said.contains("interrupted; ") && said.contains("--resume goes on"), "{said}");
+        wait_until(|| processes_of(&dir).is_empty());
+    }
+    assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");
+    write(&dir, "b1.toml", BLOCK);
+    assert_eq!(tissuebench(&["verify", &study, "--out", &out, "--resume"]).code, 0);
+}
+
+#[test]
+fn stdout_that_takes_nothing_costs_no_results() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, scene) = (study(&dir, 2), inside(&dir, "b0.toml"));
+    for (index, args) in [vec!["verify", &study], vec!["run", &scene, "--format", "json"]].iter().enumerate()
+    {
+        let (full, closed) = (inside(&dir, &format!("full{index}")), inside(&dir, &format!("closed{index}")));
+        let device = File::options().write(true).open("/dev/full").unwrap();
+        let (code, said) = ends(&[&args[..], &["--out", &full]].concat(), device.into());
+        assert_eq!(code, Some(5), "{said}");
+        assert!(said.contains("stdout can't be written: No space left on device"), "{said}");
+        // A reader that has gone has what it wants.
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let (code, said) = ends(&[&args[..], &["--out", &closed]].concat(), writer.into());
+        assert_eq!(code, Some(0), "{said}");
+        assert!(!said.contains("panicked"), "{said}");
+        assert!(!results(&full).records.is_empty() && exact(&full) == exact(&closed));
+    }
+}
+
+#[test]
+fn a_full_disk_is_5_and_the_folder_opens_afterwards() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 2), inside(&dir, "out"));
+    assert_eq!(tissuebench(&["verify", &study, "--out", &out]).code, 0);
+    let before = exact(&out);
+    // What is written beside its place goes to a device without space.
+    std::os::unix::fs::symlink("/dev/full", format!("{out}/records.csv.partial")).unwrap();
+    let done = tissuebench(&["verify", &study, "--out", &out]);
+    assert_fails(&done, 5, &format!("{out}/records.csv can't be written: No space left on device"));
+    assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");
+    assert_eq!(tissuebench(&["verify", &study, "--out", &out, "--resume"]).code, 0);
+    assert!(exact(&out) == before);
+}
+
+#[test]
+fn memory_and_time_cost_one_run_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 4), inside(&dir, "out"));
+    write(&dir, "b1.toml", &endless());
+    write(&dir, "b2.toml", &BLOCK.replace("cells = [2, 2, 1]", "cells = [40, 40, 40]"));
+    let done = tissuebench(&[
+        "verify",
+        &study,
+        "--out",
+        &out,
+        "--isolate",
+        "--time-limit",
+        "4",
+        "--memory-limit",
+        "60MB",
+    ]);
+    assert_eq!(done.code, 3, "{}", done.stderr);
+    let set = results(&out);
+    let failed: Vec<(&str, &str)> = set.failures.iter().map(|f| (&f.case[..], &f.reason[..])).collect();
+    let [("b1", time), ("b2", memory)] = failed[..] else { panic!("{failed:?}") };
+    assert!(time == "out of time: ended after 4 s (--time-limit)", "{time}");
+    assert!(memory.starts_with("out of memory: memory allocation of "), "{memory}");
+    assert!(memory.ends_with("within 62914560 bytes (--memory-limit)"), "{memory}");
+    let whole = |case: &str| set.records.iter().any(|r| r.case == case && r.quantity == "max-z");
+    assert!(whole("b0") && whole("b3") && !whole("b1") && !whole("b2"));
+    assert_eq!(processes_of(&dir), [""; 0]);
+    // The same numbers as in one process.
+    write(&dir, "b1.toml", BLOCK);
+    write(&dir, "b2.toml", BLOCK);
+    let (apart, together) = (inside(&dir, "apart"), inside(&dir, "together"));
+    assert_eq!(tissuebench(&["verify", &study, "--out", &apart, "--isolate"]).code, 0);
+    assert_eq!(tissuebench(&["verify", &study, "--out", &together]).code, 0);
+    assert!(exact(&apart) == exact(&together));
+}
+
+#[test]
+fn what_nobody_means_to_run_asks_for_force() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = study(&dir, 1);
+    let huge = |scene: &str| scene.replace("cells = [2, 2, 1]", "cells = [270, 270, 270]");
+    let long = BLOCK.replace("method =", "procedure = { kind = \"static\", steps = 4000000000 }\nmethod =");
+    for scene in [huge(BLOCK), long.replace("\"linear\"", "\"neo-hookean\"")] {
+        let path = write(&dir, "b0.toml", &scene);
+        let out = inside(&dir, "out");
+        for args in
+            [vec!["run", &path, "--out", &out], vec!["plan", &path], vec!["verify", &study, "--out", &out]]
+        {
+            let done = tissuebench(&args);
+            assert_fails(&done, 2, "b0.toml 'tet4' takes about ");
+            assert!(done.stderr.contains("give --force to run it"), "{}", done.stderr);
+        }
+        assert!(!Path::new(&out).exists());
+    }
+    // Forced, a plan of many steps is made, as it takes no longer than one of a few.
+    let planned = tissuebench(&["plan", &inside(&dir, "b0.toml"), "--force"]);
+    assert_eq!(planned.code, 0, "{}", planned.stderr);
+}
