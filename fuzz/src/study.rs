@@ -10,7 +10,7 @@ pub(crate) fn run(data: &[u8]) {
         Err(errors) => super::sound(&errors, text, &file),
         Ok(study) => {
             if let Ok(plan) = Plan::new(study) {
-                assert!(plan.is_empty() == (plan.len() == 0));
+                assert_eq!(plan.planned().len(), plan.len());
             }
         }
     }

@@ -236,7 +236,7 @@ mod tests {
     fn a_panic_is_a_failure_with_its_message() {
         assert_eq!(caught(|| 1).unwrap(), 1);
         for failure in [caught(|| panic!("at {}", 3)), caught(|| panic!("at 3"))] {
-            let failure: Failure = failure.map(|()| ()).unwrap_err();
+            let failure: Failure = failure.unwrap_err();
             assert_eq!((failure.to_string().as_str(), failure.exit_code()), ("panicked: at 3", 3));
         }
     }

@@ -1,7 +1,10 @@
 //! Which runs of a study are made: by case, method and tag.
 
+use cases::scene::{self, Scene};
 use clap::Args;
 use serde::{Deserialize, Serialize};
+
+use super::tasks::Task;
 
 /// Choices of runs by their names; a run is made that fits all of them.
 #[derive(Args, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,6 +40,15 @@ impl Filters {
     pub fn is_empty(&self) -> bool {
         [&self.cases, &self.methods, &self.tags, &self.not].into_iter().all(Vec::is_empty)
     }
+}
+
+/// What a run can be chosen by, beside its names.
+pub(super) fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) -> Vec<&'a str> {
+    let own = task.runs.iter().map(|&run| &runs[run]);
+    let named = own.clone().flat_map(|run| run.tags.iter().map(String::as_str));
+    let quick = own.clone().any(|run| run.quick).then_some("quick");
+    let of_scene = [scene.purpose.name(), scene.procedure.kind().name(), task.method.family_name()];
+    named.chain(quick).chain(of_scene).collect()
 }
 
 /// Whether a name is as the pattern has it, in which `*` stands for any text.

@@ -173,7 +173,7 @@ impl Plan {
             task.runs.retain(|&run| !args.quick || runs[run].quick);
             let (case, method) = (case_name(&scenes[task.scene].2), &task.method.id);
             let contains = |text: &str| case.contains(text) || method.contains(text);
-            let tags = tags(task, runs, &scenes[task.scene].2);
+            let tags = filters::tags(task, runs, &scenes[task.scene].2);
             !task.runs.is_empty()
                 && args.filter.as_deref().is_none_or(contains)
                 && args.filters.fits(&case, method, &tags)
@@ -324,35 +324,6 @@ impl Plan {
         Finished { set, failed, runs, ran: results.len(), counters }
     }
 
-    fn summary(&self, task: &Task, result: &TaskResult, checks: &[Verdict]) -> RunSummary {
-        let (file, _, scene) = &self.scenes[task.scene];
-        RunSummary {
-            case: case_name(scene),
-            file: file.clone(),
-            label: label(task, &result.records, self.is_one_of_many(task)),
-            seconds: summary::seconds(result),
-            failure: None,
-            checks: checks.to_vec(),
-        }
-    }
-
-    /// A check of several runs together, beside the runs.
-    fn together(&self, check: &Verdict) -> RunSummary {
-        // Along an axis the case has its name behind it.
-        let own = |(_, _, scene): &&(PathBuf, String, Scene)| {
-            let behind = check.case.strip_prefix(&case_name(scene));
-            behind.is_some_and(|text| text.is_empty() || text.starts_with(" along "))
-        };
-        RunSummary {
-            case: check.case.clone(),
-            file: self.scenes.iter().find(own).map(|(file, ..)| file.clone()).unwrap_or_default(),
-            label: format!("{} {}", check.method, check.metric),
-            seconds: 0.0,
-            failure: None,
-            checks: vec![check.clone()],
-        }
-    }
-
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
     fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
         let scene = &self.scenes[task.scene].2;
@@ -422,15 +393,6 @@ impl Plan {
         none.filter_map(|f| f.members.iter().find_map(|m| m.failure.as_ref()).map(|(_, code)| *code))
             .collect()
     }
-}
-
-/// What a run can be chosen by, beside its names.
-fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) -> Vec<&'a str> {
-    let own = task.runs.iter().map(|&run| &runs[run]);
-    let named = own.clone().flat_map(|run| run.tags.iter().map(String::as_str));
-    let quick = own.clone().any(|run| run.quick).then_some("quick");
-    let of_scene = [scene.purpose.name(), scene.procedure.kind().name(), task.method.family_name()];
-    named.chain(quick).chain(of_scene).collect()
 }
 
 /// The runs that a run table has of one method at one Poisson's ratio: its levels, or its clouds.

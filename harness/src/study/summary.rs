@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
+use cases::scene::Scene;
 use reports::{Check, Record};
 
 use super::task::TaskResult;
+use super::tasks::Task;
+use super::{Plan, label};
+use crate::run::case_name;
 
 /// One run of a study, or the checks of several of its runs together.
 #[derive(Clone, Debug)]
@@ -27,4 +31,36 @@ pub struct RunSummary {
 pub(super) fn seconds(result: &TaskResult) -> f64 {
     let total = |r: &&Record| r.quantity == "time" && r.phase == "total" && r.statistic == "median";
     result.records.iter().find(total).map_or(0.0, |r| r.value)
+}
+
+impl Plan {
+    /// A run with its checks, before it is known whether anybody expected its failure.
+    pub(super) fn summary(&self, task: &Task, result: &TaskResult, checks: &[Check]) -> RunSummary {
+        let (file, _, scene) = &self.scenes[task.scene];
+        RunSummary {
+            case: case_name(scene),
+            file: file.clone(),
+            label: label(task, &result.records, self.is_one_of_many(task)),
+            seconds: seconds(result),
+            failure: None,
+            checks: checks.to_vec(),
+        }
+    }
+
+    /// A check of several runs together, beside the runs.
+    pub(super) fn together(&self, check: &Check) -> RunSummary {
+        // Along an axis the case has its name behind it.
+        let own = |(_, _, scene): &&(PathBuf, String, Scene)| {
+            let behind = check.case.strip_prefix(&case_name(scene));
+            behind.is_some_and(|text| text.is_empty() || text.starts_with(" along "))
+        };
+        RunSummary {
+            case: check.case.clone(),
+            file: self.scenes.iter().find(own).map(|(file, ..)| file.clone()).unwrap_or_default(),
+            label: format!("{} {}", check.method, check.metric),
+            seconds: 0.0,
+            failure: None,
+            checks: vec![check.clone()],
+        }
+    }
 }
