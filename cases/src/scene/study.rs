@@ -1,5 +1,6 @@
 //! Studies: many scenes and methods, with what is varied and what must hold.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
@@ -137,10 +138,14 @@ pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
         report.add("run", Problem::new("is missing").help("add a [[run]] with scene = \"...\""));
     }
     let runs: Vec<Run> = keys.run.into_iter().enumerate().map(|(i, r)| run(r, i, &mut report)).collect();
+    let mut scenes = BTreeMap::new();
+    let mut all = (0.0, 0);
     for (i, run) in runs.iter().enumerate() {
         // A scene that can't be read is the business of whoever runs it: its own findings say more.
-        if let Ok(scene) = load(&run.scene) {
-            fit(run, &scene, &format!("run[{i}]"), &mut report);
+        let scene = scenes.entry(&run.scene).or_insert_with(|| load(&run.scene));
+        if let Ok(scene) = scene {
+            all = few_enough(run, scene, all, &format!("run[{i}]"), &mut report);
+            fit(run, scene, &format!("run[{i}]"), &mut report);
         }
     }
     coverage::check(keys.all_of.as_deref(), &keys.left_out, &runs, &mut report);
@@ -205,6 +210,36 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         tags: keys.tags,
         checks: checks(keys.check, &at("check"), report),
     }
+}
+
+/// Most runs of a study, and most scenes along its axes: each of these is read before the first run.
+const MOST_RUNS: f64 = 50_000.0;
+const MOST_SCENES: usize = 500;
+
+/// Notes the run table with which a study has too many runs or scenes; how many there are so far.
+fn few_enough(
+    run: &Run,
+    scene: &Scene,
+    (runs, scenes): (f64, usize),
+    key: &str,
+    report: &mut Report,
+) -> (f64, usize) {
+    let methods =
+        scene.methods.iter().filter(|m| run.methods.is_empty() || run.methods.contains(&m.id)).count();
+    let values = run.axis.as_ref().map_or(0, |axis| axis.values.len());
+    let varied = [run.poisson.len(), run.levels.len().max(run.nodes.len()), run.kernels.len()];
+    let more = [run.support_scales.len(), run.essentials.len(), run.seeds as usize, values];
+    let product = varied.iter().chain(&more).map(|&n| n.max(1) as f64).product::<f64>();
+    let now = (runs + methods as f64 * product, scenes + values);
+    if now.0 > MOST_RUNS && runs <= MOST_RUNS {
+        let problem = Problem::new(format!("makes {:.0} runs with those before", now.0));
+        report.add(key, problem.help(format!("give {MOST_RUNS} or less in all")));
+    }
+    if now.1 > MOST_SCENES && scenes <= MOST_SCENES {
+        let problem = Problem::new(format!("makes {} scenes with those before", now.1));
+        report.add(&format!("{key}.axis.values"), problem.help(format!("give {MOST_SCENES} or less in all")));
+    }
+    now
 }
 
 /// Whether each value is not among those before it.

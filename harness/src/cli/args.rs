@@ -66,6 +66,8 @@ pub enum Command {
     },
     /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
     Baseline(BaselineArgs),
+    /// Compare two results: numbers by tolerance, times as ratios with their confidence
+    Compare(CompareArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
     /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
@@ -82,8 +84,12 @@ pub enum Command {
         #[arg(long)]
         study: bool,
     },
-    /// Compare two results: numbers by tolerance, times as ratios with their confidence
-    Compare(CompareArgs),
+    /// Inspect and convert mesh files
+    Mesh {
+        /// What to do with them
+        #[command(subcommand)]
+        action: MeshAction,
+    },
     /// Print a script that completes commands and options in a shell
     ///
     /// For bash: `tissuebench completions bash > ~/.local/share/bash-completion/completions/tissuebench`.
@@ -95,12 +101,6 @@ pub enum Command {
     Man {
         /// The command
         command: Option<String>,
-    },
-    /// Inspect and convert mesh files
-    Mesh {
-        /// What to do with them
-        #[command(subcommand)]
-        action: MeshAction,
     },
 }
 
@@ -196,7 +196,7 @@ pub struct CompareArgs {
 pub enum Format {
     /// A table for people
     Table,
-    /// One JSON object per run, one per line
+    /// JSON: one object per run, one per line, or one object of all that is compared
     Json,
 }
 

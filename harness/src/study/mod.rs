@@ -38,7 +38,7 @@ use execute::Work;
 use progress::Progress;
 use store::{Maker, Store};
 use task::TaskResult;
-use tasks::{Task, list};
+use tasks::{Known, Task, list};
 use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
@@ -99,6 +99,7 @@ impl Plan {
     fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
         let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
         let mut errors = Vec::new();
+        let mut known = Known::default();
         let runs = plan.study.runs.clone();
         for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
             let read = match &run.axis {
@@ -108,7 +109,7 @@ impl Plan {
             match read {
                 Ok(found) => {
                     for at in found {
-                        list(&mut plan.tasks, index, at, run, &plan.scenes[at].2);
+                        list(&mut plan.tasks, &mut known, index, at, run, &plan.scenes[at].2);
                     }
                 }
                 Err(bad) => errors.extend(bad),

@@ -20,7 +20,7 @@ pub struct CiArgs {
     /// Print the names of the runs, and make none
     #[arg(long, conflicts_with = "dry_run")]
     pub list: bool,
-    /// Print the runs with their nodes and with the times of earlier results in --out, and make none
+    /// Print the runs with what each is estimated to take, and make none
     #[arg(long)]
     pub dry_run: bool,
     /// Also write the runs and their checks as JUnit XML
