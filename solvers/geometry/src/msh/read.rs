@@ -172,8 +172,8 @@ fn read_elements(
     names: &Names,
     content: &mut Content,
 ) -> Parsed<()> {
-    let mut region_tags: Vec<u64> = Vec::new();
-    let mut group_tags: Vec<u64> = Vec::new();
+    let mut region_tags = Tags::default();
+    let mut group_tags = Tags::default();
     let mut faces: Vec<Face> = Vec::new();
     let mut seen = HashSet::new();
     for _ in 0..count(lines, "the number of elements")? {
@@ -218,8 +218,9 @@ fn read_elements(
                 for (place, &local) in order(kind).iter().enumerate() {
                     ours[local] = list[place];
                 }
-                let Ok(region) = u16::try_from(index_of(&mut region_tags, group)) else {
-                    return lines.fail(MshProblem::TooMany { what: "regions", count: region_tags.len() });
+                let Ok(region) = u16::try_from(region_tags.index_of(group)) else {
+                    return lines
+                        .fail(MshProblem::TooMany { what: "regions", count: region_tags.list.len() });
                 };
                 content.kinds.push(kind);
                 content.nodes.extend_from_slice(&ours[..kind.node_count()]);
@@ -228,7 +229,7 @@ fn read_elements(
             Element::Face { corners, .. } if group != 0 => {
                 let mut corners = list[..corners].to_vec();
                 corners.sort_unstable();
-                let group = index_of(&mut group_tags, group);
+                let group = group_tags.index_of(group);
                 faces.push(Face { line: lines.number, element: number, corners, group });
             }
             Element::Face { .. } | Element::Ignored { .. } => {}
@@ -243,17 +244,27 @@ fn read_elements(
         None => format!("{plain}-{tag}"),
     };
     content.region_names =
-        region_tags.iter().map(|&t| if t == 0 { "body".into() } else { name(3, t, "region") }).collect();
-    content.groups = group_tags.iter().map(|&t| (name(2, t, "surface"), Vec::new())).collect();
+        region_tags.list.iter().map(|&t| if t == 0 { "body".into() } else { name(3, t, "region") }).collect();
+    content.groups = group_tags.list.iter().map(|&t| (name(2, t, "surface"), Vec::new())).collect();
     attach(faces, content)
 }
 
-/// The place of `tag` in the list, added at the end if it is new.
-fn index_of(tags: &mut Vec<u64>, tag: u64) -> usize {
-    tags.iter().position(|&t| t == tag).unwrap_or_else(|| {
-        tags.push(tag);
-        tags.len() - 1
-    })
+/// Tags in the order in which they come.
+#[derive(Default)]
+struct Tags {
+    list: Vec<u64>,
+    places: HashMap<u64, usize>,
+}
+
+impl Tags {
+    /// The place of `tag` in the list, added at the end if it is new.
+    fn index_of(&mut self, tag: u64) -> usize {
+        let list = &mut self.list;
+        *self.places.entry(tag).or_insert_with(|| {
+            list.push(tag);
+            list.len() - 1
+        })
+    }
 }
 
 /// Finds the cell face of every surface element; between two cells, that of the first.
