@@ -158,8 +158,9 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
 /// Work of a study of one run.
 fn work(study: &str, dir: &tempfile::TempDir, resume: bool) -> Counters {
     let plan = Plan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
-    let args = VerifyArgs { resume, out: inside(dir, "out").into(), ..VerifyArgs::of(Path::new(study)) };
-    let finished = plan.execute(&args, Path::new(study));
+    let out = inside(dir, "out").into();
+    let args = VerifyArgs { resume, out, ..VerifyArgs::of(Path::new(study)) };
+    let finished = plan.execute(&args);
     assert!(finished.ran == 1 && finished.failed.is_empty() && !finished.set.records.is_empty());
     finished.counters
 }

@@ -93,6 +93,13 @@ fn processes_of(dir: &TempDir) -> Vec<String> {
     lines.map(|line| String::from_utf8_lossy(&line).into_owned()).filter(|line| line.contains(name)).collect()
 }
 
+/// Numbers of the processes that a process has started.
+fn experiments_of(parent: &Child) -> Vec<String> {
+    let tasks = std::fs::read_dir(format!("/proc/{}/task", parent.id())).unwrap();
+    let children = tasks.filter_map(|task| std::fs::read_to_string(task.ok()?.path().join("children")).ok());
+    children.flat_map(|ids| ids.split_whitespace().map(String::from).collect::<Vec<_>>()).collect()
+}
+
 /// Numbers from 0 to below 1, the same in every run of the test.
 struct Chance(u64);
 
@@ -153,6 +160,22 @@ fn survives(scenes: usize, kills: usize, options: &[&str]) {
     assert!(exact(&out) == exact(&calm));
     assert_eq!(tissuebench(&["report", &out]).code, 0);
     assert_eq!(processes_of(&dir), [""; 0]);
+}
+
+/// Of what two undisturbed workers made, each has taken from the store what the other one made.
+#[test]
+fn two_workers_make_each_run_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 40), inside(&dir, "out"));
+    let args = ["verify", &study, "--out", &out, "--join"];
+    let workers = [start(&args), start(&args)];
+    let made = workers.map(|worker| {
+        let (code, said) = end(worker);
+        assert_eq!(code, Some(0), "{said}");
+        let stored = said.lines().find_map(|line| line.strip_suffix(" of 40 runs were stored"));
+        40 - stored.map_or(0, |count| count.parse::<usize>().unwrap())
+    });
+    assert_eq!(made[0] + made[1], 40, "{made:?}");
 }
 
 #[test]
@@ -290,19 +313,41 @@ fn memory_and_time_cost_one_run_alone() {
 }
 
 #[test]
+fn a_crash_costs_one_run_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir, 3), inside(&dir, "out"));
+    write(&dir, "b1.toml", &endless());
+    let child = start(&["verify", &study, "--out", &out, "--isolate"]);
+    // The first is done, the second never will be.
+    wait_until(|| stored(&out).len() == 1);
+    wait_until(|| experiments_of(&child).len() == 1);
+    std::thread::sleep(Duration::from_millis(200));
+    for id in experiments_of(&child) {
+        assert!(Command::new("kill").args(["-ABRT", &id]).status().unwrap().success());
+    }
+    let (code, said) = end(child);
+    assert_eq!(code, Some(3), "{said}");
+    assert!(said.contains("could not run: b1 tet4: crashed (signal: 6 (SIGABRT)"), "{said}");
+    let cases: std::collections::BTreeSet<_> = results(&out).records.iter().map(|r| r.case.clone()).collect();
+    assert_eq!(cases.into_iter().collect::<Vec<_>>(), ["b0", "b2"]);
+}
+
+#[test]
 fn what_nobody_means_to_run_asks_for_force() {
     let dir = tempfile::tempdir().unwrap();
     let study = study(&dir, 1);
     let huge = |scene: &str| scene.replace("cells = [2, 2, 1]", "cells = [270, 270, 270]");
-    let long = BLOCK.replace("method =", "procedure = { kind = \"static\", steps = 4000000000 }\nmethod =");
-    for scene in [huge(BLOCK), long.replace("\"linear\"", "\"neo-hookean\"")] {
+    let long = BLOCK.replace("method =", "procedure = { kind = \"static\", steps = 100000 }\nmethod =");
+    let long = long.replace("\"linear\"", "\"neo-hookean\"").replace("cells = [2, 2, 1]", "level = 4");
+    for (scene, place) in [(huge(BLOCK), "6: key 'method[0].size'"), (long, "6: key 'procedure.steps'")] {
         let path = write(&dir, "b0.toml", &scene);
         let out = inside(&dir, "out");
         for args in
             [vec!["run", &path, "--out", &out], vec!["plan", &path], vec!["verify", &study, "--out", &out]]
         {
             let done = tissuebench(&args);
-            assert_fails(&done, 2, "b0.toml 'tet4' takes about ");
+            assert_fails(&done, 2, &format!("b0.toml:{place}"));
+            assert!(done.stderr.contains("takes about "), "{}", done.stderr);
             assert!(done.stderr.contains("give --force to run it"), "{}", done.stderr);
         }
         assert!(!Path::new(&out).exists());

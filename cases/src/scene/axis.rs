@@ -12,7 +12,6 @@
 //! stands in braces is an expression of the value, `x`; a text of nothing but braces becomes a number.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use catalogue::metric::{self, Metric};
 use catalogue::{Problem, nearest};
@@ -23,8 +22,8 @@ use toml::Value;
 use super::error::SceneError;
 use super::expression::Expression;
 use super::model::Scene;
+use super::parse;
 use super::report::Report;
-use super::{load, parse};
 
 /// What drives a scene through its values, and what tells whether a result is right.
 #[derive(Clone, Debug)]
@@ -95,12 +94,11 @@ pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axi
 }
 
 impl Axis {
-    /// The scene in a file at one value of the axis, with these of its methods (all where none is named).
+    /// A scene at one value of the axis, with these of its methods (all where none is named).
     ///
     /// # Errors
     /// What the scene is refused for, there or as it is; a key of the axis that the scene cannot have.
-    pub fn at(&self, path: &Path, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
-        let scene = load(path)?;
+    pub fn at(&self, scene: &Scene, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
         let refuse = |key: &str, problem: Problem| {
             vec![scene.error(
                 super::ErrorKind::Invalid,

@@ -54,7 +54,7 @@ pub use procedure::{
 };
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
-pub use study::{Run, Study, load_study, parse_study};
+pub use study::{Run, Study, load_study, load_study_for, parse_study};
 pub use tool::{Drive, Friction, Tool};
 
 /// Reads the scene in a file. The name in messages is `path` as given.

@@ -28,6 +28,8 @@ use catalogue::metric::Needs;
 pub struct Study {
     /// One line that says what the study is.
     pub title: String,
+    /// The scenes of its runs by their paths, but for those that can't be read: whoever runs one reads it again, and says why.
+    pub scenes: BTreeMap<PathBuf, Scene>,
     /// Its runs, in order.
     pub runs: Vec<Run>,
 }
@@ -130,27 +132,41 @@ pub fn load_study(path: &Path) -> Result<Study, Vec<SceneError>> {
     parse_study(&text_of(path)?, &path.display().to_string())
 }
 
+/// The study in a file that has been read before, with the scene of one of its runs alone.
+pub fn load_study_for(path: &Path, run: usize) -> Result<Study, Vec<SceneError>> {
+    parse(&text_of(path)?, &path.display().to_string(), Some(run))
+}
+
 /// Reads a study from text. `file` names it in messages; scenes are relative to the folder of `file`.
 pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
+    parse(text, file, None)
+}
+
+fn parse(text: &str, file: &str, only: Option<usize>) -> Result<Study, Vec<SceneError>> {
     let (keys, origin) = document::read::<StudyKeys>(text, file)?;
     let mut report = Report::new(&origin);
     if keys.run.is_empty() {
         report.add("run", Problem::new("is missing").help("add a [[run]] with scene = \"...\""));
     }
     let runs: Vec<Run> = keys.run.into_iter().enumerate().map(|(i, r)| run(r, i, &mut report)).collect();
+    let wanted = only.and_then(|run| runs.get(run)).map(|run| run.scene.clone());
     let mut scenes = BTreeMap::new();
     let mut all = (0.0, 0);
-    for (i, run) in runs.iter().enumerate() {
+    for (i, run) in runs.iter().enumerate().filter(|(_, run)| wanted.as_ref().is_none_or(|w| run.scene == *w))
+    {
         // A scene that can't be read is the business of whoever runs it: its own findings say more.
-        let scene = scenes.entry(&run.scene).or_insert_with(|| load(&run.scene));
-        if let Ok(scene) = scene {
+        let scene = scenes.entry(run.scene.clone()).or_insert_with(|| load(&run.scene).ok());
+        if let Some(scene) = scene {
             all = few_enough(run, scene, all, &format!("run[{i}]"), &mut report);
             fit(run, scene, &format!("run[{i}]"), &mut report);
         }
     }
-    coverage::check(keys.all_of.as_deref(), &keys.left_out, &runs, &mut report);
+    let scenes = scenes.into_iter().filter_map(|(path, scene)| Some((path, scene?))).collect();
+    if only.is_none() {
+        coverage::check(keys.all_of.as_deref(), &keys.left_out, &runs, &mut report);
+    }
     let errors = report.finish();
-    if errors.is_empty() { Ok(Study { title: keys.title, runs }) } else { Err(errors) }
+    if errors.is_empty() { Ok(Study { title: keys.title, scenes, runs }) } else { Err(errors) }
 }
 
 fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
@@ -251,7 +267,7 @@ fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
 fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&run.methods, scene, &format!("{key}.methods"), report);
     if let Some(axis) = &run.axis
-        && let Err(bad) = axis.at(&run.scene, &run.methods, axis.base)
+        && let Err(bad) = axis.at(scene, &run.methods, axis.base)
     {
         let first = bad.first().map_or(String::new(), ToString::to_string);
         let problem = Problem::new("makes no scene of its base").found(axis.name.as_str()).help(first);

@@ -25,7 +25,7 @@ use clap::CommandFactory;
 use reports::ReportError;
 
 use crate::Failure;
-use crate::scenario::with_reference;
+use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
@@ -168,25 +168,18 @@ fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
     Ok((scene, chosen))
 }
 
-/// Refuses what takes more than anyone means to spend, unless that is said; `found` are messages of it.
-fn affordable(found: &[String], force: bool) -> Result<(), u8> {
-    for words in found {
-        eprintln!(
-            "{words}{}",
-            if force { "" } else { "; make it coarser or shorter, or give --force to run it" }
-        );
+/// Refuses what takes more than anyone means to spend, unless it is forced: then it is a warning.
+fn affordable(found: &[SceneError], force: bool) -> Result<(), u8> {
+    for error in found {
+        eprintln!("{error}");
     }
     if found.is_empty() || force { Ok(()) } else { Err(2) }
 }
 
 /// The same for some methods of a scene.
 fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<(), u8> {
-    let excess = |&index: &usize| {
-        let method = &scene.methods[index];
-        let words = with_reference(scene, &method.family).excess()?;
-        Some(format!("{} '{}' {words}", scene.file(), method.id))
-    };
-    affordable(&chosen.iter().filter_map(excess).collect::<Vec<_>>(), force)
+    let of = |&index: &usize| too_large(scene, &scene.methods[index]);
+    affordable(&chosen.iter().filter_map(of).collect::<Vec<_>>(), force)
 }
 
 fn report(results: &Path, out: &Path) -> u8 {

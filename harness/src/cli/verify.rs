@@ -13,7 +13,7 @@ use crate::study::{self, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
-    let path = args.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into());
+    let path = args.path();
     let study = match scene::load_study(&path) {
         Ok(study) => study,
         Err(errors) => {
@@ -45,13 +45,6 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
-    let entered = enter(args, &path).and_then(|folder| {
-        study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
-    });
-    let folder = match entered {
-        Ok(folder) => folder,
-        Err(code) => return code,
-    };
     let events = match ci.events.as_deref().map(Events::to).transpose() {
         Ok(events) => events,
         Err(bad) => {
@@ -60,12 +53,22 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
             return 2;
         }
     };
+    let entered = enter(args, &path).and_then(|folder| {
+        study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
+    });
+    let folder = match entered {
+        Ok(folder) => folder,
+        Err(code) => return code,
+    };
     if !args.quiet {
         eprintln!("{}: {} runs", path.display(), plan.len());
     }
     interrupt::install(Some(&args.out), true);
-    let mut finished = plan.execute_watched(args, &path, events.as_ref());
+    let mut finished = plan.execute_watched(args, events.as_ref());
     finished.set.provenance.source = folder::source(&path);
+    if finished.stored > 0 && !args.quiet {
+        eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
+    }
     let code = write(&finished, &folder, &args.out, args.quiet);
     let code = ci::write(ci, &path, &finished.runs).map_or_else(
         |bad| {

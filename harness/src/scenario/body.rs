@@ -17,7 +17,7 @@ use crate::Failure;
 use crate::error::Key;
 
 /// More nodes than this are a typing error rather than a wish on one machine.
-const MOST_NODES: usize = 3_000_000;
+pub(super) const MOST_NODES: usize = 3_000_000;
 
 /// A mesh of the body in cells of one kind, checked for inverted cells.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
@@ -56,7 +56,9 @@ pub(super) fn unchecked(
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
-        few_enough(expected::of_family(body, kind, n as f64))?;
+        if !matches!(body, Body::Box { .. }) {
+            few_enough(expected::of_family(body, kind, n as f64))?;
+        }
         let mesh = match *body {
             Body::Box { min, max } => {
                 let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
@@ -71,6 +73,7 @@ pub(super) fn unchecked(
                     let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
                     return Err(Failure::input(Key::Scene("body".into()), problem, help));
                 }
+                few_enough(expected::of_family(body, kind, n as f64))?;
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
             Body::Cylinder { radius, height } => {

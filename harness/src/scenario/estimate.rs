@@ -2,11 +2,13 @@
 //! time by what both took elsewhere. Good to a factor of about three: enough to deal out the runs of a study, and to refuse one
 //! that a slip of the pen has made a thousand times too large.
 
-use cases::scene::{Body, Cloud, Element, Family, MeshFile, Procedure, Reference, Scene, Size};
+use cases::scene::{
+    Body, Cloud, Element, ErrorKind, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
+};
 use geometry::shapes::Shape;
 use material::Material as _;
 
-use super::body::{base, shape};
+use super::body::{self, base, shape};
 use super::expected::narrowest;
 
 /// Bytes of a mesh file for a node with its cells.
@@ -18,8 +20,9 @@ const CLOUD: f64 = 8.0;
 /// Seconds to assemble and factor a matrix of N unknowns over N^1.5; for each node and explicit step.
 const FACTOR: f64 = 1e-7;
 const EXPLICIT: f64 = 1e-7;
-/// A run of more seconds is refused.
+/// A run of more seconds is refused; one of more explicit steps is by itself.
 const MOST_SECONDS: f64 = 12.0 * 3600.0;
+const MOST_STEPS: f64 = 1e7;
 /// Seconds of the smallest run.
 const LEAST: f64 = 1e-3;
 
@@ -37,17 +40,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Both one after the other.
-    fn and(self, other: Estimate) -> Estimate {
-        Estimate {
-            bytes: self.bytes.max(other.bytes),
-            seconds: self.seconds + other.seconds,
-            ..if self.nodes < other.nodes { other } else { self }
-        }
-    }
-
     /// What it is, in words, if it is more than anyone means to run: twice the memory of the machine, or half a day.
-    pub fn excess(&self) -> Option<String> {
+    fn excess(&self) -> Option<String> {
         let too_large = self.bytes > 2.0 * memory() || self.seconds > MOST_SECONDS;
         too_large.then(|| {
             let Estimate { nodes, steps, bytes, seconds } = self;
@@ -61,6 +55,37 @@ impl Estimate {
     }
 }
 
+/// Refuses a method of a scene that takes more than anyone means to spend, or the reference that it needs. What no `--force` lifts is
+/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps.
+pub fn too_large(scene: &Scene, method: &Method) -> Option<SceneError> {
+    let of_reference = || {
+        let (method, size) = reference(scene)?;
+        refuse(scene, &method, size.map(|_| "reference.size".into()))
+    };
+    refuse(scene, method, None).or_else(of_reference)
+}
+
+/// The same of a method alone, whose size is at this key unless it is the method's own.
+fn refuse(scene: &Scene, method: &Method, size: Option<String>) -> Option<SceneError> {
+    let found = estimate(scene, &method.family);
+    let explicit = matches!(scene.procedure, Procedure::Explicit(_));
+    let counted = matches!(method.size(), Some(Size::Cells { .. }));
+    if explicit && found.steps > MOST_STEPS || !counted && found.nodes > body::MOST_NODES as f64 {
+        return None;
+    }
+    let problem = found.excess()?;
+    let at = scene.methods.iter().position(|other| other.id == method.id).unwrap_or_default();
+    let key = match &scene.procedure {
+        Procedure::Static(_) if found.steps > 1e3 => "procedure.steps".into(),
+        Procedure::Explicit(_) | Procedure::ImplicitDynamic(_) if found.steps > 1e3 => {
+            "procedure.duration".into()
+        }
+        _ => size.unwrap_or_else(|| format!("method[{at}].size")),
+    };
+    let help = "make it coarser or shorter, or give --force to run it";
+    Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
+}
+
 /// Memory of this machine in bytes; where the system does not say, that of a large one.
 fn memory() -> f64 {
     let known = || {
@@ -71,23 +96,22 @@ fn memory() -> f64 {
     known().unwrap_or(256e9)
 }
 
-/// The reference that all methods of a scene are compared with, where that is solved.
-pub fn of_reference(scene: &Scene) -> Option<Estimate> {
+/// The method that all others of a scene are compared with, where that is solved, and the size that is given for it.
+fn reference(scene: &Scene) -> Option<(Method, Option<&Size>)> {
     let Some(Reference::Method { id, size }) = &scene.reference else { return None };
     let mut method = scene.method(id)?.clone();
     if let Some(size) = size {
         method.resize(size);
     }
-    Some(estimate(scene, &method.family))
+    Some((method, size.as_ref()))
 }
 
-/// Of a method with the reference of its scene.
-pub fn with_reference(scene: &Scene, family: &Family) -> Estimate {
-    let own = estimate(scene, family);
-    of_reference(scene).map_or(own, |reference| own.and(reference))
+/// Of the reference that all methods of a scene are compared with, where that is solved.
+pub fn of_reference(scene: &Scene) -> Option<Estimate> {
+    reference(scene).map(|(method, _)| estimate(scene, &method.family))
 }
 
-/// Of one of a scene's methods alone.
+/// Of one of a scene's methods.
 pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (nodes, across, rows) = size(scene, family);
     let steps = steps(scene, across);
@@ -203,7 +227,7 @@ mod tests {
 
     const BLOCK: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
-material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }
+material = { law = "LAW", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }
 support = [{ where = "z == 0 mm", fix = "xyz" }]
 load = [{ on = "z-max", pressure = "1 kPa" }]
 procedure = PROCEDURE
@@ -212,10 +236,13 @@ method = [{ id = "m", family = "fem", element = "ELEMENT", size = SIZE }]
 
     fn of(procedure: &str, element: &str, size: &str) -> Estimate {
         let law = if procedure.contains("linear") { "linear" } else { "neo-hookean" };
-        let text = BLOCK.replace("PROCEDURE", procedure).replace("ELEMENT", element).replace("SIZE", size);
-        let text = text.replace("neo-hookean", law);
+        let text = BLOCK
+            .replace("LAW", law)
+            .replace("PROCEDURE", procedure)
+            .replace("ELEMENT", element)
+            .replace("SIZE", size);
         let scene = cases::scene::parse(&text, "block.toml").unwrap();
-        with_reference(&scene, &scene.methods[0].family)
+        estimate(&scene, &scene.methods[0].family)
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(crate) mod setup;
 mod tools;
 
 pub(crate) use body::point;
-pub(crate) use estimate::{Estimate, estimate, of_reference, with_reference};
+pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
 pub(crate) use identity::{purpose, rule};
 pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;

@@ -52,6 +52,11 @@ pub struct VerifyArgs {
 }
 
 impl VerifyArgs {
+    /// The study file.
+    pub fn path(&self) -> PathBuf {
+        self.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into())
+    }
+
     /// What is meant where nothing but the study is given.
     pub fn of(study: &Path) -> VerifyArgs {
         VerifyArgs {

@@ -30,6 +30,8 @@ pub(super) struct Work<'a> {
     pub(super) apart: Option<Apart<'a>>,
     pub(super) progress: Progress<'a>,
     pub(super) done: Mutex<BTreeMap<usize, TaskResult>>,
+    /// Results that were there already, or that other processes made.
+    pub(super) stored: AtomicUsize,
 }
 
 /// Whose turn a task is.
@@ -80,7 +82,10 @@ impl Work<'_> {
         for (at, &index) in members.iter().enumerate() {
             let key = self.plan.key(index, self.args);
             match self.turn(&key) {
-                Turn::Stored(result) => self.finished(index, *result, self.running(index), true),
+                Turn::Stored(result) => {
+                    self.stored.fetch_add(1, Ordering::Relaxed);
+                    self.finished(index, *result, self.running(index), true);
+                }
                 Turn::Theirs if thorough => left.push(index),
                 Turn::Theirs => {
                     left.extend(&members[at..]);
@@ -235,8 +240,9 @@ mod tests {
     #[test]
     fn a_panic_is_a_failure_with_its_message() {
         assert_eq!(caught(|| 1).unwrap(), 1);
-        for failure in [caught(|| panic!("at {}", 3)), caught(|| panic!("at 3"))] {
-            let failure: Failure = failure.unwrap_err();
+        let panics: [Result<(), Failure>; 2] = [caught(|| panic!("at {}", 3)), caught(|| panic!("at 3"))];
+        for failure in panics {
+            let failure = failure.expect_err("a panic");
             assert_eq!((failure.to_string().as_str(), failure.exit_code()), ("panicked: at 3", 3));
         }
     }

@@ -24,6 +24,7 @@ mod trials;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::AtomicUsize;
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
@@ -31,7 +32,7 @@ use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
-use crate::scenario::{purpose, with_reference};
+use crate::scenario::{purpose, too_large};
 use apart::Apart;
 use events::Events;
 use execute::Work;
@@ -58,6 +59,10 @@ const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 pub struct Plan {
     study: Study,
     scenes: Vec<(PathBuf, String, Scene)>,
+    /// Where among these the scenes as they are in their files are, by path.
+    as_they_are: BTreeMap<PathBuf, usize>,
+    /// The files of the cases by name.
+    cases: BTreeMap<String, PathBuf>,
     tasks: Vec<Task>,
     /// Values of axes at which there is no scene.
     refused: Vec<RefusedScene>,
@@ -73,6 +78,8 @@ pub struct Finished {
     pub runs: Vec<RunSummary>,
     /// Runs done.
     pub ran: usize,
+    /// How many of them were stored, by an earlier study or by other processes.
+    pub stored: usize,
     /// Counts of what was done now, references included; stored runs took none.
     pub counters: Counters,
 }
@@ -97,7 +104,14 @@ impl Plan {
 
     /// Reads the scenes of the run tables that are wanted.
     fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
-        let mut plan = Plan { study, scenes: Vec::new(), tasks: Vec::new(), refused: Vec::new() };
+        let mut plan = Plan {
+            study,
+            scenes: Vec::new(),
+            as_they_are: BTreeMap::new(),
+            cases: BTreeMap::new(),
+            tasks: Vec::new(),
+            refused: Vec::new(),
+        };
         let mut errors = Vec::new();
         let mut known = Known::default();
         let runs = plan.study.runs.clone();
@@ -118,26 +132,31 @@ impl Plan {
         if errors.is_empty() { Ok(plan) } else { Err(errors) }
     }
 
+    /// A run's scene as it is in its file.
+    fn read_scene(&self, run: &scene::Run) -> Result<Scene, Vec<scene::SceneError>> {
+        match self.study.scenes.get(&run.scene) {
+            Some(scene) => Ok(scene.clone()),
+            None => scene::load(&run.scene),
+        }
+    }
+
     /// The place of a run's scene among those read.
     fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
-        let as_it_is =
-            |(path, _, scene): &(PathBuf, String, Scene)| *path == run.scene && scene.varied.is_none();
-        if let Some(at) = self.scenes.iter().position(as_it_is) {
+        if let Some(&at) = self.as_they_are.get(&run.scene) {
             return Ok(at);
         }
-        let scene = scene::load(&run.scene)?;
-        self.add(&run.scene, scene)
+        let at = self.add(&run.scene, self.read_scene(run)?)?;
+        self.as_they_are.insert(run.scene.clone(), at);
+        Ok(at)
     }
 
     fn add(&mut self, path: &Path, scene: Scene) -> Result<usize, Vec<scene::SceneError>> {
         if !scene.unavailable().is_empty() {
             return Err(scene.unavailable());
         }
-        let named = |(other, _, with): &&(PathBuf, String, Scene)| {
-            *other != path && case_name(with) == case_name(&scene)
-        };
-        if let Some((path, ..)) = self.scenes.iter().find(named) {
-            let problem = format!("is in a file of the same name as {}", path.display());
+        let other = self.cases.entry(case_name(&scene)).or_insert_with(|| path.into());
+        if other != path {
+            let problem = format!("is in a file of the same name as {}", other.display());
             let help = "rename one of them: results are filed under the names of scenes";
             return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
         }
@@ -153,9 +172,10 @@ impl Plan {
         run: &scene::Run,
         axis: &scene::Axis,
     ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let base = self.read_scene(run)?;
         let mut found = Vec::new();
         for &value in &axis.values {
-            match axis.at(&run.scene, &run.methods, value) {
+            match axis.at(&base, &run.methods, value) {
                 Ok(scene) => found.push(self.add(&run.scene, scene)?),
                 Err(bad) if value == axis.base => return Err(bad),
                 Err(bad) => {
@@ -186,14 +206,10 @@ impl Plan {
         }
     }
 
-    /// Runs that take more than anyone means to spend, each with what it takes.
-    pub(crate) fn too_large(&self) -> Vec<String> {
-        let excess = |task: &Task| {
-            let scene = &self.scenes[task.scene].2;
-            let words = with_reference(scene, &task.method.family).excess()?;
-            Some(format!("{} '{}' {words}", scene.file(), task.method.id))
-        };
-        self.tasks.iter().filter_map(excess).collect()
+    /// Refusals of runs that take more than anyone means to spend.
+    pub(crate) fn too_large(&self) -> Vec<scene::SceneError> {
+        let of = |task: &Task| too_large(&self.scenes[task.scene].2, &task.method);
+        self.tasks.iter().filter_map(of).collect()
     }
 
     /// The run tables that ask for a task.
@@ -245,29 +261,26 @@ impl Plan {
     }
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
-    pub fn execute(&self, args: &VerifyArgs, path: &Path) -> Finished {
-        self.execute_watched(args, path, None)
+    pub fn execute(&self, args: &VerifyArgs) -> Finished {
+        self.execute_watched(args, None)
     }
 
     /// As [`execute`](Plan::execute), with what happens reported as it happens.
-    pub(crate) fn execute_watched(
-        &self,
-        args: &VerifyArgs,
-        path: &Path,
-        events: Option<&Events>,
-    ) -> Finished {
+    pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
         let machine = provenance::machine();
         let store = store(args);
         let work = Work {
             plan: self,
             args,
             store: &store,
-            apart: args.apart.isolate.then(|| Apart::new(args, path, &store)),
+            apart: args.apart.isolate.then(|| Apart::new(args, &store)),
             progress: Progress::new(self.tasks.len(), args.loudness(), events),
             done: Mutex::default(),
+            stored: AtomicUsize::new(0),
         };
         work.all();
-        self.collect(work.done.into_inner().expect("no worker panicked"), machine)
+        let finished = self.collect(work.done.into_inner().expect("no worker panicked"), machine);
+        Finished { stored: work.stored.into_inner(), ..finished }
     }
 
     fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> Finished {
@@ -322,7 +335,7 @@ impl Plan {
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
-        Finished { set, failed, runs, ran: results.len(), counters }
+        Finished { set, failed, runs, ran: results.len(), stored: 0, counters }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.

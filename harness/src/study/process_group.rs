@@ -109,3 +109,36 @@ pub(super) fn limit(_: u32, memory: Option<u64>) -> io::Result<()> {
         Some(_) => Err(io::Error::other("--memory-limit is for Linux only")),
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    /// Whether a process runs: it is there and has not ended.
+    fn runs(id: &str) -> bool {
+        let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+        stat.rsplit_once(')').is_some_and(|(_, state)| !state.trim_start().starts_with(['Z', 'X']))
+    }
+
+    #[test]
+    fn what_a_process_leaves_behind_is_ended_with_it() {
+        let mut command = Command::new("sh");
+        command.args(["-c", "sleep 1000 & echo $!"]).stdout(Stdio::piped());
+        let mut started = Started::new(&mut command).unwrap();
+        let mut child = String::new();
+        BufReader::new(started.child().stdout.take().unwrap()).read_line(&mut child).unwrap();
+        let began = Instant::now();
+        while !started.has_ended().unwrap() {
+            assert!(began.elapsed() < Duration::from_secs(10));
+        }
+        assert!(runs(child.trim()), "it has left one");
+        assert!(started.end().unwrap().success());
+        while runs(child.trim()) {
+            assert!(began.elapsed() < Duration::from_secs(10), "it runs on");
+        }
+    }
+}

@@ -61,16 +61,41 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
     }
 }
 
-/// Hash of everything a run depends on but who runs it: the scene's text, the files it names, and what the study changes of it.
+/// Hash of everything a run depends on but who runs it: the scene's text, the files it names, and what the study changes of it. It is
+/// the same wherever the folder of the study is.
 pub fn key(scene_text: &str, files: &[PathBuf], what: &str) -> String {
+    let name = |path: &&PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let mut files: Vec<&PathBuf> = files.iter().collect();
+    files.sort_by_key(name);
+    let what = files.iter().fold(what.to_string(), |what, path| {
+        what.replace(&format!("{path:?}"), &name(path).unwrap_or_default())
+    });
     let mut hasher = blake3::Hasher::new();
-    for part in [scene_text, what] {
+    let mut add = |part: &[u8]| {
         hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part.as_bytes());
-    }
-    for path in files {
-        hasher.update(path.to_string_lossy().as_bytes());
-        hasher.update(&std::fs::read(path).unwrap_or_default());
-    }
+        hasher.update(part);
+    };
+    add(scene_text.as_bytes());
+    add(what.as_bytes());
+    files.iter().for_each(|path| add(&std::fs::read(path).unwrap_or_default()));
     hasher.finalize().to_hex()[..32].to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_of_the_content_of_files_and_of_no_folder() {
+        let [here, there] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        let of = |dir: &tempfile::TempDir, content: &str| {
+            let path = dir.path().join("a.msh");
+            std::fs::write(&path, content).unwrap();
+            key("scene", std::slice::from_ref(&path), &format!("size {path:?}"))
+        };
+        let known = of(&here, "nodes");
+        assert_eq!(known, of(&there, "nodes"));
+        assert_ne!(known, of(&there, "other nodes"));
+        assert_ne!(known, key("scene", &[], "size a.msh"));
+    }
 }
