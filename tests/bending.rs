@@ -27,15 +27,9 @@ fn bending() -> Vec<Record> {
     );
     let dir = tempfile::tempdir().unwrap();
     let plan = Plan::new(parse_study(&text, "study.toml").unwrap()).unwrap();
-    let finished = plan.execute(&VerifyArgs {
-        study: None,
-        quick: false,
-        filter: None,
-        shard: None,
-        jobs: 1,
-        resume: false,
-        out: dir.path().into(),
-    });
+    let study = Path::new("study.toml");
+    let args = VerifyArgs { out: dir.path().into(), ..VerifyArgs::of(study) };
+    let finished = plan.execute(&args);
     assert!(finished.set.failures.is_empty(), "{:?}", finished.set.failures);
     assert_eq!(finished.ran, METHODS.len() * 2 * RATIOS.len());
     finished.set.records

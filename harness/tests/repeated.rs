@@ -50,7 +50,8 @@ fn frames_of_a_static_path_come_to_its_end() {
 fn motion_has_no_loop() {
     let dir = tempfile::tempdir().unwrap();
     for (keys, key, problem) in [
-        ("{ frames = 0 }", "output.repeated.frames", "is zero"),
+        ("{ frames = 0 }", "output.repeated.frames", "is no number of frames"),
+        ("{ frames = 4000000000 }", "output.repeated.frames", "is no number of frames"),
         ("{ frames = 10, cycle = 3 }", "output.repeated.cycle", "is no way up and down"),
         ("{ frames = 10, tolerance = -1.0 }", "output.repeated.tolerance", "is not positive"),
     ] {

@@ -23,6 +23,7 @@
 mod axis;
 pub mod baseline;
 mod clouds;
+pub mod compare;
 mod error;
 mod figures;
 mod findings;

@@ -53,6 +53,12 @@ enum Task {
         #[arg(long)]
         accept: bool,
     },
+    /// Run a small study again and again and count how often `tissuebench compare` is wrong: about a minute for each three runs
+    Noise {
+        /// How often
+        #[arg(long, default_value_t = 20)]
+        runs: u16,
+    },
     /// Render tables, figures and the report again from results/, without running anything
     Report,
     /// Verify and stress in full, then refresh the figures and tables kept in reports/gallery for the book
@@ -94,6 +100,7 @@ fn run(task: Task) -> Result<u8> {
         Task::Stress { full } => stress(full),
         Task::Bench { args } => cargo(&["bench", "--workspace"], &args),
         Task::Instructions { accept } => instructions::instructions(&root(), accept),
+        Task::Noise { runs } => noise(runs),
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
             let code = verify(true, &[])?.max(stress(true)?);
@@ -149,6 +156,27 @@ fn stress(full: bool) -> Result<u8> {
         ["cases/studies/stress.toml", "--out", "results-stress", "--jobs", &jobs].map(String::from).to_vec();
     args.extend((!full).then(|| "--quick".to_string()));
     tissuebench("verify", &args)
+}
+
+/// The runs are made by the program itself: `cargo run` between them would be a part of the noise.
+fn noise(runs: u16) -> Result<u8> {
+    let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
+    let code = cargo(&build, &[])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    let folders: Vec<String> = (1..=runs).map(|run| format!("target/noise/{run}")).collect();
+    for folder in &folders {
+        let mut program = Command::new(root().join("target/release/tissuebench"));
+        program.args(["verify", "cases/studies/noise.toml", "--quiet", "--out", folder]).current_dir(root());
+        let code = code_of(program.status().context("could not start target/release/tissuebench")?);
+        if code != 0 {
+            return Ok(code);
+        }
+    }
+    let count =
+        ["run", "--release", "--quiet", "--package", "tissuebench-reports", "--example", "noise", "--"];
+    cargo(&count, &folders)
 }
 
 fn compare_stress(args: &[String]) -> Result<u8> {

@@ -28,7 +28,14 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run]
     };
     let folder = report.path(folder, "all_of");
     let mut scenes = Vec::new();
-    if list(&folder, &mut scenes).is_err() || scenes.is_empty() {
+    let listed = list(&folder, &mut scenes, &mut 0);
+    if matches!(listed, Ok(false)) {
+        let help =
+            format!("{} holds more than {MOST_FILES} files; name the folder of the scenes", folder.display());
+        report.add("all_of", Problem::new("is too large a folder").help(help));
+        return;
+    }
+    if listed.is_err() || scenes.is_empty() {
         let help = format!("no scenes in {}; the folder is relative to the study's", folder.display());
         report.add("all_of", Problem::new("has no scenes").help(help));
         return;
@@ -62,17 +69,26 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run]
     }
 }
 
-/// The TOML files in a folder and below it.
-fn list(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+/// Files and folders that are looked at: beyond, it is the wrong folder, such as `/`.
+const MOST_FILES: usize = 10_000;
+
+/// The TOML files in a folder and below it; false where it has too many files to look at them all.
+fn list(folder: &Path, found: &mut Vec<PathBuf>, seen: &mut usize) -> std::io::Result<bool> {
     for entry in std::fs::read_dir(folder)? {
+        *seen += 1;
+        if *seen > MOST_FILES {
+            return Ok(false);
+        }
         let path = entry?.path();
         if path.is_dir() {
-            list(&path, found)?;
+            if !list(&path, found, seen)? {
+                return Ok(false);
+            }
         } else if path.extension().is_some_and(|extension| extension == "toml") {
             found.push(path);
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 /// One path for one file, however it is written.

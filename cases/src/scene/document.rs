@@ -10,7 +10,7 @@ use serde_json::Value;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-use super::conform;
+use super::{conform, limits};
 use catalogue::{Problem, clip};
 
 use super::error::{ErrorKind, SceneError};
@@ -83,8 +83,22 @@ impl<'t> Document<'t> {
     /// The first error of syntax alone: what a parser says after it is mostly its own confusion.
     pub fn parse(text: &'t str, file: &str) -> Result<Document<'t>, Vec<SceneError>> {
         let (sources, files) = (Sources::new(text), Files::new(file));
+        if text.len() > limits::MOST_BYTES {
+            let help = format!("give {} or less", limits::MOST_BYTES);
+            let problem = Problem::new(format!("is {} bytes long", text.len())).help(help);
+            return Err(vec![files.error(ErrorKind::Invalid, sources.place(None), "", problem)]);
+        }
         match DeTable::parse(text) {
-            Ok(root) => Ok(Document { root, sources, files }),
+            Ok(root) => {
+                let whole = Spanned::new(root.span(), DeValue::Table(root.get_ref().clone()));
+                match limits::excess(&whole) {
+                    None => Ok(Document { root, sources, files }),
+                    Some((span, key, problem)) => {
+                        let place = sources.place(Some(span));
+                        Err(vec![files.error(ErrorKind::Invalid, place, &key, problem)])
+                    }
+                }
+            }
             Err(bad) => {
                 let place = sources.place(bad.span());
                 let line = text.lines().nth(place.line - 1).unwrap_or_default();

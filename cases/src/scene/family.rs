@@ -139,6 +139,15 @@ impl Method {
         }
     }
 
+    /// The word of its family in files.
+    pub fn family_name(&self) -> &'static str {
+        match &self.family {
+            Family::Fem(_) => "fem",
+            Family::Efg(_) => "efg",
+            Family::OverMesh(over) => over.entry.name,
+        }
+    }
+
     /// Whether its number of nodes can be given, as that of a cloud.
     pub fn is_cloud(&self) -> bool {
         matches!(self.family, Family::Efg(_))

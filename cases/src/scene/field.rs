@@ -21,7 +21,12 @@ impl ScalarField {
     pub fn value(&self, x: [f64; 3]) -> Result<f64, NotFinite> {
         match self {
             ScalarField::Constant(value) => Ok(*value),
-            ScalarField::Expression { of, factor } => Ok(of.value(x)? * factor),
+            ScalarField::Expression { of, factor } => {
+                let value = of.value(x)? * factor;
+                let wrong = || NotFinite { expression: of.text().into(), value, at: x };
+                // The unit may take a large number out of range.
+                value.is_finite().then_some(value).ok_or_else(wrong)
+            }
         }
     }
 }

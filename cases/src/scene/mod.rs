@@ -15,6 +15,7 @@ mod expression;
 mod family;
 mod field;
 mod keys;
+mod limits;
 mod material;
 mod method;
 mod model;

@@ -192,6 +192,12 @@ const SAFETY: f64 = 0.9;
 /// steps that a soft body takes.
 const TOOL_MASS: f64 = 0.1;
 
+/// More steps than this are a slip of the pen: each is solved, reported and kept.
+const MOST_STEPS: u32 = 100_000;
+
+/// What does not converge in so many iterations does not converge.
+const MOST_ITERATIONS: usize = 10_000;
+
 /// Modes that are reported where the file gives no number.
 const MODES: usize = 24;
 
@@ -356,6 +362,8 @@ fn load_steps(keys: &StaticKeys, report: &mut Report) -> Static {
 fn steps(steps: Option<u32>, report: &mut Report) -> usize {
     let steps = steps.unwrap_or(1);
     report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
+    let help = format!("give {MOST_STEPS} or less");
+    report.require(steps <= MOST_STEPS, "procedure.steps", "are too many", &help);
     steps as usize
 }
 
@@ -368,6 +376,11 @@ fn newton(keys: &NewtonKeys, report: &mut Report) -> Newton {
     let iterations = keys.iterations.map_or(standard.iterations, |n| n as usize);
     report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
     let augmentations = keys.augmentations.map_or(standard.augmentations, |n| n as usize);
+    for (name, count) in [("iterations", iterations), ("augmentations", augmentations)] {
+        let help = format!("give {MOST_ITERATIONS} or less");
+        let sound = count <= MOST_ITERATIONS;
+        report.require(sound, &format!("procedure.{name}"), "are too many", &help);
+    }
     Newton { tolerance, iterations, augmentations }
 }
 

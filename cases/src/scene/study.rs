@@ -65,6 +65,8 @@ pub struct Run {
     pub axis: Option<Axis>,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
+    /// Words to choose it by.
+    pub tags: Vec<String>,
     /// What must hold, beside the scene's own checks.
     pub checks: Vec<Check>,
 }
@@ -118,6 +120,9 @@ pub(crate) struct RunKeys {
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
+    /// Words to choose the run by: `tissuebench verify --tag WORD`, and `--not WORD` to leave it out
+    #[serde(default)]
+    pub tags: Vec<String>,
     #[serde(default)]
     pub check: Vec<CheckKeys>,
 }
@@ -146,11 +151,13 @@ fn parse(text: &str, file: &str, only: Option<usize>) -> Result<Study, Vec<Scene
     let runs: Vec<Run> = keys.run.into_iter().enumerate().map(|(i, r)| run(r, i, &mut report)).collect();
     let wanted = only.and_then(|run| runs.get(run)).map(|run| run.scene.clone());
     let mut scenes = BTreeMap::new();
+    let mut all = (0.0, 0);
     for (i, run) in runs.iter().enumerate().filter(|(_, run)| wanted.as_ref().is_none_or(|w| run.scene == *w))
     {
         // A scene that can't be read is the business of whoever runs it: its own findings say more.
         let scene = scenes.entry(run.scene.clone()).or_insert_with(|| load(&run.scene).ok());
         if let Some(scene) = scene {
+            all = few_enough(run, scene, all, &format!("run[{i}]"), &mut report);
             fit(run, scene, &format!("run[{i}]"), &mut report);
         }
     }
@@ -216,8 +223,39 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         seeds: keys.seeds.into(),
         axis: keys.axis.and_then(|keys| axis(keys, &at("axis"), report)),
         quick: keys.quick,
+        tags: keys.tags,
         checks: checks(keys.check, &at("check"), report),
     }
+}
+
+/// Most runs of a study, and most scenes along its axes: each of these is read before the first run.
+const MOST_RUNS: f64 = 50_000.0;
+const MOST_SCENES: usize = 500;
+
+/// Notes the run table with which a study has too many runs or scenes; how many there are so far.
+fn few_enough(
+    run: &Run,
+    scene: &Scene,
+    (runs, scenes): (f64, usize),
+    key: &str,
+    report: &mut Report,
+) -> (f64, usize) {
+    let methods =
+        scene.methods.iter().filter(|m| run.methods.is_empty() || run.methods.contains(&m.id)).count();
+    let values = run.axis.as_ref().map_or(0, |axis| axis.values.len());
+    let varied = [run.poisson.len(), run.levels.len().max(run.nodes.len()), run.kernels.len()];
+    let more = [run.support_scales.len(), run.essentials.len(), run.seeds as usize, values];
+    let product = varied.iter().chain(&more).map(|&n| n.max(1) as f64).product::<f64>();
+    let now = (runs + methods as f64 * product, scenes + values);
+    if now.0 > MOST_RUNS && runs <= MOST_RUNS {
+        let problem = Problem::new(format!("makes {:.0} runs with those before", now.0));
+        report.add(key, problem.help(format!("give {MOST_RUNS} or less in all")));
+    }
+    if now.1 > MOST_SCENES && scenes <= MOST_SCENES {
+        let problem = Problem::new(format!("makes {} scenes with those before", now.1));
+        report.add(&format!("{key}.axis.values"), problem.help(format!("give {MOST_SCENES} or less in all")));
+    }
+    now
 }
 
 /// Whether each value is not among those before it.

@@ -119,4 +119,10 @@ pub const METHODS: &[Bad] = &[
         &["has no volume"],
     ),
     ("steps = 10", "steps = 0 #<", "procedure.steps", &["'0' is zero"]),
+    (
+        "steps = 10",
+        "steps = 4000000000 #<",
+        "procedure.steps",
+        &["'4000000000' are too many", "100000 or less"],
+    ),
 ];

@@ -334,6 +334,8 @@ fn contradictions_of_a_static_scene_name_their_key() {
         ],
         ["steps = 10", "steps = 10\nlimit-within = 2", "procedure.limit-within", "is no part of the load"],
         ["steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"],
+        ["steps = 10", "steps = 10\niterations = 4000000000", "procedure.iterations", "are too many"],
+        ["steps = 10", "steps = 10\naugmentations = 4000000000", "procedure.augmentations", "are too many"],
         [
             "steps = 10",
             "steps = 10\nduration = \"1 s\"",

@@ -7,6 +7,7 @@ mod bad_studies;
 mod expressions;
 mod fuzz;
 mod good;
+mod limits;
 mod project;
 mod shared;
 mod vibrations;

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
+use super::ci::CiArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
@@ -17,6 +18,9 @@ pub struct Cli {
     /// Threads of the solvers (default: all cores)
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// When words are coloured: on a terminal, unless NO_COLOR is set
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
+    pub color: ColorChoice,
     /// What to do
     #[command(subcommand)]
     pub command: Command,
@@ -39,7 +43,14 @@ pub enum Command {
         force: bool,
     },
     /// Run a study: many scenes and methods; its checks gate the exit code
-    Verify(VerifyArgs),
+    Verify {
+        /// Which runs
+        #[command(flatten)]
+        runs: VerifyArgs,
+        /// What is printed and written beside the results
+        #[command(flatten)]
+        ci: CiArgs,
+    },
     /// One run of a study in a process of its own
     #[command(hide = true)]
     Experiment(ExperimentArgs),
@@ -55,6 +66,8 @@ pub enum Command {
     },
     /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
     Baseline(BaselineArgs),
+    /// Compare two results: numbers by tolerance, times as ratios with their confidence
+    Compare(CompareArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
     /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
@@ -76,6 +89,18 @@ pub enum Command {
         /// What to do with them
         #[command(subcommand)]
         action: MeshAction,
+    },
+    /// Print a script that completes commands and options in a shell
+    ///
+    /// For bash: `tissuebench completions bash > ~/.local/share/bash-completion/completions/tissuebench`.
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of a command, or of all: `tissuebench man verify | man -l -`
+    Man {
+        /// The command
+        command: Option<String>,
     },
 }
 
@@ -148,12 +173,30 @@ pub struct BaselineArgs {
     pub same_processor: bool,
 }
 
+/// Arguments of `compare`.
+#[derive(Args)]
+pub struct CompareArgs {
+    /// Folders that `verify` or `run --out` wrote: before and after; or several such pairs in turn, which tell a slower program from
+    /// a slower machine
+    #[arg(required = true, num_args = 2.., value_names = ["BEFORE", "AFTER"])]
+    pub results: Vec<PathBuf>,
+    /// Relative difference from which on a number has changed
+    #[arg(long, value_name = "NUMBER", default_value_t = 1e-6)]
+    pub tolerance: f64,
+    /// Leave times out
+    #[arg(long)]
+    pub no_times: bool,
+    /// What to print on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+}
+
 /// What `run` prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// A table for people
     Table,
-    /// One JSON object per run, one per line
+    /// JSON: one object per run, one per line, or one object of all that is compared
     Json,
 }
 

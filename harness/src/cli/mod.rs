@@ -3,6 +3,9 @@
 
 mod args;
 mod baseline;
+mod ci;
+mod colour;
+mod compare;
 mod interrupt;
 mod json;
 mod list;
@@ -18,6 +21,7 @@ use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
+use clap::CommandFactory;
 use reports::ReportError;
 
 use crate::Failure;
@@ -25,6 +29,7 @@ use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
+use compare::compare;
 use list::list;
 use merge::merge;
 use plan::plan;
@@ -46,10 +51,11 @@ fn act(cli: Cli) -> u8 {
         eprintln!("tissuebench: {bad}");
         return 3;
     }
+    colour::choose(cli.color);
     match cli.command {
         Command::Run(args) => run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
-        Command::Verify(args) => verify(&args),
+        Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Merge(args) => merge(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out } => {
@@ -67,10 +73,49 @@ fn act(cli: Cli) -> u8 {
             println!("{schema:#}");
             0
         }
+        Command::Compare(args) => compare(&args),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "tissuebench", &mut script);
+            print!("{}", String::from_utf8_lossy(&script));
+            0
+        }
+        Command::Man { command } => manual(command.as_deref()),
         Command::Mesh { action } => match mesh_files::act(&action) {
             Ok(()) => 0,
             Err(failure) => fail(&failure),
         },
+    }
+}
+
+/// Prints the manual page of a command, or of the program.
+fn manual(command: Option<&str>) -> u8 {
+    let root = Cli::command();
+    let page = match command {
+        None => root,
+        Some(name) => match root.find_subcommand(name) {
+            Some(command) => {
+                let name = format!("tissuebench-{name}");
+                command.clone().bin_name(name.replacen('-', " ", 1)).display_name(name)
+            }
+            None => {
+                let near = nearest(name, root.get_subcommands().map(clap::Command::get_name));
+                let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+                eprintln!("tissuebench: no command '{name}'{near}");
+                return 2;
+            }
+        },
+    };
+    let mut text = Vec::new();
+    match clap_mangen::Man::new(page).render(&mut text) {
+        Ok(()) => {
+            print!("{}", String::from_utf8_lossy(&text));
+            0
+        }
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            3
+        }
     }
 }
 

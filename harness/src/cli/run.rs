@@ -146,7 +146,7 @@ impl Made<'_> {
             print!("{}", text::warnings(&self.outcomes));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-            eprintln!("{}", text::verdict(check));
+            eprintln!("{}", text::painted_verdict(check));
             self.code = self.code.max(1);
         }
         let Some(out) = &self.args.out else { return self.code };

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use reports::{Check, Status};
 
+use crate::cli::colour;
+
 use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
 use crate::run::stored::Stored;
@@ -41,13 +43,30 @@ pub fn reference(stored: &Stored) -> String {
 
 /// One line on a check that did not hold.
 pub fn verdict(check: &Check) -> String {
-    let word = match check.status {
+    format!("{}: {}", word(check.status), judged(check))
+}
+
+/// The same for stderr, its first word in colour where that is taken.
+pub fn painted_verdict(check: &Check) -> String {
+    let style = match check.status {
+        Status::Fail => colour::BAD,
+        Status::Pass => colour::GOOD,
+        Status::NotRun | Status::KnownFailure => colour::DOUBTFUL,
+    };
+    format!("{}: {}", colour::err(style, word(check.status)), judged(check))
+}
+
+fn word(status: Status) -> &'static str {
+    match status {
         Status::Fail => "FAILED",
         Status::NotRun => "NOT RUN",
         Status::Pass => "passed",
         Status::KnownFailure => "known not to pass",
-    };
-    format!("{word}: {} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
+    }
+}
+
+fn judged(check: &Check) -> String {
+    format!("{} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
 }
 
 /// A table of finished runs: sizes, errors, displacement, milliseconds per phase.

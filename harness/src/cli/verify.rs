@@ -5,12 +5,14 @@ use std::path::Path;
 use cases::scene;
 use reports::Status;
 
-use crate::cli::{affordable, fail, interrupt, refuse, report, take, text, unreported};
+use crate::cli::ci::{self, CiArgs};
+use crate::cli::{affordable, colour, fail, interrupt, refuse, report, take, text, unreported};
+use crate::study::events::{Event, Events};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
-pub(super) fn verify(args: &VerifyArgs) -> u8 {
+pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     let path = args.path();
     let study = match scene::load_study(&path) {
         Ok(study) => study,
@@ -32,9 +34,25 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
     }
+    if ci.list {
+        print!("{}", ci::names(&plan.planned()));
+        return 0;
+    }
+    if ci.dry_run {
+        print!("{}", ci::forecast(&plan.planned()));
+        return 0;
+    }
     if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
+    let events = match ci.events.as_deref().map(Events::to).transpose() {
+        Ok(events) => events,
+        Err(bad) => {
+            let file = ci.events.as_deref().unwrap_or(&path).display();
+            eprintln!("tissuebench: --events {file}: {bad}; give a file that can be written");
+            return 2;
+        }
+    };
     let entered = enter(args, &path).and_then(|folder| {
         study::merge::note(args, &path).map_err(|failure| fail(&failure)).map(|()| folder)
     });
@@ -42,16 +60,35 @@ pub(super) fn verify(args: &VerifyArgs) -> u8 {
         Ok(folder) => folder,
         Err(code) => return code,
     };
-    eprintln!("{}: {} runs", path.display(), plan.len());
+    if !args.quiet {
+        eprintln!("{}: {} runs", path.display(), plan.len());
+    }
     interrupt::install(Some(&args.out), true);
-    let mut finished = plan.execute(args);
+    let mut finished = plan.execute_watched(args, events.as_ref());
     finished.set.provenance.source = folder::source(&path);
-    if finished.stored > 0 {
+    if finished.stored > 0 && !args.quiet {
         eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
     }
-    let code = write(&finished, &folder, &args.out);
+    let code = write(&finished, &folder, &args.out, args.quiet);
+    let code = ci::write(ci, &path, &finished.runs).map_or_else(
+        |bad| {
+            eprintln!("tissuebench: {bad}");
+            code.max(3)
+        },
+        |()| code,
+    );
+    if let Some(events) = &events {
+        let [passed, failed, known, not_run] = counts(&finished);
+        events.send(&Event::End { passed, failed, known, not_run, code });
+    }
     folder.close(|| study::clean(args));
     code
+}
+
+/// Checks that passed, failed, are known not to pass, and did not run.
+fn counts(finished: &Finished) -> [usize; 4] {
+    let count = |status| finished.set.checks.iter().filter(|c| c.status == status).count();
+    [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun].map(count)
 }
 
 /// Takes the folder of results, or joins those that work in it.
@@ -64,8 +101,8 @@ fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
     begun.map_err(|failure| fail(&failure))
 }
 
-/// Writes the results and the report, and says what held; the exit code.
-pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path) -> u8 {
+/// Writes the results and the report, and says what held, of what did not hold alone if it is to be `quiet`; the exit code.
+pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path, quiet: bool) -> u8 {
     let set = &finished.set;
     // Of several processes that work on a study one writes what all of them have.
     let (lock, written) = folder.writing();
@@ -82,24 +119,22 @@ pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path) -> u8 {
             None => "could not run".into(),
             Some(load) => format!("ended at {load:.4} of the load"),
         };
+        let word = colour::err(colour::DOUBTFUL, &word);
         eprintln!("{word}: {} {}: {}", failure.case, failure.method, failure.reason);
     }
-    let count = |status| set.checks.iter().filter(|c| c.status == status).count();
     for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
-        eprintln!("{}", text::verdict(check));
+        eprintln!("{}", text::painted_verdict(check));
     }
-    let (failed, not_run) = (count(Status::Fail), count(Status::NotRun));
-    println!(
-        "{} runs, {} records; checks: {} passed, {} failed, {} known not to pass, {} not run",
-        finished.ran,
-        set.records.len(),
-        count(Status::Pass),
-        failed,
-        count(Status::KnownFailure),
-        not_run
-    );
-    println!("records  {}", out.join("records.csv").display());
-    println!("report   {}", out.join("report").join("report.html").display());
+    let [passed, failed, known, not_run] = counts(finished);
+    if !quiet {
+        println!(
+            "{} runs, {} records; checks: {passed} passed, {failed} failed, {known} known not to pass, {not_run} not run",
+            finished.ran,
+            set.records.len(),
+        );
+        println!("records  {}", out.join("records.csv").display());
+        println!("report   {}", out.join("report").join("report.html").display());
+    }
     match () {
         () if failed > 0 => 1,
         () if !finished.failed.is_empty() => finished.failed.iter().copied().max().unwrap_or(3),

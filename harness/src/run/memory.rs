@@ -11,6 +11,7 @@ pub struct Baseline(usize);
 
 impl Baseline {
     /// Forgets the peak so far, and what the libraries keep for good.
+    #[allow(clippy::new_without_default)] // it is taken at a moment
     pub fn new() -> Baseline {
         algebra::reserve_workspaces();
         ALLOCATOR.reset_peak_usage();

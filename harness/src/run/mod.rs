@@ -28,6 +28,8 @@ use repeated::repeated;
 
 pub use crate::measure::Repeats;
 pub use group::{Group, RunOptions, case_name};
+pub use memory::Baseline as MemoryBaseline;
+pub use stored::Stored;
 
 /// A finished run with its nodal parameters.
 pub(crate) struct Finished {

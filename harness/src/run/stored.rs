@@ -164,7 +164,12 @@ impl Stored {
             std::io::ErrorKind::NotFound => format!("can't be read: there is no file {}", path.display()),
             _ => format!("can't be read: {bad}"),
         })?;
-        let stored: Stored = serde_json::from_str(&text).map_err(|bad| format!("is no reference: {bad}"))?;
+        Stored::parse(&text)
+    }
+
+    /// Reads the text of a file; says what is wrong with it.
+    pub fn parse(text: &str) -> Result<Stored, String> {
+        let stored: Stored = serde_json::from_str(text).map_err(|bad| format!("is no reference: {bad}"))?;
         let (points, values) = (stored.points.len(), stored.displacement.len());
         if points == values {
             Ok(stored)
@@ -193,12 +198,12 @@ impl Stored {
     }
 
     /// The points whose displacement is given, m.
-    pub fn targets(&self, mirror: Mirror) -> Vec<Point3> {
+    pub(crate) fn targets(&self, mirror: Mirror) -> Vec<Point3> {
         self.points.iter().map(|&x| mirror.place(&x.into())).collect()
     }
 
     /// As a run's reference.
-    pub fn reference(&self, mirror: Mirror) -> Reference {
+    pub(crate) fn reference(&self, mirror: Mirror) -> Reference {
         let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
         let at_points = self.points.iter().zip(&self.displacement);
         let steps = self.steps.iter().map(|step| LoadStep {

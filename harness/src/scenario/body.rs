@@ -11,7 +11,8 @@ use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
 use geometry::{CellKind, Mesh, Point3, files, quality};
 
-use super::{estimate, same_body};
+use super::expected::{self, narrowest};
+use super::same_body;
 use crate::Failure;
 use crate::error::Key;
 
@@ -56,7 +57,7 @@ pub(super) fn unchecked(
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
         if !matches!(body, Body::Box { .. }) {
-            few(body, n)?;
+            few_enough(expected::of_family(body, kind, n as f64))?;
         }
         let mesh = match *body {
             Body::Box { min, max } => {
@@ -72,7 +73,7 @@ pub(super) fn unchecked(
                     let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
                     return Err(Failure::input(Key::Scene("body".into()), problem, help));
                 }
-                few(body, n)?;
+                few_enough(expected::of_family(body, kind, n as f64))?;
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
             Body::Cylinder { radius, height } => {
@@ -93,15 +94,15 @@ pub(super) fn unchecked(
             }
         };
         let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;
-        if mesh.points().len() > MOST_NODES {
-            let problem = format!("asks for {} nodes; at most {MOST_NODES} are made", mesh.points().len());
-            return Err(Failure::input(Key::Size(""), problem, "make it coarser"));
-        }
+        few_enough(mesh.points().len() as f64)?;
         Ok(mesh)
     };
     match *size {
         Size::Level(level) => family(base(body) << (level - 1).min(16)),
-        Size::Nodes(wanted) => nearest_count(family, wanted),
+        Size::Nodes(wanted) => {
+            few_enough(wanted as f64)?;
+            nearest_count(family, wanted)
+        }
         Size::Spacing(spacing) => {
             let n = narrowest(body) / spacing;
             if !(n.is_finite() && n < 1e3) {
@@ -112,6 +113,7 @@ pub(super) fn unchecked(
         }
         Size::Cells { cells, grading } => match *body {
             Body::Box { min, max } => {
+                few_enough(expected::of_box(kind, cells.map(|n| n as f64)))?;
                 cuboid(kind, min, max, cells, grading, jitter).map_err(|bad| ungenerated(bad, size, jitter))
             }
             _ => {
@@ -123,13 +125,12 @@ pub(super) fn unchecked(
     }
 }
 
-/// Refuses a mesh of far too many nodes before it is made; the estimate is good to a third.
-fn few(body: &Body, across: usize) -> Result<(), Failure> {
-    let about = estimate::nodes_across(body, across);
-    if about < 2.0 * MOST_NODES as f64 {
+/// Refuses what no mesh is made of; asked before one is made, which takes seconds and gigabytes.
+fn few_enough(nodes: f64) -> Result<(), Failure> {
+    if nodes <= MOST_NODES as f64 {
         return Ok(());
     }
-    let problem = format!("asks for about {about:.1e} nodes; at most {MOST_NODES} are made");
+    let problem = format!("asks for {nodes:.0} nodes; at most {MOST_NODES} are made");
     Err(Failure::input(Key::Size(""), problem, "make it coarser"))
 }
 
@@ -181,17 +182,6 @@ pub(super) fn base(body: &Body) -> usize {
         | Body::Kidney { .. }
         | Body::SphereShell { .. } => 2,
         Body::File(_) => 1,
-    }
-}
-
-/// The extent (m) that a size's number of cells divides.
-pub(super) fn narrowest(body: &Body) -> f64 {
-    match *body {
-        Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
-        Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
-        Body::SphereShell { inner, outer, .. } => outer - inner,
-        Body::Kidney { .. } => Kidney::C,
-        Body::File(_) => 0.0,
     }
 }
 

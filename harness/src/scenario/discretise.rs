@@ -105,7 +105,7 @@ impl Scenario<'_> {
     }
 }
 
-fn kind(element: scene::Element) -> CellKind {
+pub(super) fn kind(element: scene::Element) -> CellKind {
     match element {
         scene::Element::Tet4 => CellKind::Tet4,
         scene::Element::Tet10 => CellKind::Tet10,

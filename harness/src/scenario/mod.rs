@@ -5,6 +5,7 @@ mod cloud;
 mod cloud_file;
 mod discretise;
 mod estimate;
+mod expected;
 mod grading;
 mod identity;
 mod law;
@@ -15,7 +16,7 @@ pub(crate) mod setup;
 mod tools;
 
 pub(crate) use body::point;
-pub(crate) use estimate::{estimate, of_reference, too_large};
+pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
 pub(crate) use identity::{purpose, rule};
 pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;

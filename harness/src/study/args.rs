@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::Filters;
 use super::apart::ApartArgs;
 
 /// Arguments of `verify`.
@@ -17,6 +18,9 @@ pub struct VerifyArgs {
     /// Only runs whose case or method contains this text
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
+    /// Further choices
+    #[command(flatten)]
+    pub filters: Filters,
     /// Only the K-th of N shares of the runs, of about equal cost
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
@@ -36,6 +40,12 @@ pub struct VerifyArgs {
     /// Run what is estimated to take more than twice the memory of this machine or half a day
     #[arg(long)]
     pub force: bool,
+    /// Errors only
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// A line for each run
+    #[arg(short, long, conflicts_with = "quiet")]
+    pub verbose: bool,
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
@@ -53,6 +63,9 @@ impl VerifyArgs {
             study: Some(study.into()),
             quick: false,
             filter: None,
+            filters: Filters::default(),
+            quiet: false,
+            verbose: false,
             shard: None,
             jobs: 1,
             resume: false,
@@ -62,6 +75,27 @@ impl VerifyArgs {
             out: PathBuf::new(),
         }
     }
+
+    /// How much is said of its progress.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Plain,
+        }
+    }
+}
+
+/// How much is said of a study's progress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loudness {
+    /// Errors only.
+    Quiet,
+    /// A bar, or a line now and then.
+    #[default]
+    Plain,
+    /// A line for each run.
+    Verbose,
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {

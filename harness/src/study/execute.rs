@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::apart::Apart;
-use super::progress::Progress;
+use super::progress::{Progress, Running};
 use super::store::{Accept, Store};
 use super::task::{TaskResult, key};
 use super::tasks::Task;
@@ -28,7 +28,7 @@ pub(super) struct Work<'a> {
     pub(super) store: &'a Store,
     /// Runs each task in a process of its own, where asked for.
     pub(super) apart: Option<Apart<'a>>,
-    pub(super) progress: Progress,
+    pub(super) progress: Progress<'a>,
     pub(super) done: Mutex<BTreeMap<usize, TaskResult>>,
     /// Results that were there already, or that other processes made.
     pub(super) stored: AtomicUsize,
@@ -84,7 +84,7 @@ impl Work<'_> {
             match self.turn(&key) {
                 Turn::Stored(result) => {
                     self.stored.fetch_add(1, Ordering::Relaxed);
-                    self.finished(index, *result);
+                    self.finished(index, *result, self.running(index), true);
                 }
                 Turn::Theirs if thorough => left.push(index),
                 Turn::Theirs => {
@@ -92,9 +92,7 @@ impl Work<'_> {
                     break;
                 }
                 Turn::Ours(_claim) => {
-                    let task = &self.plan.tasks[index];
-                    let (_, _, scene) = &self.plan.scenes[task.scene];
-                    self.progress.running(format!("{} {}", case_name(scene), task.method.id));
+                    let running = self.running(index);
                     let result = match &self.apart {
                         Some(apart) => apart.run(self.plan, index, &key),
                         None => self.plan.run(index, self.args, &mut group),
@@ -102,7 +100,7 @@ impl Work<'_> {
                     if let Err(bad) = self.store.save(&key, &result) {
                         self.progress.warn(format!("warning: a result could not be stored: {bad}"));
                     }
-                    self.finished(index, result);
+                    self.finished(index, result, running, false);
                 }
             }
         }
@@ -134,9 +132,15 @@ impl Work<'_> {
         }
     }
 
-    fn finished(&self, index: usize, result: TaskResult) {
+    fn running(&self, index: usize) -> Running {
+        let task = &self.plan.tasks[index];
+        let case = case_name(&self.plan.scenes[task.scene].2);
+        self.progress.running(case, task.method.id.clone(), index)
+    }
+
+    fn finished(&self, index: usize, result: TaskResult, running: Running, stored: bool) {
+        self.progress.done(&running, &result, stored);
         self.done.lock().expect("no worker panicked").insert(index, result);
-        self.progress.done();
     }
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::store::Share;
 use super::task::TaskResult;
-use super::{Finished, Plan, VerifyArgs, store};
+use super::{Filters, Finished, Plan, VerifyArgs, store};
 use crate::Failure;
 use crate::outcome::provenance;
 use crate::run::case_name;
@@ -36,6 +36,8 @@ struct Note {
     study: PathBuf,
     quick: bool,
     filter: Option<String>,
+    #[serde(default)]
+    filters: Filters,
 }
 
 /// Why shares can't be joined.
@@ -56,7 +58,7 @@ pub(crate) struct Merged {
 /// Notes in a folder of results what study they are of.
 pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
     let study = study.canonicalize().unwrap_or_else(|_| study.into());
-    let note = Note { study, quick: args.quick, filter: args.filter.clone() };
+    let note = Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() };
     let text = serde_json::to_string_pretty(&note).map_err(|bad| Failure::Run(bad.to_string()))?;
     reports::write_text(&args.out.join(NOTE), text + "\n").map_err(|bad| Failure::Run(bad.to_string()))
 }
@@ -81,7 +83,8 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
         notes.push(noted(share).map_err(other)?);
     }
     let same = |a: &Note, b: &Note| {
-        (a.study.file_name(), a.quick, &a.filter) == (b.study.file_name(), b.quick, &b.filter)
+        (a.study.file_name(), a.quick, &a.filter, &a.filters)
+            == (b.study.file_name(), b.quick, &b.filter, &b.filters)
     };
     if let Some(at) = notes.iter().position(|note| !same(note, &notes[0])) {
         let (a, b) = (args.shares[0].display(), args.shares[at].display());
@@ -89,10 +92,10 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
             "{a} and {b} are shares of different studies or selections"
         ))));
     }
-    let Note { study, quick, filter } = notes.swap_remove(0);
+    let Note { study, quick, filter, filters } = notes.swap_remove(0);
     let study = args.study.clone().unwrap_or(study);
     let mut plan = scene::load_study(&study).and_then(Plan::new).map_err(Unmerged::Scenes)?;
-    let verify = VerifyArgs { quick, filter, out: args.out.clone(), ..VerifyArgs::of(&study) };
+    let verify = VerifyArgs { quick, filter, filters, out: args.out.clone(), ..VerifyArgs::of(&study) };
     plan.select(&verify);
     Ok((study, plan, verify))
 }

@@ -3,8 +3,11 @@
 pub(crate) mod apart;
 mod args;
 pub mod check;
+pub(crate) mod events;
 mod execute;
+mod filters;
 pub(crate) mod folder;
+mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;
 pub(crate) mod process_group;
@@ -13,6 +16,7 @@ mod progress;
 mod project;
 mod shards;
 mod store;
+mod summary;
 mod task;
 mod tasks;
 mod trials;
@@ -30,16 +34,20 @@ use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
 use crate::scenario::{purpose, too_large};
 use apart::Apart;
+use events::Events;
 use execute::Work;
 use progress::Progress;
 use store::{Maker, Store};
 use task::TaskResult;
-use tasks::{Task, list};
+use tasks::{Known, Task, list};
 use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
-pub use args::VerifyArgs;
+pub use args::{Loudness, VerifyArgs};
+pub use filters::Filters;
+pub use listing::Planned;
 pub use merge::MergeArgs;
+pub use summary::RunSummary;
 pub(crate) use task::stalled;
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
@@ -66,6 +74,8 @@ pub struct Finished {
     pub set: RunSet,
     /// Exit codes of runs that failed.
     pub failed: Vec<u8>,
+    /// What became of each run, then of the checks of several runs together.
+    pub runs: Vec<RunSummary>,
     /// Runs done.
     pub ran: usize,
     /// How many of them were stored, by an earlier study or by other processes.
@@ -103,6 +113,7 @@ impl Plan {
             refused: Vec::new(),
         };
         let mut errors = Vec::new();
+        let mut known = Known::default();
         let runs = plan.study.runs.clone();
         for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
             let read = match &run.axis {
@@ -112,7 +123,7 @@ impl Plan {
             match read {
                 Ok(found) => {
                     for at in found {
-                        list(&mut plan.tasks, index, at, run, &plan.scenes[at].2);
+                        list(&mut plan.tasks, &mut known, index, at, run, &plan.scenes[at].2);
                     }
                 }
                 Err(bad) => errors.extend(bad),
@@ -181,9 +192,12 @@ impl Plan {
         let (runs, scenes) = (&self.study.runs, &self.scenes);
         self.tasks.retain_mut(|task| {
             task.runs.retain(|&run| !args.quick || runs[run].quick);
-            let fits =
-                |text: &str| case_name(&scenes[task.scene].2).contains(text) || task.method.id.contains(text);
-            !task.runs.is_empty() && args.filter.as_deref().is_none_or(fits)
+            let (case, method) = (case_name(&scenes[task.scene].2), &task.method.id);
+            let contains = |text: &str| case.contains(text) || method.contains(text);
+            let tags = filters::tags(task, runs, &scenes[task.scene].2);
+            !task.runs.is_empty()
+                && args.filter.as_deref().is_none_or(contains)
+                && args.filters.fits(&case, method, &tags)
         });
         if let Some(shard) = args.shard {
             let mine = self.share(args, shard);
@@ -248,6 +262,11 @@ impl Plan {
 
     /// Runs everything. Results come in the order of the study, whatever the number of jobs.
     pub fn execute(&self, args: &VerifyArgs) -> Finished {
+        self.execute_watched(args, None)
+    }
+
+    /// As [`execute`](Plan::execute), with what happens reported as it happens.
+    pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
         let machine = provenance::machine();
         let store = store(args);
         let work = Work {
@@ -255,7 +274,7 @@ impl Plan {
             args,
             store: &store,
             apart: args.apart.isolate.then(|| Apart::new(args, &store)),
-            progress: Progress::new(self.tasks.len()),
+            progress: Progress::new(self.tasks.len(), args.loudness(), events),
             done: Mutex::default(),
             stored: AtomicUsize::new(0),
         };
@@ -268,6 +287,7 @@ impl Plan {
         let mut set = RunSet::default();
         let mut failed = Vec::new();
         let mut counters = Counters::default();
+        let mut runs = Vec::new();
         for (&index, result) in &results {
             let task = &self.tasks[index];
             counters += result.counters;
@@ -285,6 +305,7 @@ impl Plan {
                 }
             }
             let verdicts = self.verdicts(task, result);
+            let mut run = self.summary(task, result, &verdicts);
             // Along an axis it is a result how a run ends.
             if let Some((failure, code)) = result.failure.as_ref().filter(|_| !self.is_driven(task)) {
                 set.failures.push(failure.clone());
@@ -295,22 +316,26 @@ impl Plan {
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
                 if !counted && !verdicts.iter().any(known) {
                     failed.push(*code);
+                    run.failure = Some(failure.reason.clone());
                 }
             }
+            runs.push(run);
             set.checks.extend(verdicts);
         }
         for (_, _, scene) in &self.scenes {
             set.records.extend(reference_records(scene));
         }
         let families = self.families(&results);
-        set.checks.extend(self.family_verdicts(&families));
+        let mut together = self.family_verdicts(&families);
         failed.extend(self.without_any(&families));
         set.axes = self.axes(&results);
-        set.checks.extend(set.axes.iter().flat_map(trials::verdicts));
+        together.extend(set.axes.iter().flat_map(trials::verdicts));
+        runs.extend(together.iter().map(|check| self.together(check)));
+        set.checks.extend(together);
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
-        Finished { set, failed, ran: results.len(), stored: 0, counters }
+        Finished { set, failed, runs, ran: results.len(), stored: 0, counters }
     }
 
     /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.

@@ -3,36 +3,79 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::events::{Event, Events};
+use super::task::TaskResult;
+use super::{Loudness, summary};
 
 /// Time between two lines.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// Progress through a number of runs, on stderr.
-pub(crate) struct Progress {
+/// Progress through a number of runs, on stderr; and as events, where asked for.
+pub(crate) struct Progress<'a> {
     bar: ProgressBar,
-    /// When the last line was written; none on a terminal.
+    /// When the last line was written; none on a terminal, nor where nothing is to be said.
     last_line: Option<Mutex<Instant>>,
+    loudness: Loudness,
+    events: Option<&'a Events>,
 }
 
-impl Progress {
+/// A run under way.
+pub(crate) struct Running {
+    case: String,
+    method: String,
+    /// Its place in the study.
+    run: usize,
+    begin: Instant,
+}
+
+impl<'a> Progress<'a> {
     /// Of so many runs.
-    pub(crate) fn new(runs: usize) -> Progress {
+    pub(crate) fn new(runs: usize, loudness: Loudness, events: Option<&'a Events>) -> Progress<'a> {
         let bar = ProgressBar::new(runs as u64);
+        if loudness == Loudness::Quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
         let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left {msg}");
         bar.set_style(style.expect("a valid template"));
-        let last_line = bar.is_hidden().then(|| Mutex::new(Instant::now()));
-        Progress { bar, last_line }
+        let by_lines = bar.is_hidden() && loudness == Loudness::Plain;
+        let last_line = by_lines.then(|| Mutex::new(Instant::now()));
+        if let Some(events) = events {
+            events.send(&Event::Begin { runs });
+        }
+        Progress { bar, last_line, loudness, events }
     }
 
     /// What is running now.
-    pub(crate) fn running(&self, name: String) {
-        self.bar.set_message(name);
+    pub(crate) fn running(&self, case: String, method: String, run: usize) -> Running {
+        self.bar.set_message(format!("{case} {method}"));
+        if let Some(events) = self.events {
+            events.send(&Event::Start { case: &case, method: &method, run });
+        }
+        Running { case, method, run, begin: Instant::now() }
     }
 
     /// One more run is done.
-    pub(crate) fn done(&self) {
+    pub(crate) fn done(&self, running: &Running, result: &TaskResult, stored: bool) {
+        let (Running { case, method, begin, .. }, run) = (running, running.run);
+        let reason = result.failure.as_ref().map(|(failure, _)| failure.reason.as_str());
+        if let Some(events) = self.events {
+            let seconds = begin.elapsed().as_secs_f64();
+            events.send(&match reason {
+                Some(reason) => Event::Failed { case, method, run, seconds, reason },
+                None => Event::Done { case, method, run, seconds, stored },
+            });
+        }
         self.bar.inc(1);
+        if self.loudness == Loudness::Verbose {
+            let how = match (reason, stored) {
+                (Some(reason), _) => reason.to_string(),
+                (None, true) => "stored".into(),
+                (None, false) => format!("{:.4} s", summary::seconds(result)),
+            };
+            self.say(format!("{case} {method}: {how}"));
+        }
         let Some(last) = &self.last_line else { return };
         let mut last = last.lock().expect("no worker panicked");
         if last.elapsed() >= EVERY {
@@ -43,7 +86,11 @@ impl Progress {
 
     /// A warning that stays.
     pub(crate) fn warn(&self, text: String) {
-        if self.last_line.is_some() {
+        self.say(text);
+    }
+
+    fn say(&self, text: String) {
+        if self.bar.is_hidden() {
             eprintln!("{text}");
         } else {
             self.bar.println(text);

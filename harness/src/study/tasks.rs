@@ -1,5 +1,7 @@
 //! The runs that a study's tables ask for, each of them once.
 
+use std::collections::HashMap;
+
 use cases::scene::{self, Scene, Size};
 
 /// One run of a study.
@@ -15,9 +17,19 @@ pub(super) struct Task {
     pub(super) split: Option<scene::Integration>,
 }
 
+/// Places of runs by scene, Poisson's ratio and method: to compare each with all others takes minutes for 50,000.
+pub(super) type Known = HashMap<(usize, String), Vec<usize>>;
+
 /// Lists the runs of one table: methods, times levels (or node counts), times kernels, times support scales, times essential
 /// conditions, times seeds, times Poisson's ratios.
-pub(super) fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::Run, scene: &Scene) {
+pub(super) fn list(
+    tasks: &mut Vec<Task>,
+    known: &mut Known,
+    index: usize,
+    at: usize,
+    run: &scene::Run,
+    scene: &Scene,
+) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
     // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
@@ -40,27 +52,28 @@ pub(super) fn list(tasks: &mut Vec<Task>, index: usize, at: usize, run: &scene::
                 let held = shaped.flat_map(|method| essentials(run, method));
                 for method in held.flat_map(|method| seeds(run, method)) {
                     // One run may be in several tables: a level among levels and alone, a cloud among clouds.
-                    let same = |t: &&mut Task| {
-                        t.scene == at
-                            && own_ratio(t.poisson) == own_ratio(poisson)
-                            && t.method == method
-                            && (run.split.is_none() || t.split.is_none() || run.split == t.split)
-                    };
-                    match tasks.iter_mut().find(same) {
-                        Some(task) => {
+                    let places =
+                        known.entry((at, format!("{:?} {method:?}", own_ratio(poisson)))).or_default();
+                    let fits = |t: &Task| run.split.is_none() || t.split.is_none() || run.split == t.split;
+                    match places.iter().copied().find(|&place| fits(&tasks[place])) {
+                        Some(place) => {
+                            let task = &mut tasks[place];
                             task.runs.push(index);
                             task.split = task.split.or(run.split);
                             task.picture |= picture;
                         }
-                        None => tasks.push(Task {
-                            runs: vec![index],
-                            scene: at,
-                            method,
-                            level,
-                            poisson,
-                            picture,
-                            split: run.split,
-                        }),
+                        None => {
+                            places.push(tasks.len());
+                            tasks.push(Task {
+                                runs: vec![index],
+                                scene: at,
+                                method,
+                                level,
+                                poisson,
+                                picture,
+                                split: run.split,
+                            });
+                        }
                     }
                 }
             }

@@ -6,7 +6,7 @@ mod read;
 mod sizes;
 
 pub use generate::{CloudError, Refinement, cloud, cloud_of_sizes};
-pub use read::{PointFile, PointFileError, PointProblem, read_points};
+pub use read::{PointFile, PointFileError, PointProblem, read_points, read_points_text};
 pub use sizes::Sizes;
 
 use rayon::prelude::*;

@@ -31,7 +31,7 @@ pub mod shapes;
 pub use cell::{CellKind, FaceKind};
 pub use cloud::{
     Cloud, CloudError, PointFile, PointFileError, PointProblem, Refinement, Sizes, cloud, cloud_from_mesh,
-    cloud_of_sizes, edges, read_points,
+    cloud_of_sizes, edges, read_points, read_points_text,
 };
 pub use locate::{LocateError, Location, Locator, closest_on_triangle, locate};
 pub use mesh::{Facet, Mesh, MeshError};

@@ -33,13 +33,16 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     Output { transfers, probes, beside: keys.beside, repeated }
 }
 
+/// Frames of nine hours at 30 Hz; the time of each is kept.
+const MOST_FRAMES: usize = 1_000_000;
+
 fn repeated(keys: RepeatedKeys, report: &mut Report) -> Repeated {
     let (frames, cycle) = (keys.frames as usize, keys.cycle.unwrap_or(120) as usize);
     report.require(
-        frames > 0,
+        (1..=MOST_FRAMES).contains(&frames),
         "output.repeated.frames",
-        "is zero",
-        "give 1 or more, 1000 for a percentile of 99.9",
+        "is no number of frames",
+        "give 1 to 1000000; a percentile of 99.9 needs 1000",
     );
     let help = "give an even number of frames, half of them for the way up";
     report.require(cycle >= 2 && cycle % 2 == 0, "output.repeated.cycle", "is no way up and down", help);

@@ -96,6 +96,11 @@ const NAMES: [&str; 3] = ["x", "y", "z"];
 pub fn read_points(file: &Path, unit: f64) -> Result<PointFile, PointFileError> {
     let text = std::fs::read_to_string(file)
         .map_err(|source| PointFileError::Io { file: file.to_path_buf(), source })?;
+    read_points_text(&text, file, unit)
+}
+
+/// As [`read_points`], from text in memory; `file` is the name used in errors.
+pub fn read_points_text(text: &str, file: &Path, unit: f64) -> Result<PointFile, PointFileError> {
     let wrong = |line, (column, problem): (usize, PointProblem)| PointFileError::Line {
         file: file.to_path_buf(),
         line,

@@ -7,9 +7,19 @@ use crate::{CellKind, Mesh};
 
 /// The file's text, in lengths of `unit` metres; or a name that it can't hold.
 pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
-    let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
-    if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r', ','])) {
-        return Err(name.into());
+    let names: Vec<&str> = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names()).collect();
+    let bad = |name: &&&str| {
+        name.is_empty() || name.trim() != **name || name.contains(['"', '\n', '\r', ',']) || !name.is_ascii()
+    };
+    if let Some(name) = names.iter().find(bad) {
+        return Err((*name).into());
+    }
+    // Names of sets count without their case.
+    let regions = mesh.region_names();
+    let twin =
+        |(at, name): &(usize, &String)| regions[..*at].iter().any(|other| other.eq_ignore_ascii_case(name));
+    if let Some((_, name)) = regions.iter().enumerate().find(twin) {
+        return Err(name.clone());
     }
     let mut out = String::from("*HEADING\nwritten by tissuebench\n*NODE\n");
     // Writing to a string can't fail.

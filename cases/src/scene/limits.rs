@@ -1,0 +1,51 @@
+//! What no scene or study needs: checks compare the parts of a file with each other, which takes their number squared.
+
+use std::ops::Range;
+
+use catalogue::Problem;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::conform::join;
+
+/// Longest file, bytes: the verification's study has 40,000.
+pub(crate) const MOST_BYTES: usize = 1 << 18;
+/// Most entries of a list or table.
+const MOST_ENTRIES: usize = 1000;
+/// Most values of a file.
+const MOST_VALUES: usize = 20_000;
+
+/// Where a file is beyond a limit: span, key, and what is wrong.
+pub(crate) type Excess = (Range<usize>, String, Problem);
+
+/// The first list or table that is too long, or where the file has too many values.
+pub(crate) fn excess(root: &Spanned<DeValue<'_>>) -> Option<Excess> {
+    below(root, "", &mut 0)
+}
+
+fn below(value: &Spanned<DeValue<'_>>, path: &str, count: &mut usize) -> Option<Excess> {
+    *count += 1;
+    let wrong = |problem: String, help: String| {
+        Some((value.span(), path.to_string(), Problem::new(problem).help(help)))
+    };
+    if *count > MOST_VALUES {
+        return wrong("is one value too many".into(), format!("a file has at most {MOST_VALUES}"));
+    }
+    let entries = match value.get_ref() {
+        DeValue::Table(table) => table.len(),
+        DeValue::Array(array) => array.len(),
+        _ => return None,
+    };
+    if entries > MOST_ENTRIES {
+        return wrong(format!("has {entries} entries"), format!("give {MOST_ENTRIES} or less"));
+    }
+    match value.get_ref() {
+        DeValue::Table(table) => {
+            table.iter().find_map(|(key, value)| below(value, &join(path, key.get_ref()), count))
+        }
+        DeValue::Array(array) => {
+            array.iter().enumerate().find_map(|(i, value)| below(value, &format!("{path}[{i}]"), count))
+        }
+        _ => None,
+    }
+}

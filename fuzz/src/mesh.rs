@@ -1,0 +1,51 @@
+//! Mesh files and lists of points: read, measured, converted, written and read again.
+
+use std::path::Path;
+
+use geometry::generate::{raise_order, to_tets};
+use geometry::{CellKind, Mesh, cloud_from_mesh, files, quality, read_points_text};
+
+pub(crate) fn run(data: &[u8]) {
+    let points = std::str::from_utf8(data).map(|text| read_points_text(text, Path::new("fuzz.csv"), 1e-3));
+    if let Ok(Ok(points)) = points {
+        assert_eq!(points.points.len(), points.lines.len());
+        if points.points.len() <= 300 {
+            let _ = geometry::Cloud::from_points(points.points);
+        }
+    }
+    // The folder of a deck's includes is an empty one.
+    match files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {
+        Err(bad) => assert!(!bad.to_string().is_empty()),
+        Ok((mesh, rows)) => {
+            assert_eq!(rows.len(), mesh.cell_count());
+            take(&mesh);
+        }
+    }
+}
+
+fn take(mesh: &Mesh) {
+    let facets = mesh.boundary();
+    assert!(facets.iter().all(|facet| (facet.cell as usize) < mesh.cell_count()));
+    if mesh.points().len() > 300 {
+        return;
+    }
+    if let Ok(quality) = quality::check(mesh) {
+        assert!(quality.volume > 0.0, "a sound mesh of no volume");
+    }
+    let _ = cloud_from_mesh(mesh);
+    let tets = to_tets(mesh);
+    assert!(tets.uniform_kind() == Some(CellKind::Tet4));
+    let _ = raise_order(&tets);
+    if mesh.uniform_kind() == Some(CellKind::Hex8) {
+        let _ = raise_order(mesh);
+    }
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    for name in ["again.msh", "again.inp", "again.vtu"] {
+        let file = folder.path().join(name);
+        if files::write(mesh, &file, 1.0).is_ok() {
+            let again = files::read(&file, 1.0).expect("what is written can be read");
+            assert!(again.points() == mesh.points() && again.cell_count() == mesh.cell_count());
+            assert!(again.region_names() == mesh.region_names(), "{name}: names of regions");
+        }
+    }
+}

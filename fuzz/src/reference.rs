@@ -1,0 +1,28 @@
+//! Stored references (JSON) and accepted numbers (TOML).
+
+use harness::run::Stored;
+use reports::baseline::Baseline;
+use reports::{Record, RunSet};
+
+pub(crate) fn run(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if let Ok(mut stored) = Stored::parse(text) {
+        let _ = stored.belongs("title = \"fuzz\"", &[]);
+        let records = stored.records(&Record::default());
+        if records.iter().all(|r| r.value.is_finite()) {
+            let folder = tempfile::tempdir().expect("a folder for temporary files");
+            let _ = reports::write_run(folder.path(), &RunSet { records, ..RunSet::default() });
+        }
+        let other = stored.clone();
+        stored.widen(&other);
+    }
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let file = folder.path().join("baseline.toml");
+    std::fs::write(&file, text).expect("a temporary file can be written");
+    if let Ok(baseline) = Baseline::load(&file) {
+        let _ = baseline.compare(&Baseline::default(), true);
+        baseline.save(&file).expect("a temporary file can be written");
+        let again = Baseline::load(&file).expect("what is written can be read");
+        assert_eq!(again.count(), baseline.count());
+    }
+}

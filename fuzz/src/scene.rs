@@ -1,0 +1,36 @@
+//! A scene: read, checked, and planned where it is small; tables are made where that is all it asks for.
+
+use cases::scene::{self, Procedure, Scene};
+use harness::run::{Group, Repeats, RunOptions};
+
+/// Most nodes of a method that is planned: a plan makes the mesh, and a large one takes its time by right.
+const NODES: f64 = 300.0;
+
+pub(crate) fn run(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let file = super::beside("fuzz.toml");
+    match scene::parse(text, &file) {
+        Err(errors) => {
+            assert!(!errors.is_empty());
+            super::sound(&errors, text, &file);
+        }
+        Ok(scene) => plan(&scene),
+    }
+}
+
+fn plan(scene: &Scene) {
+    if !scene.unavailable().is_empty() {
+        return;
+    }
+    let Ok(group) = Group::unreferenced(scene, Repeats::ONCE) else { return };
+    for method in scene.methods.iter().take(2) {
+        let scenario = group.scenario(method.clone(), 0);
+        if scenario.expected_nodes() > NODES {
+            continue;
+        }
+        let planned = group.plan(&scenario);
+        if planned.is_ok() && matches!(scene.procedure, Procedure::Prepare) {
+            let _ = group.run(&scenario, RunOptions::default());
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Every input found by fuzzing: no panic, less than a second, less than a gigabyte.
+
+use std::path::{Path, PathBuf};
+
+use cpu_time::ProcessTime;
+use fuzz::{TARGETS, Target};
+use harness::run::MemoryBaseline;
+
+/// Most seconds of an input, of the processor: a busy machine is no slow reader.
+const SECONDS: f64 = 1.0;
+/// Most bytes at once.
+const BYTES: u64 = 1 << 30;
+
+fn inputs(target: &Target) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target.name);
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// One test, as time and memory are those of the process.
+#[test]
+fn every_input_is_read_or_refused_in_time() {
+    for target in TARGETS {
+        let files = inputs(&target);
+        assert!(files.len() >= 10, "{} has {} inputs", target.name, files.len());
+        for file in files {
+            let data = std::fs::read(&file).unwrap();
+            assert!(data.len() < 1 << 20, "{} is too long", file.display());
+            let (before, start) = (MemoryBaseline::new(), ProcessTime::now());
+            let ended = std::panic::catch_unwind(|| (target.run)(&data));
+            assert!(ended.is_ok(), "{} panics", file.display());
+            let (bytes, seconds) = (before.peak(), start.elapsed().as_secs_f64());
+            assert!(bytes < BYTES, "{} takes {bytes} bytes", file.display());
+            assert!(seconds < SECONDS, "{} takes {seconds:.2} s", file.display());
+        }
+    }
+}

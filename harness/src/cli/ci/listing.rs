@@ -1,0 +1,45 @@
+//! The runs that a study would make.
+
+use crate::study::Planned;
+
+/// One line for each run: its case and its name.
+pub(in crate::cli) fn names(planned: &[Planned]) -> String {
+    planned.iter().map(|run| format!("{} {}\n", run.case, run.name)).collect()
+}
+
+/// The same with what each is estimated to take, and the sum of their times.
+pub(in crate::cli) fn forecast(planned: &[Planned]) -> String {
+    let rows: Vec<[String; 4]> = planned.iter().map(row).collect();
+    let head = ["about", "nodes", "seconds", "memory"].map(String::from);
+    let width = |column: usize| rows.iter().chain([&head]).map(|row| row[column].chars().count()).max();
+    let widths: [usize; 4] = std::array::from_fn(|column| width(column).unwrap_or(0));
+    let line = |[run, nodes, seconds, memory]: &[String; 4]| {
+        let [a, b, c, d] = widths;
+        format!("{run:a$}  {nodes:>b$}  {seconds:>c$}  {memory:>d$}\n")
+    };
+    let body: String = rows.iter().map(line).collect();
+    let sum: f64 = planned.iter().map(|run| run.takes.seconds).sum();
+    format!("{}{body}{} runs, about {}\n", line(&head), planned.len(), seconds(sum))
+}
+
+fn row(run: &Planned) -> [String; 4] {
+    let memory = format!("{:.0} MB", (run.takes.bytes / 1e6).max(1.0));
+    let nodes = format!("{:.0}", run.takes.nodes);
+    [format!("{} {}", run.case, run.name), nodes, seconds(run.takes.seconds), memory]
+}
+
+/// One digit: the estimate is good to a factor of three.
+fn seconds(seconds: f64) -> String {
+    let step = 10f64.powf(seconds.max(1e-3).log10().floor());
+    format!("{} s", (seconds / step).round() * step.max(1e-3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_have_one_digit() {
+        assert_eq!([0.0123, 3.4, 678.0].map(seconds), ["0.01 s", "3 s", "700 s"]);
+    }
+}

@@ -1,0 +1,123 @@
+//! How many nodes a size makes, before any of them is made: a mesh of a hundred million cells is refused at once.
+
+use cases::scene::{self, Body, Cloud, Family, Size};
+use geometry::CellKind;
+use geometry::shapes::Kidney;
+
+use super::Scenario;
+use super::discretise::kind;
+
+impl Scenario<'_> {
+    /// About how many nodes the method's meshes and clouds have, its background included; 0 for those of files.
+    pub fn expected_nodes(&self) -> f64 {
+        let body = &self.scene.body;
+        match &self.method.family {
+            Family::Fem(fem) => nodes(body, kind(fem.element), &fem.size),
+            Family::OverMesh(over) => nodes(body, over.family.cells, &over.size),
+            Family::Efg(efg) => {
+                let background =
+                    efg.background.as_ref().map_or(0.0, |size| nodes(body, CellKind::Tet4, size));
+                background + cloud(body, &efg.cloud)
+            }
+        }
+    }
+}
+
+fn cloud(body: &Body, cloud: &scene::Cloud) -> f64 {
+    match cloud {
+        Cloud::Mesh { size, .. } => nodes(body, CellKind::Tet4, size),
+        Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } | Cloud::Refined { nodes, .. } => {
+            *nodes as f64
+        }
+        Cloud::File { .. } => 0.0,
+    }
+}
+
+/// Nodes of a mesh of the body.
+fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
+    match *size {
+        // A box a million times as long as it is narrow has more nodes than asked for at its coarsest.
+        Size::Nodes(wanted) => of_family(body, kind, 1.0).max(wanted as f64),
+        Size::Spacing(spacing) => of_family(body, kind, (narrowest(body) / spacing).round().max(1.0)),
+        Size::Level(level) => of_family(body, kind, 2f64.powi(level as i32)),
+        Size::Cells { cells, .. } => of_box(kind, cells.map(|n| n as f64)),
+        Size::File(_) => 0.0,
+    }
+}
+
+/// Nodes of a body's mesh with `n` cells across its narrowest extent: exactly of a box, at least and about of the others.
+pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
+    let layers = (n / 2.0).ceil();
+    let cells = match *body {
+        Body::Box { min, max } => {
+            let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
+            let narrow = extent.iter().copied().fold(f64::MAX, f64::min);
+            return of_box(kind, extent.map(|e| (e / narrow * n).round().max(1.0)));
+        }
+        Body::Cylinder { radius, height } => {
+            (n * n + 4.0 * n * layers) * (height / radius * n).round().max(1.0)
+        }
+        Body::Ball { .. } | Body::Kidney { half: false } => n * n * n + 6.0 * n * n * layers,
+        // 3 n by 7 n / 2 by n cells with n layers around them, and the half of it.
+        Body::Kidney { half: true } => 20.0 * n * n * n,
+        Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
+        Body::File(_) => 0.0,
+    };
+    // Nodes of one cell that no other counts: its corners and the middles of its edges, of six tetrahedra in a hexahedron.
+    let each = match kind {
+        CellKind::Hex8 | CellKind::Tet4 => 1.0,
+        CellKind::Hex20 => 4.0,
+        CellKind::Tet10 => 8.0,
+    };
+    cells * each
+}
+
+/// Nodes of a box of so many cells along x, y and z.
+pub(super) fn of_box(kind: CellKind, cells: [f64; 3]) -> f64 {
+    let [x, y, z] = cells;
+    let corners = (x + 1.0) * (y + 1.0) * (z + 1.0);
+    let edges = x * (y + 1.0) * (z + 1.0) + (x + 1.0) * y * (z + 1.0) + (x + 1.0) * (y + 1.0) * z;
+    let diagonals = x * y * (z + 1.0) + x * (y + 1.0) * z + (x + 1.0) * y * z + x * y * z;
+    match kind {
+        CellKind::Hex8 | CellKind::Tet4 => corners,
+        CellKind::Hex20 => corners + edges,
+        CellKind::Tet10 => corners + edges + diagonals,
+    }
+}
+
+/// The extent (m) that a size's number of cells divides.
+pub(super) fn narrowest(body: &Body) -> f64 {
+    match *body {
+        Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
+        Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
+        Body::SphereShell { inner, outer, .. } => outer - inner,
+        Body::Kidney { .. } => Kidney::C,
+        Body::File(_) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::body;
+    use super::*;
+
+    /// What is refused before it is made would have been refused after: no count is above the true one, and none far below.
+    #[test]
+    fn nodes_are_foreseen() {
+        let bodies = [
+            Body::Box { min: [0.0; 3], max: [0.02, 0.05, 0.01] },
+            Body::Cylinder { radius: 0.01, height: 0.05 },
+            Body::Ball { radius: 0.01 },
+            Body::Kidney { half: false },
+            Body::Kidney { half: true },
+            Body::SphereShell { inner: 0.01, outer: 0.03, octant: true },
+            Body::SphereShell { inner: 0.01, outer: 0.03, octant: false },
+        ];
+        for (body, kind) in bodies.iter().flat_map(|body| CellKind::ALL.map(|kind| (body, kind))) {
+            let size = Size::Level(3);
+            let made = body::mesh(body, kind, &size, None).unwrap().points().len() as f64;
+            let foreseen = nodes(body, kind, &size);
+            assert!(foreseen <= made && foreseen > 0.5 * made, "{body:?} {kind:?}: {foreseen} of {made}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What happens in a study, as it happens: one JSON object a line, for programs that watch.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use serde::Serialize;
+
+/// An event.
+#[derive(Serialize)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub(crate) enum Event<'a> {
+    /// The study begins.
+    Begin {
+        /// Runs to be made.
+        runs: usize,
+    },
+    /// A run begins.
+    Start {
+        /// The case.
+        case: &'a str,
+        /// The method's id.
+        method: &'a str,
+        /// Place of the run in the study, from 0: what tells runs of one method apart.
+        run: usize,
+    },
+    /// A run has ended with numbers, taken from an earlier one where `stored`.
+    Done { case: &'a str, method: &'a str, run: usize, seconds: f64, stored: bool },
+    /// A run has ended without numbers, or early.
+    Failed { case: &'a str, method: &'a str, run: usize, seconds: f64, reason: &'a str },
+    /// The study has ended.
+    End {
+        /// Counts of checks.
+        passed: usize,
+        failed: usize,
+        known: usize,
+        not_run: usize,
+        /// The exit code of the program.
+        code: u8,
+    },
+}
+
+/// Where events go.
+pub struct Events {
+    out: Mutex<Box<dyn Write + Send>>,
+    begin: Instant,
+}
+
+impl Events {
+    /// To a file, `-` being stdout.
+    pub(crate) fn to(path: &Path) -> io::Result<Events> {
+        let out: Box<dyn Write + Send> =
+            if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(File::create(path)?) };
+        Ok(Events { out: Mutex::new(out), begin: Instant::now() })
+    }
+
+    /// Writes one line at once. A reader that has gone away, or a full disk, ends no study.
+    pub(crate) fn send(&self, event: &Event) {
+        #[derive(Serialize)]
+        struct Line<'a> {
+            /// Seconds since the study began.
+            at: f64,
+            #[serde(flatten)]
+            event: &'a Event<'a>,
+        }
+        let at = (self.begin.elapsed().as_secs_f64() * 1e3).round() / 1e3;
+        let Ok(line) = serde_json::to_string(&Line { at, event }) else { return };
+        if let Ok(mut out) = self.out.lock() {
+            let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Numbers that do not depend on the moment, by a tolerance.
+
+use std::collections::BTreeMap;
+
+use catalogue::metric;
+use serde::Serialize;
+
+use crate::baseline::Baseline;
+use crate::run_set::RunSet;
+
+/// How numbers compare.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Numbers {
+    /// Relative difference from which on a number has changed.
+    pub tolerance: f64,
+    /// Numbers compared.
+    pub compared: usize,
+    /// Runs that only the results before have.
+    pub only_before: Vec<String>,
+    /// Runs that only the results after have.
+    pub only_after: Vec<String>,
+    /// Numbers that have changed, the largest change first.
+    pub changes: Vec<NumberChange>,
+}
+
+/// A number that has changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NumberChange {
+    /// The run: case, method, settings and size.
+    pub run: String,
+    /// The quantity with its unit; of a history the step that changed most stands for all.
+    pub quantity: String,
+    /// Before, SI; absent where only the results after have it.
+    pub before: Option<f64>,
+    /// After, SI; absent where only the results before have it.
+    pub after: Option<f64>,
+    /// Difference over the larger of the two; 1 where one is absent.
+    pub relative: f64,
+    /// `better` or `worse` of errors, `differs` of results, which are neither.
+    pub verdict: &'static str,
+}
+
+impl Numbers {
+    pub(super) fn of(before: &RunSet, after: &RunSet, tolerance: f64) -> Numbers {
+        let [before, after] = [before, after].map(|set| Baseline::of(&set.records, ""));
+        let missing = |from: &Baseline, of: &Baseline| -> Vec<String> {
+            from.runs.keys().filter(|run| !of.runs.contains_key(*run)).cloned().collect()
+        };
+        let (only_before, only_after) = (missing(&before, &after), missing(&after, &before));
+        let mut found = Numbers { tolerance, only_before, only_after, ..Numbers::default() };
+        for (run, old) in &before.runs {
+            let Some(new) = after.runs.get(run) else { continue };
+            let scales = scales(old);
+            let mut quantities: Vec<&String> = old.keys().chain(new.keys()).collect();
+            quantities.sort();
+            quantities.dedup();
+            for quantity in quantities {
+                let of =
+                    |numbers: &BTreeMap<String, Vec<f64>>| numbers.get(quantity).cloned().unwrap_or_default();
+                let (old, new) = (of(old), of(new));
+                found.compared += old.len().max(new.len());
+                let scale = scales.get(unit(quantity)).copied().unwrap_or(0.0);
+                found.changes.extend(change(run, quantity, &old, &new, scale, tolerance));
+            }
+        }
+        found.changes.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+        found
+    }
+
+    pub(super) fn is_same(&self) -> bool {
+        self.changes.is_empty() && self.only_before.is_empty() && self.only_after.is_empty()
+    }
+}
+
+/// Below this share of the largest number of the same unit in a run, a number is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The largest change among the steps of a quantity, if one is beyond the tolerance.
+fn change(
+    run: &str,
+    quantity: &str,
+    old: &[f64],
+    new: &[f64],
+    scale: f64,
+    tolerance: f64,
+) -> Option<NumberChange> {
+    let steps = (0..old.len().max(new.len())).map(|step| (old.get(step).copied(), new.get(step).copied()));
+    let relative = |(a, b): &(Option<f64>, Option<f64>)| match (a, b) {
+        (Some(a), Some(b)) if (a - b).abs() <= ROUNDING * scale => 0.0,
+        (Some(a), Some(b)) => (a - b).abs() / a.abs().max(b.abs()),
+        _ => 1.0,
+    };
+    let (before, after) = steps.max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
+    let relative = relative(&(before, after));
+    let name = quantity.split(' ').next().unwrap_or(quantity);
+    let verdict = match (metric::find(name).is_some_and(|m| m.lower_is_better()), before, after) {
+        (true, Some(a), Some(b)) if b > a => "worse",
+        (true, Some(_), Some(_)) => "better",
+        _ => "differs",
+    };
+    let (run, quantity) = (run.into(), quantity.into());
+    (relative > tolerance).then_some(NumberChange { run, quantity, before, after, relative, verdict })
+}
+
+/// The largest number of each unit; pure numbers are as they are, down to the rounding of 1.
+fn scales(numbers: &BTreeMap<String, Vec<f64>>) -> BTreeMap<&str, f64> {
+    let mut scales: BTreeMap<&str, f64> = BTreeMap::new();
+    for (quantity, values) in numbers {
+        let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let scale = scales.entry(unit(quantity)).or_default();
+        // An error of 1e-10 is exact, an error of 1e-5 is one.
+        *scale = if unit(quantity) == "1" { 1.0 } else { scale.max(largest) };
+    }
+    scales
+}
+
+fn unit(quantity: &str) -> &str {
+    quantity.rsplit_once('[').map_or("", |(_, unit)| unit.trim_end_matches(']'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+
+    fn set(numbers: &[(&str, &str, Option<u64>, f64)]) -> RunSet {
+        let record = |&(method, quantity, step, value): &(&str, &str, Option<u64>, f64)| {
+            let (method, quantity) = (method.to_string(), quantity.to_string());
+            Record { case: "block".into(), method, quantity, step, value, ..Record::blank() }
+        };
+        RunSet { records: numbers.iter().map(record).collect(), ..RunSet::default() }
+    }
+
+    #[test]
+    fn a_change_beyond_the_tolerance_is_one_and_says_which_way() {
+        let before = set(&[("tet4", "rms", None, 1.0), ("tet4", "max-z", None, 2.0)]);
+        let after = set(&[("tet4", "rms", None, 1.02), ("tet4", "max-z", None, 2.001)]);
+        let found = |tolerance| Numbers::of(&before, &after, tolerance);
+        assert!(found(0.05).is_same());
+        let one = found(0.01);
+        assert_eq!((one.changes.len(), one.changes[0].verdict, one.compared), (1, "worse", 2));
+        assert!((one.changes[0].relative - 0.02 / 1.02).abs() < 1e-12);
+        let all: Vec<&str> = found(1e-6).changes.iter().map(|c| c.verdict).collect();
+        assert_eq!(all, ["worse", "differs"]);
+        assert_eq!(Numbers::of(&after, &before, 0.01).changes[0].verdict, "better");
+    }
+
+    #[test]
+    fn rounding_is_no_change_and_a_history_is_one() {
+        let before =
+            set(&[("a", "rms", None, 1e-12), ("a", "max-z", None, 1.0), ("a", "closure", Some(1), 0.1)]);
+        let after =
+            set(&[("a", "rms", None, 3e-12), ("a", "max-z", None, 1.0), ("a", "closure", Some(1), 0.2)]);
+        let found = Numbers::of(&before, &after, 1e-6);
+        assert_eq!(found.changes.len(), 1, "{found:?}");
+        assert_eq!((found.changes[0].before, found.changes[0].after), (Some(0.1), Some(0.2)));
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let before = set(&[("a", "rms", None, 1.0), ("a", "max-z", None, 1.0)]);
+        let after = set(&[("a", "rms", None, 1.0), ("b", "rms", None, 1.0)]);
+        let found = Numbers::of(&before, &after, 1e-6);
+        assert!(found.only_before.is_empty() && found.only_after.len() == 1 && !found.is_same());
+        assert_eq!((found.changes[0].after, found.changes[0].verdict), (None, "differs"));
+    }
+}

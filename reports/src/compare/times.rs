@@ -1,0 +1,292 @@
+//! Times before and after as paired ratios, called only outside noise.
+//!
+//! A run's phase is paired with itself; its time is the shortest of its repeats, of the processors where that is known, which other
+//! programs disturb least. What all runs have in common is the machine's and the program's: it is called beyond what machines drift
+//! by, 2.2 % from run to run where nothing is known, and less the more pairs of results agree. What is left of each phase is
+//! compared with how much all of them scatter.
+
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Serialize;
+
+use super::statistics::{scale, student, trimmed_mean};
+use crate::record::Record;
+use crate::run_set::RunSet;
+
+/// Shorter times are those of the clock, s.
+const SHORTEST: f64 = 20e-6;
+/// What a machine drifts by between two results (a standard deviation; 1.4 and 3.2 % over twenty runs beside two to eight other
+/// busy processes), and as how many observations that counts beside the pairs' own.
+const DRIFT: f64 = 0.022;
+const DRIFT_WEIGHT: usize = 8;
+/// Chance of calling the whole, or a group, by mistake.
+const RISK: f64 = 0.01;
+const GROUP_RISK: f64 = 0.002;
+/// Smallest changes that matter: of the whole, and of a part of one pair of results or of several.
+const WHOLE_LEAST: f64 = 0.02;
+const PART_LEAST: [f64; 2] = [0.05, 0.03];
+/// Standard deviations of the runs' scatter beyond which a group is called, and of the phases' beyond which one of them is: their
+/// tails are those of Student's t of three degrees of freedom, not Gauss's.
+const GROUP_SIGMAS: f64 = 3.5;
+const SINGLE_SIGMAS: f64 = 6.0;
+/// Fewest phases in a group, and fewest runs for anything to be said of times.
+const FEWEST: usize = 6;
+/// Phases of about the same time whose scatter is one.
+const NEIGHBOURS: usize = 50;
+
+/// How times compare.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Times {
+    /// Pairs of results.
+    pub pairs: usize,
+    /// Runs whose times are compared.
+    pub runs: usize,
+    /// All runs together; absent where they are too few.
+    pub whole: Option<Ratio>,
+    /// Phases, cases and methods, beside what all have in common.
+    pub groups: Vec<Ratio>,
+    /// Single phases of runs that were tested, beside what all have in common.
+    pub tested: usize,
+    /// What is outside noise.
+    pub called: Vec<Ratio>,
+}
+
+/// What a ratio is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scope {
+    /// Everything.
+    Whole,
+    /// A phase, of all runs.
+    Phase,
+    /// All runs of a case.
+    Case,
+    /// All runs of a method.
+    Method,
+    /// One phase of one run.
+    Run,
+}
+
+/// A time after over the time before.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ratio {
+    /// What it is of.
+    pub scope: Scope,
+    /// Its name.
+    pub name: String,
+    /// Phases of runs that it is a mean of.
+    pub count: usize,
+    /// After over before; but for the whole, over what all runs have in common.
+    pub ratio: f64,
+    /// The ratio is called above this, and below one over it.
+    pub limit: f64,
+    /// Whether it is called.
+    pub called: bool,
+}
+
+impl Ratio {
+    fn new(scope: Scope, name: &str, count: usize, log: f64, limit: f64) -> Ratio {
+        let (ratio, called) = (log.exp(), log.abs() > limit);
+        Ratio { scope, name: name.into(), count, ratio, limit: limit.exp(), called }
+    }
+}
+
+/// One phase of one run in all pairs.
+struct Cell {
+    run: String,
+    case: String,
+    method: String,
+    phase: String,
+    name: String,
+    /// Seconds before, in the first pair.
+    seconds: f64,
+    /// Logarithms of after over before, one for each pair.
+    logs: Vec<f64>,
+    /// Repeats before and after, one for each pair.
+    repeats: Vec<[Vec<f64>; 2]>,
+}
+
+impl Cell {
+    fn mean(&self) -> f64 {
+        self.logs.iter().sum::<f64>() / self.logs.len() as f64
+    }
+
+    /// Whether in every pair all repeats after are on one side of all repeats before, moved by what all have in common.
+    fn is_apart(&self, common: &[f64], slower: bool) -> bool {
+        let ends = |times: &[f64]| {
+            times.iter().fold((f64::MAX, 0.0f64), |(low, high), &t| (low.min(t), high.max(t)))
+        };
+        self.repeats.iter().zip(common).all(|([before, after], common)| {
+            let (before, after, common) = (ends(before), ends(after), common.exp());
+            if slower { after.0 > before.1 * common } else { after.1 < before.0 * common }
+        })
+    }
+}
+
+impl Times {
+    /// Of pairs of results, before and after.
+    pub(super) fn of(pairs: &[(RunSet, RunSet)]) -> Times {
+        let cells = cells(pairs);
+        let totals: Vec<&Cell> = cells.iter().filter(|cell| cell.phase == TOTAL).collect();
+        let mut times = Times {
+            pairs: pairs.len(),
+            runs: totals.len(),
+            whole: None,
+            groups: Vec::new(),
+            tested: 0,
+            called: Vec::new(),
+        };
+        if totals.len() < FEWEST {
+            return times;
+        }
+        let common = common(&totals, pairs.len());
+        let drift = common.iter().sum::<f64>() / common.len() as f64;
+        let whole = whole(&totals, &common, drift);
+        let beside: Vec<f64> = cells.iter().map(|cell| cell.mean() - drift).collect();
+        times.groups = groups(&cells, &beside, pairs.len());
+        let singles = singles(&cells, &beside, &common);
+        times.tested = singles.len();
+        let all = std::iter::once(&whole).chain(&times.groups).chain(&singles);
+        times.called = all.filter(|ratio| ratio.called).cloned().collect();
+        times.whole = Some(whole);
+        times
+    }
+}
+
+const TOTAL: &str = "total";
+
+/// What all runs have in common in each pair.
+fn common(totals: &[&Cell], pairs: usize) -> Vec<f64> {
+    let of = |pair: usize| totals.iter().map(|cell| cell.logs[pair]).collect::<Vec<f64>>();
+    (0..pairs).map(|pair| trimmed_mean(&of(pair)).map_or(0.0, |found| found.mean)).collect()
+}
+
+/// All runs: beyond what the machine drifts by, and beyond what the runs scatter by.
+fn whole(totals: &[&Cell], common: &[f64], drift: f64) -> Ratio {
+    let pairs = common.len();
+    let own: f64 = common.iter().map(|c| (c - drift).powi(2)).sum();
+    let freedom = pairs - 1 + DRIFT_WEIGHT;
+    let deviation = ((own + DRIFT_WEIGHT as f64 * DRIFT * DRIFT) / freedom as f64).sqrt();
+    let of_machine = student(freedom, RISK) * deviation / (pairs as f64).sqrt();
+    let means: Vec<f64> = totals.iter().map(|cell| cell.mean()).collect();
+    let of_runs = trimmed_mean(&means).map_or(0.0, |found| found.band(RISK));
+    let limit = WHOLE_LEAST.max(of_machine).max(of_runs);
+    Ratio::new(Scope::Whole, "all runs", totals.len(), drift, limit)
+}
+
+/// Phases, cases and methods of six phases of runs or more, but for what all have in common.
+fn groups(cells: &[Cell], beside: &[f64], pairs: usize) -> Vec<Ratio> {
+    let mut of_run: HashMap<&str, Vec<f64>> = HashMap::new();
+    let mut groups: BTreeMap<(u8, &str), (Scope, Vec<usize>)> = BTreeMap::new();
+    for (at, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.phase != TOTAL) {
+        of_run.entry(&cell.run).or_default().push(beside[at]);
+        let names = [(Scope::Phase, &cell.phase), (Scope::Case, &cell.case), (Scope::Method, &cell.method)];
+        for (scope, name) in names {
+            groups.entry((scope as u8, name)).or_insert((scope, Vec::new())).1.push(at);
+        }
+    }
+    let means: Vec<f64> = of_run.values().map(|all| all.iter().sum::<f64>() / all.len() as f64).collect();
+    let run_scale = scale(&means);
+    let least = PART_LEAST[usize::from(pairs > 2)];
+    let each = groups.into_iter().filter_map(|((_, name), (scope, members))| {
+        let values: Vec<f64> = members.iter().map(|&at| beside[at]).collect();
+        let found = trimmed_mean(&values).filter(|_| values.len() >= FEWEST)?;
+        let mut runs: Vec<&str> = members.iter().map(|&at| cells[at].run.as_str()).collect();
+        runs.sort_unstable();
+        runs.dedup();
+        // Phases of one run are slow together: so many runs say less than so many phases.
+        let of_runs = GROUP_SIGMAS * run_scale / (runs.len() as f64).sqrt();
+        let limit = least.max(found.band(GROUP_RISK)).max(of_runs);
+        Some(Ratio::new(scope, name, values.len(), found.mean, limit))
+    });
+    each.collect()
+}
+
+/// Single phases of runs: far beyond what those of about the same time scatter by, and with no repeat among those before.
+fn singles(cells: &[Cell], beside: &[f64], common: &[f64]) -> Vec<Ratio> {
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    order.sort_by(|&a, &b| cells[a].seconds.total_cmp(&cells[b].seconds));
+    let sorted: Vec<f64> = order.iter().map(|&at| beside[at]).collect();
+    let all = scale(beside);
+    let near = |rank: usize| {
+        let count = NEIGHBOURS.min(sorted.len());
+        let low = rank.saturating_sub(count / 2).min(sorted.len() - count);
+        scale(&sorted[low..low + count])
+    };
+    let one = |(rank, &at): (usize, &usize)| {
+        let (cell, log) = (&cells[at], beside[at]);
+        let limit = PART_LEAST[0].max(SINGLE_SIGMAS * all.max(near(rank)));
+        let mut ratio = Ratio::new(Scope::Run, &cell.name, 1, log, limit);
+        ratio.called &= cell.is_apart(common, log > 0.0);
+        ratio
+    };
+    order.iter().enumerate().map(one).collect()
+}
+
+/// The phases that all results have times of.
+fn cells(pairs: &[(RunSet, RunSet)]) -> Vec<Cell> {
+    let timed: Vec<[BTreeMap<(&str, &str), Timed>; 2]> =
+        pairs.iter().map(|(a, b)| [timed(&a.records), timed(&b.records)]).collect();
+    let Some([first, _]) = timed.first() else { return Vec::new() };
+    let cell = |(key, one): (&(&str, &str), &Timed)| {
+        let mut repeats = Vec::new();
+        for [before, after] in &timed {
+            repeats.push([before.get(key)?.best(), after.get(key)?.best()]);
+        }
+        let shortest = |times: &Vec<f64>| times.iter().copied().fold(f64::MAX, f64::min);
+        let short = repeats.iter().flatten().any(|times| times.is_empty() || shortest(times) < SHORTEST);
+        let log = |[before, after]: &[Vec<f64>; 2]| (shortest(after) / shortest(before)).ln();
+        (!short).then(|| Cell {
+            run: one.is.run.clone(),
+            case: one.is.case.clone(),
+            method: one.is.method.clone(),
+            phase: one.is.phase.clone(),
+            name: name(one.is),
+            seconds: shortest(&repeats[0][0]),
+            logs: repeats.iter().map(log).collect(),
+            repeats,
+        })
+    };
+    first.iter().filter_map(cell).collect()
+}
+
+/// Case, method, what tells the run from others of it, and phase.
+fn name(r: &Record) -> String {
+    let mut name = format!("{} {}", r.case, r.method);
+    if r.level > 0 {
+        name += &format!(" level {}", r.level);
+    }
+    format!("{name} {} nodes nu={} {}", r.nodes, r.poisson, r.phase)
+}
+
+/// Repeats of a phase.
+struct Timed<'a> {
+    is: &'a Record,
+    wall: Vec<f64>,
+    cpu: Vec<f64>,
+}
+
+impl Timed<'_> {
+    /// Those of the processors where they are known.
+    fn best(&self) -> Vec<f64> {
+        if self.cpu.is_empty() { self.wall.clone() } else { self.cpu.clone() }
+    }
+}
+
+fn timed(records: &[Record]) -> BTreeMap<(&str, &str), Timed<'_>> {
+    let mut found: BTreeMap<(&str, &str), Timed> = BTreeMap::new();
+    let repeat = |r: &&Record| r.statistic == "repeat" && r.step.is_none() && !r.phase.is_empty();
+    for r in records.iter().filter(repeat) {
+        let timed = found.entry((r.run.as_str(), r.phase.as_str()));
+        let timed = timed.or_insert(Timed { is: r, wall: Vec::new(), cpu: Vec::new() });
+        match r.quantity.as_str() {
+            "time" => timed.wall.push(r.value),
+            "cpu-time" => timed.cpu.push(r.value),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests;
