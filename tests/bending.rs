@@ -27,8 +27,7 @@ fn bending() -> Vec<Record> {
     );
     let dir = tempfile::tempdir().unwrap();
     let plan = Plan::new(parse_study(&text, "study.toml").unwrap()).unwrap();
-    let study = Path::new("study.toml");
-    let args = VerifyArgs { out: dir.path().into(), ..VerifyArgs::of(study) };
+    let args = VerifyArgs { out: dir.path().into(), ..VerifyArgs::of(Path::new("study.toml")) };
     let finished = plan.execute(&args);
     assert!(finished.set.failures.is_empty(), "{:?}", finished.set.failures);
     assert_eq!(finished.ran, METHODS.len() * 2 * RATIOS.len());
