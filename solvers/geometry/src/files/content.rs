@@ -59,6 +59,12 @@ impl Content {
         self.points.len()
     }
 
+    /// How much there is of it: nodes, nodes of cells, faces and members of sets.
+    pub(super) fn extent(&self) -> usize {
+        let sets: usize = self.node_sets.iter().map(|(_, nodes)| nodes.len()).sum();
+        self.points.len() + self.nodes.len() + self.facets.len() + self.faces.len() + sets
+    }
+
     /// Number of elements so far, cells or not.
     pub(super) fn element_count(&self) -> usize {
         self.cell_of_element.len()

@@ -9,6 +9,9 @@ use super::scope::Scope;
 use super::text;
 use crate::{Point3, Vector3};
 
+/// Nodes, nodes of elements and members of sets that instances may place, whatever the size of the deck.
+const MOST_PLACED: usize = 1 << 23;
+
 /// Files that include files: a deck that includes itself ends here.
 pub(super) const DEEPEST: usize = 8;
 
@@ -151,6 +154,21 @@ impl Deck {
         })
     }
 
+    /// Refuses instances that make a mesh of eight million numbers and more out of a small deck.
+    fn few_enough(&self) -> Parsed<()> {
+        let written: usize = self.parts.iter().map(|(_, part)| part.content.extent()).sum();
+        let most = MOST_PLACED.max(8 * written);
+        let mut placed = 0;
+        for instance in &self.instances {
+            placed += self.parts[instance.part].1.content.extent();
+            if placed > most {
+                let what = "nodes and elements placed by *INSTANCE";
+                return Err((instance.place, Problem::TooMany { what, count: placed }));
+            }
+        }
+        Ok(())
+    }
+
     /// The whole mesh: the instances, or the flat deck.
     pub(super) fn finish(mut self) -> Parsed<Content> {
         let end = Place::Line(1);
@@ -164,6 +182,7 @@ impl Deck {
             // A part that is placed nowhere is meant as it is.
             whole.append(end, &self.parts[0].1.content, |x| *x)?;
         }
+        self.few_enough()?;
         for Instance { place, part, moved, turned } in &self.instances {
             let turn = turned.map(|(at, axis, angle)| {
                 (at, nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(axis), angle))

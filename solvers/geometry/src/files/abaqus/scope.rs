@@ -20,6 +20,8 @@ pub(super) struct Scope {
     sections: Vec<(Place, String)>,
     /// Shells, by number: where they are and their corners.
     shells: HashMap<u64, (Place, Vec<u64>)>,
+    /// Members of all sets so far.
+    members: u64,
 }
 
 /// Members by name in capitals, with the name as written.
@@ -131,6 +133,7 @@ impl Scope {
             let words = split(line);
             if card.get("GENERATE").is_some() {
                 found.extend(generated(place, &words)?);
+                self.few_enough(place, found.len())?;
                 continue;
             }
             for word in words.iter().filter(|word| !word.is_empty()) {
@@ -159,11 +162,20 @@ impl Scope {
                     }
                     Err(_) => found.extend(&sets.get(&unquoted(word)).ok_or_else(unknown)?.1),
                 }
+                self.few_enough(place, found.len())?;
             }
         }
+        self.members += found.len() as u64;
         let sets = if of_elements { &mut self.elsets } else { &mut self.nsets };
         sets.of(name).extend(found);
         Ok(())
+    }
+
+    /// Sets of sets can double with every line.
+    fn few_enough(&self, place: Place, more: usize) -> Parsed<()> {
+        let count = self.members + more as u64;
+        let problem = Problem::TooMany { what: "members of sets", count: count as usize };
+        if count <= 2 * MOST { Ok(()) } else { Err((place, problem)) }
     }
 
     pub(super) fn section(&mut self, card: &Card) -> Parsed<()> {

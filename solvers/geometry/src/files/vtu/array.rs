@@ -35,6 +35,11 @@ pub(super) enum Numbers {
 
 /// No array of a mesh that fits a file of this many bytes is longer: zlib shrinks zeros to a thousandth.
 const MOST_SHRUNK: usize = 1100;
+/// Bytes and numbers of an array that may be shrunk so far, such as the types of eight million cells; longer ones to a 32nd. A file of a
+/// mebibyte could take ten gigabytes otherwise.
+const SHRUNK_BYTES: usize = 1 << 26;
+const SHRUNK_NUMBERS: usize = 1 << 23;
+const LARGE_SHRUNK: usize = 32;
 
 /// Reads `count` numbers of a VTK type.
 pub(super) fn read(
@@ -64,6 +69,14 @@ pub(super) fn read(
         }
     };
     let wanted = count.checked_mul(size).ok_or((place, Problem::TooMany { what: "numbers", count }))?;
+    let packed = match source {
+        Source::Raw(bytes) => bytes.len(),
+        Source::Base64(text) => text.len(),
+        Source::Text(_) => unreachable!("read above"),
+    };
+    if (wanted > SHRUNK_BYTES || count > SHRUNK_NUMBERS) && count > packed.saturating_mul(LARGE_SHRUNK) {
+        return Err((place, Problem::TooMany { what: "numbers", count }));
+    }
     let bytes = match source {
         Source::Raw(bytes) => unpacked(&mut Plain { bytes }, wanted, coding, place)?,
         Source::Base64(text) => unpacked(&mut Quartets { text, left: Vec::new() }, wanted, coding, place)?,

@@ -46,6 +46,10 @@ pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
         let place = Place::Line(super::super::line_of(bytes, bad.valid_up_to()));
         (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
     })?;
+    if let Some(at) = long_tag(text) {
+        let problem = Problem::TooMany { what: "bytes of an XML tag", count: LONGEST_TAG };
+        return Err((Place::Line(super::super::line_of(bytes, at)), problem));
+    }
     let closed = if cut.is_some() { format!("{text}</VTKFile>") } else { text.to_string() };
     let document = Document::parse(&closed)
         .map_err(|bad| (Place::Line(bad.pos().row as usize), Problem::Xml { problem: bad.to_string() }))?;
@@ -68,6 +72,28 @@ pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
     let coding = Coding { big_endian: root.attribute("byte_order") == Some("BigEndian"), head, compressor };
     let appended = cut.map(|cut| appended(bytes, cut)).transpose()?;
     File { bytes, document: &document, coding, appended }.content()
+}
+
+/// Bytes of a tag with its attributes: each of these is compared with all others.
+const LONGEST_TAG: usize = 1 << 14;
+
+/// Where a tag begins that is too long.
+fn long_tag(text: &str) -> Option<usize> {
+    let (mut open, mut quote) = (None, None);
+    for (at, byte) in text.bytes().enumerate() {
+        match (open, quote) {
+            (None, _) if byte == b'<' => {
+                let is_tag = !matches!(text.as_bytes().get(at + 1), Some(b'!' | b'?'));
+                open = is_tag.then_some(at);
+            }
+            (Some(start), _) if at - start > LONGEST_TAG => return Some(start),
+            (Some(_), Some(end)) if byte == end => quote = None,
+            (Some(_), None) if matches!(byte, b'"' | b'\'') => quote = Some(byte),
+            (Some(_), None) if byte == b'>' => open = None,
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Where the appended data begins, behind its `_`.

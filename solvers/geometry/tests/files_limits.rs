@@ -1,0 +1,45 @@
+//! Small files that ask for much: each is refused at once, by the number it asks for.
+
+use std::path::Path;
+
+use geometry::files::read_bytes;
+
+fn refusal(text: &str) -> String {
+    let read = read_bytes(text.as_bytes(), Path::new("small"), 1e-3);
+    read.map(|(mesh, _)| format!("{} nodes", mesh.points().len())).unwrap_or_else(|bad| bad.to_string())
+}
+
+/// A tetrahedron.
+const TET: &str = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n";
+
+#[test]
+fn sets_of_sets_do_not_double_without_end() {
+    let doubled = |times: usize| {
+        let each = (0..times).map(|k| format!("*ELSET,ELSET=e{}\ne{k},e{k}\n", k + 1));
+        refusal(&format!("{TET}*ELSET,ELSET=e0\n1\n{}", each.collect::<String>()))
+    };
+    assert_eq!(doubled(10), "4 nodes");
+    assert!(doubled(60).contains("too many members of sets"), "{}", doubled(60));
+}
+
+#[test]
+fn instances_do_not_multiply_a_small_part() {
+    let placed = |count: usize| {
+        let nodes: String = (1..=1000).map(|k| format!("{k},{k},{},{}\n", k % 7, k % 5)).collect();
+        let part = format!("*PART,NAME=p\n*NODE\n{nodes}*ELEMENT,TYPE=C3D4\n1,1,2,3,8\n*END PART\n");
+        let each: String =
+            (0..count).map(|k| format!("*INSTANCE,NAME=i{k},PART=p\n{k}.,0.,0.\n*END INSTANCE\n")).collect();
+        refusal(&format!("{part}*ASSEMBLY,NAME=a\n{each}*END ASSEMBLY\n"))
+    };
+    assert_eq!(placed(3), "12 nodes");
+    assert!(placed(9000).contains("too many nodes and elements placed by *INSTANCE"), "{}", placed(9000));
+}
+
+#[test]
+fn a_tag_has_a_length() {
+    let many: String = (0..20_000).map(|k| format!("a{k}=\"1\" ")).collect();
+    let found = refusal(&format!("<VTKFile {many}>"));
+    assert!(found.contains("too many bytes of an XML tag"), "{found}");
+    let comment = format!("<!-- it's {} --><VTKFile/>", "long ".repeat(10_000));
+    assert!(refusal(&comment).contains("UnstructuredGrid"), "{}", refusal(&comment));
+}
