@@ -287,7 +287,7 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("5 40 40 20", "5 40 40 nan"),
         key: "method[0].size.file",
-        says: &["two.msh:15: ", "Gmsh 2.2"],
+        says: &["two.msh:15: ", "Gmsh .msh (2.2, 4.0 or 4.1)"],
         ..SOUND
     },
     Case {
@@ -319,7 +319,7 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("2 4 2 2 1 1 2 3 4", "2 4 2 2 1 1 3 2 4"),
         key: "method[0].size.file",
-        says: &["'two.msh' gives a mesh in which 1 of 2 cells is inverted (line 20, tag 2)", "order"],
+        says: &["'two.msh' gives a mesh in which 1 of 2 cells is inverted (line 20, element 2)", "order"],
         ..SOUND
     },
     Case {
@@ -331,7 +331,7 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("2 4 2 2 1 1 2 3 4\n3 4 2 2 1 2 3 4 5", "2 4 2 2 1 1 3 2 4\n3 4 2 2 1 3 2 4 5"),
         key: "method[0].size.file",
-        says: &["all 2 cells are inverted (first: line 20, tag 2): the order of their corners is mirrored"],
+        says: &["all 2 cells are inverted (first: line 20, element 2): the order of their corners is mirrored"],
         ..SOUND
     },
     Case {
@@ -405,7 +405,7 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("4 0 0 20", "4 0 0"),
         key: "output.transfer.to.file",
-        says: &["'two.msh' can't be read", "two.msh:14: ", "Gmsh 2.2"],
+        says: &["'two.msh' can't be read", "two.msh:14: ", "Gmsh .msh (2.2, 4.0 or 4.1)"],
         ..SOUND
     },
     Case {
