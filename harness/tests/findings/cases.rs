@@ -331,7 +331,9 @@ pub const CASES: &[Case] = &[
         ),
         mesh: ("2 4 2 2 1 1 2 3 4\n3 4 2 2 1 2 3 4 5", "2 4 2 2 1 1 3 2 4\n3 4 2 2 1 3 2 4 5"),
         key: "method[0].size.file",
-        says: &["all 2 cells are inverted (first: line 20, element 2): the order of their corners is mirrored"],
+        says: &[
+            "all 2 cells are inverted (first: line 20, element 2): the order of their corners is mirrored",
+        ],
         ..SOUND
     },
     Case {
