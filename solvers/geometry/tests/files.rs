@@ -74,8 +74,9 @@ fn round_trips_keep_every_bit() {
     for kind in CellKind::ALL {
         let mesh = kidney_mesh(kind, 2).unwrap();
         let count = mesh.cell_count();
-        let regions = (0..count).map(|c| u16::from(c % 3 == 1)).collect();
-        let mesh = mesh.with_regions(regions, vec!["cortex".into(), "inner medulla".into()]);
+        // The first cell is of the second region, whose name is also that of cells without one.
+        let regions = (0..count).map(|c| u16::from(c % 3 != 1)).collect();
+        let mesh = mesh.with_regions(regions, vec!["inner medulla".into(), "body".into()]);
         let some = mesh.boundary()[..7].to_vec();
         let mesh = mesh.with_group("a few faces", some).unwrap();
         let mut back = mesh.clone();
@@ -84,7 +85,7 @@ fn round_trips_keep_every_bit() {
             files::write(&back, &file, 1.0).unwrap();
             back = files::read(&file, 1.0).unwrap();
         }
-        assert_eq!(back, mesh, "{}", kind.name());
+        assert!(back == mesh, "{}: {:?}", kind.name(), back.region_names());
     }
     let bad = files::write(&kidney_mesh(CellKind::Tet4, 2).unwrap(), Path::new("mesh.vtp"), 1.0).unwrap_err();
     assert!(bad.to_string().contains("mesh.vtp: meshes are written as .msh"), "{bad}");

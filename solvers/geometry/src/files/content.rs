@@ -27,6 +27,9 @@ pub(super) struct Content {
     node_sets: Vec<(String, Vec<u32>)>,
 }
 
+/// The region of a cell that has none yet.
+pub(super) const NO_REGION: u16 = u16::MAX;
+
 /// A surface element waiting for its cell; corners sorted, filled up with `u32::MAX`.
 struct Face {
     place: Place,
@@ -119,6 +122,15 @@ impl Content {
         Some(self.cell_of_element[element]).filter(|&cell| cell != u32::MAX)
     }
 
+    /// Puts the cells without a region into one of this name.
+    pub(super) fn fill_regions(&mut self, name: &str) -> Parsed<()> {
+        if let Some(first) = self.regions.iter().position(|&region| region == NO_REGION) {
+            let region = self.region(self.rows[first].place, name)?;
+            self.regions.iter_mut().filter(|known| **known == NO_REGION).for_each(|known| *known = region);
+        }
+        Ok(())
+    }
+
     /// Puts a cell into another region.
     pub(super) fn set_region(&mut self, cell: u32, region: u16) {
         self.regions[cell as usize] = region;
@@ -127,7 +139,8 @@ impl Content {
     /// The region of a name, made where it is new.
     pub(super) fn region(&mut self, place: Place, name: &str) -> Parsed<u16> {
         let at = self.region_names.place(name);
-        u16::try_from(at).map_err(|_| (place, Problem::TooMany { what: "regions", count: at }))
+        let region = u16::try_from(at).ok().filter(|&region| region != NO_REGION);
+        region.ok_or((place, Problem::TooMany { what: "regions", count: at }))
     }
 
     /// The facet group of a name, made where it is new.

@@ -1,6 +1,6 @@
 //! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu).
 //!
-//! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one [`content::Content`],
+//! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one `Content`,
 //! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
 //! file has for it.
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::super::content::Content;
+use super::super::content::{Content, NO_REGION};
 use super::super::error::{Parsed, Place, Problem};
 use super::super::rows::Row;
 use super::cards::{Card, real, split, unquoted, whole};
@@ -113,9 +113,8 @@ impl Scope {
                 self.shells.insert(number, (place, list[..corners].to_vec()));
                 continue;
             };
-            let body = self.content.region(place, "body")?;
             let row = Row { place, tag: number };
-            self.content.cell(row, kind, body, &list, &ORDER[..list.len()])?;
+            self.content.cell(row, kind, NO_REGION, &list, &ORDER[..list.len()])?;
             self.kinds.push(kind);
         }
         if let Some(set) = set {
@@ -259,6 +258,7 @@ impl Scope {
                 cells.into_iter().for_each(|cell| self.content.set_region(cell, region));
             }
         }
+        self.content.fill_regions("body")?;
         for key in &self.elsets.order {
             let (name, members) = &self.elsets.lists[key];
             for (number, (place, corners)) in members.iter().filter_map(|n| Some((n, self.shells.get(n)?))) {

@@ -42,6 +42,12 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
             [vec![(cell + 1).to_string()], nodes].concat().chunks(15).map(|chunk| chunk.join(", ")).collect();
         line!("{}", lines.join(",\n"));
     }
+    // Sections keep the regions in order. Their materials are for others to add.
+    let mut has = vec![false; regions.len()];
+    (0..mesh.cell_count()).for_each(|cell| has[mesh.region(cell) as usize] = true);
+    for (name, _) in regions.iter().zip(has).filter(|(_, has)| *has) {
+        line!("*SOLID SECTION, ELSET=\"{name}\", MATERIAL=\"{name}\"");
+    }
     for group in mesh.group_names() {
         line!("*SURFACE, NAME=\"{group}\", TYPE=ELEMENT");
         for facet in mesh.group(group).unwrap_or_default() {

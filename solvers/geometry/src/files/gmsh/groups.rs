@@ -11,8 +11,17 @@ use super::super::lines::Lines;
 pub(super) struct Names(HashMap<(u64, u64), String>);
 
 impl Names {
-    pub(super) fn add(&mut self, place: Place, dimension: u64, tag: u64, name: &str) -> Parsed<()> {
-        match self.0.insert((dimension, tag), name.into()) {
+    /// Adds a name; regions keep the order of the names.
+    pub(super) fn add(
+        &mut self,
+        content: &mut Content,
+        place: Place,
+        (dimension, tag, name): (u64, u64, String),
+    ) -> Parsed<()> {
+        if dimension == 3 {
+            content.region(place, &name)?;
+        }
+        match self.0.insert((dimension, tag), name) {
             Some(_) => Err((place, Problem::Duplicate { what: "physical tag", number: tag })),
             None => Ok(()),
         }

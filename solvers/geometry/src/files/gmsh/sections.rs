@@ -116,9 +116,8 @@ impl Reader<'_> {
                 return self.scanner.fail(Problem::End { expected: "a physical name" });
             };
             let place = self.scanner.place();
-            let (dimension, tag, name) =
-                named(&Lines::new(""), &line).map_err(|(_, problem)| (place, problem))?;
-            self.names.add(place, dimension, tag, &name)?;
+            let name = named(&Lines::new(""), &line).map_err(|(_, problem)| (place, problem))?;
+            self.names.add(&mut self.content, place, name)?;
         }
         self.scanner.exactly("$EndPhysicalNames")
     }

@@ -19,7 +19,7 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
     lines.exactly("$EndMeshFormat")?;
     while let Some(line) = lines.next() {
         match line {
-            "$PhysicalNames" => physical_names(&mut lines, &mut names)?,
+            "$PhysicalNames" => physical_names(&mut lines, &mut names, &mut content)?,
             "$Nodes" if nodes => return lines.fail(Problem::Repeated { section: "$Nodes" }),
             "$Nodes" => {
                 read_nodes(&mut lines, &mut content)?;
@@ -59,11 +59,11 @@ fn count(lines: &mut Lines, expected: &'static str) -> Parsed<usize> {
     lines.number(Some(line), expected)
 }
 
-fn physical_names(lines: &mut Lines, names: &mut Names) -> Parsed<()> {
+fn physical_names(lines: &mut Lines, names: &mut Names, content: &mut Content) -> Parsed<()> {
     for _ in 0..count(lines, "the number of physical names")? {
         let line = lines.need("a physical name")?;
-        let (dimension, tag, name) = named(lines, line)?;
-        names.add(lines.place(), dimension, tag, &name)?;
+        let name = named(lines, line)?;
+        names.add(content, lines.place(), name)?;
     }
     lines.exactly("$EndPhysicalNames")
 }

@@ -112,6 +112,9 @@ impl<'a> File<'a> {
         let all = self.document.root_element();
         let region_names = self.names(all, "region-names")?;
         let surface_names = self.names(all, "surface-names")?;
+        for name in &region_names {
+            content.region(Place::Line(1), name)?;
+        }
         let mut pieces = 0;
         for piece in all.descendants().filter(|node| node.has_tag_name("Piece")) {
             pieces += 1;
