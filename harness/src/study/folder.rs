@@ -118,8 +118,10 @@ fn unwritable(out: &Path, bad: &std::io::Error) -> Failure {
 }
 
 impl Folder {
-    /// Marks the results as incomplete until they are written.
+    /// Marks the results as incomplete until they are written; not while another process writes them, which it reads again for its
+    /// report.
     pub(crate) fn begin(&self, file: &Path) -> Result<(), Failure> {
+        let _lock = self.writing();
         reports::begin(&self.path, &source(file)).map_err(|bad| Failure::Run(bad.to_string()))
     }
 
