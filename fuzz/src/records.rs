@@ -26,7 +26,7 @@ pub(crate) fn run(data: &[u8]) {
     let Ok(run) = reports::read_run(folder.path()) else { return };
     let baseline = Baseline::of(&run.records, "fuzz");
     assert!(baseline.compare(&baseline, true).changes.is_empty());
-    // What is read and told apart by its keys is written and read again as it was.
+    // What is read and differs in its keys is written and read again as it was.
     let other = folder.path().join("again");
     if reports::write_run(&other, &run).is_ok() {
         let again = reports::read_run(&other).expect("what is written can be read");

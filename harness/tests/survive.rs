@@ -185,7 +185,7 @@ fn two_workers_survive_being_killed() {
 
 /// `cargo xtask survive`.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "cargo xtask survive runs it"]
 fn two_workers_survive_a_hundred_kills() {
     survives(60, 100, &[]);
     survives(60, 100, &["--isolate"]);

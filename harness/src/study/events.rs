@@ -23,7 +23,7 @@ pub(crate) enum Event<'a> {
         case: &'a str,
         /// The method's id.
         method: &'a str,
-        /// Place of the run in the study, from 0: what tells runs of one method apart.
+        /// Place of the run in the study, from 0: what distinguishes runs of one method.
         run: usize,
     },
     /// A run has ended with numbers, taken from an earlier one where `stored`.

@@ -17,7 +17,7 @@ pub struct RunSummary {
     pub case: String,
     /// The scene's file.
     pub file: PathBuf,
-    /// The method, with what tells the run from others of it.
+    /// The method, with what distinguishes the run from others of it.
     pub label: String,
     /// What one pass took, s.
     pub seconds: f64,

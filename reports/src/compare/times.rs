@@ -250,7 +250,7 @@ fn cells(pairs: &[(RunSet, RunSet)]) -> Vec<Cell> {
     first.iter().filter_map(cell).collect()
 }
 
-/// Case, method, what tells the run from others of it, and phase.
+/// Case, method, what distinguishes the run from others of it, and phase.
 fn name(r: &Record) -> String {
     let mut name = format!("{} {}", r.case, r.method);
     if r.level > 0 {
