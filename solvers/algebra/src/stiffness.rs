@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use lanes::{LanePath, on_path};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
@@ -36,6 +37,38 @@ pub struct Stiffness {
     blocks: Vec<Matrix3>,
 }
 
+on_path! {
+    fn multiply_rows(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) = multiply_lanes
+}
+
+/// Each block once, for its row and, transposed, for its column.
+#[inline(always)]
+fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) {
+    let fused = |a: f64, x: f64, sum: f64| if FMA { a.mul_add(x, sum) } else { a * x + sum };
+    out.fill(Vector3::zeros());
+    for (i, own) in u.iter().enumerate() {
+        let (columns, blocks) = stiffness.row(i);
+        // Columns of blocks go to three sums, four lanes at once, of which three count: of the last column the upper ones.
+        let mut sums = [[0.0; 4]; 3];
+        for (&j, block) in columns.iter().zip(blocks) {
+            let (entries, x) = (block.data.0.as_flattened(), &u[j as usize]);
+            for (c, (sum, start)) in sums.iter_mut().zip([0, 3, 5]).enumerate() {
+                for (l, sum) in sum.iter_mut().enumerate() {
+                    *sum = fused(entries[start + l], x[c], *sum);
+                }
+            }
+            if j as usize != i {
+                for (out, column) in out[j as usize].iter_mut().zip(entries.chunks_exact(3)) {
+                    *out += fused(column[0], own[0], fused(column[1], own[1], column[2] * own[2]));
+                }
+            }
+        }
+        for a in 0..3 {
+            out[i][a] += sums[0][a] + sums[1][a] + sums[2][a + 1];
+        }
+    }
+}
+
 impl Stiffness {
     /// Zeros at every place of a pattern.
     pub fn zeros(pattern: BlockPattern) -> Stiffness {
@@ -64,18 +97,7 @@ impl Stiffness {
 
     /// `out = K u`, N.
     pub fn multiply_into(&self, u: &[Vector3], out: &mut [Vector3]) {
-        out.fill(Vector3::zeros());
-        for i in 0..u.len() {
-            let (columns, blocks) = self.row(i);
-            let mut sum = Vector3::zeros();
-            for (&j, block) in columns.iter().zip(blocks) {
-                sum += block * u[j as usize];
-                if j as usize != i {
-                    out[j as usize] += block.tr_mul(&u[i]);
-                }
-            }
-            out[i] += sum;
-        }
+        multiply_rows(LanePath::best(), self, u, out);
     }
 
     /// `out = |K| |u|`, N.

@@ -105,27 +105,28 @@ fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
-/// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`.
+/// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`; of
+/// `fn $name<const B: usize; W: [Weight<B>]>` it is `$kernel::<FMA, B, W>(args)`.
 #[macro_export]
 macro_rules! on_path {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident) => {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$(const $size:ident: usize),* $(; $($kind:ident: [$($bound:tt)+]),+)?>)? ($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident) => {
         $(#[$doc])*
-        $vis fn $name(path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
+        $vis fn $name $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? (path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
             match path.kind() {
-                $crate::Kind::Portable => $kernel::<false>($($arg),*),
+                $crate::Kind::Portable => $kernel::<false $($(, $size)* $($(, $kind)+)?)?>($($arg),*),
                 #[cfg(target_arch = "x86_64")]
                 $crate::Kind::Avx2 => {
                     #[target_feature(enable = "avx2,fma")]
-                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
+                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: a path of this kind is made only where these features were detected.
-                    unsafe { run($($arg),*) }
+                    unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::Kind::Avx512 => {
                     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-                    fn run($($arg: $ty),*) $(-> $out)? { $kernel::<true>($($arg),*) }
+                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: as above.
-                    unsafe { run($($arg),*) }
+                    unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
                 }
             }
         }

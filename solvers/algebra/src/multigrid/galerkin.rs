@@ -2,6 +2,7 @@
 //!
 //! With `S = P^T (L + D/2) P` it is `S + S^T`, so that only the lower triangle of A is read, and half of the products are made.
 
+use lanes::{LanePath, on_path};
 use rayon::prelude::*;
 
 use super::lower::{Lower, LowerRows};
@@ -77,9 +78,27 @@ pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
     });
     drop(seen_by);
 
+    let sums = products(LanePath::best(), lower, transfer, &reached, &pattern);
+    folded(&pattern, &sums, lower.unit())
+}
+
+on_path! {
+    fn products<const B: usize, const C: usize; L: [LowerRows<B>], W: [Weight<B, C>]>(
+        lower: &L, transfer: &Transfer<W>, reached: &Sets, pattern: &Sets,
+    ) -> Vec<[[f64; C]; C]> = product_lanes
+}
+
+/// The blocks of S at the places of `pattern`.
+#[inline(always)]
+fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B>, W: Weight<B, C>>(
+    lower: &L,
+    transfer: &Transfer<W>,
+    reached: &Sets,
+    pattern: &Sets,
+) -> Vec<[[f64; C]; C]> {
     let mut sums = vec![[[0.0; C]; C]; pattern.members.len()];
     let mut rows: Vec<[[f64; C]; B]> = Vec::new();
-    for i in 0..nodes {
+    for i in 0..lower.nodes() {
         let (columns, weights) = transfer.row(i);
         if columns.is_empty() {
             continue;
@@ -98,7 +117,7 @@ pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
                 while reached[place] != *column {
                     place += 1;
                 }
-                weight.multiply(&block, &mut rows[place]);
+                weight.multiply::<FMA>(&block, &mut rows[place]);
             }
         }
         for (&coarse, weight) in columns.iter().zip(weights) {
@@ -107,11 +126,11 @@ pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
                 while pattern.members[place] != *column {
                     place += 1;
                 }
-                weight.multiply_transposed(rows, &mut sums[place]);
+                weight.multiply_transposed::<FMA>(rows, &mut sums[place]);
             }
         }
     }
-    folded(&pattern, &sums, lower.unit())
+    sums
 }
 
 /// Rows of the finer level that see each node of the next.

@@ -16,6 +16,7 @@ mod level;
 mod lower;
 mod operator;
 mod pressure;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod transfer;

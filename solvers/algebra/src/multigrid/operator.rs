@@ -1,4 +1,4 @@
-//! The matrix of a level in single precision, whole rows of B x B blocks, with the Gauss-Seidel sweeps over it.
+//! The matrix of a level in single precision, whole rows of B x B blocks, and the chunks that it is swept in.
 //!
 //! Rows are swept in chunks that see each other as they were before the sweep, so that chunks can be swept at once: their
 //! number depends on the size of the matrix alone and the bits not on the threads. Couplings between chunks are added to
@@ -11,9 +11,13 @@ use nalgebra::SMatrix;
 use rayon::prelude::*;
 
 use super::lower::LowerRows;
+use super::sweep::times;
 
 /// One vector entry of a node.
 pub(super) type Entry<const B: usize> = [f32; B];
+
+/// Columns and blocks of a part of a row.
+pub(super) type Part<'a, const B: usize> = (&'a [u32], &'a [[[f32; B]; B]]);
 
 /// Fewest rows of a chunk, and most chunks.
 const CHUNK: usize = 8192;
@@ -32,71 +36,6 @@ pub(super) struct Operator<const B: usize> {
     /// What was added to the diagonal for couplings between chunks; empty with one chunk.
     added: Vec<Entry<B>>,
     chunks: Vec<Range<usize>>,
-}
-
-/// A sum of products of blocks: columns go to three sums in turn, none of which has to wait for the other two.
-struct Sum<const B: usize>([[f32; WIDTH]; 3]);
-
-/// Lanes of a sum: blocks have 3 or 6 rows.
-const WIDTH: usize = 6;
-
-impl<const B: usize> Sum<B> {
-    #[inline(always)]
-    fn new() -> Sum<B> {
-        const { assert!(B == 3 || B == 6) }
-        Sum([[0.0; WIDTH]; 3])
-    }
-
-    /// `self += block x`.
-    #[inline(always)]
-    fn add(&mut self, block: &[[f32; B]; B], x: &Entry<B>) {
-        let [first, second, third] = &mut self.0;
-        if B == 3 {
-            // Four lanes at once, of which three count: those of the last column are the upper ones.
-            let entries = block.as_flattened();
-            for l in 0..4 {
-                first[l] += entries[l] * x[0];
-            }
-            for l in 0..4 {
-                second[l] += entries[3 + l] * x[1];
-            }
-            for l in 0..4 {
-                third[l] += entries[5 + l] * x[2];
-            }
-        } else {
-            for (columns, x) in block.chunks_exact(3).zip(x.chunks_exact(3)) {
-                for l in 0..B {
-                    first[l] += columns[0][l] * x[0];
-                }
-                for l in 0..B {
-                    second[l] += columns[1][l] * x[1];
-                }
-                for l in 0..B {
-                    third[l] += columns[2][l] * x[2];
-                }
-            }
-        }
-    }
-
-    /// `b` less this sum.
-    #[inline(always)]
-    fn from(&self, b: &Entry<B>) -> Entry<B> {
-        let [first, second, third] = &self.0;
-        let shift = if B == 3 { 1 } else { 0 };
-        std::array::from_fn(|a| b[a] - (first[a] + second[a] + third[a + shift]))
-    }
-}
-
-/// `block x`.
-#[inline(always)]
-fn times<const B: usize>(block: &[[f32; B]; B], x: &Entry<B>) -> Entry<B> {
-    let mut sum = [0.0; B];
-    for (column, x) in block.iter().zip(x) {
-        for (s, a) in sum.iter_mut().zip(column) {
-            *s += a * x;
-        }
-    }
-    sum
 }
 
 impl<const B: usize> Operator<B> {
@@ -204,21 +143,30 @@ impl<const B: usize> Operator<B> {
         &self.columns[self.row(i)]
     }
 
-    /// `D^-1 x` of one row, with the diagonal block that is swept with.
-    #[inline]
-    pub fn divided(&self, i: usize, x: &Entry<B>) -> Entry<B> {
-        times(&self.inverses[i], x)
+    /// The part of a row before its diagonal.
+    #[inline(always)]
+    pub fn before(&self, i: usize) -> Part<'_, B> {
+        let range = self.offsets[i]..self.diagonals[i];
+        (&self.columns[range.clone()], &self.blocks[range])
     }
 
-    /// `out = b - A x`.
-    pub fn residual(&self, b: &[Entry<B>], x: &[Entry<B>], out: &mut [Entry<B>]) {
-        out.par_iter_mut().with_min_len(512).enumerate().for_each(|(i, out)| {
-            let mut sum = Sum::new();
-            for k in self.row(i) {
-                sum.add(&self.blocks[k], &x[self.columns[k] as usize]);
-            }
-            *out = sum.from(&b[i]);
-        });
+    /// The part of a row after its diagonal.
+    #[inline(always)]
+    pub fn after(&self, i: usize) -> Part<'_, B> {
+        let range = self.diagonals[i] + 1..self.offsets[i + 1];
+        (&self.columns[range.clone()], &self.blocks[range])
+    }
+
+    /// A whole row.
+    #[inline(always)]
+    pub fn whole(&self, i: usize) -> Part<'_, B> {
+        (&self.columns[self.row(i)], &self.blocks[self.row(i)])
+    }
+
+    /// Inverse of the diagonal block that a row is swept with.
+    #[inline(always)]
+    pub fn inverse(&self, i: usize) -> &[[f32; B]; B] {
+        &self.inverses[i]
     }
 
     /// The largest eigenvalue of `D^-1 A` by six steps of the power method, from below by some per cent.
@@ -237,7 +185,7 @@ impl<const B: usize> Operator<B> {
             self.residual(&zero, &x, &mut product);
             let mut squares = [0.0f64; 2];
             for (i, (x, p)) in x.iter_mut().zip(&product).enumerate() {
-                let y = self.divided(i, p);
+                let y = times(self.inverse(i), p);
                 for (x, y) in x.iter().zip(&y) {
                     squares[0] += f64::from(x * x);
                     squares[1] += f64::from(y * y);
@@ -254,71 +202,19 @@ impl<const B: usize> Operator<B> {
         value
     }
 
-    /// One sweep forward from zero: `x = (D + L)^-1 b`; then `rest = b - A x`.
-    pub fn sweep_forward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
-        self.each_chunk(x, |chunk, x| {
-            for i in chunk.clone() {
-                let mut sum = Sum::new();
-                for k in self.offsets[i]..self.diagonals[i] {
-                    let j = self.columns[k] as usize;
-                    if j >= chunk.start {
-                        sum.add(&self.blocks[k], &x[j - chunk.start]);
-                    }
-                }
-                x[i - chunk.start] = self.divided(i, &sum.from(&b[i]));
-            }
-        });
-        let x = &*x;
-        self.each_chunk(rest, |chunk, rest| {
-            for i in chunk.clone() {
-                let mut sum = Sum::new();
-                for k in self.offsets[i]..self.diagonals[i] {
-                    let j = self.columns[k] as usize;
-                    if j >= chunk.start {
-                        break;
-                    }
-                    sum.add(&self.blocks[k], &x[j]);
-                }
-                for k in self.diagonals[i] + 1..self.offsets[i + 1] {
-                    sum.add(&self.blocks[k], &x[self.columns[k] as usize]);
-                }
-                rest[i - chunk.start] = sum.from(&self.added_part(i, &x[i]));
-            }
-        });
-    }
-
-    /// One sweep backward: the transpose of the sweep forward.
-    pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], before: &mut [Entry<B>]) {
-        if self.chunks.len() > 1 {
-            before.copy_from_slice(x);
-        }
-        let before = &*before;
-        self.each_chunk(x, |chunk, x| {
-            for i in chunk.clone().rev() {
-                let here = i - chunk.start;
-                let mut right = self.added_part(i, &x[here]);
-                right.iter_mut().zip(&b[i]).for_each(|(s, b)| *s += b);
-                let mut sum = Sum::new();
-                for k in self.row(i) {
-                    let j = self.columns[k] as usize;
-                    if k != self.diagonals[i] {
-                        let other = if chunk.contains(&j) { &x[j - chunk.start] } else { &before[j] };
-                        sum.add(&self.blocks[k], other);
-                    }
-                }
-                x[here] = self.divided(i, &sum.from(&right));
-            }
-        });
-    }
-
     /// What was added to the diagonal, times `x`.
     #[inline(always)]
-    fn added_part(&self, i: usize, x: &Entry<B>) -> Entry<B> {
+    pub fn added_part(&self, i: usize, x: &Entry<B>) -> Entry<B> {
         self.added.get(i).map_or([0.0; B], |added| std::array::from_fn(|a| added[a] * x[a]))
     }
 
+    /// Whether there are several chunks.
+    pub fn is_chunked(&self) -> bool {
+        self.chunks.len() > 1
+    }
+
     /// Every chunk with its part of `out`, at once.
-    fn each_chunk(&self, out: &mut [Entry<B>], run: impl Fn(&Range<usize>, &mut [Entry<B>]) + Sync) {
+    pub fn each_chunk(&self, out: &mut [Entry<B>], run: impl Fn(&Range<usize>, &mut [Entry<B>]) + Sync) {
         if let [chunk] = &self.chunks[..] {
             return run(chunk, out);
         }

@@ -127,11 +127,14 @@ fn rigid_motions_are_prolonged_exactly_away_from_supports() {
 fn restriction_is_the_transpose_of_prolongation() {
     let weight = Dense([[1.0, -2.0, 3.0, 0.5, 0.0, 7.0], [0.0; 6], [2.0, 4.0, -1.0, 1.0, 1.0, 3.0]]);
     let (coarse, fine) = ([1.0, 2.0, -1.0, 0.5, 3.0, 0.25], [2.0, 5.0, -3.0]);
-    let (mut up, mut down) = ([0.0; 3], [0.0; 6]);
-    weight.add(&coarse, &mut up);
-    weight.add_transposed(&fine, &mut down);
     let inner = |a: &[f32], b: &[f32]| -> f32 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let [(mut up, mut down), (mut fused_up, mut fused_down)] = [([0.0; 3], [0.0; 6]); 2];
+    weight.add::<false>(&coarse, &mut up);
+    weight.add_transposed::<false>(&fine, &mut down);
     assert_eq!(inner(&up, &fine), inner(&down, &coarse));
+    weight.add::<true>(&coarse, &mut fused_up);
+    weight.add_transposed::<true>(&fine, &mut fused_down);
+    assert_eq!((fused_up, fused_down), (up, down));
 }
 
 /// A preconditioner of conjugate gradients has to be symmetric and positive: with several chunks too.

@@ -1,21 +1,25 @@
 //! From a level to the next and back: the prolongation, its rows by node.
 
+use std::ops::Range;
+
+use lanes::{LanePath, on_path};
 use rayon::prelude::*;
 use shape::Coarser;
 
 use super::aggregate::{Aggregates, MODES, Modes, NONE};
 use super::operator::{Entry, Operator};
+use super::sweep::times;
 
 /// What a node of a level with B degrees of freedom takes from a node of the next with C.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {
     /// `x += P coarse`.
-    fn add(&self, coarse: &Entry<C>, x: &mut Entry<B>);
+    fn add<const FMA: bool>(&self, coarse: &Entry<C>, x: &mut Entry<B>);
     /// `sum += P^T rest`.
-    fn add_transposed(&self, rest: &Entry<B>, sum: &mut Entry<C>);
+    fn add_transposed<const FMA: bool>(&self, rest: &Entry<B>, sum: &mut Entry<C>);
     /// `rows += A P`, a block by columns, rows by degree of freedom.
-    fn multiply(&self, block: &[[f64; B]; B], rows: &mut [[f64; C]; B]);
+    fn multiply<const FMA: bool>(&self, block: &[[f64; B]; B], rows: &mut [[f64; C]; B]);
     /// `sum += P^T rows`, by rows.
-    fn multiply_transposed(&self, rows: &[[f64; C]; B], sum: &mut [[f64; C]; C]);
+    fn multiply_transposed<const FMA: bool>(&self, rows: &[[f64; C]; B], sum: &mut [[f64; C]; C]);
 }
 
 /// Any linear map: of a smoothed aggregate. By rows.
@@ -24,42 +28,45 @@ pub(super) struct Dense<const B: usize>(pub [[f32; MODES]; B]);
 
 impl<const B: usize> Weight<B, MODES> for Dense<B> {
     #[inline(always)]
-    fn add(&self, coarse: &Entry<MODES>, x: &mut Entry<B>) {
+    fn add<const FMA: bool>(&self, coarse: &Entry<MODES>, x: &mut Entry<B>) {
+        // A sum of its own for each weight: the next does not have to wait for it.
+        for (x, row) in x.iter_mut().zip(&self.0) {
+            *x += row.iter().zip(coarse).fold(0.0, |sum, (weight, c)| single::<FMA>(*weight, *c, sum));
+        }
+    }
+
+    #[inline(always)]
+    fn add_transposed<const FMA: bool>(&self, rest: &Entry<B>, sum: &mut Entry<MODES>) {
         for a in 0..B {
             for m in 0..MODES {
-                x[a] += self.0[a][m] * coarse[m];
+                sum[m] = single::<FMA>(self.0[a][m], rest[a], sum[m]);
             }
         }
     }
 
     #[inline(always)]
-    fn add_transposed(&self, rest: &Entry<B>, sum: &mut Entry<MODES>) {
-        for a in 0..B {
-            for m in 0..MODES {
-                sum[m] += self.0[a][m] * rest[a];
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn multiply(&self, block: &[[f64; B]; B], rows: &mut [[f64; MODES]; B]) {
+    fn multiply<const FMA: bool>(&self, block: &[[f64; B]; B], rows: &mut [[f64; MODES]; B]) {
         for b in 0..B {
             let weights = self.0[b].map(f64::from);
             for a in 0..B {
                 for m in 0..MODES {
-                    rows[a][m] += block[b][a] * weights[m];
+                    rows[a][m] = fused::<FMA>(block[b][a], weights[m], rows[a][m]);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn multiply_transposed(&self, rows: &[[f64; MODES]; B], sum: &mut [[f64; MODES]; MODES]) {
+    fn multiply_transposed<const FMA: bool>(
+        &self,
+        rows: &[[f64; MODES]; B],
+        sum: &mut [[f64; MODES]; MODES],
+    ) {
         for a in 0..B {
             for m in 0..MODES {
                 let weight = f64::from(self.0[a][m]);
                 for n in 0..MODES {
-                    sum[m][n] += weight * rows[a][n];
+                    sum[m][n] = fused::<FMA>(weight, rows[a][n], sum[m][n]);
                 }
             }
         }
@@ -72,32 +79,44 @@ pub(super) struct Diagonal(pub [f32; 3]);
 
 impl Weight<3, 3> for Diagonal {
     #[inline(always)]
-    fn add(&self, coarse: &Entry<3>, x: &mut Entry<3>) {
-        (0..3).for_each(|a| x[a] += self.0[a] * coarse[a]);
+    fn add<const FMA: bool>(&self, coarse: &Entry<3>, x: &mut Entry<3>) {
+        (0..3).for_each(|a| x[a] = single::<FMA>(self.0[a], coarse[a], x[a]));
     }
 
     #[inline(always)]
-    fn add_transposed(&self, rest: &Entry<3>, sum: &mut Entry<3>) {
-        self.add(rest, sum);
+    fn add_transposed<const FMA: bool>(&self, rest: &Entry<3>, sum: &mut Entry<3>) {
+        self.add::<FMA>(rest, sum);
     }
 
     #[inline(always)]
-    fn multiply(&self, block: &[[f64; 3]; 3], rows: &mut [[f64; 3]; 3]) {
+    fn multiply<const FMA: bool>(&self, block: &[[f64; 3]; 3], rows: &mut [[f64; 3]; 3]) {
         for b in 0..3 {
             for a in 0..3 {
-                rows[a][b] += block[b][a] * f64::from(self.0[b]);
+                rows[a][b] = fused::<FMA>(block[b][a], f64::from(self.0[b]), rows[a][b]);
             }
         }
     }
 
     #[inline(always)]
-    fn multiply_transposed(&self, rows: &[[f64; 3]; 3], sum: &mut [[f64; 3]; 3]) {
+    fn multiply_transposed<const FMA: bool>(&self, rows: &[[f64; 3]; 3], sum: &mut [[f64; 3]; 3]) {
         for a in 0..3 {
             for b in 0..3 {
-                sum[a][b] += f64::from(self.0[a]) * rows[a][b];
+                sum[a][b] = fused::<FMA>(f64::from(self.0[a]), rows[a][b], sum[a][b]);
             }
         }
     }
+}
+
+/// `a x + sum`.
+#[inline(always)]
+fn fused<const FMA: bool>(a: f64, x: f64, sum: f64) -> f64 {
+    if FMA { a.mul_add(x, sum) } else { a * x + sum }
+}
+
+/// `a x + sum` in single precision.
+#[inline(always)]
+fn single<const FMA: bool>(a: f32, x: f32, sum: f32) -> f32 {
+    if FMA { a.mul_add(x, sum) } else { a * x + sum }
 }
 
 /// A prolongation.
@@ -123,14 +142,8 @@ impl<W> Transfer<W> {
     where
         W: Weight<B, C>,
     {
-        in_parts(rest.len(), out, |rows, out| {
-            for i in rows {
-                let (columns, weights) = self.row(i);
-                for (&column, weight) in columns.iter().zip(weights) {
-                    weight.add_transposed(&rest[i], &mut out[column as usize]);
-                }
-            }
-        });
+        let path = LanePath::best();
+        in_parts(rest.len(), out, |rows, out| restrict_rows(path, self, rows, rest, out));
     }
 
     /// `x += P coarse`.
@@ -138,12 +151,52 @@ impl<W> Transfer<W> {
     where
         W: Weight<B, C>,
     {
-        x.par_iter_mut().with_min_len(2048).enumerate().for_each(|(i, x)| {
-            let (columns, weights) = self.row(i);
-            for (&column, weight) in columns.iter().zip(weights) {
-                weight.add(&coarse[column as usize], x);
-            }
-        });
+        const ROWS: usize = 2048;
+        let path = LanePath::best();
+        let part = |(part, x): (usize, &mut [Entry<B>])| prolong_rows(path, self, part * ROWS, coarse, x);
+        x.par_chunks_mut(ROWS).enumerate().for_each(part);
+    }
+}
+
+on_path! {
+    fn restrict_rows<const B: usize, const C: usize; W: [Weight<B, C>]>(
+        transfer: &Transfer<W>, rows: Range<usize>, rest: &[Entry<B>], out: &mut [Entry<C>],
+    ) = restrict_lanes
+}
+on_path! {
+    fn prolong_rows<const B: usize, const C: usize; W: [Weight<B, C>]>(
+        transfer: &Transfer<W>, start: usize, coarse: &[Entry<C>], x: &mut [Entry<B>],
+    ) = prolong_lanes
+}
+
+#[inline(always)]
+fn restrict_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, C>>(
+    transfer: &Transfer<W>,
+    rows: Range<usize>,
+    rest: &[Entry<B>],
+    out: &mut [Entry<C>],
+) {
+    for i in rows {
+        let (columns, weights) = transfer.row(i);
+        for (&column, weight) in columns.iter().zip(weights) {
+            weight.add_transposed::<FMA>(&rest[i], &mut out[column as usize]);
+        }
+    }
+}
+
+/// Of the rows from `start` on.
+#[inline(always)]
+fn prolong_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, C>>(
+    transfer: &Transfer<W>,
+    start: usize,
+    coarse: &[Entry<C>],
+    x: &mut [Entry<B>],
+) {
+    for (i, x) in x.iter_mut().enumerate() {
+        let (columns, weights) = transfer.row(start + i);
+        for (&column, weight) in columns.iter().zip(weights) {
+            weight.add::<FMA>(&coarse[column as usize], x);
+        }
     }
 }
 
@@ -182,7 +235,7 @@ impl<const B: usize> Transfer<Dense<B>> {
             }
             for (column, Dense(sum)) in &mut row[start..] {
                 for m in 0..MODES {
-                    let divided = matrix.divided(i, &std::array::from_fn(|a| sum[a][m]));
+                    let divided = times(matrix.inverse(i), &std::array::from_fn(|a| sum[a][m]));
                     for a in 0..B {
                         let own = if *column == aggregates.of[i] { functions[i][a][m] } else { 0.0 };
                         sum[a][m] = own - weight * divided[a];
@@ -254,7 +307,7 @@ fn joined<T: Send>(
 fn in_parts<const C: usize>(
     rows: usize,
     out: &mut [Entry<C>],
-    add: impl Fn(std::ops::Range<usize>, &mut [Entry<C>]) + Sync,
+    add: impl Fn(Range<usize>, &mut [Entry<C>]) + Sync,
 ) {
     const PART: usize = 16384;
     let count = rows.div_ceil(PART).clamp(1, 16);
