@@ -40,7 +40,7 @@ fn results(seed: u64, slower: impl Fn(&str, &str, &str) -> f64) -> RunSet {
         let of_run = drift + 0.03 * random.noise();
         let mut totals = [0.0; 3];
         for (order, phase) in PHASES.iter().enumerate() {
-            let base = 1e-4 * 7f64.powi(level as i32) * (1.0 + order as f64) * slower(case, method, phase);
+            let base = 3e-3 * 7f64.powi(level as i32) * (1.0 + order as f64) * slower(case, method, phase);
             let of_phase = of_run + 0.03 * random.noise();
             for (repeat, total) in totals.iter_mut().enumerate() {
                 let seconds = base * (of_phase + 0.02 * random.noise().abs()).exp();
@@ -88,7 +88,8 @@ fn of_a_hundred_metrics_at_most_one_is_called_by_mistake() {
             wholes += usize::from(times.whole.unwrap().called);
         }
         assert!(tested > 2000 && 100 * called <= tested, "{called} of {tested} with {pairs} pairs");
-        assert!(wholes <= 1, "{wholes}");
+        // Once in forty, of 19, 17 and 11 comparisons that share results.
+        assert!(wholes <= 2, "{wholes}");
     }
 }
 
@@ -118,6 +119,23 @@ fn one_phase_of_one_run_that_takes_twice_as_long_is_called() {
     let times = Times::of(&[(results(1, same), results(2, twice))]);
     let named = |r: &&Ratio| r.scope == Scope::Run && r.name.starts_with("beam tet10 level");
     assert_eq!(times.called.iter().filter(named).filter(|r| r.ratio > 1.5).count(), 2, "{:?}", times.called);
+}
+
+/// Of three repeats of 2 ms one other program can disturb all.
+#[test]
+fn of_one_pair_a_short_phase_is_not_called_by_itself() {
+    let short = |mut set: RunSet| {
+        set.records.iter_mut().for_each(|r| r.value *= 0.03);
+        set
+    };
+    let twice = |case: &str, method: &str, phase: &str| {
+        if (case, method, phase) == ("beam", "tet10", "solve") { 2.0 } else { 1.0 }
+    };
+    let pair = |seed: u64| (short(results(seed, same)), short(results(seed + 1, twice)));
+    let named = |r: &&Ratio| r.scope == Scope::Run && r.name.starts_with("beam tet10 level 1");
+    let called = |pairs: &[(RunSet, RunSet)]| Times::of(pairs).called.iter().filter(named).count();
+    assert_eq!(called(&[pair(1)]), 0);
+    assert!(called(&[pair(1), pair(3)]) >= 1);
 }
 
 #[test]
