@@ -31,6 +31,8 @@ pub struct Cli {
 pub enum Command {
     /// Run one scene, with some or all of its methods
     Run(RunArgs),
+    /// Run methods of a scene and write the body at every recorded state, as .vtu files and a .pvd series that ParaView opens
+    Fields(FieldsArgs),
     /// Print the stages a scene needs, those it does not, and why
     Plan {
         /// The scene file
@@ -102,6 +104,22 @@ pub enum Command {
         /// The command
         command: Option<String>,
     },
+}
+
+/// Arguments of `fields`.
+#[derive(Args)]
+pub struct FieldsArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Where to put a .pvd file and a folder for each method
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Arguments of `run`.

@@ -6,6 +6,7 @@ mod baseline;
 mod ci;
 mod colour;
 mod compare;
+mod fields;
 mod interrupt;
 mod json;
 mod list;
@@ -54,6 +55,7 @@ fn act(cli: Cli) -> u8 {
     colour::choose(cli.color);
     match cli.command {
         Command::Run(args) => run(&args),
+        Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Merge(args) => merge(&args),

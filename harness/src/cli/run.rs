@@ -8,7 +8,7 @@ use reports::{RunSet, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{affordable_methods, interrupt, open, report, take, text, unreported};
+use crate::cli::{affordable_methods, fields, interrupt, open, report, take, text, unreported};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
@@ -31,6 +31,11 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Ok(folder) => folder,
         Err(code) => return code,
     };
+    if let Some(out) = &args.out
+        && let Err(bad) = fields::clear(&out.join(fields::FOLDER))
+    {
+        return unreported(&bad);
+    }
     interrupt::install(args.out.as_deref(), false);
     let mut made = Made {
         args,
@@ -57,7 +62,8 @@ pub(super) fn run(args: &RunArgs) -> u8 {
             // A static run may take minutes.
             eprintln!("{} ...", method.id);
         }
-        let options = RunOptions { picture: args.out.is_some(), frames: true, split: None };
+        let kept = args.out.is_some();
+        let options = RunOptions { picture: kept, states: kept, frames: true, split: None };
         match group.run(&group.scenario(method.clone(), 0), options) {
             Ok(outcome) => made.finished(method, outcome),
             Err(unfinished) => made.failed(method, unfinished),
@@ -101,7 +107,7 @@ impl Made<'_> {
         self.code = failure.exit_code();
     }
 
-    fn finished(&mut self, method: &scene::Method, outcome: Outcome) {
+    fn finished(&mut self, method: &scene::Method, mut outcome: Outcome) {
         if self.args.format == Format::Json {
             print_json(&RunObject::finished(&outcome));
         }
@@ -117,6 +123,11 @@ impl Made<'_> {
         self.set.plans.extend(outcome.plan_entries());
         self.set.warnings.extend(outcome.warning_rows());
         self.set.fields.extend(outcome.field.clone());
+        if let (Some(out), Some(states)) = (&self.args.out, outcome.states.take())
+            && let Err(bad) = fields::write(&states, &method.id, &out.join(fields::FOLDER))
+        {
+            self.code = self.code.max(unreported(&bad));
+        }
         if let Some(reason) = &outcome.relaxed {
             eprintln!("relaxed: {reason} (method '{}')", method.id);
         }

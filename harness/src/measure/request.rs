@@ -51,6 +51,8 @@ pub(crate) struct Request<'a> {
     pub(crate) schemes: &'a [(SchemeSettings, Scheme)],
     /// Whether the surface displacement is kept for pictures.
     pub(crate) picture: bool,
+    /// Whether the body is kept at all recorded states.
+    pub(crate) states: bool,
     /// Repeats of the timed part.
     pub(crate) repeats: Repeats,
     /// The reference, where one is known.
@@ -73,6 +75,7 @@ impl<'a> Request<'a> {
             targets,
             schemes: &[],
             picture: false,
+            states: false,
             repeats: Repeats::ONCE,
             reference: None,
             beside: None,

@@ -6,6 +6,7 @@ mod load_step;
 mod plan;
 pub mod provenance;
 mod records;
+mod states;
 pub(crate) mod timing;
 mod warning;
 
@@ -20,6 +21,8 @@ pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
 pub use plan::{Plan, Stage, StageName};
 pub(crate) use records::run_id;
+pub use states::States;
+pub(crate) use states::{State, Tensors, ToolSkin};
 pub(crate) use timing::Meters;
 use timing::Timed;
 pub use warning::Warning;
@@ -162,6 +165,8 @@ pub struct Outcome {
     pub transfers: Vec<Transfer>,
     /// Surface displacement, where the scene asks for it.
     pub field: Option<SurfaceField>,
+    /// The body at the recorded states, where that was asked for.
+    pub states: Option<States>,
     /// Counts of what was done for all this.
     pub counters: Counters,
     /// Names of the tools.
@@ -214,6 +219,7 @@ impl Outcome {
             plan,
             transfers: Vec::new(),
             field: None,
+            states: None,
             counters: Counters::default(),
             tools: Vec::new(),
             last: None,

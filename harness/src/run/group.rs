@@ -38,6 +38,8 @@ pub struct Group<'a> {
 pub struct RunOptions {
     /// Keeps the surface displacement, for pictures.
     pub picture: bool,
+    /// Keeps the body at all recorded states, for programs that draw it.
+    pub states: bool,
     /// Runs the loop that the scene requests (`[output] repeated`) after the first solution.
     pub frames: bool,
     /// Solves a cloud once more, integrated by this rule, to tell its errors of integration and of discretisation apart.
@@ -206,6 +208,7 @@ impl<'a> Group<'a> {
             targets: &self.targets,
             schemes: self.schemes_for(&discretisation),
             picture: options.picture,
+            states: options.states,
             repeats: self.repeats,
             reference: self.reference.as_ref(),
             beside: self.beside.as_ref(),

@@ -16,7 +16,7 @@ use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
     self, Field, Reference, Request, check_probes, displacement, measure, of_tables, picture, probe_errors,
-    probe_history, probes, report_modes, report_steps, transfers, warnings,
+    probe_history, probes, report_modes, report_steps, states, transfers, warnings,
 };
 use crate::outcome::timing::Timed;
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
@@ -71,6 +71,9 @@ fn on_pool(
     let mut outcome = Outcome::new(identity, size(method, &prepared, solution.dofs), plan);
     outcome.memory = memory;
     outcome.identity.linear_solver = solution.solver().map(Into::into);
+    if request.states {
+        outcome.states = Some(states(&run)?);
+    }
     if solution.u.is_empty() {
         unloaded(&mut outcome, &run)?;
         outcome.phases = phases(&meters, &run);

@@ -167,7 +167,7 @@ impl Plan {
         let options = self.options(task, args);
         let repeats = if args.quick { QUICK } else { REPEATS };
         let Task { method, level, poisson, .. } = task;
-        let RunOptions { picture, frames, split } = options;
+        let RunOptions { picture, frames, split, states: _ } = options;
         let case = case_name(scene);
         let what = format!("{case} {method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
         key(text, &files(scene), &what)
@@ -177,7 +177,7 @@ impl Plan {
         let split = self.tables(task).find_map(|run| run.split);
         // Clouds of many seeds are of one kind: one loop is enough for them all.
         let frames = !args.quick && !self.is_one_of_many(task);
-        RunOptions { picture: task.picture, frames, split }
+        RunOptions { picture: task.picture, states: false, frames, split }
     }
 
     /// Runs a task with the reference of its group. A panic is the failure of this run alone.

@@ -159,6 +159,30 @@ impl ToolShape {
         self.shape().outline(body)
     }
 
+    /// The surface as quadrangles, for pictures beside a body of that extent (m): those of a grid on the box that holds the tool, drawn
+    /// towards its middle. Edges of boxes stay edges.
+    pub fn skin(&self, body: f64) -> (Vec<Vector3>, Vec<[u32; 4]>) {
+        let outline = self.outline(body);
+        let low = outline.iter().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(p));
+        let high = outline.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+        let (mut points, quads) = outline::cube();
+        for point in &mut points {
+            let way = point.component_mul(&half);
+            let is_inside = |part: f64| self.foot(&(middle + way * part)).0 < 0.0;
+            // Of a tool without end the box is what is drawn.
+            let (mut inside, mut outside) = (0.0, 1.0);
+            if !is_inside(1.0) {
+                for _ in 0..40 {
+                    let part = 0.5 * (inside + outside);
+                    *(if is_inside(part) { &mut inside } else { &mut outside }) = part;
+                }
+            }
+            *point = middle + way * outside;
+        }
+        (points, quads)
+    }
+
     /// Where the z axis of the frame points unless a scene says, of a tool that closes along a unit vector; `None` for a shape
     /// that stands along the axes of the scene.
     pub fn axis(&self, along: Vector3) -> Option<Vector3> {
@@ -178,4 +202,40 @@ impl ToolShape {
 /// Refuses a length that is none; written so that a NaN fails.
 fn size(what: &'static str, value: f64) -> Result<(), ContactError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Size { what, value }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn skins_lie_on_their_shapes_and_look_outwards() {
+        let shapes: [ToolShape; 3] = [
+            Sphere { radius: 0.01 }.into(),
+            RoundedBox { half: [0.01, 0.02, 0.005], radius: 0.002 }.into(),
+            Capsule { radius: 0.004, half_length: 0.02 }.into(),
+        ];
+        for shape in shapes {
+            let (points, quads) = shape.skin(0.1);
+            let far = points.iter().map(|p| shape.foot(p).0.abs()).fold(0.0, f64::max);
+            assert!(far < 1e-12, "{}: {far}", shape.name());
+            let mut volume = 0.0;
+            for [a, b, c, d] in quads.iter().map(|quad| quad.map(|k| points[k as usize])) {
+                let normal = (c - a).cross(&(d - b));
+                let middle = (a + b + c + d) / 4.0;
+                assert!(shape.foot(&middle).1.dot(&normal) > 0.0, "{}", shape.name());
+                volume += middle.dot(&normal) / 6.0;
+            }
+            // A ball of the same surface for scale: corners cut 1 to 3 % off.
+            let ball = 4.0 / 3.0 * std::f64::consts::PI * shape.inradius().powi(3);
+            assert!(volume > 0.95 * ball, "{}: {volume} of {ball}", shape.name());
+        }
+    }
+
+    #[test]
+    fn a_tool_without_end_is_drawn_beside_its_body() {
+        let (points, _) = ToolShape::from(Plate).skin(0.1);
+        let top = points.iter().map(|p| p.z).fold(f64::MIN, f64::max);
+        assert!(top.abs() < 1e-15 && points.iter().all(|p| p.norm() < 1.0), "{top}");
+    }
 }

@@ -21,6 +21,7 @@ use error::Parsed;
 
 pub use error::{FileError, Place, Problem};
 pub use rows::{Row, inverted, row_of_cell};
+pub use vtu::write::{Values, solution_vtu, surface_vtu};
 
 /// What [`read`] takes, for messages.
 pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu";

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use crate::{CellKind, FaceKind, Mesh};
+use crate::{CellKind, FaceKind, Mesh, Point3};
 
 /// Bytes of a block before they are packed, as VTK has them.
 const BLOCK: usize = 1 << 15;
@@ -30,6 +30,15 @@ impl Appended {
         let of = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
         format!("<DataArray type=\"{kind}\" Name=\"{name}\"{of} format=\"appended\" offset=\"{offset}\"/>\n")
     }
+
+    fn values(&mut self, values: &Data) -> String {
+        match values {
+            Data::Whole(name, values) => self.array(name, "Int32", 1, &little(values, i32::to_le_bytes)),
+            Data::Real(Values { name, components, numbers }) => {
+                self.array(name, "Float64", *components, &little(numbers, f64::to_le_bytes))
+            }
+        }
+    }
 }
 
 fn packed(block: &[u8]) -> Vec<u8> {
@@ -39,6 +48,47 @@ fn packed(block: &[u8]) -> Vec<u8> {
     encoder.finish().expect("memory takes it")
 }
 
+/// Cells by the nodes of each, in VTK's order.
+#[derive(Default)]
+struct Cells {
+    list: Vec<i64>,
+    ends: Vec<i64>,
+    types: Vec<u8>,
+}
+
+impl Cells {
+    fn push(&mut self, nodes: impl Iterator<Item = u32>, kind: u8) {
+        self.list.extend(nodes.map(i64::from));
+        self.ends.push(self.list.len() as i64);
+        self.types.push(kind);
+    }
+
+    fn of(mesh: &Mesh) -> Cells {
+        let mut cells = Cells::default();
+        for cell in 0..mesh.cell_count() {
+            cells.push(mesh.cell(cell).iter().copied(), type_number(mesh.kind(cell)));
+        }
+        cells
+    }
+}
+
+/// Integers or numbers of a grid, its points or its cells, by name.
+enum Data<'a> {
+    Whole(&'a str, Vec<i32>),
+    Real(&'a Values),
+}
+
+/// Numbers at the points or in the cells of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    /// What they are.
+    pub name: &'static str,
+    /// How many belong to a point or cell; six are a symmetric tensor: xx, yy, zz, xy, yz, xz.
+    pub components: usize,
+    /// All of them, those of a point or cell together.
+    pub numbers: Vec<f64>,
+}
+
 /// The file's bytes, in lengths of `unit` metres; or a name that it can't hold. Faces of groups are cells behind the solids.
 pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String> {
     let groups: Vec<&str> = mesh.group_names().collect();
@@ -46,54 +96,85 @@ pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String>
     if let Some(name) = names.into_iter().find(|name| name.is_empty() || name.contains(['\0', '\n', '\r'])) {
         return Err(name.into());
     }
-    let (mut list, mut ends, mut types) = (Vec::<i64>::new(), Vec::<i64>::new(), Vec::<u8>::new());
-    let (mut regions, mut surfaces) = (Vec::<i32>::new(), Vec::<i32>::new());
-    for cell in 0..mesh.cell_count() {
-        list.extend(mesh.cell(cell).iter().map(|&node| i64::from(node)));
-        ends.push(list.len() as i64);
-        types.push(type_number(mesh.kind(cell)));
-        regions.push(mesh.region(cell).into());
-        surfaces.push(-1);
-    }
+    let mut cells = Cells::of(mesh);
+    let mut regions: Vec<i32> = (0..mesh.cell_count()).map(|cell| mesh.region(cell).into()).collect();
+    let mut surfaces = vec![-1; mesh.cell_count()];
     for (surface, name) in groups.iter().enumerate() {
         for &facet in mesh.group(name).unwrap_or_default() {
-            list.extend(mesh.facet_nodes(facet).map(i64::from));
-            ends.push(list.len() as i64);
-            types.push(face_number(mesh.kind(facet.cell as usize).face_kind()));
+            cells.push(mesh.facet_nodes(facet), face_number(mesh.kind(facet.cell as usize).face_kind()));
             regions.push(-1);
             surfaces.push(surface as i32);
         }
     }
-    let points: Vec<u8> = mesh
-        .points()
-        .iter()
-        .flat_map(|p| p.coords.iter().flat_map(|x| (x / unit).to_le_bytes()).collect::<Vec<_>>())
-        .collect();
+    let field = text_array("region-names", mesh.region_names().iter().map(String::as_str))
+        + &text_array("surface-names", groups.iter().copied());
+    let of_cells = [Data::Whole("region", regions), Data::Whole("surface", surfaces)];
+    Ok(file(&field, (mesh.points(), unit), &cells, &[], &of_cells))
+}
+
+/// A body with what a solution has at its points and in its cells, in SI units; `time` is the instant, the part of the load or the number
+/// of the mode that it belongs to.
+pub fn solution_vtu(mesh: &Mesh, time: f64, at_points: &[Values], in_cells: &[Values]) -> Vec<u8> {
+    let regions = (0..mesh.cell_count()).map(|cell| mesh.region(cell).into()).collect();
+    let at_points: Vec<Data> = at_points.iter().map(Data::Real).collect();
+    let mut of_cells = vec![Data::Whole("region", regions)];
+    of_cells.extend(in_cells.iter().map(Data::Real));
+    file(&time_array(time), (mesh.points(), 1.0), &Cells::of(mesh), &at_points, &of_cells)
+}
+
+/// A surface of quadrangles, m, with numbers at its points; `bodies` has the number of the body that each quadrangle belongs to.
+pub fn surface_vtu(
+    points: &[Point3],
+    quads: &[[u32; 4]],
+    bodies: &[u32],
+    time: f64,
+    at_points: &[Values],
+) -> Vec<u8> {
+    let mut cells = Cells::default();
+    quads.iter().for_each(|quad| cells.push(quad.iter().copied(), face_number(FaceKind::Quad4)));
+    let at_points: Vec<Data> = at_points.iter().map(Data::Real).collect();
+    let bodies = bodies.iter().map(|&body| body as i32).collect();
+    file(&time_array(time), (points, 1.0), &cells, &at_points, &[Data::Whole("body", bodies)])
+}
+
+/// ParaView's name for the time of a file.
+fn time_array(time: f64) -> String {
+    format!(
+        "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">\n{time:e}\n</DataArray>\n"
+    )
+}
+
+fn file(field: &str, (points, unit): (&[Point3], f64), cells: &Cells, at: &[Data], of: &[Data]) -> Vec<u8> {
+    let coordinates: Vec<f64> = points.iter().flat_map(|p| p.coords.map(|x| x / unit).data.0[0]).collect();
     let mut data = Appended::default();
     let mut head = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n",
     );
-    head += &text_array("region-names", mesh.region_names().iter().map(String::as_str));
-    head += &text_array("surface-names", groups.iter().copied());
+    head += field;
     head += &format!(
-        "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
-        mesh.points().len(),
-        types.len()
+        "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+        points.len(),
+        cells.types.len()
     );
-    head += &data.array("Points", "Float64", 3, &points);
+    if !at.is_empty() {
+        head += "<PointData>\n";
+        at.iter().for_each(|values| head += &data.values(values));
+        head += "</PointData>\n";
+    }
+    head += "<Points>\n";
+    head += &data.array("Points", "Float64", 3, &little(&coordinates, f64::to_le_bytes));
     head += "</Points>\n<Cells>\n";
-    head += &data.array("connectivity", "Int64", 1, &little(&list, |v| v.to_le_bytes()));
-    head += &data.array("offsets", "Int64", 1, &little(&ends, |v| v.to_le_bytes()));
-    head += &data.array("types", "UInt8", 1, &types);
+    head += &data.array("connectivity", "Int64", 1, &little(&cells.list, i64::to_le_bytes));
+    head += &data.array("offsets", "Int64", 1, &little(&cells.ends, i64::to_le_bytes));
+    head += &data.array("types", "UInt8", 1, &cells.types);
     head += "</Cells>\n<CellData>\n";
-    head += &data.array("region", "Int32", 1, &little(&regions, |v| v.to_le_bytes()));
-    head += &data.array("surface", "Int32", 1, &little(&surfaces, |v| v.to_le_bytes()));
+    of.iter().for_each(|values| head += &data.values(values));
     head += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     let mut file = head.into_bytes();
     file.extend(data.bytes);
     file.extend(b"\n</AppendedData>\n</VTKFile>\n");
-    Ok(file)
+    file
 }
 
 fn little<T: Copy, const N: usize>(values: &[T], bytes: impl Fn(T) -> [u8; N]) -> Vec<u8> {

@@ -1,0 +1,92 @@
+//! The body at every recorded state as files: `tissuebench fields`, and beside the results of `run --out`.
+
+use std::fs;
+use std::path::Path;
+
+use reports::{ReportError, write_text};
+
+use crate::cli::args::FieldsArgs;
+use crate::cli::{affordable_methods, open, unreported};
+use crate::outcome::States;
+use crate::run::{Group, Repeats, RunOptions};
+
+/// Beside the results of a scene.
+pub(super) const FOLDER: &str = "volumes";
+
+/// Runs the methods and writes their fields; returns the exit code.
+pub(super) fn run(args: &FieldsArgs) -> u8 {
+    let (scene, chosen) = match open(&args.scene, &args.methods) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
+        return code;
+    }
+    let group = match Group::unreferenced(&scene, Repeats::ONCE) {
+        Ok(group) => group,
+        Err(failure) => {
+            eprintln!("{failure}");
+            return failure.exit_code();
+        }
+    };
+    let mut code = 0;
+    for index in chosen {
+        let method = &scene.methods[index];
+        let options = RunOptions { states: true, ..RunOptions::default() };
+        let outcome = match group.run(&group.scenario(method.clone(), 0), options) {
+            Ok(outcome) => outcome,
+            Err(unfinished) => {
+                eprintln!("{} (method '{}')", unfinished.failure, method.id);
+                code = code.max(unfinished.failure.exit_code());
+                continue;
+            }
+        };
+        if let Some(failure) = &outcome.stalled {
+            eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
+            code = code.max(failure.exit_code());
+        }
+        let Some(states) = outcome.states.filter(|states| !states.is_empty()) else {
+            eprintln!("no displacement to write (method '{}')", method.id);
+            continue;
+        };
+        match write(&states, &method.id, &args.out) {
+            Ok(()) => {
+                let series = args.out.join(format!("{}.pvd", method.id));
+                println!("{}: {} states", series.display(), states.len());
+            }
+            Err(bad) => code = code.max(unreported(&bad)),
+        }
+    }
+    code
+}
+
+/// Writes the files of a method into a folder, which is created where missing; parts of an earlier series of the method are removed.
+pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), ReportError> {
+    if states.is_empty() {
+        return Ok(());
+    }
+    let parts = folder.join(method);
+    clear(&parts)?;
+    fs::create_dir_all(&parts).map_err(|source| ReportError::Unwritten { path: parts.clone(), source })?;
+    let mut files = states.files(method);
+    let series = files.next();
+    // The series comes last: it names parts that are there.
+    files.chain(series).try_for_each(|(name, bytes)| write_text(&folder.join(name), bytes))
+}
+
+/// Removes the files of earlier series from a folder, and with them the folder if nothing else is in it.
+pub(super) fn clear(folder: &Path) -> Result<(), ReportError> {
+    let unwritten = |source| ReportError::Unwritten { path: folder.into(), source };
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for entry in entries {
+        let path = entry.map_err(unwritten)?.path();
+        if path.is_dir() {
+            clear(&path)?;
+        } else if path.extension().is_some_and(|suffix| suffix == "vtu" || suffix == "pvd") {
+            fs::remove_file(&path).map_err(unwritten)?;
+        }
+    }
+    // Where something else is left the folder stays.
+    let _ = fs::remove_dir(folder);
+    Ok(())
+}

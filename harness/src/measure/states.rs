@@ -1,0 +1,118 @@
+//! What a run leaves for programs that draw bodies: displacement, stress and tools at every recorded state.
+
+use geometry::{Mesh, Point3, Search, Vector3};
+use shape::Matrix3;
+
+use super::Solved;
+use super::own_stress::OwnStress;
+use crate::Failure;
+use crate::discretise::Volume;
+use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
+use crate::scenario::PlacedTool;
+
+/// The recorded states of a procedure in steps, the end of one without, or the modes of vibration.
+pub(crate) fn states(run: &Solved) -> Result<States, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let mesh = method.mesh();
+    let to_mesh = match method.interpolates {
+        true => None,
+        false => Some(prepared.source.at_points(mesh.points())?.0),
+    };
+    let at_nodes = |u: &[Vector3]| to_mesh.as_ref().map_or_else(|| u.to_vec(), |rows| rows.rows().apply(u));
+    let cells = (solution.vibration.is_none() && !setup.relaxes())
+        .then(|| Averages::new(mesh, &prepared.volume, prepared.source.points_per_cell()));
+    let state = |time, u: &[Vector3], parameters: Option<&[f64]>, step: Option<&LoadStep>| State {
+        time,
+        displacement: at_nodes(u),
+        tensors: cells.as_ref().zip(parameters).map(|(cells, parameters)| tensors(run, cells, u, parameters)),
+        closures: step.map_or(Vec::new(), |step| step.tools.iter().map(|tool| tool.closure).collect()),
+    };
+    // Pressures of a field of its own are known at the end alone.
+    let mixed = prepared.volume.pressure.is_some();
+    let states = match (&solution.history, &solution.vibration) {
+        (Some(history), _) => {
+            let last = history.steps.len().saturating_sub(1);
+            let each = history.steps.iter().zip(&history.fields).enumerate();
+            each.map(|(k, (step, u))| {
+                let is_end = k == last && history.last.load == step.load;
+                let known = !mixed || is_end;
+                let parameters = known.then_some(&solution.pressure[..]);
+                state(step.time().unwrap_or(step.load), u, parameters, Some(step))
+            })
+            .collect()
+        }
+        (None, Some(vibration)) => {
+            let shapes = vibration.modes.shapes.iter().take(vibration.count).enumerate();
+            shapes.map(|(k, shape)| state((k + 1) as f64, shape, None, None)).collect()
+        }
+        (None, None) if solution.u.is_empty() => Vec::new(),
+        (None, None) => vec![state(1.0, &solution.u, Some(&solution.pressure), None)],
+    };
+    let tools = if solution.history.is_some() {
+        setup.tools.iter().map(|tool| skin(tool, mesh)).collect()
+    } else {
+        Vec::new()
+    };
+    Ok(States { mesh: mesh.clone(), states, tools })
+}
+
+/// A tool where it starts.
+fn skin(set: &PlacedTool, mesh: &Mesh) -> ToolSkin {
+    let first = mesh.points()[0].coords;
+    let (low, high) =
+        mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(&p.coords), high.sup(&p.coords)));
+    let (points, quads) = set.tool.shape().skin((high - low).max());
+    let place = set.tool.place(0.0);
+    ToolSkin {
+        points: points.iter().map(|p| place + set.turned * p).collect(),
+        quads,
+        along: set.tool.along(),
+    }
+}
+
+fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64]) -> Tensors {
+    let Solved { setup, prepared, .. } = *run;
+    let gradients = prepared.volume.rows.at().displacement_gradients(u);
+    let of_points = OwnStress::new(&setup.laws, prepared, &gradients, parameters).everywhere();
+    let j: Vec<f64> = gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).collect();
+    Tensors {
+        stress: cells.of(|q| of_points[q]),
+        det_f: cells.of(|q| Matrix3::identity() * j[q]).iter().map(|mean| mean[(0, 0)]).collect(),
+    }
+}
+
+/// Which quadrature points stand for each cell of the mesh, with their volumes.
+struct Averages<'a> {
+    weights: &'a [f64],
+    /// Quadrature points per cell, or the nearest one to the middle of each.
+    points: Result<usize, Vec<usize>>,
+    count: usize,
+}
+
+impl<'a> Averages<'a> {
+    fn new(mesh: &Mesh, volume: &'a Volume, per_cell: Option<usize>) -> Averages<'a> {
+        let at = volume.rows.at().points();
+        let points = per_cell.ok_or_else(|| {
+            let search = Search::new(at).expect("quadrature points are finite");
+            let middle = |cell| {
+                let corners: Vec<&Point3> = mesh.cell_points(cell).collect();
+                Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3>() / corners.len() as f64)
+            };
+            (0..mesh.cell_count()).map(|cell| search.nearest(&middle(cell), 1)[0].index as usize).collect()
+        });
+        Averages { weights: volume.rows.weights(), points, count: mesh.cell_count() }
+    }
+
+    /// Means by volume of the cell's points, or the value of the nearest.
+    fn of(&self, value: impl Fn(usize) -> Matrix3) -> Vec<Matrix3> {
+        let mean = |cell: usize| match &self.points {
+            Err(nearest) => value(nearest[cell]),
+            Ok(each) => {
+                let points = each * cell..each * (cell + 1);
+                let volume: f64 = self.weights[points.clone()].iter().sum();
+                points.map(|q| value(q) * self.weights[q]).sum::<Matrix3>() / volume
+            }
+        };
+        (0..self.count).map(mean).collect()
+    }
+}

@@ -1,0 +1,135 @@
+//! What a body was like at the recorded states, for programs that draw bodies: a `.pvd` series of `.vtu` files.
+
+use geometry::files::{Values, solution_vtu, surface_vtu};
+use geometry::{Mesh, Point3, Vector3};
+use shape::Matrix3;
+
+/// A body, and the tools with it, at the recorded states of a run.
+#[derive(Clone, Debug)]
+pub struct States {
+    /// The undeformed body; of a cloud the mesh that it was drawn from.
+    pub(crate) mesh: Mesh,
+    /// The states, in order.
+    pub(crate) states: Vec<State>,
+    /// The tools, where the procedure has steps.
+    pub(crate) tools: Vec<ToolSkin>,
+}
+
+/// A state.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    /// Time (s) in dynamics, part of the load in statics, 1 for a linear solution, number of a mode of vibration.
+    pub(crate) time: f64,
+    /// At the points of the mesh, m.
+    pub(crate) displacement: Vec<Vector3>,
+    /// Where they are known: not of modes, nor in tissue that relaxes.
+    pub(crate) tensors: Option<Tensors>,
+    /// Way of each tool from its start, m.
+    pub(crate) closures: Vec<f64>,
+}
+
+/// What each cell has, as means over its quadrature points.
+#[derive(Clone, Debug)]
+pub(crate) struct Tensors {
+    /// Cauchy stress, Pa.
+    pub(crate) stress: Vec<Matrix3>,
+    /// Determinant of the deformation gradient.
+    pub(crate) det_f: Vec<f64>,
+}
+
+/// The surface of a tool where it starts.
+#[derive(Clone, Debug)]
+pub(crate) struct ToolSkin {
+    /// m.
+    pub(crate) points: Vec<Point3>,
+    pub(crate) quads: Vec<[u32; 4]>,
+    /// Unit direction of its way.
+    pub(crate) along: Vector3,
+}
+
+impl States {
+    /// Files by their names relative to a folder: the series `NAME.pvd` first, then its parts in a folder `NAME`.
+    pub fn files<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (String, Vec<u8>)> + 'a {
+        let parts = self.states.iter().enumerate().flat_map(move |(k, state)| {
+            let body = (part(name, "body", k), self.body(state));
+            let tools = (!self.tools.is_empty()).then(|| (part(name, "tools", k), self.tools_at(state)));
+            std::iter::once(body).chain(tools)
+        });
+        std::iter::once((format!("{name}.pvd"), self.series(name).into_bytes())).chain(parts)
+    }
+
+    /// Whether there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// Number of states.
+    pub fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    fn series(&self, name: &str) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+        );
+        for (k, state) in self.states.iter().enumerate() {
+            let bodies = if self.tools.is_empty() { &["body"][..] } else { &["body", "tools"] };
+            for (number, what) in bodies.iter().enumerate() {
+                let (time, file) = (state.time, part(name, what, k));
+                text += &format!(
+                    "<DataSet timestep=\"{time:?}\" group=\"\" part=\"{number}\" name=\"{what}\" file=\"{file}\"/>\n"
+                );
+            }
+        }
+        text + "</Collection>\n</VTKFile>\n"
+    }
+
+    fn body(&self, state: &State) -> Vec<u8> {
+        let displacement = vectors("displacement", &state.displacement);
+        let in_cells = state.tensors.as_ref().map_or(Vec::new(), Tensors::values);
+        solution_vtu(&self.mesh, state.time, &[displacement], &in_cells)
+    }
+
+    fn tools_at(&self, state: &State) -> Vec<u8> {
+        let (mut points, mut quads, mut bodies, mut moved) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (number, (tool, closure)) in self.tools.iter().zip(&state.closures).enumerate() {
+            let first = points.len() as u32;
+            points.extend_from_slice(&tool.points);
+            quads.extend(tool.quads.iter().map(|quad| quad.map(|k| first + k)));
+            bodies.resize(quads.len(), number as u32);
+            moved.resize(points.len(), tool.along * *closure);
+        }
+        surface_vtu(&points, &quads, &bodies, state.time, &[vectors("displacement", &moved)])
+    }
+}
+
+impl Tensors {
+    fn values(&self) -> Vec<Values> {
+        let each = |name, value: &dyn Fn(&Matrix3) -> f64| Values {
+            name,
+            components: 1,
+            numbers: self.stress.iter().map(value).collect(),
+        };
+        let six = |s: &Matrix3| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]];
+        vec![
+            Values { name: "stress", components: 6, numbers: self.stress.iter().flat_map(six).collect() },
+            each("pressure", &|s| -s.trace() / 3.0),
+            each("von_mises", &von_mises),
+            Values { name: "det_f", components: 1, numbers: self.det_f.clone() },
+        ]
+    }
+}
+
+/// `sqrt(3/2 s : s)` with the deviator `s` of a stress.
+fn von_mises(stress: &Matrix3) -> f64 {
+    let deviator = stress - Matrix3::identity() * (stress.trace() / 3.0);
+    (1.5 * deviator.norm_squared()).sqrt()
+}
+
+fn vectors(name: &'static str, values: &[Vector3]) -> Values {
+    Values { name, components: 3, numbers: values.iter().flat_map(|v| v.data.0[0]).collect() }
+}
+
+fn part(name: &str, what: &str, k: usize) -> String {
+    format!("{name}/{what}-{:04}.vtu", k + 1)
+}
