@@ -75,7 +75,7 @@ pub enum FileError {
         unit: f64,
     },
     /// A name from which no format follows.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX) and .vtu (VTK); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
@@ -156,6 +156,32 @@ pub enum Problem {
     NotFinite {
         /// Node number in the file.
         number: u64,
+    },
+    /// A triangle with a coordinate that is not finite.
+    #[error("triangle {number} has a coordinate that is not finite")]
+    NotFiniteFace {
+        /// Number of the triangle in the file, from 1.
+        number: u64,
+    },
+    /// A face whose corner isn't in the file.
+    #[error("face {face} names corner {node}, which the file does not have before it")]
+    UnknownCorner {
+        /// Number of the face in the file, from 1.
+        face: u64,
+        /// The corner as the file has it.
+        node: i64,
+    },
+    /// A file of another size than its own counts make.
+    #[error("{count} {what} take {expected} bytes, but the file has {found}")]
+    Size {
+        /// Of what.
+        what: &'static str,
+        /// How many the file says there are.
+        count: usize,
+        /// Bytes these take.
+        expected: usize,
+        /// Bytes there are.
+        found: usize,
     },
     /// An element whose node isn't in the file.
     #[error("element {element} names node {node}, which the file does not have")]
