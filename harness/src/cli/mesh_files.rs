@@ -24,6 +24,7 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
             let each = files.iter().map(|file| info(file, *unit));
             each.fold(Ok(()), Result::and)
         }
+        MeshAction::Make(args) => super::mesh_make::make(args),
         MeshAction::Convert { from, to, element } => convert(from, to, element.as_deref()),
     }
 }
@@ -43,7 +44,7 @@ fn convert(from: &Path, to: &Path, element: Option<&str>) -> Result<(), Failure>
     Ok(())
 }
 
-fn input(error: impl std::fmt::Display) -> Failure {
+pub(super) fn input(error: impl std::fmt::Display) -> Failure {
     Failure::Input(error.to_string())
 }
 
@@ -85,7 +86,7 @@ fn info(file: &Path, unit: LengthUnit) -> Result<(), Failure> {
     Ok(())
 }
 
-fn row(name: &str, value: &str) {
+pub(super) fn row(name: &str, value: &str) {
     println!("  {name:<10}  {value}");
 }
 

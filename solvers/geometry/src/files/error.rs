@@ -101,6 +101,9 @@ pub enum Problem {
         /// The beginning of the file.
         found: String,
     },
+    /// A surface where a mesh is wanted.
+    #[error("is a surface, not a mesh; `tissuebench mesh make` fills it with tetrahedra")]
+    Surface,
     /// A version of a format that is not understood.
     #[error("format '{found}'; of Gmsh 2.2, 4.0 and 4.1 are read")]
     Version {

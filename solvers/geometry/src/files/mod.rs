@@ -97,6 +97,7 @@ fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
         [b'$', ..] => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] => vtu::parse(bytes),
+        _ if surface::holds_surface(bytes, file) => Err((Place::Line(1), Problem::Surface)),
         _ => unknown(bytes),
     }
 }

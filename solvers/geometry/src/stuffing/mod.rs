@@ -31,6 +31,10 @@ const CHUNK: usize = 64;
 /// Nodes that no machine here takes.
 const MOST: f64 = 2e7;
 
+/// Spacings that are tried for a number of nodes, and how close is close enough.
+const TRIES: usize = 6;
+const CLOSE: f64 = 0.02;
+
 /// How a surface is filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stuffing {
@@ -117,6 +121,36 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
         return Err(StuffingError::TooCoarse { spacing });
     }
     Ok(Stuffed { mesh: mesh(&points, &parts), left_out: parts.left_out })
+}
+
+/// Fills a surface with about so many nodes: the nearest of some spacings, found as nodes grow with the third power of one.
+///
+/// # Errors
+/// As [`stuff`].
+pub fn stuff_with_nodes(surface: &Surface, nodes: usize, doublings: u32) -> Result<(Stuffed, f64), StuffingError> {
+    let wanted = nodes.max(1) as f64;
+    let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / wanted).cbrt();
+    let mut best: Option<(f64, Stuffed, f64)> = None;
+    for _ in 0..TRIES {
+        let found = match stuff(surface, Stuffing { spacing, doublings }) {
+            Ok(stuffed) => {
+                let found = stuffed.mesh.points().len() as f64;
+                let off = (found / wanted).ln().abs();
+                if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                    best = Some((off, stuffed, spacing));
+                }
+                if off < CLOSE {
+                    break;
+                }
+                found
+            }
+            // Half the spacing has eight times the nodes.
+            Err(StuffingError::TooCoarse { .. }) => wanted / 8.0,
+            Err(bad) => return Err(bad),
+        };
+        spacing *= (found / wanted).cbrt();
+    }
+    best.map(|(_, stuffed, spacing)| (stuffed, spacing)).ok_or(StuffingError::TooCoarse { spacing })
 }
 
 /// The mesh of the parts: nodes in the order in which cells have them, corners turned to a positive volume.

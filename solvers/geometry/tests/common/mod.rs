@@ -75,3 +75,41 @@ pub fn moved(mut soup: Soup, by: [f64; 3]) -> Soup {
 pub fn surface(soup: Soup) -> Surface {
     Surface::new(soup, 1.0).unwrap_or_else(|bad| panic!("{bad}"))
 }
+
+/// A sphere whose corners are pushed out by up to `by`, by chance.
+pub fn jagged(levels: u32, by: f64, seed: u64) -> Soup {
+    let mut state = seed;
+    let mut soup = sphere_like(levels, |n| n);
+    for p in &mut soup.points {
+        // Knuth's generator: the same numbers everywhere.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *p *= 1.0 + by * ((state >> 11) as f64 / (1u64 << 53) as f64);
+    }
+    soup
+}
+
+/// A body of revolution about z from -2.5 to 2.5, of a radius above zero between the ends.
+pub fn turned(along: u32, around: u32, radius: impl Fn(f64) -> f64) -> Soup {
+    let mut soup = Soup::default();
+    soup.points.push(Point3::new(0.0, 0.0, -2.5));
+    for i in 1..along {
+        let z = -2.5 + 5.0 * f64::from(i) / f64::from(along);
+        for j in 0..around {
+            let angle = std::f64::consts::TAU * f64::from(j) / f64::from(around);
+            soup.points.push(Point3::new(radius(z) * angle.cos(), radius(z) * angle.sin(), z));
+        }
+    }
+    soup.points.push(Point3::new(0.0, 0.0, 2.5));
+    let at = |i: u32, j: u32| 1 + (i - 1) * around + j % around;
+    let last = soup.points.len() as u32 - 1;
+    for j in 0..around {
+        soup.triangles.push([0, at(1, j + 1), at(1, j)]);
+        for i in 1..along - 1 {
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            soup.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        soup.triangles.push([at(along - 1, j), at(along - 1, j + 1), last]);
+    }
+    soup.faces = (1..=soup.triangles.len() as u32).collect();
+    soup
+}

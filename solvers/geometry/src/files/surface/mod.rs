@@ -41,7 +41,11 @@ pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surfac
 
 /// Whether a file holds a surface, by what it begins with; a file that can't be read does not.
 pub fn is_surface(file: &Path) -> bool {
-    super::bytes(file).is_ok_and(|bytes| kind(&bytes, file).is_some())
+    super::bytes(file).is_ok_and(|bytes| holds_surface(&bytes, file))
+}
+
+pub(super) fn holds_surface(bytes: &[u8], file: &Path) -> bool {
+    kind(bytes, file).is_some()
 }
 
 enum Kind {
