@@ -26,7 +26,7 @@ fn files_of_other_programs_hold_two_cubes() {
     for kind in CellKind::ALL {
         let files = made(kind);
         let encodings = if [CellKind::Tet10, CellKind::Hex8].contains(&kind) { 9 } else { 0 };
-        assert_eq!(files.len(), 10 + encodings, "{files:?}");
+        assert_eq!(files.len(), 14 + encodings, "{files:?}");
         let first = files::read(&files[0], 1.0).unwrap();
         for file in &files {
             let mesh = files::read(file, 1.0).unwrap_or_else(|bad| panic!("{bad}"));
@@ -46,7 +46,7 @@ fn files_of_other_programs_hold_two_cubes() {
             }
             let (left, right, ends) = match file.extension().unwrap().to_str() {
                 Some("inp") => ("left_half", "right", ["held", "pressed"]),
-                Some("vtu") => ("region-11", "region-12", ["surface-21", "surface-22"]),
+                Some("vtu" | "vtk") => ("region-11", "region-12", ["surface-21", "surface-22"]),
                 _ => ("left half", "right", ["held", "pressed"]),
             };
             let mut names = mesh.region_names().to_vec();

@@ -17,6 +17,8 @@ pub enum Place {
     Byte(usize),
     /// Cell number from 0, of a file that has arrays of cells.
     Cell(usize),
+    /// Node number from 0, of a file that has arrays of nodes.
+    Node(usize),
 }
 
 impl fmt::Display for Place {
@@ -25,6 +27,7 @@ impl fmt::Display for Place {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
             Place::Cell(cell) => write!(f, "cell {cell}"),
+            Place::Node(node) => write!(f, "node {node}"),
         }
     }
 }
@@ -86,7 +89,7 @@ pub enum FileError {
 fn short(place: Place) -> String {
     match place {
         Place::Line(line) => line.to_string(),
-        Place::Byte(_) | Place::Cell(_) => format!(" {place}"),
+        Place::Byte(_) | Place::Cell(_) | Place::Node(_) => format!(" {place}"),
     }
 }
 
@@ -95,7 +98,7 @@ fn short(place: Place) -> String {
 pub enum Problem {
     /// None of the formats that are read.
     #[error(
-        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1), Abaqus .inp (*HEADING, *NODE) and VTK .vtu (<VTKFile) are"
+        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile) are, and surfaces: STL, OBJ, PLY"
     )]
     Format {
         /// The beginning of the file.
@@ -105,7 +108,7 @@ pub enum Problem {
     #[error("is a surface, not a mesh; `tissuebench mesh make` fills it with tetrahedra")]
     Surface,
     /// A version of a format that is not understood.
-    #[error("format '{found}'; of Gmsh 2.2, 4.0 and 4.1 are read")]
+    #[error("format '{found}'; of Gmsh 1, 2.2, 4.0 and 4.1 are read")]
     Version {
         /// The line found.
         found: String,

@@ -1,4 +1,4 @@
-//! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu).
+//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk); closed surfaces: STL, OBJ, PLY.
 //!
 //! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one `Content`,
 //! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
@@ -12,6 +12,8 @@ mod lines;
 mod numbers;
 mod rows;
 mod surface;
+mod vtk;
+mod vtk_cells;
 mod vtu;
 
 use std::path::{Path, PathBuf};
@@ -25,11 +27,11 @@ pub use rows::{Row, inverted, row_of_cell};
 pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 
 /// What [`read`] takes, for messages.
-pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu";
+pub const READ: &str = "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
 
 /// Whether a file is a mesh by its name, where it may be a list of points too.
 pub fn is_mesh(file: &Path) -> bool {
-    ["msh", "inp", "vtu"].iter().any(|known| suffix(file) == *known)
+    ["msh", "inp", "vtu", "vtk"].iter().any(|known| suffix(file) == *known)
 }
 
 fn suffix(file: &Path) -> String {
@@ -90,13 +92,14 @@ fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     std::fs::read(file).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
-/// By what a file begins with: `$MeshFormat` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML.
+/// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
         [b'$', ..] => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] => vtu::parse(bytes),
+        rest if rest.starts_with(b"# vtk") => vtk::parse(bytes),
         _ if surface::holds_surface(bytes, file) => Err((Place::Line(1), Problem::Surface)),
         _ => unknown(bytes),
     }
@@ -108,6 +111,14 @@ fn unknown<T>(bytes: &[u8]) -> Parsed<T> {
     let line = bytes[start..].split(|&b| b == b'\n').next().unwrap_or_default();
     let found = String::from_utf8_lossy(&line[..line.len().min(40)]).trim().to_string();
     Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
+}
+
+/// The text of a file.
+fn text(bytes: &[u8]) -> Parsed<&str> {
+    std::str::from_utf8(bytes).map_err(|bad| {
+        let place = Place::Line(line_of(bytes, bad.valid_up_to()));
+        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
+    })
 }
 
 /// The number of the line, from 1, that holds a byte.

@@ -6,8 +6,8 @@ mod stl;
 
 use std::path::Path;
 
-use super::error::{FileError, Parsed};
-use super::{line_of, suffix};
+use super::error::FileError;
+use super::suffix;
 use crate::Surface;
 use crate::surface::{Soup, SurfaceError};
 
@@ -69,12 +69,4 @@ fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
         let other = begins(b"$") || begins(b"*") || begins(b"<") || begins(b"# vtk");
         (suffix(file) == "stl" && !other).then_some(Kind::Stl)
     }
-}
-
-/// The text of a file.
-fn text(bytes: &[u8]) -> Parsed<&str> {
-    std::str::from_utf8(bytes).map_err(|bad| {
-        let place = super::Place::Line(line_of(bytes, bad.valid_up_to()));
-        (place, super::Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
-    })
 }

@@ -21,7 +21,7 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
-    let mut lines = Lines::new(super::text(bytes)?);
+    let mut lines = Lines::new(super::super::text(bytes)?);
     let mut soup = Soup::default();
     let mut faces = 0;
     while let Some(line) = lines.next() {

@@ -97,7 +97,7 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
         let Some(end) = bytes[at..].iter().position(|&b| b == b'\n') else {
             return Err((place, Problem::End { expected: "end_header" }));
         };
-        let line = super::text(&bytes[at..at + end]).map_err(|(_, problem)| (place, problem))?.trim();
+        let line = super::super::text(&bytes[at..at + end]).map_err(|(_, problem)| (place, problem))?.trim();
         at += end + 1;
         let wrong = |expected: &'static str| (place, Problem::Expected { expected, found: line.into() });
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
@@ -147,7 +147,7 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
     }
     let values = match format {
         Some("ascii") => {
-            let text = super::text(&bytes[at..])?;
+            let text = super::super::text(&bytes[at..])?;
             let lines = text.lines().enumerate();
             let words = lines.flat_map(move |(line, words)| {
                 words.split_ascii_whitespace().map(move |word| (number + 1 + line, word))

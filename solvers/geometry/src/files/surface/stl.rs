@@ -28,7 +28,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     let word = bytes.trim_ascii_start();
     let is_text = word.len() >= 5 && word[..5].eq_ignore_ascii_case(b"solid") && !bytes.contains(&0);
     if is_text {
-        return lines(super::text(bytes)?);
+        return lines(super::super::text(bytes)?);
     }
     let problem = match claimed(bytes) {
         Some(count) => Problem::Size { what: "triangles", count, expected: HEAD + EACH * count, found: bytes.len() },
