@@ -48,7 +48,12 @@ fn a_surface_is_filled_and_described() {
     let says = ["  surface     1472 triangles, ", "  spacing     3.000 mm, up to 4 times that inside", "% of the surface's 12.4", "degrees between"];
     assert!(says.iter().all(|says| done.stdout.contains(says)), "{}", done.stdout);
     let info = tissuebench(&["mesh", "info", &to]);
-    assert!(info.code == 0 && info.stdout.contains("surfaces    surface"), "{}{}", info.stdout, info.stderr);
+    assert!(info.code == 0 && info.stdout.contains("surfaces    surface: "), "{}{}", info.stdout, info.stderr);
+    let surface = tissuebench(&["mesh", "info", &from]);
+    let says = ["a closed surface of 1472 triangles", "unit        mm: 40.000 mm long", "area        "];
+    assert!(says.iter().all(|says| surface.stdout.contains(says)), "{}", surface.stdout);
+    let metres = tissuebench(&["mesh", "info", "--unit", "m", &from]);
+    assert!(metres.stdout.contains("40.000 m long: is the file in mm? Then give --unit mm"), "{}", metres.stdout);
     let [one, eight] = ["500", "4000"].map(|nodes| {
         let done = tissuebench(&["mesh", "make", &from, "--nodes", nodes, "--uniform", "--out", &to]);
         let count: f64 = done.stdout.split(' ').nth(1).unwrap().parse().unwrap();

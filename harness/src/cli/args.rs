@@ -203,14 +203,17 @@ pub enum Format {
 /// What to do with mesh files.
 #[derive(Subcommand)]
 pub enum MeshAction {
-    /// Print counts, surfaces, extent, volume and quality
+    /// Print counts, regions, surfaces, extent, unit, volume, and the quality of the cells with the worst of them
     Info {
-        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
+        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk); or surfaces: STL, OBJ, PLY
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
         #[arg(long, default_value = "mm", value_parser = length_unit)]
         unit: LengthUnit,
+        /// What to print on stdout: a table, or a JSON object in a line for each file (SI units)
+        #[arg(long, value_enum, default_value_t = Format::Table)]
+        format: Format,
     },
     /// Fill a closed surface with tetrahedra
     ///
@@ -219,7 +222,7 @@ pub enum MeshAction {
     Make(MakeArgs),
     /// Read one mesh file, write it as another kind of cells
     Convert {
-        /// The file to read: Gmsh 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
+        /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
         from: PathBuf,
         /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
         /// .stl; another one than FROM

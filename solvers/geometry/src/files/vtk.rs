@@ -41,14 +41,14 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
         return Err((Place::Line(1), Problem::Expected { expected, found: version }));
     }
     scanner.rest_of_line();
-    match scanner.word().unwrap_or_default().to_ascii_uppercase().as_str() {
-        "ASCII" => {}
-        "BINARY" => scanner.binary = true,
-        found => return scanner.fail("ASCII or BINARY", found),
+    let coding = scanner.word().unwrap_or_default();
+    scanner.binary = coding.eq_ignore_ascii_case("BINARY");
+    if !scanner.binary && !coding.eq_ignore_ascii_case("ASCII") {
+        return scanner.fail("ASCII or BINARY", &coding);
     }
     scanner.exactly("DATASET")?;
-    let dataset = scanner.word().unwrap_or_default().to_ascii_uppercase();
-    if dataset != "UNSTRUCTURED_GRID" {
+    let dataset = scanner.word().unwrap_or_default();
+    if !dataset.eq_ignore_ascii_case("UNSTRUCTURED_GRID") {
         return scanner.fail("UNSTRUCTURED_GRID (a mesh of cells)", &dataset);
     }
     let mut found = Found::default();

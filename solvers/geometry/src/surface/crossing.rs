@@ -12,20 +12,40 @@ use crate::Point3;
 /// Triangles per parallel task at least.
 const CHUNK: usize = 256;
 
+/// Pairs of triangles whose boxes touch at most: of a surface each touches 20 or so, of triangles that lie about anyhow all others.
+const FEW: u64 = 1_000_000;
+const MANY: u64 = 100;
+
 /// Refuses triangles that cross.
 pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
     let tree = Tree::new(&soup.points, &soup.triangles);
-    let of_triangle = |first: usize| {
+    let count = soup.triangles.len();
+    let near = |first: usize, found: &mut dyn FnMut(usize)| {
         let (low, high) = bounds(soup.corners(first).into_iter());
-        let mut crossed = Vec::new();
         tree.touching(&low, &high, |second| {
-            if second as usize > first && cross(soup, first, second as usize) {
-                crossed.push([first, second as usize]);
+            if second as usize > first {
+                found(second as usize);
+            }
+        });
+    };
+    let number = |first: usize| {
+        let mut number = 0u64;
+        near(first, &mut |_| number += 1);
+        number
+    };
+    let all: u64 = (0..count).into_par_iter().with_min_len(CHUNK).map(number).sum();
+    if all > FEW + MANY * count as u64 {
+        return Err(SurfaceProblem::Tangled { triangles: count, pairs: all });
+    }
+    let of_triangle = |first: usize| {
+        let mut crossed = Vec::new();
+        near(first, &mut |second| {
+            if cross(soup, first, second) {
+                crossed.push([first, second]);
             }
         });
         crossed
     };
-    let count = soup.triangles.len();
     let pairs: Vec<[usize; 2]> =
         (0..count).into_par_iter().with_min_len(CHUNK).flat_map_iter(of_triangle).collect();
     match pairs.iter().min() {

@@ -73,6 +73,20 @@ pub enum SurfaceProblem {
         /// How many other parts enclose it.
         within: usize,
     },
+    /// More triangles close to each other than a surface has.
+    Tangled {
+        /// Number of triangles.
+        triangles: usize,
+        /// Pairs that may touch.
+        pairs: u64,
+    },
+    /// More parts than bodies have.
+    Parts {
+        /// How many.
+        parts: usize,
+        /// At most.
+        most: usize,
+    },
     /// Nothing enclosed.
     Flat,
 }
@@ -115,6 +129,12 @@ impl fmt::Display for SurfaceProblem {
                 "the part with triangle {triangle}, {}, lies within {within} others and turns the wrong way: a cavity is clockwise seen from outside of it, what is outside or within a cavity counter-clockwise",
                 point(at)
             ),
+            SurfaceProblem::Tangled { triangles, pairs } => {
+                write!(f, "{triangles} triangles lie so close that {pairs} pairs may cross: it is no surface of a body")
+            }
+            SurfaceProblem::Parts { parts, most } => {
+                write!(f, "the surface has {parts} parts that nothing connects; at most {most} are taken")
+            }
             SurfaceProblem::Flat => write!(f, "the surface encloses no volume"),
         }
     }

@@ -6,10 +6,16 @@ use crate::Point3;
 /// A volume of less than this part of the area to the power 3/2 is rounding.
 const FLAT: f64 = 1e-12;
 
+/// Parts at most: each is compared with all triangles of the others.
+const MOST: usize = 200;
+
 /// Refuses parts that are inside out.
 pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), SurfaceProblem> {
     let parts = parts(neighbours);
     let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
+    if count > MOST {
+        return Err(SurfaceProblem::Parts { parts: count, most: MOST });
+    }
     let mut triangles: Vec<Vec<[u32; 3]>> = vec![Vec::new(); count];
     let mut first = vec![usize::MAX; count];
     for (triangle, &part) in parts.iter().enumerate() {
