@@ -11,7 +11,10 @@ use serde_json::Value;
 fn ellipsoid(left_out: usize) -> String {
     let (along, around) = (24, 32);
     let at = |i: usize, j: usize| {
-        let (t, p) = (std::f64::consts::PI * i as f64 / along as f64, std::f64::consts::TAU * (j % around) as f64 / around as f64);
+        let (t, p) = (
+            std::f64::consts::PI * i as f64 / along as f64,
+            std::f64::consts::TAU * (j % around) as f64 / around as f64,
+        );
         let ring = if i == 0 || i == along { 0.0 } else { t.sin() };
         [20.0 * ring * p.cos(), 15.0 * ring * p.sin(), 10.0 * t.cos()]
     };
@@ -45,15 +48,29 @@ fn a_surface_is_filled_and_described() {
     let (from, to) = (write(&dir, "organ.stl", &ellipsoid(0)), inside(&dir, "organ.msh"));
     let done = tissuebench(&["mesh", "make", &from, "--size", "3 mm", "--out", &to]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let says = ["  surface     1472 triangles, ", "  spacing     3.000 mm, up to 4 times that inside", "% of the surface's 12.4", "degrees between"];
+    let says = [
+        "  surface     1472 triangles, ",
+        "  spacing     3.000 mm, up to 4 times that inside",
+        "% of the surface's 12.4",
+        "degrees between",
+    ];
     assert!(says.iter().all(|says| done.stdout.contains(says)), "{}", done.stdout);
     let info = tissuebench(&["mesh", "info", &to]);
-    assert!(info.code == 0 && info.stdout.contains("surfaces    surface: "), "{}{}", info.stdout, info.stderr);
+    assert!(
+        info.code == 0 && info.stdout.contains("surfaces    surface: "),
+        "{}{}",
+        info.stdout,
+        info.stderr
+    );
     let surface = tissuebench(&["mesh", "info", &from]);
     let says = ["a closed surface of 1472 triangles", "unit        mm: 40.000 mm long", "area        "];
     assert!(says.iter().all(|says| surface.stdout.contains(says)), "{}", surface.stdout);
     let metres = tissuebench(&["mesh", "info", "--unit", "m", &from]);
-    assert!(metres.stdout.contains("40.000 m long: is the file in mm? Then give --unit mm"), "{}", metres.stdout);
+    assert!(
+        metres.stdout.contains("40.000 m long: is the file in mm? Then give --unit mm"),
+        "{}",
+        metres.stdout
+    );
     let [one, eight] = ["500", "4000"].map(|nodes| {
         let done = tissuebench(&["mesh", "make", &from, "--nodes", nodes, "--uniform", "--out", &to]);
         let count: f64 = done.stdout.split(' ').nth(1).unwrap().parse().unwrap();
@@ -125,7 +142,10 @@ fn elements_and_clouds_of_any_size_pass_the_patch_test() {
     assert!(found[2].0 == 150 && (1200.0 / found[1].0 as f64 - 1.0).abs() < 0.35, "{found:?}");
     // The same on the body of a mesh made of the surface, through the cells of others.
     let made = inside(&dir, "organ.msh");
-    assert_eq!(tissuebench(&["mesh", "make", &inside(&dir, "organ.stl"), "--nodes", "800", "--out", &made]).code, 0);
+    assert_eq!(
+        tissuebench(&["mesh", "make", &inside(&dir, "organ.stl"), "--nodes", "800", "--out", &made]).code,
+        0
+    );
     let found = run(&write(&dir, "of-mesh.toml", &scene("organ.msh", &methods)));
     assert!(found.iter().all(|(_, error)| *error < 1e-10) && found[2].0 == 150, "{found:?}");
 }
@@ -134,7 +154,8 @@ fn elements_and_clouds_of_any_size_pass_the_patch_test() {
 #[test]
 fn names_of_a_mesh_file_are_kept_at_other_sizes() {
     let dir = tempfile::tempdir().unwrap();
-    let block = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../solvers/geometry/tests/files/hex8-2.2-text.msh");
+    let block = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../solvers/geometry/tests/files/hex8-2.2-text.msh");
     let text = format!(
         r#"title = "Two cubes of a file, one softer"
 body = {{ shape = "file", path = "{}", unit = "cm" }}
@@ -166,6 +187,9 @@ fn what_a_surface_has_none_of_is_refused() {
     refused(&TET.replacen("tet4\", size", "hex8\", size", 1), "makes tetrahedra inside the surface of");
     refused(&TET.replace("level = 2", "cells = [2, 2, 2]"), "is for boxes, not for a file");
     refused(&TET.replace("level = 2", "spacing = \"1 um\""), "at most 3000000 are made");
-    refused(&TET.replace("level = 2", "spacing = \"80 mm\""), "makes no mesh: a spacing of 0.08 m is too large");
+    refused(
+        &TET.replace("level = 2", "spacing = \"80 mm\""),
+        "makes no mesh: a spacing of 0.08 m is too large",
+    );
     refused(&TET.replace("level = 2", "file = \"organ.stl\""), "is a surface, not a mesh");
 }

@@ -36,7 +36,8 @@ fn convert(from: &Path, to: &Path, element: Option<&str>) -> Result<(), Failure>
         Some(name) => into(&mesh, name)?,
     };
     files::write(&mesh, to, MILLIMETRE).map_err(input)?;
-    let boundary = if to.extension().is_some_and(|s| s.eq_ignore_ascii_case("stl")) { "the boundary of " } else { "" };
+    let boundary =
+        if to.extension().is_some_and(|s| s.eq_ignore_ascii_case("stl")) { "the boundary of " } else { "" };
     println!("{}: {boundary}{} nodes, {} cells", to.display(), mesh.points().len(), mesh.cell_count());
     Ok(())
 }

@@ -78,7 +78,8 @@ impl Found<'_> {
         let mut worst: Vec<usize> = (0..shapes.len()).collect();
         worst.sort_by(|&a, &b| shapes[b].aspect.total_cmp(&shapes[a].aspect).then(a.cmp(&b)));
         let first = mesh.points()[0];
-        let (low, high) = mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+        let (low, high) =
+            mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
         Found { mesh, rows, shapes, worst, low, high }
     }
 
@@ -125,7 +126,10 @@ impl Found<'_> {
         let kinds: Vec<String> = self.kinds().iter().map(|(name, count)| format!("{count} {name}")).collect();
         row("cells", &kinds.join(", "));
         for (at, (name, cells, volume)) in self.regions().into_iter().enumerate() {
-            row(if at == 0 { "regions" } else { "" }, &format!("{name}: {cells} cells, {} cm^3", cubed(volume)));
+            row(
+                if at == 0 { "regions" } else { "" },
+                &format!("{name}: {cells} cells, {} cm^3", cubed(volume)),
+            );
         }
         let surfaces = self.surfaces();
         if surfaces.is_empty() {
@@ -139,7 +143,10 @@ impl Found<'_> {
         row("unit", &of_unit((self.high - self.low).amax(), unit));
         let volumes = || self.shapes.iter().map(|shape| shape.volume);
         let (least, most) = (volumes().fold(f64::MAX, f64::min), volumes().fold(f64::MIN, f64::max));
-        row("volume", &format!("{} cm^3; of a cell {} to {} cm^3", cubed(self.volume()), cubed(least), cubed(most)));
+        row(
+            "volume",
+            &format!("{} cm^3; of a cell {} to {} cm^3", cubed(self.volume()), cubed(least), cubed(most)),
+        );
         let [sharp, blunt] = self.angles();
         row("angles", &format!("{sharp:.1} to {blunt:.1} degrees between two faces of a cell"));
         let from: Vec<String> = ASPECTS.iter().map(|aspect| format!("{aspect:>8}")).collect();
@@ -164,11 +171,13 @@ impl Found<'_> {
         let kinds: serde_json::Map<String, Value> =
             self.kinds().into_iter().map(|(name, count)| (name.into(), count.into())).collect();
         let regions = self.regions().into_iter();
-        let regions: Vec<Value> =
-            regions.map(|(name, cells, volume)| json!({ "name": name, "cells": cells, "volume_m3": volume })).collect();
+        let regions: Vec<Value> = regions
+            .map(|(name, cells, volume)| json!({ "name": name, "cells": cells, "volume_m3": volume }))
+            .collect();
         let surfaces = self.surfaces().into_iter();
-        let surfaces: Vec<Value> =
-            surfaces.map(|(name, faces, area)| json!({ "name": name, "faces": faces, "area_m2": area })).collect();
+        let surfaces: Vec<Value> = surfaces
+            .map(|(name, faces, area)| json!({ "name": name, "faces": faces, "area_m2": area }))
+            .collect();
         let bins = ASPECTS.iter().zip(self.histogram());
         let bins: Vec<Value> = bins.map(|(from, cells)| json!({ "from": from, "cells": cells })).collect();
         let worst = self.worst.iter().take(WORST).map(|&cell| {

@@ -14,7 +14,9 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let surface = files::read_surface(file, unit.metres).map_err(input)?;
     let doublings = if args.uniform { 0 } else { args.coarser };
     let (Stuffed { mesh, left_out }, spacing) = match (args.size, args.nodes) {
-        (Some(spacing), _) => (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing),
+        (Some(spacing), _) => {
+            (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)
+        }
         (_, nodes) => {
             let nodes = nodes.unwrap_or_default() as usize;
             stuffing::stuff_with_nodes(&surface, nodes, doublings).map_err(input)?
@@ -33,7 +35,13 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);
     let off = 100.0 * (volume / of_surface - 1.0);
     row("volume", &format!("{} cm^3, {off:+.2} % of the surface's {}", digits(volume), digits(of_surface)));
-    row("distance", &format!("at most {} between mesh and surface (Hausdorff, at points of both)", length(fit.hausdorff())));
+    row(
+        "distance",
+        &format!(
+            "at most {} between mesh and surface (Hausdorff, at points of both)",
+            length(fit.hausdorff())
+        ),
+    );
     let quality = quality::check(&mesh).map_err(input)?;
     let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
     row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));

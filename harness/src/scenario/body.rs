@@ -131,7 +131,8 @@ fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) 
         return Err(Failure::input(Key::Method("jitter"), "is for boxes; a file has none", "leave it out"));
     }
     if !kind.is_tet() {
-        let problem = format!("makes tetrahedra inside the surface of {}, not {}", file.path.display(), kind.name());
+        let problem =
+            format!("makes tetrahedra inside the surface of {}, not {}", file.path.display(), kind.name());
         let help = "take element = \"tet4\" or \"tet10\", or a mesh: size = { file = \"...\" }";
         return Err(Failure::input(Key::Size(""), problem, help));
     }

@@ -59,8 +59,14 @@ pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
     } else {
         let mesh = super::body::read(file, key())?;
         let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {
-            let problem = format!("has a boundary that is no closed surface (faces counted from 1, lengths in m): {bad}");
-            Failure::input(key(), problem, "give methods the nodes and cells of the file: size = { file = \"...\" }")
+            let problem = format!(
+                "has a boundary that is no closed surface (faces counted from 1, lengths in m): {bad}"
+            );
+            Failure::input(
+                key(),
+                problem,
+                "give methods the nodes and cells of the file: size = { file = \"...\" }",
+            )
         })?;
         (boundary.surface, Some((mesh, boundary.faces)))
     };

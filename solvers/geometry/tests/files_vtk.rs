@@ -56,7 +56,8 @@ fn grids_are_read_with_their_regions() {
 
 /// The same in binary, highest byte first.
 fn binary() -> Vec<u8> {
-    let mut bytes = b"# vtk DataFile Version 3.0\ntwo\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n".to_vec();
+    let mut bytes =
+        b"# vtk DataFile Version 3.0\ntwo\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n".to_vec();
     let points = [0.0f64, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     bytes.extend(points.iter().flat_map(|x| x.to_be_bytes()));
     bytes.extend(b"\nMETADATA\nINFORMATION 0\n\nCELLS 1 5\n");
@@ -83,7 +84,11 @@ fn broken_grids_are_refused_with_their_place() {
     for (from, to, says) in [
         ("Version 2.0", "Version 2.0\nmore", "m:3: expected ASCII or BINARY, found 'two'"),
         ("ASCII", "TEXT", "m:3: expected ASCII or BINARY, found 'TEXT'"),
-        ("UNSTRUCTURED_GRID", "POLYDATA", "m:4: expected UNSTRUCTURED_GRID (a mesh of cells), found 'POLYDATA'"),
+        (
+            "UNSTRUCTURED_GRID",
+            "POLYDATA",
+            "m:4: expected UNSTRUCTURED_GRID (a mesh of cells), found 'POLYDATA'",
+        ),
         ("POINTS 5 float", "POINTS 5 half", "m:8: expected a type of numbers"),
         ("POINTS 5", "POINTS 5000000000", "m:8: too many numbers for the bytes of the file: 15000000000"),
         ("POINTS 5", "POINTS many", "m:8: expected a number of values, found 'many'"),
@@ -105,7 +110,11 @@ fn broken_grids_are_refused_with_their_place() {
         ("CELL_DATA 3", "CELL_DATA 2", "m:20: expected a part of the format"),
         ("material 1 3", "material 1 2", "m:26: expected a number of values, found 'stress'"),
         ("0 0 0 1 1 1 1 1\n", "", "m:32: too many numbers for the bytes of the file: 8"),
-        ("stress 2 3 double\n1 2 3 4 5 6", "stress 2 3 double\n1 2 3 4 5", "m:30: expected a number, found 'POINT_DATA'"),
+        (
+            "stress 2 3 double\n1 2 3 4 5 6",
+            "stress 2 3 double\n1 2 3 4 5",
+            "m:28: expected a number, found 'POINT_DATA'",
+        ),
     ] {
         assert!(GRID.contains(from), "{from}");
         let bad = read(GRID.replacen(from, to, 1).as_bytes()).err().unwrap_or_default();
@@ -114,7 +123,10 @@ fn broken_grids_are_refused_with_their_place() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    let apart = GRID.replace("CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1", "CELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4 0 2 1");
+    let apart = GRID.replace(
+        "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1",
+        "CELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4 0 2 1",
+    );
     assert!(read(apart.as_bytes()).unwrap() == read(GRID.as_bytes()).unwrap());
     for offsets in ["0 4 8 12", "1 4 8 11", "0 8 4 11"] {
         let bad = read(apart.replace("0 4 8 11", offsets).as_bytes()).unwrap_err();
@@ -147,8 +159,16 @@ fn the_first_format_of_gmsh_is_read() {
     assert_eq!(mesh.group("surface-5").map(<[_]>::len), Some(1));
     let mut wrong = Vec::new();
     for (from, to, says) in [
-        ("3 4 7 1 4 2 3 4 9", "3 4 7 1 4 2 3 4 8", "m:13: element 3 names node 8, which the file does not have"),
-        ("3 4 7 1 4 2 3 4 9", "3 4 7 1 4 2 3 4", "m:13: element 3 of type 4 has 8 numbers on its line instead of 9"),
+        (
+            "3 4 7 1 4 2 3 4 9",
+            "3 4 7 1 4 2 3 4 8",
+            "m:13: element 3 names node 8, which the file does not have",
+        ),
+        (
+            "3 4 7 1 4 2 3 4 9",
+            "3 4 7 1 4 2 3 4",
+            "m:13: element 3 of type 4 has 8 numbers on its line instead of 9",
+        ),
         ("3 4 7 1 4 2 3 4 9", "3 4 7 1 5 2 3 4 9", "m:13: element 3 of type 4 has 9 numbers"),
         ("3 4 7 1 4 2 3 4 9", "2 4 7 1 4 2 3 4 9", "m:13: element 2 comes a second time"),
         ("3 4 7 1 4 2 3 4 9", "3 6 7 1 4 2 3 4 9", "m:13: element 3 has type 6"),

@@ -125,33 +125,69 @@ fn every_broken_file_is_refused_with_its_place() {
     let mut many = stl_binary(&FACES, b"");
     many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
     for (name, bytes, says) in [
-        ("a.stl", text.replacen("vertex 0 1 0", "vertex 0 nan 0", 1).into_bytes(), "a.stl:2: triangle 1 has a coordinate"),
-        ("a.stl", text.replacen("vertex 0 1 0", "vertex 0 1", 1).into_bytes(), "a.stl:5: expected a coordinate, found 'the end of the line'"),
-        ("a.stl", text.replacen("vertex 0 1 0", "vertex 0 1 0 0", 1).into_bytes(), "a.stl:5: expected vertex and three"),
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 nan 0", 1).into_bytes(),
+            "a.stl:2: triangle 1 has a coordinate",
+        ),
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 1", 1).into_bytes(),
+            "a.stl:5: expected a coordinate, found 'the end of the line'",
+        ),
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 1 0 0", 1).into_bytes(),
+            "a.stl:5: expected vertex and three",
+        ),
         ("a.stl", text.replacen(" endloop\n", "", 1).into_bytes(), "a.stl:7: expected endloop"),
         ("a.stl", text.replacen("outer loop", "outer", 1).into_bytes(), "a.stl:3: expected outer loop"),
-        ("a.stl", text.replacen("facet normal", "face", 1).into_bytes(), "a.stl:2: expected facet or endsolid, found 'face"),
-        ("a.stl", text.replace("endsolid tet\n", "").into_bytes(), "the file ends where endsolid should come"),
+        (
+            "a.stl",
+            text.replacen("facet normal", "face", 1).into_bytes(),
+            "a.stl:2: expected facet or endsolid, found 'face",
+        ),
+        (
+            "a.stl",
+            text.replace("endsolid tet\n", "").into_bytes(),
+            "the file ends where endsolid should come",
+        ),
         ("a.stl", text[..150].as_bytes().to_vec(), "a.stl:12: the file ends where vertex"),
         ("a.stl", (text.clone() + "facet\n").into_bytes(), "a.stl:31: expected solid, found 'facet'"),
-        ("a.stl", cut(stl_binary(&FACES, b""), 1), "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283"),
+        (
+            "a.stl",
+            cut(stl_binary(&FACES, b""), 1),
+            "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283",
+        ),
         ("a.stl", many, "4294967295 triangles take 214748364834 bytes"),
         ("a.stl", nan, "a.stl: byte 134: triangle 2 has a coordinate that is not finite"),
         ("a.stl", b"nonsense".to_vec(), "a comment of 80 bytes"),
         ("a.stl", b"solid nothing\nendsolid\n".to_vec(), "0 triangles enclose nothing"),
         ("a.obj", obj("v 1 0 0", "v 1 0"), "a.obj:5: expected a coordinate"),
         ("a.obj", obj("v 1 0 0", "v 1 inf 0"), "a.obj:5: node 2 has a coordinate that is not finite"),
-        ("a.obj", obj("f 1 3 2", "f 1 3 9"), "a.obj:10: face 1 names corner 9, which the file does not have before it"),
+        (
+            "a.obj",
+            obj("f 1 3 2", "f 1 3 9"),
+            "a.obj:10: face 1 names corner 9, which the file does not have before it",
+        ),
         ("a.obj", obj("f 1 3 2", "f 0 3 2"), "face 1 names corner 0"),
         ("a.obj", obj("-3 -2", "-5 -2"), "a.obj:12: face 3 names corner -5"),
         ("a.obj", obj("f 1 3 2", "f 1 3"), "a.obj:10: expected a face of three corners or more"),
         ("a.obj", obj("f 1 3 2", "f 1 x 2"), "a.obj:10: expected the number of a corner, found 'x'"),
-        ("a.obj", obj("s off", "wobble 3"), "a.obj:9: expected v, f or another word of the format, found 'wobble 3'"),
+        (
+            "a.obj",
+            obj("s off", "wobble 3"),
+            "a.obj:9: expected v, f or another word of the format, found 'wobble 3'",
+        ),
         ("a.obj", obj("3/1/1\n", "3/1/1 \\\n"), "the file ends where the rest of a line should come"),
         ("a.ply", ply("end_header\n", ""), "a.ply:11: expected a line of a PLY header"),
         ("a.ply", ply("format ascii", "format text"), "expected format ascii"),
         ("a.ply", ply("format ascii 1.0\n", ""), "no format section"),
-        ("a.ply", ply("vertex 4", "vertex 4000000000"), "a.ply:4: too many elements for the bytes of the file: 4000000000"),
+        (
+            "a.ply",
+            ply("vertex 4", "vertex 4000000000"),
+            "a.ply:4: too many elements for the bytes of the file: 4000000000",
+        ),
         ("a.ply", ply("vertex 4", "vertex 5"), "a.ply:"),
         ("a.ply", ply("vertex 4", "vertex 3"), "a.ply:"),
         ("a.ply", ply("face 4", "face 5"), "a.ply:20: the file ends where a value of an element should come"),
@@ -165,7 +201,11 @@ fn every_broken_file_is_refused_with_its_place() {
         ("a.ply", ply("3 0 2 1", "-3 0 2 1"), "expected the length of a list, found '-3'"),
         ("a.ply", ply("1 0 0 7", "1 nan 0 7"), "node 1 has a coordinate that is not finite"),
         ("a.ply", cut(ply_binary(false), 1), "the file ends where a value of an element should come"),
-        ("a.ply", [ply_binary(true), vec![1, 2, 3]].concat(), "expected the end of the file, found '3 bytes more'"),
+        (
+            "a.ply",
+            [ply_binary(true), vec![1, 2, 3]].concat(),
+            "expected the end of the file, found '3 bytes more'",
+        ),
         ("a.off", b"OFF\n4 4 6\n".to_vec(), "'OFF' begins no mesh file"),
     ] {
         let bad = read(name, &bytes).err().unwrap_or_else(|| panic!("read, but {says}"));
@@ -193,7 +233,10 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
     });
     assert!(matches!(open, SurfaceProblem::Open { edges: 3, .. }), "{open}");
     let turned = of(&[FACES[0], FACES[1], FACES[2], [0, 2, 3]]);
-    assert!(turned.contains("triangles 1 and 4 turn opposite ways along their edge (0, 0, 0) to (0, 1, 0)"), "{turned}");
+    assert!(
+        turned.contains("triangles 1 and 4 turn opposite ways along their edge (0, 0, 0) to (0, 1, 0)"),
+        "{turned}"
+    );
     let twice = of(&[FACES[0], FACES[1], FACES[2], FACES[3], FACES[3]]);
     assert!(twice.contains("triangles 1, 4, 5 meet at one edge"), "{twice}");
     let inverted = of(&FACES.map(|[a, b, c]| [a, c, b]));
@@ -211,7 +254,8 @@ fn surfaces_that_cross_are_refused() {
     // Exactly in one plane, edge on edge: signs decide, not rounding.
     let cube = |at: [f64; 3]| {
         let mut soup = Soup::default();
-        soup.points = (0..8).map(|i| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
+        soup.points =
+            (0..8).map(|i| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
         soup.triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         soup.faces = (1..=12).collect();
@@ -219,14 +263,18 @@ fn surfaces_that_cross_are_refused() {
     };
     for by in [[0.5, 0.0, 0.0], [0.5, 0.5, 0.5], [1.0, 0.25, 0.25], [1.0, 1.0, 0.5]] {
         let problem = refused(joined(cube([0.0; 3]), cube(by)));
-        assert!(matches!(problem, SurfaceProblem::Crossing { .. } | SurfaceProblem::Branched { .. }), "{by:?}: {problem}");
+        assert!(
+            matches!(problem, SurfaceProblem::Crossing { .. } | SurfaceProblem::Branched { .. }),
+            "{by:?}: {problem}"
+        );
     }
     surface(joined(cube([0.0; 3]), cube([1.5, 0.0, 0.0])));
 }
 
 #[test]
 fn cavities_are_clockwise_and_bodies_within_bodies_are_none() {
-    let turned = |soup: Soup| Soup { triangles: soup.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..soup };
+    let turned =
+        |soup: Soup| Soup { triangles: soup.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..soup };
     let [outer, inner] = [1.0, 0.5].map(|r| sphere_like(4, move |n| r * n));
     let hollow = surface(joined(outer.clone(), turned(inner.clone())));
     assert!((hollow.volume() / (7.0 / 8.0 * 4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
@@ -234,7 +282,16 @@ fn cavities_are_clockwise_and_bodies_within_bodies_are_none() {
     let solid = refused(joined(outer, inner));
     assert!(matches!(solid, SurfaceProblem::InsideOut { within: 1, .. }), "{solid}");
     let flat = refused(sphere_like(1, |n| [n.x, n.y, 0.0 * n.z].into()));
-    assert!(matches!(flat, SurfaceProblem::Crossing { .. } | SurfaceProblem::Flat | SurfaceProblem::Branched { .. } | SurfaceProblem::Turned { .. }), "{flat}");
+    assert!(
+        matches!(
+            flat,
+            SurfaceProblem::Crossing { .. }
+                | SurfaceProblem::Flat
+                | SurfaceProblem::Branched { .. }
+                | SurfaceProblem::Turned { .. }
+        ),
+        "{flat}"
+    );
 }
 
 #[test]
@@ -254,7 +311,12 @@ fn corners_apart_by_rounding_are_one() {
 fn distances_have_the_sign_of_the_body() {
     let (ball, ring) = (surface(sphere_like(5, |n| n)), surface(torus(0.4, 128, 64)));
     for i in 0..2000u32 {
-        let at = |n: u32| 1.7 * (2.0 * f64::from((i.wrapping_mul(2_654_435_761) ^ n.wrapping_mul(40_503 * (i + 1))) % 10_007) / 10_007.0 - 1.0);
+        let at = |n: u32| {
+            1.7 * (2.0
+                * f64::from((i.wrapping_mul(2_654_435_761) ^ n.wrapping_mul(40_503 * (i + 1))) % 10_007)
+                / 10_007.0
+                - 1.0)
+        };
         let p = Point3::new(at(1), at(2), at(3));
         assert!((ball.signed_distance(&p) - (p.coords.norm() - 1.0)).abs() < 2e-3, "{p}");
         let around = (p.x.hypot(p.y) - 1.0).hypot(p.z) - 0.4;
@@ -268,7 +330,10 @@ fn a_surface_is_a_body_for_clouds() {
     let nodes = cloud(&organ, 200, 1, &[]).unwrap();
     assert_eq!(nodes.points.len(), 200);
     let outer = nodes.points.iter().filter(|p| organ.signed_distance(p).abs() < 1e-12).count();
-    assert!(nodes.points.iter().all(|p| organ.signed_distance(p) < 1e-12) && (100..180).contains(&outer), "{outer}");
+    assert!(
+        nodes.points.iter().all(|p| organ.signed_distance(p) < 1e-12) && (100..180).contains(&outer),
+        "{outer}"
+    );
     let [low, high] = Shape::bounds(&organ);
     assert!(low.x < -1.2 && high.y > 0.8);
 }

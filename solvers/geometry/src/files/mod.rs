@@ -27,7 +27,8 @@ pub use rows::{Row, inverted, row_of_cell};
 pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 
 /// What [`read`] takes, for messages.
-pub const READ: &str = "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
+pub const READ: &str =
+    "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
 
 /// Whether a file is a mesh by its name, where it may be a list of points too.
 pub fn is_mesh(file: &Path) -> bool {

@@ -154,7 +154,8 @@ fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
         let kind = scanner.kind()?;
         found.list = scanner.whole(size, &kind)?;
         let ends: Option<Vec<usize>> = offsets.iter().map(|&end| usize::try_from(end).ok()).collect();
-        let ends = ends.filter(|ends| ends.is_sorted() && ends.first() == Some(&0) && ends.last() == Some(&size));
+        let ends =
+            ends.filter(|ends| ends.is_sorted() && ends.first() == Some(&0) && ends.last() == Some(&size));
         return match ends {
             Some(ends) => {
                 found.ends = Some(ends[1..].to_vec());
@@ -169,7 +170,8 @@ fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
         let length = all.get(at).and_then(|&length| usize::try_from(length).ok());
         let points = length.and_then(|length| all.get(at + 1..(at + 1).checked_add(length)?));
         let Some(points) = points else {
-            let problem = Problem::End { expected: "the points of the cell, within the size that CELLS gives" };
+            let problem =
+                Problem::End { expected: "the points of the cell, within the size that CELLS gives" };
             return Err((Place::Cell(cell), problem));
         };
         found.list.extend(points);
@@ -309,7 +311,10 @@ impl Scanner<'_> {
         // Each takes a byte and what parts it from the next, or its size.
         let room = (self.bytes.len() - self.at) / if self.binary { size } else { 1 };
         if count > room {
-            return Err((self.place(), Problem::TooMany { what: "numbers for the bytes of the file", count }));
+            return Err((
+                self.place(),
+                Problem::TooMany { what: "numbers for the bytes of the file", count },
+            ));
         }
         if !self.binary {
             return (0..count).map(|_| self.number()).collect();

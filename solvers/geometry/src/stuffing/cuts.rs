@@ -34,7 +34,12 @@ struct Edge {
 
 impl Cuts {
     /// `distances` (m) are of the points from the surface, negative inside.
-    pub(super) fn new(surface: &Surface, tets: &[[u32; 4]], mut points: Vec<Point3>, distances: &[f64]) -> Cuts {
+    pub(super) fn new(
+        surface: &Surface,
+        tets: &[[u32; 4]],
+        mut points: Vec<Point3>,
+        distances: &[f64],
+    ) -> Cuts {
         let side = |&distance: &f64| match distance {
             d if d < 0.0 => Side::Inside,
             0.0 => Side::On,
@@ -99,7 +104,8 @@ fn edges(tets: &[[u32; 4]], sides: &[Side]) -> Vec<Edge> {
 
 /// The points at which edges end, ascending, each with its edges.
 fn at_ends(edges: &[Edge]) -> Vec<(u32, Vec<u32>)> {
-    let ends = edges.iter().enumerate().flat_map(|(at, edge)| [(edge.inside, at as u32), (edge.outside, at as u32)]);
+    let ends =
+        edges.iter().enumerate().flat_map(|(at, edge)| [(edge.inside, at as u32), (edge.outside, at as u32)]);
     let mut ends: Vec<(u32, u32)> = ends.collect();
     ends.sort_unstable();
     let at_point = ends.chunk_by(|a, b| a.0 == b.0);

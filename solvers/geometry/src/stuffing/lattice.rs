@@ -109,7 +109,8 @@ impl Lattice {
                 // The diagonal is at the middle of the larger face.
                 let larger = middle(parent, face.level + 1);
                 let corners = face.corners();
-                let is_centre = |corner: &[i32; 3]| face.within().iter().all(|&axis| corner[axis] == larger[axis]);
+                let is_centre =
+                    |corner: &[i32; 3]| face.within().iter().all(|&axis| corner[axis] == larger[axis]);
                 let centre = corners.iter().position(is_centre).unwrap_or(0);
                 let [a, b, c, d] = [0, 1, 2, 3].map(|next| corners[(centre + next) % 4]);
                 self.add(false, [own, a, b, c]);

@@ -127,7 +127,11 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
 ///
 /// # Errors
 /// As [`stuff`].
-pub fn stuff_with_nodes(surface: &Surface, nodes: usize, doublings: u32) -> Result<(Stuffed, f64), StuffingError> {
+pub fn stuff_with_nodes(
+    surface: &Surface,
+    nodes: usize,
+    doublings: u32,
+) -> Result<(Stuffed, f64), StuffingError> {
     let wanted = nodes.max(1) as f64;
     let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / wanted).cbrt();
     let mut best: Option<(f64, Stuffed, f64)> = None;

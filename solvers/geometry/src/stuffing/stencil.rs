@@ -42,7 +42,8 @@ impl Tet {
             ([], _) => {}
             (_, []) => add(self.corners),
             (&[a], _) => {
-                let end = |i: usize| if i != a && self.sides[i] == Side::Outside { cut(a, i) } else { node(i) };
+                let end =
+                    |i: usize| if i != a && self.sides[i] == Side::Outside { cut(a, i) } else { node(i) };
                 add([0, 1, 2, 3].map(end));
             }
             (&[a, b], &[d]) => {

@@ -76,11 +76,15 @@ fn cross(soup: &Soup, first: usize, second: usize) -> bool {
                 let common = (0..3).find(|&i| other.contains(&t[i])).unwrap_or(0);
                 edge(t, (common + 1) % 3)
             };
-            pierces(opposite(a, b), corners_b) || pierces(opposite(b, a), corners_a) || overlap(corners_a, corners_b)
+            pierces(opposite(a, b), corners_b)
+                || pierces(opposite(b, a), corners_a)
+                || overlap(corners_a, corners_b)
         }
         // Neighbours only if one is folded onto the other.
         2 => match (own(a, b), own(b, a)) {
-            (Some(i), Some(j)) => folded(position(a[(i + 1) % 3]), position(a[(i + 2) % 3]), corners_a[i], corners_b[j]),
+            (Some(i), Some(j)) => {
+                folded(position(a[(i + 1) % 3]), position(a[(i + 2) % 3]), corners_a[i], corners_b[j])
+            }
             _ => false,
         },
         _ => true,
@@ -130,7 +134,9 @@ fn overlap(a: [Point3; 3], b: [Point3; 3]) -> bool {
     let turn = |p, q, r| sign(orient2d(p, q, r));
     let edges = |t: [Coord<f64>; 3]| [0, 1, 2].map(|i| [t[i], t[(i + 1) % 3]]);
     let crossed = edges(a).into_iter().any(|[p, q]| {
-        edges(b).into_iter().any(|[r, s]| turn(p, q, r) * turn(p, q, s) < 0 && turn(r, s, p) * turn(r, s, q) < 0)
+        edges(b)
+            .into_iter()
+            .any(|[r, s]| turn(p, q, r) * turn(p, q, s) < 0 && turn(r, s, p) * turn(r, s, q) < 0)
     });
     let within = |t: [Coord<f64>; 3], p: Coord<f64>| {
         let turns = edges(t).map(|[q, r]| turn(q, r, p));

@@ -106,7 +106,12 @@ impl fmt::Display for SurfaceProblem {
                 )
             }
             SurfaceProblem::Branched { triangles, ends } => {
-                write!(f, "triangles {} meet at one edge, {}; two do in a closed surface", list(triangles), line(ends))
+                write!(
+                    f,
+                    "triangles {} meet at one edge, {}; two do in a closed surface",
+                    list(triangles),
+                    line(ends)
+                )
             }
             SurfaceProblem::Turned { triangles, ends } => write!(
                 f,
@@ -130,7 +135,10 @@ impl fmt::Display for SurfaceProblem {
                 point(at)
             ),
             SurfaceProblem::Tangled { triangles, pairs } => {
-                write!(f, "{triangles} triangles lie so close that {pairs} pairs may cross: it is no surface of a body")
+                write!(
+                    f,
+                    "{triangles} triangles lie so close that {pairs} pairs may cross: it is no surface of a body"
+                )
             }
             SurfaceProblem::Parts { parts, most } => {
                 write!(f, "the surface has {parts} parts that nothing connects; at most {most} are taken")

@@ -20,7 +20,6 @@ pub(crate) use tree::Tree;
 use crate::triangle::Feature;
 use crate::{Point3, Vector3};
 
-
 /// A closed surface, its triangles counter-clockwise seen from outside; positions in metres.
 pub struct Surface {
     points: Vec<Point3>,
@@ -126,7 +125,8 @@ impl Surface {
         let (distance, away) = (closest.square.sqrt(), (p - closest.at).dot(&normal));
         // A point is straight above the surface closest to it: where it is not, the surface has triangles without an area.
         let doubtful = away.abs() <= 1e-6 * distance * normal.norm();
-        let inside = if doubtful { nested::winding(&self.points, &self.triangles, p) > 0.5 } else { away < 0.0 };
+        let inside =
+            if doubtful { nested::winding(&self.points, &self.triangles, p) > 0.5 } else { away < 0.0 };
         Some(if inside { -distance } else { distance })
     }
 
@@ -144,7 +144,8 @@ impl Surface {
             let at = inside.0 + line * t;
             // The distance changes no faster than the place does.
             let reach = (low.1.abs() + (t - low.0) * length).max(high.1 + (high.0 - t) * length);
-            let distance = self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at));
+            let distance =
+                self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at));
             if distance.abs() <= 1e-9 * length || (high.0 - low.0) < 1e-12 {
                 return t;
             }

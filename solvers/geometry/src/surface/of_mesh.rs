@@ -1,7 +1,7 @@
 //! The boundary of a mesh as a surface.
 
 use super::{Soup, Surface, SurfaceProblem};
-use crate::{Facet, FaceKind, Mesh};
+use crate::{FaceKind, Facet, Mesh};
 
 /// The boundary of a mesh, and which of its faces each triangle is a part of.
 pub struct BoundaryFaces {

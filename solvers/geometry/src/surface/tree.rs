@@ -38,8 +38,10 @@ impl Tree {
     pub(crate) fn new(points: &[Point3], triangles: &[[u32; 3]]) -> Tree {
         let of = |t: u32| triangles[t as usize].map(|p| points[p as usize]);
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let middles: Vec<Point3> =
-            order.iter().map(|&t| Point3::from(of(t).iter().map(|p| p.coords).sum::<Vector3>() / 3.0)).collect();
+        let middles: Vec<Point3> = order
+            .iter()
+            .map(|&t| Point3::from(of(t).iter().map(|p| p.coords).sum::<Vector3>() / 3.0))
+            .collect();
         let mut nodes = vec![Node { low: Point3::origin(), high: Point3::origin(), start: 0, count: 0 }];
         let mut open = vec![(0, 0, order.len())];
         while let Some((node, start, end)) = open.pop() {
@@ -84,7 +86,8 @@ impl Tree {
             }
             let node = &self.nodes[at as usize];
             if node.count == 0 {
-                let near = [node.start, node.start + 1].map(|child| (child, self.nodes[child as usize].square(p)));
+                let near =
+                    [node.start, node.start + 1].map(|child| (child, self.nodes[child as usize].square(p)));
                 let [first, second] = if near[0].1 <= near[1].1 { near } else { [near[1], near[0]] };
                 open.push(second);
                 open.push(first);

@@ -32,7 +32,8 @@ pub fn sphere_like(levels: u32, map: impl Fn(Vector3) -> Vector3) -> Soup {
 /// An organ with bumps and a hilum.
 pub fn bumpy(levels: u32) -> Soup {
     sphere_like(levels, |n| {
-        let radius = 1.0 + 0.12 * (5.0 * n.x).sin() * (4.0 * n.y).cos() + 0.08 * (7.0 * n.z).sin() - 0.35 * (-8.0 * (n - Vector3::x()).norm_squared()).exp();
+        let radius = 1.0 + 0.12 * (5.0 * n.x).sin() * (4.0 * n.y).cos() + 0.08 * (7.0 * n.z).sin()
+            - 0.35 * (-8.0 * (n - Vector3::x()).norm_squared()).exp();
         Vector3::new(1.4 * n.x, n.y, 0.8 * n.z) * radius
     })
 }

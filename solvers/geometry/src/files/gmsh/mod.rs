@@ -40,9 +40,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     };
     let mut words = found.split_whitespace();
     match (words.next(), words.next()) {
-        (Some(version), Some("0")) if version.starts_with("2.") => {
-            text2::parse(super::text(bytes)?)
-        }
+        (Some(version), Some("0")) if version.starts_with("2.") => text2::parse(super::text(bytes)?),
         (Some(version), Some(kind @ ("0" | "1"))) => match version {
             "2.1" | "2.2" | "2" | "4.0" | "4" | "4.1" => sections::parse(bytes, version, kind == "1"),
             _ => Err((place, Problem::Version { found })),

@@ -17,7 +17,9 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     let mut lines = bytes.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
     let word = first.and_then(|line| line.split(u8::is_ascii_whitespace).next());
-    word.is_some_and(|word| word == b"v" || word == b"f" || OTHERS.iter().any(|other| other.as_bytes() == word))
+    word.is_some_and(|word| {
+        word == b"v" || word == b"f" || OTHERS.iter().any(|other| other.as_bytes() == word)
+    })
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
@@ -45,9 +47,14 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
             }
             Some("f") => {
                 faces += 1;
-                let corners = words.map(|word| corner(&lines, word, faces, &soup.points)).collect::<Parsed<Vec<u32>>>()?;
+                let corners = words
+                    .map(|word| corner(&lines, word, faces, &soup.points))
+                    .collect::<Parsed<Vec<u32>>>()?;
                 if corners.len() < 3 {
-                    return lines.fail(Problem::Expected { expected: "a face of three corners or more", found: whole });
+                    return lines.fail(Problem::Expected {
+                        expected: "a face of three corners or more",
+                        found: whole,
+                    });
                 }
                 soup.face(faces, &corners);
             }

@@ -44,7 +44,10 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
                     Some(of) => {
                         let found = values.next(of)?;
                         let known = (0.0..=1e6).contains(&found) && found.fract() == 0.0;
-                        let wrong = || Problem::Expected { expected: "the length of a list", found: found.to_string() };
+                        let wrong = || Problem::Expected {
+                            expected: "the length of a list",
+                            found: found.to_string(),
+                        };
                         if known { found as usize } else { return Err((values.place(), wrong())) }
                     }
                 };
@@ -62,7 +65,8 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
                 }
                 if is_face {
                     if corners.len() < 3 {
-                        let (expected, found) = ("a face of three corners or more", corners.len().to_string());
+                        let (expected, found) =
+                            ("a face of three corners or more", corners.len().to_string());
                         return Err((place, Problem::Expected { expected, found }));
                     }
                     soup.face(row + 1, &corners);
@@ -108,7 +112,10 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
                 let count = count.parse().map_err(|_| wrong("a number of elements"))?;
                 // Each has a byte at the least: no memory is taken for more.
                 if count > bytes.len() {
-                    return Err((place, Problem::TooMany { what: "elements for the bytes of the file", count }));
+                    return Err((
+                        place,
+                        Problem::TooMany { what: "elements for the bytes of the file", count },
+                    ));
                 }
                 elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
             }
@@ -193,7 +200,8 @@ impl Values<'_> {
                 let end = (Place::Line(*line + 1), Problem::End { expected: "a value of an element" });
                 let (at, word) = words.next().ok_or(end)?;
                 *line = at;
-                let found = || (Place::Line(at), Problem::Expected { expected: "a number", found: word.into() });
+                let found =
+                    || (Place::Line(at), Problem::Expected { expected: "a number", found: word.into() });
                 word.parse().map_err(|_| found())
             }
             Values::Binary { bytes, at, big } => {
@@ -224,7 +232,9 @@ impl Values<'_> {
     /// Refuses what comes behind the last element.
     fn end(mut self) -> Parsed<()> {
         let more = match &mut self {
-            Values::Text { words, .. } => words.next().map(|(line, word)| (Place::Line(line), word.to_string())),
+            Values::Text { words, .. } => {
+                words.next().map(|(line, word)| (Place::Line(line), word.to_string()))
+            }
             Values::Binary { bytes, at, .. } => {
                 let blank = bytes[*at..].iter().all(u8::is_ascii_whitespace);
                 (!blank).then(|| (Place::Byte(*at), format!("{} bytes more", bytes.len() - *at)))
@@ -232,7 +242,9 @@ impl Values<'_> {
         };
         match more {
             None => Ok(()),
-            Some((place, found)) => Err((place, Problem::Expected { expected: "the end of the file", found })),
+            Some((place, found)) => {
+                Err((place, Problem::Expected { expected: "the end of the file", found }))
+            }
         }
     }
 }

@@ -18,7 +18,9 @@ fn claimed(bytes: &[u8]) -> Option<usize> {
 
 /// Whether a file has as many bytes as the number of triangles in it says: some binary files begin with the word of text files.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
-    claimed(bytes).is_some_and(|count| count.checked_mul(EACH).and_then(|all| all.checked_add(HEAD)) == Some(bytes.len()))
+    claimed(bytes).is_some_and(|count| {
+        count.checked_mul(EACH).and_then(|all| all.checked_add(HEAD)) == Some(bytes.len())
+    })
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
@@ -31,7 +33,9 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
         return lines(super::super::text(bytes)?);
     }
     let problem = match claimed(bytes) {
-        Some(count) => Problem::Size { what: "triangles", count, expected: HEAD + EACH * count, found: bytes.len() },
+        Some(count) => {
+            Problem::Size { what: "triangles", count, expected: HEAD + EACH * count, found: bytes.len() }
+        }
         None => Problem::End { expected: "a comment of 80 bytes and the number of triangles" },
     };
     Err((Place::Byte(bytes.len().min(HEAD - 4)), problem))
@@ -83,7 +87,9 @@ fn lines(text: &str) -> Parsed<Soup> {
                 word(&mut lines, &["endfacet"], "endfacet")?;
                 add(&mut soup, place, corners)?;
             }
-            (_, true) => return lines.fail(Problem::Expected { expected: "facet or endsolid", found: line.into() }),
+            (_, true) => {
+                return lines.fail(Problem::Expected { expected: "facet or endsolid", found: line.into() });
+            }
             (_, false) => return lines.fail(Problem::Expected { expected: "solid", found: line.into() }),
         }
     }
