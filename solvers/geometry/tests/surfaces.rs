@@ -152,7 +152,7 @@ fn every_broken_file_is_refused_with_its_place() {
             text.replace("endsolid tet\n", "").into_bytes(),
             "the file ends where endsolid should come",
         ),
-        ("a.stl", text[..150].as_bytes().to_vec(), "a.stl:12: the file ends where vertex"),
+        ("a.stl", text.as_bytes()[..150].to_vec(), "a.stl:12: the file ends where vertex"),
         ("a.stl", (text.clone() + "facet\n").into_bytes(), "a.stl:31: expected solid, found 'facet'"),
         (
             "a.stl",
@@ -253,12 +253,13 @@ fn surfaces_that_cross_are_refused() {
     assert!(matches!(pushed, SurfaceProblem::Crossing { .. }), "{pushed}");
     // Exactly in one plane, edge on edge: signs decide, not rounding.
     let cube = |at: [f64; 3]| {
-        let mut soup = Soup::default();
-        soup.points =
-            (0..8).map(|i| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
+        let corner = |i: u32| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
-        soup.triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        soup.faces = (1..=12).collect();
+        let soup = Soup {
+            points: (0..8).map(corner).collect(),
+            triangles: faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+            faces: (1..=12).collect(),
+        };
         moved(soup, at)
     };
     for by in [[0.5, 0.0, 0.0], [0.5, 0.5, 0.5], [1.0, 0.25, 0.25], [1.0, 1.0, 0.5]] {

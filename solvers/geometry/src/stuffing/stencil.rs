@@ -48,7 +48,7 @@ impl Tet {
             }
             (&[a, b], &[d]) => {
                 let (at_a, at_b, on) = (cut(a, d), cut(b, d), node(on));
-                if self.from_first(a, b, d) {
+                if self.halved_from(a, b, d) {
                     add([on, node(a), node(b), at_b]);
                     add([on, node(a), at_b, at_a]);
                 } else {
@@ -57,7 +57,7 @@ impl Tet {
                 }
             }
             (&[a, b], &[c, d]) if long(a, b) => {
-                let (a, b) = if self.from_first(a, b, c) { (a, b) } else { (b, a) };
+                let (a, b) = if self.halved_from(a, b, c) { (a, b) } else { (b, a) };
                 let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
                 add([node(a), node(b), bc, bd]);
                 // The quadrilateral on the surface is this tetrahedron's own.
@@ -84,7 +84,7 @@ impl Tet {
                 };
                 let [at_a, at_b, at_c] = [a, b, c].map(|corner| cut(corner, d));
                 let (b, c, at_b, at_c) =
-                    if self.from_first(b, c, d) { (b, c, at_b, at_c) } else { (c, b, at_c, at_b) };
+                    if self.halved_from(b, c, d) { (b, c, at_b, at_c) } else { (c, b, at_c, at_b) };
                 add([node(a), node(b), node(c), at_a]);
                 add([at_a, node(b), node(c), at_c]);
                 add([at_a, node(b), at_c, at_b]);
@@ -95,7 +95,7 @@ impl Tet {
 
     /// Whether the quadrilateral of two corners inside and the cuts on their edges to `d` is halved from `a`; the tetrahedron on the other
     /// side says the same. The cut of a long edge takes the diagonal; where both edges are short, the corner of the lower number.
-    fn from_first(&self, a: usize, b: usize, d: usize) -> bool {
+    fn halved_from(&self, a: usize, b: usize, d: usize) -> bool {
         if long(a, b) { self.corners[a] < self.corners[b] } else { long(b, d) }
     }
 }
