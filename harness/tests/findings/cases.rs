@@ -71,6 +71,16 @@ const OF_FILE: &[(&str, &str)] = &[
     ("on = \"z-max\"", "on = \"roof\""),
 ];
 
+const OCTANT: &[(&str, &str)] = &[
+    (
+        "shape = \"box\"\nsize = [\"40 mm\", \"40 mm\", \"20 mm\"]",
+        "shape = \"sphere-shell\"\ninner = \"10 mm\"\nouter = \"20 mm\"\noctant = true",
+    ),
+    ("size = { cells = [2, 2, 2] }", "size = { level = 1 }"),
+    ("nodes = 60", "size = { level = 1 }"),
+    ("on = \"z-max\"", "on = \"outer\""),
+];
+
 /// A sound scene made unsound.
 pub struct Case {
     pub name: &'static str,
@@ -349,8 +359,8 @@ pub const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
-        name: "a grid clipped by a mesh file",
-        base: OF_FILE,
+        name: "a grid clipped by an octant",
+        base: OCTANT,
         edit: (
             "integration = { rule = \"gauss\", points = 4 }",
             "integration = { rule = \"grid\", points = 8 } #<",
@@ -391,8 +401,8 @@ pub const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
-        name: "a cloud of an exact count in a mesh file",
-        base: &[OF_FILE[0], OF_FILE[1], OF_FILE[3]],
+        name: "a cloud of an exact count in an octant",
+        base: &[OCTANT[0], OCTANT[1], OCTANT[3]],
         edit: ("nodes = 60", "nodes = 60 #<"),
         key: "method[1].nodes",
         says: &["'60' makes a cloud of an exact count", "the nodes of a mesh"],
