@@ -1,9 +1,10 @@
-//! Mesh files and lists of points: read, measured, converted, written and read again.
+//! Mesh files, surfaces and lists of points: read, filled, measured, converted, written and read again.
 
 use std::path::Path;
 
 use geometry::generate::{raise_order, to_tets};
-use geometry::{CellKind, Mesh, cloud_from_mesh, files, quality, read_points_text};
+use geometry::stuffing::{Stuffing, stuff};
+use geometry::{CellKind, Mesh, Surface, cloud_from_mesh, files, quality, read_points_text};
 
 pub(crate) fn run(data: &[u8]) {
     let points = std::str::from_utf8(data).map(|text| read_points_text(text, Path::new("fuzz.csv"), 1e-3));
@@ -13,6 +14,9 @@ pub(crate) fn run(data: &[u8]) {
             let _ = geometry::Cloud::from_points(points.points);
         }
     }
+    if let Ok(surface) = files::read_surface_bytes(data, Path::new("fuzz.stl"), 1e-3) {
+        fill(&surface);
+    }
     // The folder of a deck's includes is an empty one.
     match files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {
         Err(bad) => assert!(!bad.to_string().is_empty()),
@@ -20,6 +24,18 @@ pub(crate) fn run(data: &[u8]) {
             assert_eq!(rows.len(), mesh.cell_count());
             take(&mesh);
         }
+    }
+}
+
+/// Fills a surface with some cells.
+fn fill(surface: &Surface) {
+    let [low, high] = surface.bounds();
+    if surface.triangles().len() > 300 {
+        return;
+    }
+    let how = Stuffing { spacing: (high - low).amax() / 6.0, doublings: 1 };
+    if let Ok(stuffed) = stuff(surface, how) {
+        assert!(quality::check(&stuffed.mesh).is_ok(), "an inverted cell inside a surface");
     }
 }
 

@@ -76,14 +76,24 @@ fn a_mesh_file_is_described_in_its_own_unit() {
         rows,
         [
             "  cells       2 tet4",
-            "  regions     body",
+            "  regions     body: 2 cells, 16.000 cm^3",
             "  surfaces    none (select with where)",
             "  extent      x = 0 to 40.000, y = 0 to 40.000, z = 0 to 20.000 mm",
+            "  unit        mm: 40.000 mm long, as long as organs are",
             "  volume      16.000 cm^3; of a cell 5.333 to 10.667 cm^3",
             "  angles      35.3 to 109.5 degrees between two faces of a cell",
-            "  worst cell  aspect 1.86 (a regular cell has 1), line 14, element 7",
+            "  aspect             1     1.5       2       3       5      10  and more (a regular cell has 1)",
+            "                     1       1       0       0       0       0",
+            "  worst       aspect 1.86, angles 35.3 to 90.0, line 14, element 7",
+            "              aspect 1.41, angles 48.2 to 109.5, line 15, element 8",
         ]
     );
+    let object = tissuebench(&["mesh", "info", "--format", "json", "--unit", "m", &inside(&dir, "two.msh")]);
+    let object: serde_json::Value = serde_json::from_str(&object.stdout).unwrap();
+    assert_eq!(object["kinds"]["tet4"], 2, "{object}");
+    assert_eq!(object["unit_guess"], "mm", "{object}");
+    assert_eq!(object["worst"][0]["element"], 7, "{object}");
+    assert!((object["volume_m3"].as_f64().unwrap() - 16e3).abs() < 1e-8, "{object}");
 }
 
 #[test]

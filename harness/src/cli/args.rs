@@ -221,25 +221,65 @@ pub enum Format {
 /// What to do with mesh files.
 #[derive(Subcommand)]
 pub enum MeshAction {
-    /// Print counts, surfaces, extent, volume and quality
+    /// Print counts, regions, surfaces, extent, unit, volume, and the quality of the cells with the worst of them
     Info {
-        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
+        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk); or surfaces: STL, OBJ, PLY
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
         #[arg(long, default_value = "mm", value_parser = length_unit)]
         unit: LengthUnit,
+        /// What to print on stdout: a table, or a JSON object in a line for each file (SI units)
+        #[arg(long, value_enum, default_value_t = Format::Table)]
+        format: Format,
     },
+    /// Fill a closed surface with tetrahedra
+    ///
+    /// By isosurface stuffing (Labelle and Shewchuk 2007): angles between the faces of a cell are between 10.7 and 164.8 degrees. Sharp edges
+    /// are rounded off at the size of a cell. A surface that is open, crosses itself or is inside out is refused with the place.
+    Make(MakeArgs),
     /// Read one mesh file, write it as another kind of cells
     Convert {
-        /// The file to read: Gmsh 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu)
+        /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
         from: PathBuf,
-        /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp) or VTK (.vtu); another one than FROM
+        /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
+        /// .stl; another one than FROM
         to: PathBuf,
         /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
         #[arg(long)]
         element: Option<String>,
     },
+}
+
+/// Arguments of `mesh make`.
+#[derive(Args)]
+pub struct MakeArgs {
+    /// A closed surface: STL, OBJ or PLY
+    pub surface: PathBuf,
+    /// Mean length of the edges at the surface, such as "3 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = length, required_unless_present = "nodes")]
+    pub size: Option<f64>,
+    /// About how many nodes to make, in place of --size
+    #[arg(long, value_name = "N", conflicts_with = "size", value_parser = clap::value_parser!(u32).range(8..=3_000_000))]
+    pub nodes: Option<u32>,
+    /// Length unit of the surface, and of the mesh that is written
+    #[arg(long, default_value = "mm", value_parser = length_unit)]
+    pub unit: LengthUnit,
+    /// How often the size of the cells may double inside, away from the surface
+    #[arg(long, value_name = "TIMES", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=3))]
+    pub coarser: u32,
+    /// Cells of one size: --coarser 0
+    #[arg(long, conflicts_with = "coarser")]
+    pub uniform: bool,
+    /// The mesh to write: .msh, .inp or .vtu
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// A length with its unit, m.
+fn length(text: &str) -> Result<f64, String> {
+    let metres = catalogue::Dimension::Length.read(text).map_err(|bad| bad.to_string())?;
+    if metres > 0.0 { Ok(metres) } else { Err("a length above zero".into()) }
 }
 
 /// A unit of the coordinates in a file.

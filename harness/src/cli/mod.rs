@@ -12,6 +12,8 @@ mod json;
 mod list;
 mod merge;
 mod mesh_files;
+mod mesh_info;
+mod mesh_make;
 mod plan;
 mod reference;
 mod run;

@@ -12,6 +12,7 @@ use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, Sphere
 use geometry::{CellKind, Mesh, Point3, files, quality};
 
 use super::expected::{self, narrowest};
+use super::file_body::{self, Fill};
 use super::same_body;
 use crate::Failure;
 use crate::error::Key;
@@ -29,7 +30,7 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
     Ok(mesh)
 }
 
-/// The body in closed form; `None` for a mesh file and for the octant of a shell.
+/// The body in closed form; `None` for a file, whose shape [`file_body::load`] has, and for the octant of a shell.
 pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     match *body {
         Body::Box { min, max } => Some(Arc::new(Cuboid { min: min.into(), max: max.into() })),
@@ -50,6 +51,9 @@ pub(super) fn unchecked(
 ) -> Result<Mesh, Failure> {
     if let Size::File(file) = size {
         return from_file(file, kind);
+    }
+    if let Body::File(file) = body {
+        return inside(file, kind, size, jitter);
     }
     if let (Some(_), true) = (jitter, !matches!(body, Body::Box { .. })) {
         let problem = format!("is for boxes; a {} has none", body.name());
@@ -87,11 +91,7 @@ pub(super) fn unchecked(
             }
             Body::Kidney { half: false } => kidney_mesh(kind, n),
             Body::Kidney { half: true } => half_kidney_mesh(kind, n),
-            Body::File(ref file) => {
-                let problem = format!("is of a family of meshes, but the body is {}", file.path.display());
-                let help = "give the method a mesh too: size = { file = \"...\" }";
-                return Err(Failure::input(Key::Size(""), problem, help));
-            }
+            Body::File(_) => unreachable!("returned above"),
         };
         let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;
         few_enough(mesh.points().len() as f64)?;
@@ -123,6 +123,44 @@ pub(super) fn unchecked(
         },
         Size::File(_) => unreachable!("returned above"),
     }
+}
+
+/// A mesh inside the surface of a file, or inside the boundary of its mesh.
+fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
+    if jitter.is_some() {
+        return Err(Failure::input(Key::Method("jitter"), "is for boxes; a file has none", "leave it out"));
+    }
+    if !kind.is_tet() {
+        let problem =
+            format!("makes tetrahedra inside the surface of {}, not {}", file.path.display(), kind.name());
+        let help = "take element = \"tet4\" or \"tet10\", or a mesh: size = { file = \"...\" }";
+        return Err(Failure::input(Key::Size(""), problem, help));
+    }
+    let body = Body::File(file.clone());
+    let spacing = match *size {
+        Size::Level(level) => Ok(narrowest(&body) / (base(&body) << (level - 1).min(16)) as f64),
+        Size::Spacing(spacing) => Ok(spacing),
+        Size::Nodes(nodes) => Err(nodes),
+        Size::Cells { .. } => {
+            let problem = format!("is for boxes, not for a {}", body.name());
+            return Err(Failure::input(Key::Size("cells"), problem, "give level, nodes or spacing"));
+        }
+        Size::File(_) => unreachable!("read as it is"),
+    };
+    let from_file = file_body::load(file)?;
+    let fill = match spacing {
+        Ok(spacing) => {
+            few_enough(expected::of_spacing(&body, kind, spacing))?;
+            Fill::spacing(spacing)
+        }
+        Err(nodes) => {
+            few_enough(nodes as f64)?;
+            // Of quadratic cells most nodes are in the middle of edges.
+            Fill::Nodes(if kind == CellKind::Tet10 { (nodes / 8).max(8) } else { nodes })
+        }
+    };
+    let mesh = from_file.mesh(fill)?;
+    Ok(if kind == CellKind::Tet10 { raise_order(&mesh) } else { mesh })
 }
 
 /// Refuses what no mesh is made of; asked before one is made, which takes seconds and gigabytes.
@@ -180,8 +218,8 @@ pub(super) fn base(body: &Body) -> usize {
         | Body::Cylinder { .. }
         | Body::Ball { .. }
         | Body::Kidney { .. }
-        | Body::SphereShell { .. } => 2,
-        Body::File(_) => 1,
+        | Body::SphereShell { .. }
+        | Body::File(_) => 2,
     }
 }
 

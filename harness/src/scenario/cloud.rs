@@ -5,10 +5,10 @@ use std::sync::Arc;
 use cases::scene::{self, ErrorKind};
 use efg::{CloudSource, Functions, Integration};
 use geometry::shapes::Shape;
-use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh};
+use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, files};
 
 use super::discretise::dilation;
-use super::{Scenario, body, cloud_file, grading};
+use super::{Scenario, body, cloud_file, file_body, grading};
 use crate::Failure;
 use crate::discretise::place;
 use crate::discretise::{Coupled, Dilation, Discretisation, Essential, InnerPoints, Refine};
@@ -23,7 +23,7 @@ const NITSCHE: f64 = 100.0;
 /// Penalty where the scene gives none: times E / h.
 pub(super) const PENALTY: f64 = 1e4;
 
-/// A body in closed form, which clouds of an exact count and grids need.
+/// A body with an inside test, which clouds of an exact count and grids need.
 type Body = Arc<dyn Shape + Send + Sync>;
 
 /// Nodes with the cells that they are integrated over, and the mesh whose nodes they are, if any.
@@ -69,7 +69,7 @@ struct CloudMethod {
 
 impl Scenario<'_> {
     pub(super) fn cloud(&self, efg: &scene::Efg) -> Result<Discretisation, Failure> {
-        let shape = body::shape(&self.scene.body);
+        let shape = self.shape_for(efg)?;
         let Placed { cloud, background, cells } = self.placed(efg, shape.as_ref())?;
         let refine = match (&efg.cloud, &shape) {
             (scene::Cloud::Refined { seed, refine, .. }, Some(shape)) => {
@@ -110,6 +110,18 @@ impl Scenario<'_> {
         method.on(cloud)
     }
 
+    /// The body's shape; of a file that is a mesh only where its cells do not do, since all of its boundary is searched for crossings.
+    fn shape_for(&self, efg: &scene::Efg) -> Result<Option<Body>, Failure> {
+        let scene::Body::File(file) = &self.scene.body else { return Ok(body::shape(&self.scene.body)) };
+        let of_mesh = matches!(efg.cloud, scene::Cloud::Mesh { .. } | scene::Cloud::File { .. });
+        let by_cells = of_mesh && !matches!(efg.integration, scene::Integration::Grid { .. });
+        if by_cells && !files::is_surface(&file.path) {
+            return Ok(None);
+        }
+        let shape: Body = file_body::load(file)?.surface.clone();
+        Ok(Some(shape))
+    }
+
     /// Places the nodes and finds their background.
     fn placed(&self, efg: &scene::Efg, shape: Option<&Body>) -> Result<Placed, Failure> {
         let bad = |e: CloudError| match e {
@@ -122,8 +134,7 @@ impl Scenario<'_> {
             shape.map(|shape| &**shape).ok_or_else(|| {
                 Failure::input(
                     Key::Method("nodes"),
-                    "makes a cloud of an exact count, which needs a body in closed form (box, cylinder, ball, \
-                     whole sphere-shell, kidney)",
+                    "makes a cloud of an exact count, which an octant takes none of",
                     "take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }",
                 )
             })
@@ -295,7 +306,7 @@ fn integration(
         scene::Integration::Grid { points, spacing: given } => {
             let key = || Key::Method("integration.rule");
             let help = "take rule = \"gauss\" or \"cell-smoothed\"";
-            let clips = "clips a grid by a body in closed form; a mesh and an octant have no inside test";
+            let clips = "clips a grid by the body, and an octant has no inside test";
             let shape = shape.ok_or_else(|| Failure::input(key(), clips, help))?;
             if background.region_names().len() > 1 {
                 let problem = "does not know the region of a grid's points, and the body has several";

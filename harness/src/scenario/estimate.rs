@@ -10,6 +10,7 @@ use material::Material as _;
 
 use super::body::{self, base, shape};
 use super::expected::narrowest;
+use super::file_body;
 
 /// Bytes of a mesh file for a node with its cells.
 const FILE_BYTES: f64 = 250.0;
@@ -200,6 +201,7 @@ fn volume(body: &Body) -> f64 {
     match (shape(body), body) {
         (Some(shape), _) => Shape::volume(&*shape),
         (None, Body::SphereShell { inner, outer, .. }) => shell(*inner, *outer),
+        (None, Body::File(file)) => file_body::load(file).map_or(0.0, |body| body.surface.volume()),
         (None, _) => 0.0,
     }
 }

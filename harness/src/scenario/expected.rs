@@ -3,9 +3,10 @@
 use cases::scene::{self, Body, Cloud, Family, Size};
 use geometry::CellKind;
 use geometry::shapes::Kidney;
+use geometry::stuffing::expected_nodes;
 
-use super::Scenario;
 use super::discretise::kind;
+use super::{Scenario, file_body};
 
 impl Scenario<'_> {
     /// About how many nodes the method's meshes and clouds have, its background included; 0 for those of files.
@@ -38,6 +39,7 @@ fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
     match *size {
         // A box a million times as long as it is narrow has more nodes than asked for at its coarsest.
         Size::Nodes(wanted) => of_family(body, kind, 1.0).max(wanted as f64),
+        Size::Spacing(spacing) if matches!(body, Body::File(_)) => of_spacing(body, kind, spacing),
         Size::Spacing(spacing) => of_family(body, kind, (narrowest(body) / spacing).round().max(1.0)),
         Size::Level(level) => of_family(body, kind, 2f64.powi(level as i32)),
         Size::Cells { cells, .. } => of_box(kind, cells.map(|n| n as f64)),
@@ -61,7 +63,7 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
         // 3 n by 7 n / 2 by n cells with n layers around them, and the half of it.
         Body::Kidney { half: true } => 20.0 * n * n * n,
         Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
-        Body::File(_) => 0.0,
+        Body::File(_) => return of_spacing(body, kind, narrowest(body) / n),
     };
     // Nodes of one cell that no other counts: its corners and the middles of its edges, of six tetrahedra in a hexahedron.
     let each = match kind {
@@ -92,8 +94,16 @@ pub(super) fn narrowest(body: &Body) -> f64 {
         Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
         Body::SphereShell { inner, outer, .. } => outer - inner,
         Body::Kidney { .. } => Kidney::C,
-        Body::File(_) => 0.0,
+        Body::File(ref file) => file_body::load(file).map_or(0.0, |body| body.narrowest()),
     }
+}
+
+/// About how many nodes a mesh inside the surface of a file has; none of a file that can't be read.
+pub(super) fn of_spacing(body: &Body, kind: CellKind, spacing: f64) -> f64 {
+    let Body::File(file) = body else { return 0.0 };
+    let corners = file_body::load(file)
+        .map_or(0.0, |body| expected_nodes(body.surface.volume(), body.surface.area(), spacing));
+    if kind == CellKind::Tet10 { 8.0 * corners } else { corners }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Whether the mesh file of a method is of the scene's body: of the same place, extent and volume.
 
 use cases::scene::{Body, MeshFile, Size};
-use geometry::{CellKind, Mesh, Point3, Vector3, quality};
+use geometry::{CellKind, Mesh, Point3, Vector3, files, quality};
 
 use super::body;
 use crate::Failure;
@@ -43,7 +43,9 @@ impl Extent {
 pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let of_body = match body {
         Body::File(of_body) if of_body == file => return Ok(()),
-        Body::File(of_body) => body::read(of_body, Key::Scene("body.path".into()))?,
+        Body::File(of_body) if !files::is_surface(&of_body.path) => {
+            body::read(of_body, Key::Scene("body.path".into()))?
+        }
         shape => body::unchecked(shape, CellKind::Tet4, &Size::Nodes(NODES), None)?,
     };
     let (own, whole) = (Extent::of(mesh), Extent::of(&of_body));

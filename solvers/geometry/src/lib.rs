@@ -27,16 +27,21 @@ pub mod quality;
 mod random;
 mod search;
 pub mod shapes;
+pub mod stuffing;
+pub mod surface;
+mod triangle;
 
 pub use cell::{CellKind, FaceKind};
 pub use cloud::{
     Cloud, CloudError, PointFile, PointFileError, PointProblem, Refinement, Sizes, cloud, cloud_from_mesh,
     cloud_of_sizes, edges, read_points, read_points_text,
 };
-pub use locate::{LocateError, Location, Locator, closest_on_triangle, locate};
+pub use locate::{LocateError, Location, Locator, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};
 pub use shapes::Kidney;
+pub use surface::Surface;
+pub use triangle::closest_on_triangle;
 
 /// A position in the reference configuration, in metres.
 pub type Point3 = nalgebra::Point3<f64>;

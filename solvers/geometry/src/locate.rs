@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::triangle::closest_on_triangle;
 use crate::{Matrix3, Mesh, Point3, Vector3};
 
 /// Barycentric coordinates may be this negative and still count as inside: faces shared by two cells lose nothing
@@ -316,39 +317,6 @@ impl Locator {
         }
         best
     }
-}
-
-/// The point of a triangle closest to `p` (Ericson 2005, Real-Time Collision Detection, section 5.1.5).
-pub fn closest_on_triangle(p: &Point3, &[a, b, c]: &[Point3; 3]) -> Point3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let sum = va + vb + vc;
-    a + ab * (vb / sum) + ac * (vc / sum)
 }
 
 #[cfg(test)]

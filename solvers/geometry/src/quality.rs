@@ -74,8 +74,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
             continue;
         }
         let (sharp, blunt) = dihedrals(kind, &points);
-        let aspect =
-            longest * surface(kind, &points) / volume / if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
+        let aspect = aspect(kind, &points, volume);
         let at = |value| Extreme { element, value };
         let here = Quality {
             volume,
@@ -96,6 +95,35 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
         Some(bad) => Err(bad),
         None => Ok(quality.expect("a mesh has at least one cell")),
     }
+}
+
+/// Longest edge times surface over volume, 1 for the regular tetrahedron and the cube.
+fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
+    let regular = if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
+    longest_edge(kind, points) * surface(kind, points) / volume / regular
+}
+
+/// Shape of one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellShape {
+    /// Volume (m^3), negative where the cell is inverted.
+    pub volume: f64,
+    /// As [`Quality::max_aspect`]; infinite where the volume is not positive.
+    pub aspect: f64,
+    /// Smallest and largest angle (degrees) between two faces.
+    pub angles: [f64; 2],
+}
+
+/// Shapes of all cells, inverted ones too.
+pub fn shapes(mesh: &Mesh) -> Vec<CellShape> {
+    let shape = |(cell, volume): (usize, f64)| {
+        let kind = mesh.kind(cell);
+        let points: Vec<Point3> = mesh.cell_points(cell).copied().collect();
+        let aspect = if volume > 0.0 { aspect(kind, &points, volume) } else { f64::INFINITY };
+        let (low, high) = dihedrals(kind, &points);
+        CellShape { volume, aspect, angles: [low, high] }
+    };
+    volumes(mesh).into_iter().enumerate().map(shape).collect()
 }
 
 /// Volume of every cell (m^3), curved cells included; negative where a cell is inverted.

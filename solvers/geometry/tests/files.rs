@@ -26,7 +26,7 @@ fn files_of_other_programs_hold_two_cubes() {
     for kind in CellKind::ALL {
         let files = made(kind);
         let encodings = if [CellKind::Tet10, CellKind::Hex8].contains(&kind) { 9 } else { 0 };
-        assert_eq!(files.len(), 10 + encodings, "{files:?}");
+        assert_eq!(files.len(), 14 + encodings, "{files:?}");
         let first = files::read(&files[0], 1.0).unwrap();
         for file in &files {
             let mesh = files::read(file, 1.0).unwrap_or_else(|bad| panic!("{bad}"));
@@ -46,7 +46,7 @@ fn files_of_other_programs_hold_two_cubes() {
             }
             let (left, right, ends) = match file.extension().unwrap().to_str() {
                 Some("inp") => ("left_half", "right", ["held", "pressed"]),
-                Some("vtu") => ("region-11", "region-12", ["surface-21", "surface-22"]),
+                Some("vtu" | "vtk") => ("region-11", "region-12", ["surface-21", "surface-22"]),
                 _ => ("left half", "right", ["held", "pressed"]),
             };
             let mut names = mesh.region_names().to_vec();
@@ -171,6 +171,15 @@ fn parts_are_placed_and_turned() {
 *END INSTANCE
 *NSET, NSET=held, INSTANCE=a
 1, 2
+*NSET, NSET=held, INSTANCE=B, GENERATE
+1, 3
+*NSET, NSET=both
+HELD, a.3
+*ELSET, ELSET=_top_S1, INTERNAL, INSTANCE=b
+solid
+*SURFACE, NAME=top, TYPE=ELEMENT
+_top_S1, S1
+b.1, S2
 *END ASSEMBLY
 ";
     let mesh = deck(text).unwrap();
@@ -180,6 +189,23 @@ fn parts_are_placed_and_turned() {
         assert!((x - Point3::from(wanted)).norm() < 1e-15, "{x}");
     }
     assert!((quality::check(&mesh).unwrap().volume - 2.0 / 3.0).abs() < 1e-15);
+    let nodes = |name: &str| mesh.facet_group_nodes(mesh.group(name).unwrap());
+    assert_eq!((nodes("held"), nodes("both")), (vec![4, 5, 6], vec![0, 1, 2, 4, 5, 6]));
+    assert_eq!(nodes("top"), [4, 5, 6, 7]);
+    assert_eq!(mesh.group("top").map(<[_]>::len), Some(2));
+    for (from, to, line, says) in [
+        ("INSTANCE=a\n1, 2", "INSTANCE=c\n1, 2", 17, "node set 'held' names instance c"),
+        ("INSTANCE=a\n1, 2", "INSTANCE=a\n1, 9", 18, "node set 'held' names node 9"),
+        ("\n1, 3\n", "\n1, 5\n", 20, "node set 'held' names node 5"),
+        ("HELD, a.3", "HELD, c.3", 22, "node set 'both' names set c.3"),
+        ("INSTANCE=b\nsolid", "INSTANCE=b\nfluid", 24, "element set '_top_S1' names set fluid"),
+        ("_top_S1, S1", "_top_S1, S7", 26, "expected a face that the elements have, such as S1, found 'S7'"),
+        ("b.1, S2", "b.2, S2", 27, "surface 'top' names element 2"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let bad = deck(&text.replacen(from, to, 1)).unwrap_err();
+        assert!(bad.contains(&format!("deck.inp:{line}: ")) && bad.contains(says), "{bad}");
+    }
 }
 
 #[test]

@@ -146,8 +146,8 @@ fn broken_files_name_the_line() {
     // (what to replace, by what, line of the complaint, words in the message)
     let cases = [
         ("$MeshFormat", "$Mesh", 1, "expected $MeshFormat"),
-        ("2.2 0 8", "3.0 0 8", 2, "of Gmsh 2.2, 4.0 and 4.1 are read"),
-        ("2.2 0 8", "2.2 7 8", 2, "of Gmsh 2.2, 4.0 and 4.1 are read"),
+        ("2.2 0 8", "3.0 0 8", 2, "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
+        ("2.2 0 8", "2.2 7 8", 2, "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
         ("$EndMeshFormat", "$EndFormat", 3, "expected $EndMeshFormat, found '$EndFormat'"),
         ("$EndComments", "$EndComment", 27, "file ends where the end of a section"),
         ("$Comments", "Comments", 4, "expected the start of a section, found 'Comments'"),

@@ -26,7 +26,7 @@ pub(crate) struct SizeKeys {
     pub cells: Option<[u32; 3]>,
     /// Ratio of the last to the first cell along each axis, with cells
     pub grading: Option<[f64; 3]>,
-    /// A mesh file: Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu
+    /// A mesh file: Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk
     pub file: Option<String>,
     /// Unit of the numbers in the file; mm unless given
     pub unit: Option<Unit<Length>>,
@@ -148,7 +148,7 @@ pub(crate) enum CloudKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CloudTable {
-    /// Lines of x, y, z between commas, with or without column names, or a mesh file (.msh, .inp, .vtu)
+    /// Lines of x, y, z between commas, with or without column names, or a mesh file (.msh, .inp, .vtu, .vtk)
     pub file: Option<String>,
     /// Unit of the numbers in the file
     pub unit: Option<Unit<Length>>,

@@ -106,7 +106,8 @@ pub(crate) enum BodyKeys {
         #[schemars(extend("x-surfaces" = surfaces::HALF))]
         half: bool,
     },
-    /// The mesh of a file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu), which names its surfaces itself
+    /// The mesh of a file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its surfaces itself; or a closed surface (STL, OBJ,
+    /// PLY)
     File {
         /// The file, relative to the folder of the scene
         path: String,

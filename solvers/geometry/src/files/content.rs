@@ -194,6 +194,11 @@ impl Content {
         found.is_some()
     }
 
+    /// Kind of a cell.
+    pub(super) fn kind(&self, cell: u32) -> CellKind {
+        self.kinds[cell as usize]
+    }
+
     /// Whether an element of that number is known, cell or not.
     pub(super) fn knows_element(&self, number: u64) -> bool {
         self.element_numbers.get(number).is_some()

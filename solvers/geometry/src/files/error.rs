@@ -17,6 +17,8 @@ pub enum Place {
     Byte(usize),
     /// Cell number from 0, of a file that has arrays of cells.
     Cell(usize),
+    /// Node number from 0, of a file that has arrays of nodes.
+    Node(usize),
 }
 
 impl fmt::Display for Place {
@@ -25,6 +27,7 @@ impl fmt::Display for Place {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
             Place::Cell(cell) => write!(f, "cell {cell}"),
+            Place::Node(node) => write!(f, "node {node}"),
         }
     }
 }
@@ -75,7 +78,7 @@ pub enum FileError {
         unit: f64,
     },
     /// A name from which no format follows.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX) and .vtu (VTK); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
@@ -86,7 +89,7 @@ pub enum FileError {
 fn short(place: Place) -> String {
     match place {
         Place::Line(line) => line.to_string(),
-        Place::Byte(_) | Place::Cell(_) => format!(" {place}"),
+        Place::Byte(_) | Place::Cell(_) | Place::Node(_) => format!(" {place}"),
     }
 }
 
@@ -95,14 +98,17 @@ fn short(place: Place) -> String {
 pub enum Problem {
     /// None of the formats that are read.
     #[error(
-        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1), Abaqus .inp (*HEADING, *NODE) and VTK .vtu (<VTKFile) are"
+        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile) are, and surfaces: STL, OBJ, PLY"
     )]
     Format {
         /// The beginning of the file.
         found: String,
     },
+    /// A surface where a mesh is wanted.
+    #[error("is a surface, not a mesh; `tissuebench mesh make` fills it with tetrahedra")]
+    Surface,
     /// A version of a format that is not understood.
-    #[error("format '{found}'; of Gmsh 2.2, 4.0 and 4.1 are read")]
+    #[error("format '{found}'; of Gmsh 1, 2.2, 4.0 and 4.1 are read")]
     Version {
         /// The line found.
         found: String,
@@ -156,6 +162,32 @@ pub enum Problem {
     NotFinite {
         /// Node number in the file.
         number: u64,
+    },
+    /// A triangle with a coordinate that is not finite.
+    #[error("triangle {number} has a coordinate that is not finite")]
+    NotFiniteFace {
+        /// Number of the triangle in the file, from 1.
+        number: u64,
+    },
+    /// A face whose corner isn't in the file.
+    #[error("face {face} names corner {node}, which the file does not have before it")]
+    UnknownCorner {
+        /// Number of the face in the file, from 1.
+        face: u64,
+        /// The corner as the file has it.
+        node: i64,
+    },
+    /// A file of another size than its own counts make.
+    #[error("{count} {what} take {expected} bytes, but the file has {found}")]
+    Size {
+        /// Of what.
+        what: &'static str,
+        /// How many the file says there are.
+        count: usize,
+        /// Bytes these take.
+        expected: usize,
+        /// Bytes there are.
+        found: usize,
     },
     /// An element whose node isn't in the file.
     #[error("element {element} names node {node}, which the file does not have")]

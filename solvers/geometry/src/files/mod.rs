@@ -1,4 +1,4 @@
-//! Mesh files in and out: Gmsh (.msh 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu).
+//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk); closed surfaces: STL, OBJ, PLY.
 //!
 //! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one `Content`,
 //! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
@@ -11,6 +11,9 @@ mod gmsh;
 mod lines;
 mod numbers;
 mod rows;
+mod surface;
+mod vtk;
+mod vtk_cells;
 mod vtu;
 
 use std::path::{Path, PathBuf};
@@ -21,14 +24,16 @@ use error::Parsed;
 
 pub use error::{FileError, Place, Problem};
 pub use rows::{Row, inverted, row_of_cell};
+pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 pub use vtu::write::{Values, solution_vtu, surface_vtu};
 
 /// What [`read`] takes, for messages.
-pub const READ: &str = "give a mesh file: Gmsh .msh (2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu";
+pub const READ: &str =
+    "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
 
 /// Whether a file is a mesh by its name, where it may be a list of points too.
 pub fn is_mesh(file: &Path) -> bool {
-    ["msh", "inp", "vtu"].iter().any(|known| suffix(file) == *known)
+    ["msh", "inp", "vtu", "vtk"].iter().any(|known| suffix(file) == *known)
 }
 
 fn suffix(file: &Path) -> String {
@@ -56,50 +61,66 @@ pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
 
 /// As [`read`], from memory, with the place of every cell; `file` is the name used in errors.
 pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row>), FileError> {
-    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
-        return Err(FileError::Unit { file: file.to_path_buf(), unit });
-    }
+    check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
     let content = parse(bytes, file).map_err(at)?;
     content.into_mesh(unit, file)
 }
 
-/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`. Numbers are written so that they read back to the
-/// same bits (for `unit = 1`; else to the rounding of one division and one product).
+/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary as `.stl`. Numbers of the first
+/// three are written so that they read back to the same bits (for `unit = 1`; else to the rounding of one division and one product).
 ///
 /// # Errors
 /// Another suffix, a name that the format can't hold, or a folder that can't be written.
 pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
-    if unit.is_nan() || unit <= 0.0 || unit.is_infinite() {
-        return Err(FileError::Unit { file: file.to_path_buf(), unit });
-    }
+    check_unit(file, unit)?;
     let bytes = match suffix(file).as_str() {
         "msh" => gmsh::write::text(mesh, unit).map(String::into_bytes),
         "inp" => abaqus::write::text(mesh, unit).map(String::into_bytes),
         "vtu" => vtu::write::bytes(mesh, unit),
+        "stl" => Ok(surface::write(mesh, unit)),
         _ => return Err(FileError::Suffix { file: file.to_path_buf() }),
     };
     let bytes = bytes.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
     std::fs::write(file, bytes).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
+fn check_unit(file: &Path, unit: f64) -> Result<(), FileError> {
+    let known = unit > 0.0 && unit.is_finite();
+    if known { Ok(()) } else { Err(FileError::Unit { file: file.to_path_buf(), unit }) }
+}
+
 fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     std::fs::read(file).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
-/// By what a file begins with: `$MeshFormat` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML.
+/// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
         [b'$', ..] => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] => vtu::parse(bytes),
-        rest => {
-            let line = rest.split(|&b| b == b'\n').next().unwrap_or_default();
-            let found = String::from_utf8_lossy(&line[..line.len().min(40)]).trim().to_string();
-            Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
-        }
+        rest if rest.starts_with(b"# vtk") => vtk::parse(bytes),
+        _ if surface::holds_surface(bytes, file) => Err((Place::Line(1), Problem::Surface)),
+        _ => unknown(bytes),
     }
+}
+
+/// Names what a file begins with that is none of the formats.
+fn unknown<T>(bytes: &[u8]) -> Parsed<T> {
+    let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
+    let line = bytes[start..].split(|&b| b == b'\n').next().unwrap_or_default();
+    let found = String::from_utf8_lossy(&line[..line.len().min(40)]).trim().to_string();
+    Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
+}
+
+/// The text of a file.
+fn text(bytes: &[u8]) -> Parsed<&str> {
+    std::str::from_utf8(bytes).map_err(|bad| {
+        let place = Place::Line(line_of(bytes, bad.valid_up_to()));
+        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
+    })
 }
 
 /// The number of the line, from 1, that holds a byte.

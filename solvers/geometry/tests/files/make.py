@@ -91,6 +91,10 @@ for kind in ("tet4", "tet10", "hex8", "hex20"):
     whole = meshio.Mesh(mesh.points, [(mesh.cells[at].type, mesh.cells[at].data) for at in kept], cell_data=groups)
     meshio.vtu.write(f"{kind}-meshio-text.vtu", whole, binary=False)
     meshio.vtu.write(f"{kind}-meshio-zlib.vtu", whole, binary=True, compression="zlib")
+    for version in ("4.2", "5.1"):
+        for binary in (False, True):
+            name = f"{kind}-vtk-{version}-{'binary' if binary else 'text'}.vtk"
+            meshio.vtk.write(name, whole, fmt_version=version, binary=binary)
     if kind in ("tet10", "hex8"):
         vtus(kind)
 gmsh.finalize()

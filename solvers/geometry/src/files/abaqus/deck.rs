@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
+use super::assembly::{self, Placed, Waiting};
 use super::cards::{Card, cards, real, split};
 use super::scope::Scope;
 use super::text;
@@ -23,12 +24,15 @@ pub(super) struct Deck {
     open: Option<(String, Scope)>,
     parts: Vec<(String, Scope)>,
     instances: Vec<Instance>,
+    /// Sets and surfaces of the assembly.
+    waiting: Vec<Waiting>,
     ended: bool,
 }
 
 /// A part placed in the assembly: moved, then turned about a line by an angle.
 struct Instance {
     place: Place,
+    name: String,
     part: usize,
     moved: Vector3,
     turned: Option<(Point3, Vector3, f64)>,
@@ -42,6 +46,7 @@ impl Deck {
             open: None,
             parts: Vec::new(),
             instances: Vec::new(),
+            waiting: Vec::new(),
             ended: false,
         }
     }
@@ -63,8 +68,11 @@ impl Deck {
         match card.keyword.as_str() {
             "NODE" => scope.nodes(card),
             "ELEMENT" => scope.elements(card),
-            // Sets of the assembly name instances; those of the parts are kept.
-            "ELSET" | "NSET" | "SURFACE" if placed || card.get("INSTANCE").is_some() => Ok(()),
+            // Sets of the assembly name instances.
+            "ELSET" | "NSET" | "SURFACE" if placed || card.get("INSTANCE").is_some() => {
+                self.waiting.extend(Waiting::new(card)?);
+                Ok(())
+            }
             "ELSET" | "NSET" => scope.set(card),
             "SURFACE" => scope.surface(card),
             "SOLID SECTION" => scope.section(card),
@@ -130,7 +138,8 @@ impl Deck {
             let expected = "two different points of an axis";
             return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
         }
-        self.instances.push(Instance { place: card.place, part, moved, turned });
+        let name = card.get("NAME").unwrap_or_default().to_string();
+        self.instances.push(Instance { place: card.place, name, part, moved, turned });
         Ok(())
     }
 
@@ -183,7 +192,8 @@ impl Deck {
             whole.append(end, &self.parts[0].1.content, |x| *x)?;
         }
         self.few_enough()?;
-        for Instance { place, part, moved, turned } in &self.instances {
+        let mut placed = Vec::with_capacity(self.instances.len());
+        for Instance { place, name, part, moved, turned } in &self.instances {
             let turn = turned.map(|(at, axis, angle)| {
                 (at, nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(axis), angle))
             });
@@ -191,8 +201,11 @@ impl Deck {
                 let x = x + moved;
                 turn.map_or(x, |(at, turn)| at + turn * (x - at))
             };
-            whole.append(*place, &self.parts[*part].1.content, put)?;
+            let part = &self.parts[*part].1;
+            let (first_node, first_cell) = whole.append(*place, &part.content, put)?;
+            placed.push(Placed { name, part, first_node, first_cell });
         }
+        assembly::add(&mut whole, &self.waiting, &placed)?;
         match (whole.node_count(), whole.cell_count()) {
             (0, _) => Err((end, Problem::Missing { section: "*NODE" })),
             (_, 0) => Err((end, Problem::NoCells)),

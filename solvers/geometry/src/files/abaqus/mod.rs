@@ -4,6 +4,7 @@
 //! else "body". `*SURFACE`, `*NSET` and sets of shells on the faces of solids become facet groups. Reading ends at the first `*STEP`. (Abaqus keywords reference; CalculiX
 //! CrunchiX manual, chapter 7.)
 
+mod assembly;
 mod cards;
 mod deck;
 mod kinds;

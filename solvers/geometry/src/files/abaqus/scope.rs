@@ -178,6 +178,12 @@ impl Scope {
         if count <= 2 * MOST { Ok(()) } else { Err((place, problem)) }
     }
 
+    /// Members of a set of nodes or of elements.
+    pub(super) fn set_of(&self, of_nodes: bool, name: &str) -> Option<&[u64]> {
+        let sets = if of_nodes { &self.nsets } else { &self.elsets };
+        sets.get(name).map(|(_, members)| &members[..])
+    }
+
     pub(super) fn section(&mut self, card: &Card) -> Parsed<()> {
         self.sections.push((card.place, card.need("ELSET")?.into()));
         Ok(())
@@ -276,7 +282,7 @@ impl Scope {
 }
 
 /// `first, last, step`, the step 1 unless given.
-fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64> + use<>> {
+pub(super) fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64> + use<>> {
     let word = |k: usize| words.get(k).map(String::as_str).filter(|word| !word.is_empty());
     let first = whole(place, word(0).unwrap_or(""), "the first number")?;
     let last = whole(place, word(1).unwrap_or(""), "the last number")?;

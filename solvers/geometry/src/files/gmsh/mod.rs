@@ -7,6 +7,7 @@ mod groups;
 mod order;
 mod scanner;
 mod sections;
+mod text1;
 mod text2;
 pub(super) mod write;
 
@@ -28,6 +29,9 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
         ))
     };
     let (place, found) = next().unwrap_or((Place::Line(1), String::new()));
+    if found == "$NOD" {
+        return text1::parse(super::text(bytes)?);
+    }
     if found != "$MeshFormat" {
         return Err((place, Problem::Expected { expected: "$MeshFormat", found }));
     }
@@ -36,13 +40,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     };
     let mut words = found.split_whitespace();
     match (words.next(), words.next()) {
-        (Some(version), Some("0")) if version.starts_with("2.") => {
-            let text = std::str::from_utf8(bytes).map_err(|bad| {
-                let place = Place::Line(super::line_of(bytes, bad.valid_up_to()));
-                (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
-            })?;
-            text2::parse(text)
-        }
+        (Some(version), Some("0")) if version.starts_with("2.") => text2::parse(super::text(bytes)?),
         (Some(version), Some(kind @ ("0" | "1"))) => match version {
             "2.1" | "2.2" | "2" | "4.0" | "4" | "4.1" => sections::parse(bytes, version, kind == "1"),
             _ => Err((place, Problem::Version { found })),

@@ -22,7 +22,7 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
             "$PhysicalNames" => physical_names(&mut lines, &mut names, &mut content)?,
             "$Nodes" if nodes => return lines.fail(Problem::Repeated { section: "$Nodes" }),
             "$Nodes" => {
-                read_nodes(&mut lines, &mut content)?;
+                read_nodes(&mut lines, &mut content, "$EndNodes")?;
                 nodes = true;
             }
             "$Elements" if elements => return lines.fail(Problem::Repeated { section: "$Elements" }),
@@ -54,7 +54,7 @@ fn skip(lines: &mut Lines, start: &str) -> Parsed<()> {
     }
 }
 
-fn count(lines: &mut Lines, expected: &'static str) -> Parsed<usize> {
+pub(super) fn count(lines: &mut Lines, expected: &'static str) -> Parsed<usize> {
     let line = lines.need(expected)?;
     lines.number(Some(line), expected)
 }
@@ -68,7 +68,7 @@ fn physical_names(lines: &mut Lines, names: &mut Names, content: &mut Content) -
     lines.exactly("$EndPhysicalNames")
 }
 
-fn read_nodes(lines: &mut Lines, content: &mut Content) -> Parsed<()> {
+pub(super) fn read_nodes(lines: &mut Lines, content: &mut Content, end: &'static str) -> Parsed<()> {
     for _ in 0..count(lines, "the number of nodes")? {
         let line = lines.need("a node")?;
         let mut tokens = line.split_whitespace();
@@ -82,7 +82,7 @@ fn read_nodes(lines: &mut Lines, content: &mut Content) -> Parsed<()> {
         }
         content.node(lines.place(), number, at)?;
     }
-    lines.exactly("$EndNodes")
+    lines.exactly(end)
 }
 
 fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Parsed<()> {

@@ -6,29 +6,9 @@ use roxmltree::{Document, Node};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
-use super::super::rows::Row;
+use super::super::vtk_cells::{Cells, REGIONS};
 use super::array::{Coding, Compressor, Numbers, Source, read};
-use crate::{CellKind, Point3};
-
-/// Arrays of cells that name regions, by the programs that write them; ours first.
-const REGIONS: [&str; 10] = [
-    "region",
-    "gmsh:physical",
-    "physical",
-    "medit:ref",
-    "CellEntityIds",
-    "MaterialIDs",
-    "material",
-    "Material",
-    "RegionId",
-    "ElementBlockIds",
-];
-
-/// Types whose cells are read, for the message of one whose are not.
-const KNOWN: &str = "types 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points are read";
-
-/// The order of nodes is ours.
-const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+use crate::Point3;
 
 struct File<'a> {
     bytes: &'a [u8],
@@ -181,53 +161,8 @@ impl<'a> File<'a> {
         let list = whole(self.array(named("connectivity")?, length)?, self.place(of_cells))?;
         let regions = self.cell_array(piece, cells, &REGIONS)?;
         let surfaces = self.cell_array(piece, cells, &["surface"])?;
-        let value = |of: &Option<Vec<i64>>, cell: usize| of.as_ref().map(|values| values[cell]);
-        let offset = content.element_count() as u64;
-        let mut start = 0;
-        for (cell, (&kind, end)) in types.iter().zip(ends).enumerate() {
-            let row = Row { place: Place::Cell(cell), tag: offset + cell as u64 };
-            let nodes: Option<Vec<u64>> =
-                list[start..end].iter().map(|&node| Some(first + u64::try_from(node).ok()?)).collect();
-            let Some(nodes) = nodes else {
-                let expected = "nodes from 0 on";
-                return Err((
-                    row.place,
-                    Problem::Expected { expected, found: format!("{:?}", &list[start..end]) },
-                ));
-            };
-            start = end;
-            match of_type(kind) {
-                Some((count, _)) if count != nodes.len() => {
-                    let (kind, found) = (kind.to_string(), nodes.len());
-                    return Err((
-                        row.place,
-                        Problem::Length { element: row.tag, kind, found, expected: count },
-                    ));
-                }
-                Some((_, What::Cell(kind))) => {
-                    let name =
-                        value(&regions, cell).map_or("body".into(), |v| name_of(region_names, v, "region"));
-                    let region = content.region(row.place, &name)?;
-                    content.cell(row, kind, region, &nodes, &ORDER[..nodes.len()])?;
-                }
-                Some((_, What::Face(corners))) => {
-                    let group = value(&surfaces, cell).or_else(|| value(&regions, cell)).filter(|&v| v >= 0);
-                    match group {
-                        Some(v) => {
-                            let group = content.group(&name_of(surface_names, v, "surface"));
-                            content.face(row, &[group], &nodes[..corners])?;
-                        }
-                        None => content.element(row.place, row.tag)?,
-                    }
-                }
-                None if THIN.contains(&kind) => content.element(row.place, row.tag)?,
-                None => {
-                    let kind = kind.to_string();
-                    return Err((row.place, Problem::UnknownType { element: row.tag, kind, known: KNOWN }));
-                }
-            }
-        }
-        Ok(())
+        let cells = Cells { first, types, ends, list, regions, surfaces };
+        cells.add_to(content, region_names, surface_names)
     }
 
     /// Whole numbers per cell by the first name that is there.
@@ -285,35 +220,6 @@ impl<'a> File<'a> {
             )),
         }
     }
-}
-
-/// What a VTK cell is: its number of nodes, and what it becomes.
-fn of_type(kind: i64) -> Option<(usize, What)> {
-    Some(match kind {
-        10 => (4, What::Cell(CellKind::Tet4)),
-        12 => (8, What::Cell(CellKind::Hex8)),
-        24 => (10, What::Cell(CellKind::Tet10)),
-        25 => (20, What::Cell(CellKind::Hex20)),
-        5 => (3, What::Face(3)),
-        9 => (4, What::Face(4)),
-        22 => (6, What::Face(3)),
-        23 => (8, What::Face(4)),
-        _ => return None,
-    })
-}
-
-enum What {
-    Cell(CellKind),
-    /// With so many corners.
-    Face(usize),
-}
-
-/// Points and lines.
-const THIN: [i64; 5] = [1, 2, 3, 4, 21];
-
-fn name_of(names: &[String], value: i64, plain: &str) -> String {
-    let known = usize::try_from(value).ok().and_then(|at| names.get(at));
-    known.cloned().unwrap_or_else(|| format!("{plain}-{value}"))
 }
 
 fn reals(numbers: Numbers) -> Vec<f64> {

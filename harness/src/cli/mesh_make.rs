@@ -1,0 +1,57 @@
+//! `tissuebench mesh make`: from a closed surface to tetrahedra inside.
+
+use geometry::stuffing::{self, Stuffed, Stuffing};
+use geometry::{Surface, files, quality};
+
+use super::args::MakeArgs;
+use super::mesh_files::{input, row};
+use crate::Failure;
+use crate::cli::text::digits;
+
+/// Fills a surface, writes the mesh and prints how close it is.
+pub fn make(args: &MakeArgs) -> Result<(), Failure> {
+    let MakeArgs { surface: file, unit, out, .. } = args;
+    let surface = files::read_surface(file, unit.metres).map_err(input)?;
+    let doublings = if args.uniform { 0 } else { args.coarser };
+    let (Stuffed { mesh, left_out }, spacing) = match (args.size, args.nodes) {
+        (Some(spacing), _) => {
+            (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)
+        }
+        (_, nodes) => {
+            let nodes = nodes.unwrap_or_default() as usize;
+            stuffing::stuff_with_nodes(&surface, nodes, doublings).map_err(input)?
+        }
+    };
+    files::write(&mesh, out, unit.metres).map_err(input)?;
+    println!("{}: {} nodes, {} cells", out.display(), mesh.points().len(), mesh.cell_count());
+    let length = |x: f64| format!("{} {}", digits(x / unit.metres), unit.name);
+    let inside = match doublings {
+        0 => String::new(),
+        doublings => format!(", up to {} times that inside", 1 << doublings),
+    };
+    row("surface", &described(&surface));
+    row("spacing", &format!("{}{inside}", length(spacing)));
+    let fit = stuffing::fit(&surface, &mesh);
+    let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);
+    let off = 100.0 * (volume / of_surface - 1.0);
+    row("volume", &format!("{} cm^3, {off:+.2} % of the surface's {}", digits(volume), digits(of_surface)));
+    row(
+        "distance",
+        &format!(
+            "at most {} between mesh and surface (Hausdorff, at points of both)",
+            length(fit.hausdorff())
+        ),
+    );
+    let quality = quality::check(&mesh).map_err(input)?;
+    let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
+    row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));
+    if left_out > 0 {
+        row("left out", &format!("{left_out} parts thinner than the cells; make them smaller to have them"));
+    }
+    Ok(())
+}
+
+fn described(surface: &Surface) -> String {
+    let (triangles, area) = (surface.triangles().len(), 1e4 * surface.area());
+    format!("{triangles} triangles, {} cm^2, closed", digits(area))
+}

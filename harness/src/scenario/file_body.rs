@@ -1,0 +1,139 @@
+//! A body from a file: a closed surface, or a mesh and the surface that is its boundary. Meshes of any size are made inside.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::SystemTime;
+
+use cases::scene::MeshFile;
+use geometry::generate::to_tets;
+use geometry::stuffing::{Stuffing, stuff, stuff_with_nodes};
+use geometry::surface::BoundaryFaces;
+use geometry::{Facet, Mesh, Point3, Surface, Vector3, files, locate};
+
+use crate::Failure;
+use crate::error::Key;
+
+/// What a file holds: its surface, and the mesh that it is the boundary of, if it has one.
+pub struct FileBody {
+    pub surface: Arc<Surface>,
+    mesh: Option<(Mesh, Vec<Facet>)>,
+    /// Meshes made inside, by their size.
+    made: Mutex<HashMap<Fill, Mesh>>,
+}
+
+/// The size of a mesh that is made inside a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fill {
+    /// About so many nodes.
+    Nodes(usize),
+    /// The mean length of edges (m), by its bits.
+    Spacing(u64),
+}
+
+impl Fill {
+    pub fn spacing(metres: f64) -> Fill {
+        Fill::Spacing(metres.to_bits())
+    }
+}
+
+/// A file as it was when it was read.
+type Known = (PathBuf, u64, u64, Option<SystemTime>);
+
+/// Files that were read: each method asks for the body, and to search a surface for crossings takes as long as to read it.
+static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mutex::default);
+
+/// Reads the body of a file, once.
+pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
+    let about = std::fs::metadata(&file.path).ok();
+    let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
+    let known = (file.path.clone(), file.unit.to_bits(), length, modified);
+    if let Some(body) = READ.lock().unwrap_or_else(PoisonError::into_inner).get(&known) {
+        return Ok(body.clone());
+    }
+    let key = || Key::Scene("body.path".into());
+    let (surface, mesh) = if files::is_surface(&file.path) {
+        let surface = files::read_surface(&file.path, file.unit)
+            .map_err(|bad| Failure::input(key(), format!("can't be read: {bad}"), files::SURFACES))?;
+        (surface, None)
+    } else {
+        let mesh = super::body::read(file, key())?;
+        let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {
+            let problem = format!(
+                "has a boundary that is no closed surface (faces counted from 1, lengths in m): {bad}"
+            );
+            Failure::input(
+                key(),
+                problem,
+                "give methods the nodes and cells of the file: size = { file = \"...\" }",
+            )
+        })?;
+        (boundary.surface, Some((mesh, boundary.faces)))
+    };
+    let body = Arc::new(FileBody { surface: Arc::new(surface), mesh, made: Mutex::default() });
+    READ.lock().unwrap_or_else(PoisonError::into_inner).insert(known, body.clone());
+    Ok(body)
+}
+
+impl FileBody {
+    /// Half the smallest extent (m), as the radius is of a ball.
+    pub fn narrowest(&self) -> f64 {
+        let [low, high] = self.surface.bounds();
+        (high - low).min() / 2.0
+    }
+
+    /// Tetrahedra of one size inside the surface, with the regions and the named surfaces of the file.
+    pub fn mesh(&self, fill: Fill) -> Result<Mesh, Failure> {
+        if let Some(mesh) = self.made.lock().unwrap_or_else(PoisonError::into_inner).get(&fill) {
+            return Ok(mesh.clone());
+        }
+        let stuffed = match fill {
+            Fill::Nodes(nodes) => stuff_with_nodes(&self.surface, nodes, 0).map(|(stuffed, _)| stuffed),
+            Fill::Spacing(bits) => {
+                stuff(&self.surface, Stuffing { spacing: f64::from_bits(bits), doublings: 0 })
+            }
+        };
+        let stuffed = stuffed
+            .map_err(|bad| Failure::input(Key::Size(""), format!("makes no mesh: {bad}"), "make it finer"))?;
+        let mesh = match &self.mesh {
+            None => stuffed.mesh,
+            Some((mesh, faces)) => self.named(stuffed.mesh, mesh, faces)?,
+        };
+        self.made.lock().unwrap_or_else(PoisonError::into_inner).insert(fill, mesh.clone());
+        Ok(mesh)
+    }
+
+    /// Gives cells the regions of the file's cells that hold their middles, and faces the names of the closest ones of its boundary.
+    fn named(&self, mesh: Mesh, of_file: &Mesh, faces: &[Facet]) -> Result<Mesh, Failure> {
+        let unlocated = |bad| Failure::input(Key::Scene("body.path".into()), format!("{bad}"), "");
+        let middle = |nodes: &mut dyn ExactSizeIterator<Item = u32>| {
+            let count = nodes.len() as f64;
+            Point3::from(nodes.map(|n| mesh.points()[n as usize].coords).sum::<Vector3>() / count)
+        };
+        let mut groups: HashMap<Facet, Vec<&str>> = HashMap::new();
+        for name in of_file.group_names() {
+            for facet in of_file.group(name).unwrap_or_default() {
+                groups.entry(*facet).or_default().push(name);
+            }
+        }
+        let mut named: HashMap<&str, Vec<Facet>> = HashMap::new();
+        for facet in mesh.boundary() {
+            let (_, triangle) = self.surface.closest(&middle(&mut mesh.facet_nodes(facet)));
+            for name in groups.get(&faces[triangle]).into_iter().flatten() {
+                named.entry(name).or_default().push(facet);
+            }
+        }
+        let tets = to_tets(of_file);
+        let middles: Vec<Point3> =
+            (0..mesh.cell_count()).map(|cell| middle(&mut mesh.cell(cell).iter().copied())).collect();
+        let found = locate(&tets, &middles).map_err(unlocated)?;
+        let regions = found.iter().map(|location| tets.region(location.cell as usize)).collect();
+        let mut names: Vec<&str> = named.keys().copied().collect();
+        names.sort_unstable();
+        let mut mesh = mesh.with_regions(regions, of_file.region_names().to_vec());
+        for name in names {
+            mesh = mesh.with_group(name, named[name].clone()).expect("faces of the mesh itself");
+        }
+        Ok(mesh)
+    }
+}

@@ -1,0 +1,195 @@
+//! Bodies from surfaces, and meshes and clouds of any size on bodies from files.
+
+mod common;
+
+use std::fmt::Write as _;
+
+use common::{assert_fails, inside, tissuebench, write};
+use serde_json::Value;
+
+/// An ellipsoid of 20 x 15 x 10 mm half axes in STL; without its last triangles if some are left out.
+fn ellipsoid(left_out: usize) -> String {
+    let (along, around) = (24, 32);
+    let at = |i: usize, j: usize| {
+        let (t, p) = (
+            std::f64::consts::PI * i as f64 / along as f64,
+            std::f64::consts::TAU * (j % around) as f64 / around as f64,
+        );
+        let ring = if i == 0 || i == along { 0.0 } else { t.sin() };
+        [20.0 * ring * p.cos(), 15.0 * ring * p.sin(), 10.0 * t.cos()]
+    };
+    let mut triangles = Vec::new();
+    for i in 0..along {
+        for j in 0..around {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if i + 1 < along {
+                triangles.push([a, b, c]);
+            }
+            if i > 0 {
+                triangles.push([a, c, d]);
+            }
+        }
+    }
+    triangles.truncate(triangles.len() - left_out);
+    let mut text = String::from("solid ellipsoid\n");
+    for corners in triangles {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in corners {
+            writeln!(text, "vertex {x} {y} {z}").unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid\n"
+}
+
+#[test]
+fn a_surface_is_filled_and_described() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to) = (write(&dir, "organ.stl", &ellipsoid(0)), inside(&dir, "organ.msh"));
+    let done = tissuebench(&["mesh", "make", &from, "--size", "3 mm", "--out", &to]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let says = [
+        "  surface     1472 triangles, ",
+        "  spacing     3.000 mm, up to 4 times that inside",
+        "% of the surface's 12.4",
+        "degrees between",
+    ];
+    assert!(says.iter().all(|says| done.stdout.contains(says)), "{}", done.stdout);
+    let info = tissuebench(&["mesh", "info", &to]);
+    assert!(
+        info.code == 0 && info.stdout.contains("surfaces    surface: "),
+        "{}{}",
+        info.stdout,
+        info.stderr
+    );
+    let surface = tissuebench(&["mesh", "info", &from]);
+    let says = ["a closed surface of 1472 triangles", "unit        mm: 40.000 mm long", "area        "];
+    assert!(says.iter().all(|says| surface.stdout.contains(says)), "{}", surface.stdout);
+    let metres = tissuebench(&["mesh", "info", "--unit", "m", &from]);
+    assert!(
+        metres.stdout.contains("40.000 m long: is the file in mm? Then give --unit mm"),
+        "{}",
+        metres.stdout
+    );
+    let [one, eight] = ["500", "4000"].map(|nodes| {
+        let done = tissuebench(&["mesh", "make", &from, "--nodes", nodes, "--uniform", "--out", &to]);
+        let count: f64 = done.stdout.split(' ').nth(1).unwrap().parse().unwrap();
+        count / nodes.parse::<f64>().unwrap()
+    });
+    assert!((one - 1.0).abs() < 0.1 && (eight - 1.0).abs() < 0.05, "{one} {eight}");
+}
+
+#[test]
+fn an_open_surface_is_refused_with_its_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to) = (write(&dir, "organ.stl", &ellipsoid(3)), inside(&dir, "organ.msh"));
+    let done = tissuebench(&["mesh", "make", &from, "--size", "3 mm", "--out", &to]);
+    assert_fails(&done, 2, "organ.stl: the surface is open: the edge (");
+    assert!(!std::path::Path::new(&to).exists());
+    let scene = write(&dir, "scene.toml", &scene("organ.stl", TET));
+    assert_fails(&tissuebench(&["run", &scene]), 2, "key 'body.path': 'organ.stl' can't be read:");
+}
+
+#[test]
+fn options_that_make_no_mesh_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to) = (write(&dir, "organ.stl", &ellipsoid(0)), inside(&dir, "organ.msh"));
+    let make = |more: &[&str]| tissuebench(&[&["mesh", "make", &from, "--out", &to], more].concat());
+    assert_fails(&make(&["--size", "3"]), 2, "unit");
+    assert_fails(&make(&["--size", "0 mm"]), 2, "above zero");
+    assert_fails(&make(&["--size", "3 mm", "--nodes", "100"]), 2, "cannot be used with");
+    assert_fails(&make(&[]), 2, "--size");
+    assert_fails(&make(&["--size", "90 mm"]), 2, "is too large for the surface");
+    assert_fails(&make(&["--size", "1 um"]), 2, "makes about");
+}
+
+const TET: &str = r#"{ id = "tet4", family = "fem", element = "tet4", size = { level = 2 } }"#;
+const REST: &str = r#"family = "efg", kernel = "cubic-spline", support_scale = 1.6, basis = "linear", essential = "nitsche", integration = "#;
+
+/// A patch test.
+fn scene(path: &str, methods: &str) -> String {
+    format!(
+        r#"title = "A body from a file in an affine field"
+body = {{ shape = "file", path = "{path}", unit = "mm" }}
+material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
+support = [{{ on = "surface", move = "exact" }}]
+reference = {{ exact = "affine" }}
+method = [{methods}]
+"#
+    )
+}
+
+/// Nodes and error of every method.
+fn run(scene: &str) -> Vec<(u64, f64)> {
+    let done = tissuebench(&["run", scene, "--once", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let objects = done.stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+    objects.map(|o| (o["nodes"].as_u64().unwrap(), o["metrics"]["l2"]["value"].as_f64().unwrap())).collect()
+}
+
+#[test]
+fn elements_and_clouds_of_any_size_pass_the_patch_test() {
+    let dir = tempfile::tempdir().unwrap();
+    write(&dir, "organ.stl", &ellipsoid(0));
+    let smoothed = r#"{ rule = "cell-smoothed", points = 1 }"#;
+    let methods = format!(
+        "{TET}, {{ id = \"tet10\", family = \"fem\", element = \"tet10\", size = {{ nodes = 1200 }} }}, \
+         {{ id = \"cloud\", nodes = 150, {REST}{smoothed} }}, {{ id = \"mesh\", size = {{ spacing = \"4 mm\" }}, {REST}{smoothed} }}"
+    );
+    let found = run(&write(&dir, "scene.toml", &scene("organ.stl", &methods)));
+    assert_eq!(found.len(), 4);
+    assert!(found.iter().all(|(_, error)| *error < 1e-10), "{found:?}");
+    assert!(found[2].0 == 150 && (1200.0 / found[1].0 as f64 - 1.0).abs() < 0.35, "{found:?}");
+    // The same on the body of a mesh made of the surface, through the cells of others.
+    let made = inside(&dir, "organ.msh");
+    assert_eq!(
+        tissuebench(&["mesh", "make", &inside(&dir, "organ.stl"), "--nodes", "800", "--out", &made]).code,
+        0
+    );
+    let found = run(&write(&dir, "of-mesh.toml", &scene("organ.msh", &methods)));
+    assert!(found.iter().all(|(_, error)| *error < 1e-10) && found[2].0 == 150, "{found:?}");
+}
+
+/// Regions and named surfaces of a mesh are those of meshes made inside its boundary.
+#[test]
+fn names_of_a_mesh_file_are_kept_at_other_sizes() {
+    let dir = tempfile::tempdir().unwrap();
+    let block = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../solvers/geometry/tests/files/hex8-2.2-text.msh");
+    let text = format!(
+        r#"title = "Two cubes of a file, one softer"
+body = {{ shape = "file", path = "{}", unit = "cm" }}
+material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
+region = [{{ name = "soft", on = "right", material = {{ law = "linear", young = "5 kPa", poisson = 0.3 }} }}]
+support = [{{ on = "held", fix = "xyz" }}]
+load = [{{ on = "pressed", traction = ["1 kPa", "0 Pa", "0 Pa"] }}]
+output = {{ probes = [["2 cm", "0.5 cm", "0.5 cm"]] }}
+method = [{{ id = "made", family = "fem", element = "tet4", size = {{ spacing = "1 mm" }} }}]
+"#,
+        block.display()
+    );
+    let done = tissuebench(&["run", &write(&dir, "scene.toml", &text), "--once", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let object: Value = serde_json::from_str(done.stdout.lines().next().unwrap()).unwrap();
+    // Stretched by 0.05 over 1 cm and by 0.2 over the next, less where it is held.
+    let x = object["metrics"]["max-x"]["value"].as_f64().unwrap();
+    assert!((2.0e-3..2.7e-3).contains(&x), "{object}");
+}
+
+#[test]
+fn what_a_surface_has_none_of_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    write(&dir, "organ.stl", &ellipsoid(0));
+    let refused = |method: &str, says: &str| {
+        let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene("organ.stl", method))]);
+        assert_fails(&done, 2, says);
+    };
+    refused(&TET.replacen("tet4\", size", "hex8\", size", 1), "makes tetrahedra inside the surface of");
+    refused(&TET.replace("level = 2", "cells = [2, 2, 2]"), "is for boxes, not for a file");
+    refused(&TET.replace("level = 2", "spacing = \"1 um\""), "at most 3000000 are made");
+    refused(
+        &TET.replace("level = 2", "spacing = \"80 mm\""),
+        "makes no mesh: a spacing of 0.08 m is too large",
+    );
+    refused(&TET.replace("level = 2", "file = \"organ.stl\""), "is a surface, not a mesh");
+}

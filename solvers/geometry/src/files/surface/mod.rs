@@ -1,0 +1,72 @@
+//! Surface files in and out: STL (text and binary), OBJ and PLY (text and binary).
+
+mod obj;
+mod ply;
+mod stl;
+
+use std::path::Path;
+
+use super::error::FileError;
+use super::suffix;
+use crate::Surface;
+use crate::surface::{Soup, SurfaceError};
+
+pub(super) use stl::write;
+
+/// What [`read_surface`] takes, for messages.
+pub const SURFACES: &str = "give a closed surface: STL (.stl), OBJ (.obj) or PLY (.ply)";
+
+/// Reads a closed surface by what its file holds; `unit` is the length of the file's unit in metres.
+///
+/// # Errors
+/// A file that is none of the formats or broken, with line or byte; a surface that is open, crosses itself or is inside out, with the
+/// triangles and the place.
+pub fn read_surface(file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
+    read_surface_bytes(&super::bytes(file)?, file, unit)
+}
+
+/// As [`read_surface`], from memory; `file` is the name used in errors.
+pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
+    super::check_unit(file, unit)?;
+    let soup = match kind(bytes, file) {
+        Some(Kind::Stl) => stl::parse(bytes),
+        Some(Kind::Obj) => obj::parse(bytes),
+        Some(Kind::Ply) => ply::parse(bytes),
+        None => super::unknown(bytes),
+    };
+    let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+    let soup: Soup = soup.map_err(at)?;
+    Surface::new(soup, unit).map_err(|problem| SurfaceError::Surface { file: file.to_path_buf(), problem })
+}
+
+/// Whether a file holds a surface, by what it begins with; a file that can't be read does not.
+pub fn is_surface(file: &Path) -> bool {
+    super::bytes(file).is_ok_and(|bytes| holds_surface(&bytes, file))
+}
+
+pub(super) fn holds_surface(bytes: &[u8], file: &Path) -> bool {
+    kind(bytes, file).is_some()
+}
+
+enum Kind {
+    Stl,
+    Obj,
+    Ply,
+}
+
+/// The format of a surface; `None` of anything else.
+fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
+    let start = bytes.iter().position(|b| !b.is_ascii_whitespace())?;
+    let begins = |word: &[u8]| bytes[start..].get(..word.len()).is_some_and(|b| b.eq_ignore_ascii_case(word));
+    if begins(b"ply\n") || begins(b"ply\r") {
+        Some(Kind::Ply)
+    } else if stl::is_binary(bytes) || begins(b"solid") {
+        Some(Kind::Stl)
+    } else if obj::is_text(&bytes[start..]) {
+        Some(Kind::Obj)
+    } else {
+        // A binary file that is cut short begins with anything.
+        let other = begins(b"$") || begins(b"*") || begins(b"<") || begins(b"# vtk");
+        (suffix(file) == "stl" && !other).then_some(Kind::Stl)
+    }
+}

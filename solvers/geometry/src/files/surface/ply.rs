@@ -1,0 +1,250 @@
+//! PLY: a header that lists elements with their properties, then their values as text or binary.
+
+use super::super::error::{Parsed, Place, Problem};
+use crate::surface::Soup;
+
+/// A scalar type: its bytes and what they are.
+#[derive(Clone, Copy)]
+enum Scalar {
+    Signed(usize),
+    Unsigned(usize),
+    Real(usize),
+}
+
+struct Property {
+    name: String,
+    /// Type of the count, where it is a list.
+    list: Option<Scalar>,
+    of: Scalar,
+}
+
+struct Element {
+    name: String,
+    count: usize,
+    properties: Vec<Property>,
+}
+
+/// Values one after another.
+enum Values<'a> {
+    Text { words: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>, line: usize },
+    Binary { bytes: &'a [u8], at: usize, big: bool },
+}
+
+pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
+    let (elements, mut values) = header(bytes)?;
+    let mut soup = Soup::default();
+    let mut corners = Vec::new();
+    for element in &elements {
+        for row in 0..element.count {
+            let place = values.place();
+            let mut at = [f64::NAN; 3];
+            for property in &element.properties {
+                let count = match property.list {
+                    None => 1,
+                    Some(of) => {
+                        let found = values.next(of)?;
+                        let known = (0.0..=1e6).contains(&found) && found.fract() == 0.0;
+                        let wrong = || Problem::Expected {
+                            expected: "the length of a list",
+                            found: found.to_string(),
+                        };
+                        if known { found as usize } else { return Err((values.place(), wrong())) }
+                    }
+                };
+                let is_face = element.name == "face" && property.name.starts_with("vertex_ind");
+                corners.clear();
+                for _ in 0..count {
+                    let value = values.next(property.of)?;
+                    match (property.name.as_str(), element.name.as_str()) {
+                        ("x", "vertex") => at[0] = value,
+                        ("y", "vertex") => at[1] = value,
+                        ("z", "vertex") => at[2] = value,
+                        _ if is_face => corners.push(corner(value, row, &soup, place)?),
+                        _ => {}
+                    }
+                }
+                if is_face {
+                    if corners.len() < 3 {
+                        let (expected, found) =
+                            ("a face of three corners or more", corners.len().to_string());
+                        return Err((place, Problem::Expected { expected, found }));
+                    }
+                    soup.face(row + 1, &corners);
+                }
+            }
+            if element.name == "vertex" {
+                if !at.iter().all(|x| x.is_finite()) {
+                    return Err((place, Problem::NotFinite { number: row as u64 }));
+                }
+                soup.points.push(at.into());
+            }
+        }
+    }
+    values.end()?;
+    Ok(soup)
+}
+
+fn corner(value: f64, row: usize, soup: &Soup, place: Place) -> Parsed<u32> {
+    if value.fract() == 0.0 && (0.0..soup.points.len() as f64).contains(&value) {
+        return Ok(value as u32);
+    }
+    Err((place, Problem::UnknownCorner { face: row as u64 + 1, node: value as i64 }))
+}
+
+/// The elements, and their values behind the header.
+fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
+    let mut elements: Vec<Element> = Vec::new();
+    let (mut at, mut number, mut format) = (0, 0, None);
+    loop {
+        number += 1;
+        let place = Place::Line(number);
+        let Some(end) = bytes[at..].iter().position(|&b| b == b'\n') else {
+            return Err((place, Problem::End { expected: "end_header" }));
+        };
+        let line = super::super::text(&bytes[at..at + end]).map_err(|(_, problem)| (place, problem))?.trim();
+        at += end + 1;
+        let wrong = |expected: &'static str| (place, Problem::Expected { expected, found: line.into() });
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        match &words[..] {
+            ["ply"] | ["comment" | "obj_info", ..] => {}
+            ["format", name, "1.0"] => format = Some(*name),
+            ["element", name, count] => {
+                let count = count.parse().map_err(|_| wrong("a number of elements"))?;
+                // Each has a byte at the least: no memory is taken for more.
+                if count > bytes.len() {
+                    return Err((
+                        place,
+                        Problem::TooMany { what: "elements for the bytes of the file", count },
+                    ));
+                }
+                elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
+            }
+            ["property", kind @ .., name] => {
+                let (list, of) = match kind {
+                    ["list", count, of] => (Some(scalar(count)), scalar(of)),
+                    [of] => (None, scalar(of)),
+                    _ => return Err(wrong("property TYPE NAME")),
+                };
+                let of = of.ok_or_else(|| wrong("a type such as float or int"))?;
+                let list = match list {
+                    None => None,
+                    Some(count) => Some(count.ok_or_else(|| wrong("a type such as uchar or int"))?),
+                };
+                let last = elements.last_mut().ok_or_else(|| wrong("an element before its properties"))?;
+                last.properties.push(Property { name: (*name).into(), list, of });
+            }
+            ["end_header"] => break,
+            _ => return Err(wrong("a line of a PLY header (format 1.0, element, property)")),
+        }
+    }
+    let place = Place::Line(number);
+    let needed = |name: &str, property: &str| {
+        let element = elements.iter().find(|element| element.name == name);
+        element.is_some_and(|element| element.properties.iter().any(|p| p.name.starts_with(property)))
+    };
+    if !["x", "y", "z"].iter().all(|axis| needed("vertex", axis)) {
+        return Err((place, Problem::Missing { section: "vertex with x, y and z" }));
+    }
+    if !needed("face", "vertex_ind") {
+        return Err((place, Problem::Missing { section: "face with a list vertex_indices" }));
+    }
+    if let Some(empty) = elements.iter().find(|element| element.properties.is_empty() && element.count > 0) {
+        let found = format!("{} without one", empty.name);
+        return Err((place, Problem::Expected { expected: "properties of each element", found }));
+    }
+    let values = match format {
+        Some("ascii") => {
+            let text = super::super::text(&bytes[at..])?;
+            let lines = text.lines().enumerate();
+            let words = lines.flat_map(move |(line, words)| {
+                words.split_ascii_whitespace().map(move |word| (number + 1 + line, word))
+            });
+            Values::Text { words: Box::new(words), line: number }
+        }
+        Some("binary_little_endian") => Values::Binary { bytes, at, big: false },
+        Some("binary_big_endian") => Values::Binary { bytes, at, big: true },
+        Some(other) => {
+            let expected = "format ascii, binary_little_endian or binary_big_endian";
+            return Err((place, Problem::Expected { expected, found: other.into() }));
+        }
+        None => return Err((place, Problem::Missing { section: "format" })),
+    };
+    Ok((elements, values))
+}
+
+fn scalar(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "char" | "int8" => Scalar::Signed(1),
+        "uchar" | "uint8" => Scalar::Unsigned(1),
+        "short" | "int16" => Scalar::Signed(2),
+        "ushort" | "uint16" => Scalar::Unsigned(2),
+        "int" | "int32" => Scalar::Signed(4),
+        "uint" | "uint32" => Scalar::Unsigned(4),
+        "float" | "float32" => Scalar::Real(4),
+        "double" | "float64" => Scalar::Real(8),
+        _ => return None,
+    })
+}
+
+impl Values<'_> {
+    fn place(&self) -> Place {
+        match self {
+            Values::Text { line, .. } => Place::Line(*line),
+            Values::Binary { at, .. } => Place::Byte(*at),
+        }
+    }
+
+    fn next(&mut self, of: Scalar) -> Parsed<f64> {
+        match self {
+            Values::Text { words, line } => {
+                let end = (Place::Line(*line + 1), Problem::End { expected: "a value of an element" });
+                let (at, word) = words.next().ok_or(end)?;
+                *line = at;
+                let found =
+                    || (Place::Line(at), Problem::Expected { expected: "a number", found: word.into() });
+                word.parse().map_err(|_| found())
+            }
+            Values::Binary { bytes, at, big } => {
+                let (Scalar::Signed(size) | Scalar::Unsigned(size) | Scalar::Real(size)) = of;
+                let end = (Place::Byte(bytes.len()), Problem::End { expected: "a value of an element" });
+                let found = bytes.get(*at..*at + size).ok_or(end)?;
+                *at += size;
+                // Into the last bytes of a number of eight, the highest first.
+                let mut wide = [0; 8];
+                for (slot, byte) in (8 - size..8).zip(0..size) {
+                    wide[slot] = if *big { found[byte] } else { found[size - 1 - byte] };
+                }
+                let bits = u64::from_be_bytes(wide);
+                Ok(match of {
+                    Scalar::Unsigned(_) => bits as f64,
+                    // The sign is the highest bit of its bytes.
+                    Scalar::Signed(size) => {
+                        let shift = 64 - 8 * size as u32;
+                        ((bits << shift) as i64 >> shift) as f64
+                    }
+                    Scalar::Real(4) => f64::from(f32::from_bits(bits as u32)),
+                    Scalar::Real(_) => f64::from_bits(bits),
+                })
+            }
+        }
+    }
+
+    /// Refuses what comes behind the last element.
+    fn end(mut self) -> Parsed<()> {
+        let more = match &mut self {
+            Values::Text { words, .. } => {
+                words.next().map(|(line, word)| (Place::Line(line), word.to_string()))
+            }
+            Values::Binary { bytes, at, .. } => {
+                let blank = bytes[*at..].iter().all(u8::is_ascii_whitespace);
+                (!blank).then(|| (Place::Byte(*at), format!("{} bytes more", bytes.len() - *at)))
+            }
+        };
+        match more {
+            None => Ok(()),
+            Some((place, found)) => {
+                Err((place, Problem::Expected { expected: "the end of the file", found }))
+            }
+        }
+    }
+}

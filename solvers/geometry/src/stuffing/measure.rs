@@ -1,0 +1,84 @@
+//! How close a mesh is to the surface it was made of.
+
+use rayon::prelude::*;
+
+use crate::surface::{Tree, triangles_of};
+use crate::{Mesh, Point3, Surface, Vector3, quality};
+
+/// Points per parallel task at least.
+const CHUNK: usize = 64;
+/// Points on a triangle are no farther apart than this part of the box around the surface.
+const APART: f64 = 1.0 / 200.0;
+/// Parts of an edge at most.
+const MOST: usize = 32;
+
+/// How close a mesh is to a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Volume of the mesh, m^3.
+    pub volume: f64,
+    /// That within the surface, m^3.
+    pub of_surface: f64,
+    /// The largest distance of points on the mesh's boundary from the surface, m.
+    pub mesh_to_surface: f64,
+    /// The largest distance of points on the surface from the mesh's boundary, m.
+    pub surface_to_mesh: f64,
+}
+
+impl Fit {
+    /// The larger of the two distances, m: the Hausdorff distance of the points.
+    pub fn hausdorff(&self) -> f64 {
+        self.mesh_to_surface.max(self.surface_to_mesh)
+    }
+}
+
+/// Measures the volumes and, at corners, middles and points between on both, the distances.
+pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
+    let boundary: Vec<[u32; 3]> = (mesh.boundary().iter())
+        .flat_map(|&facet| {
+            let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
+            triangles_of(mesh.kind(facet.cell as usize).face_kind(), &nodes)
+        })
+        .collect();
+    let tree = Tree::new(mesh.points(), &boundary);
+    let [low, high] = surface.bounds();
+    let apart = APART * (high - low).norm();
+    let of_mesh = samples(mesh.points(), &boundary, apart);
+    let of_surface = samples(surface.points(), surface.triangles(), apart);
+    let farthest = |samples: &[Point3], distance: &(dyn Fn(&Point3) -> f64 + Sync)| {
+        samples.par_iter().with_min_len(CHUNK).map(distance).reduce(|| 0.0, f64::max)
+    };
+    Fit {
+        volume: quality::volumes(mesh).iter().sum(),
+        of_surface: surface.volume(),
+        mesh_to_surface: farthest(&of_mesh, &|p| nalgebra::distance(p, &surface.closest(p).0)),
+        surface_to_mesh: farthest(&of_surface, &|p| {
+            tree.closest(p, f64::INFINITY).map_or(f64::INFINITY, |closest| closest.square.sqrt())
+        }),
+    }
+}
+
+/// The corners, and in each triangle its middle and points of a grid along its edges.
+fn samples(points: &[Point3], triangles: &[[u32; 3]], apart: f64) -> Vec<Point3> {
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let mut samples: Vec<Point3> = used.iter().map(|&p| points[p as usize]).collect();
+    for t in triangles {
+        let [a, b, c] = t.map(|p| points[p as usize].coords);
+        let mut add = |p: Vector3| samples.push(p.into());
+        add((a + b + c) / 3.0);
+        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+        let parts = ((longest / apart).ceil() as usize).clamp(1, MOST);
+        for i in 0..=parts {
+            for j in 0..=parts - i {
+                let k = parts - i - j;
+                // Corners are there already.
+                if i.max(j).max(k) < parts {
+                    add((a * i as f64 + b * j as f64 + c * k as f64) / parts as f64);
+                }
+            }
+        }
+    }
+    samples
+}

@@ -1,0 +1,180 @@
+//! From a closed surface to tetrahedra inside: isosurface stuffing (Labelle and Shewchuk 2007).
+//!
+//! A lattice of cubes, body-centred, is laid over the surface. Where the surface cuts an edge close to its end, the end is moved
+//! there; the tetrahedra that are still cut are replaced by their parts inside. Angles between faces are proven to be
+//! between 10.7 and 164.8 degrees, since all tetrahedra along the surface are of one size. Inside they may be larger. Sharp
+//! edges are rounded off at the size of a cell.
+
+mod cuts;
+mod lattice;
+mod measure;
+mod octree;
+mod parts;
+mod stencil;
+
+use rayon::prelude::*;
+
+use crate::{CellKind, Facet, Mesh, Point3, Surface};
+use cuts::Cuts;
+use lattice::Lattice;
+use octree::{Frame, Octree};
+use stencil::{Side, Tet};
+
+pub use measure::{Fit, fit};
+
+/// Mean length of the edges of the lattice over the edge of its cubes: at each node six of it and eight of half a diagonal.
+pub const MEAN_EDGE: f64 = (6.0 + 4.0 * 1.732_050_807_568_877_2) / 14.0;
+/// Cubes are at most 2^3 times as large inside as at the surface.
+pub const LARGEST: u32 = 3;
+/// Points per parallel task at least.
+const CHUNK: usize = 64;
+/// Nodes that no machine here takes.
+const MOST: f64 = 2e7;
+
+/// Spacings that are tried for a number of nodes, and how close is close enough.
+const TRIES: usize = 6;
+const CLOSE: f64 = 0.02;
+
+/// How a surface is filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stuffing {
+    /// Mean length of edges at the surface, m.
+    pub spacing: f64,
+    /// How often the size doubles inside at most: 0 for cells of one size.
+    pub doublings: u32,
+}
+
+/// Tetrahedra inside a surface.
+#[derive(Clone, Debug)]
+pub struct Stuffed {
+    /// The mesh, its boundary the group "surface".
+    pub mesh: Mesh,
+    /// Parts of less than eight nodes of the lattice that are left out: tips that the surface cuts off from the rest.
+    pub left_out: usize,
+}
+
+/// Why a surface can't be filled.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StuffingError {
+    /// A spacing that is no length.
+    #[error("a spacing of {spacing} m is none; it has to be positive")]
+    Spacing {
+        /// As given.
+        spacing: f64,
+    },
+    /// More nodes than can be made.
+    #[error("a spacing of {spacing} m makes about {nodes:.1e} nodes")]
+    TooFine {
+        /// As given.
+        spacing: f64,
+        /// Estimated nodes.
+        nodes: f64,
+    },
+    /// Cells larger than the body is thick.
+    #[error("a spacing of {spacing} m is too large for the surface: no part of it holds eight nodes")]
+    TooCoarse {
+        /// As given.
+        spacing: f64,
+    },
+}
+
+/// About how many nodes cells of one size have in a volume (m^3) within an area (m^2).
+pub fn expected_nodes(volume: f64, area: f64, spacing: f64) -> f64 {
+    let edge = spacing / MEAN_EDGE;
+    // Two in a cube, and half a layer at the surface.
+    2.0 * volume / edge.powi(3) + area / edge.powi(2)
+}
+
+/// Fills a surface with tetrahedra.
+///
+/// # Errors
+/// A spacing that is no length, too fine or too coarse for the surface.
+pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError> {
+    let Stuffing { spacing, doublings } = how;
+    if !(spacing > 0.0 && spacing.is_finite()) {
+        return Err(StuffingError::Spacing { spacing });
+    }
+    let coarsest = doublings.min(LARGEST);
+    let nodes = if coarsest == 0 { surface.volume() } else { surface.volume() / 8.0 };
+    let nodes = expected_nodes(nodes, surface.area(), spacing);
+    if nodes > MOST {
+        return Err(StuffingError::TooFine { spacing, nodes });
+    }
+    let [low, high] = surface.bounds();
+    let frame = Frame { origin: nalgebra::center(&low, &high), half: 0.5 * spacing / MEAN_EDGE };
+    let lattice = Lattice::new(&Octree::new(surface, frame, coarsest as usize));
+    let points: Vec<Point3> = lattice.points.iter().map(|&key| frame.place(key)).collect();
+    let distances: Vec<f64> =
+        points.par_iter().with_min_len(CHUNK).map(|p| surface.signed_distance(p)).collect();
+    let Cuts { points, sides, nodes } = Cuts::new(surface, &lattice.regular, points, &distances);
+    let mut tets = Vec::new();
+    let apart = |a: u32, b: u32| nalgebra::distance(&points[a as usize], &points[b as usize]);
+    for corners in lattice.regular {
+        let tet = Tet { corners, sides: corners.map(|p| sides[p as usize]) };
+        tet.inside(|a, b| nodes[&[a, b]], apart, |part| tets.push(part));
+    }
+    // None of the others has a corner on the surface: nothing is smaller beside them.
+    let all_inside = |tet: &[u32; 4]| tet.iter().all(|&p| sides[p as usize] == Side::Inside);
+    tets.extend(lattice.coarse.into_iter().filter(all_inside));
+    let parts = parts::connected(&tets, &sides);
+    if parts.tets.is_empty() {
+        return Err(StuffingError::TooCoarse { spacing });
+    }
+    Ok(Stuffed { mesh: mesh(&points, &parts), left_out: parts.left_out })
+}
+
+/// Fills a surface with about so many nodes: the nearest of some spacings, found as nodes grow with the third power of one.
+///
+/// # Errors
+/// As [`stuff`].
+pub fn stuff_with_nodes(
+    surface: &Surface,
+    nodes: usize,
+    doublings: u32,
+) -> Result<(Stuffed, f64), StuffingError> {
+    let wanted = nodes.max(1) as f64;
+    let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / wanted).cbrt();
+    let mut best: Option<(f64, Stuffed, f64)> = None;
+    for _ in 0..TRIES {
+        let found = match stuff(surface, Stuffing { spacing, doublings }) {
+            Ok(stuffed) => {
+                let found = stuffed.mesh.points().len() as f64;
+                let off = (found / wanted).ln().abs();
+                if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                    best = Some((off, stuffed, spacing));
+                }
+                if off < CLOSE {
+                    break;
+                }
+                found
+            }
+            // Half the spacing has eight times the nodes.
+            Err(StuffingError::TooCoarse { .. }) => wanted / 8.0,
+            Err(bad) => return Err(bad),
+        };
+        spacing *= (found / wanted).cbrt();
+    }
+    best.map(|(_, stuffed, spacing)| (stuffed, spacing)).ok_or(StuffingError::TooCoarse { spacing })
+}
+
+/// The mesh of the parts: nodes in the order in which cells have them, corners turned to a positive volume.
+fn mesh(points: &[Point3], parts: &parts::Parts) -> Mesh {
+    let mut index = std::collections::HashMap::new();
+    let (mut kept, mut nodes) = (Vec::new(), Vec::with_capacity(4 * parts.tets.len()));
+    for (tet, &part) in parts.tets.iter().zip(&parts.part) {
+        let [a, b, c, d] = tet.map(|p| points[p as usize]);
+        let turned = (b - a).cross(&(c - a)).dot(&(d - a)) < 0.0;
+        let order = if turned { [0, 2, 1, 3] } else { [0, 1, 2, 3] };
+        for corner in order {
+            // Parts that meet at a node or an edge alone would hinge there.
+            nodes.push(*index.entry((part, tet[corner])).or_insert_with(|| {
+                kept.push(points[tet[corner] as usize]);
+                kept.len() as u32 - 1
+            }));
+        }
+    }
+    let kinds = vec![CellKind::Tet4; parts.tets.len()];
+    let mesh = Mesh::from_flat(kept, kinds, nodes).expect("tetrahedra of four nodes each");
+    let boundary: Vec<Facet> = mesh.boundary();
+    mesh.with_group("surface", boundary).expect("faces of the mesh itself")
+}

@@ -1,0 +1,188 @@
+//! A closed surface of triangles: the distance from it, what is inside, and what keeps a surface from being closed.
+//!
+//! The sign of the distance is that of the pseudo-normal at the closest point, the sum of the normals around it weighted
+//! by angle (Baerentzen and Aanaes 2005): it is right wherever the closest point lies, on a face, an edge or a corner.
+
+mod closed;
+mod crossing;
+mod error;
+mod nested;
+mod of_mesh;
+mod shape;
+mod soup;
+mod tree;
+
+pub use error::{SurfaceError, SurfaceProblem};
+pub use of_mesh::{BoundaryFaces, triangles_of};
+pub use soup::Soup;
+pub(crate) use tree::Tree;
+
+use crate::triangle::Feature;
+use crate::{Point3, Vector3};
+
+/// A closed surface, its triangles counter-clockwise seen from outside; positions in metres.
+pub struct Surface {
+    points: Vec<Point3>,
+    triangles: Vec<[u32; 3]>,
+    normals: Normals,
+    tree: Tree,
+    volume: f64,
+    /// Area of each triangle and all before it.
+    areas: Vec<f64>,
+}
+
+/// Normals of the parts of the surface, of any length: only their direction counts.
+struct Normals {
+    faces: Vec<Vector3>,
+    edges: Vec<[Vector3; 3]>,
+    corners: Vec<Vector3>,
+}
+
+impl Surface {
+    /// A surface of these triangles, whose lengths are times `unit` (m).
+    ///
+    /// # Errors
+    /// A surface that is open, crosses itself or is inside out, with the triangle and the place in the unit of the triangles.
+    pub fn new(soup: Soup, unit: f64) -> Result<Surface, SurfaceProblem> {
+        let (soup, neighbours) = closed::closed(soup)?;
+        crossing::refuse(&soup)?;
+        nested::refuse(&soup, &neighbours)?;
+        let Soup { points, triangles, .. } = soup;
+        let points: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords * unit)).collect();
+        let normals = Normals::new(&points, &triangles, &neighbours);
+        let tree = Tree::new(&points, &triangles);
+        let corners = |t: &[u32; 3]| t.map(|p| points[p as usize]);
+        let [low, high] = tree.bounds();
+        let middle = nalgebra::center(&low, &high);
+        let volume = triangles.iter().map(|t| {
+            let [a, b, c] = corners(t).map(|p| p - middle);
+            a.dot(&b.cross(&c)) / 6.0
+        });
+        let volume = volume.sum();
+        let mut sum = 0.0;
+        let areas = triangles.iter().map(|t| {
+            let [a, b, c] = corners(t);
+            sum += 0.5 * (b - a).cross(&(c - a)).norm();
+            sum
+        });
+        let areas = areas.collect();
+        Ok(Surface { volume, areas, points, triangles, normals, tree })
+    }
+
+    /// Positions of the corners, m.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// Corners of the triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Positions of a triangle's corners, m.
+    pub fn corners(&self, triangle: usize) -> [Point3; 3] {
+        self.triangles[triangle].map(|p| self.points[p as usize])
+    }
+
+    /// The volume inside, m^3.
+    pub fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// The area, m^2.
+    pub fn area(&self) -> f64 {
+        self.areas.last().copied().unwrap_or(0.0)
+    }
+
+    /// Lowest and highest corner of the box around it, m.
+    pub fn bounds(&self) -> [Point3; 2] {
+        self.tree.bounds()
+    }
+
+    /// The closest point, m, and the triangle that has it.
+    pub fn closest(&self, p: &Point3) -> (Point3, usize) {
+        let closest = self.tree.closest(p, f64::INFINITY);
+        closest.map_or((*p, 0), |closest| (closest.at, closest.triangle as usize))
+    }
+
+    /// Distance, m; negative inside.
+    pub fn signed_distance(&self, p: &Point3) -> f64 {
+        self.distance_within(p, f64::INFINITY).unwrap_or(f64::INFINITY)
+    }
+
+    /// As [`Surface::signed_distance`]; `None` where the surface is not nearer than `within`.
+    fn distance_within(&self, p: &Point3, within: f64) -> Option<f64> {
+        let closest = self.tree.closest(p, within)?;
+        if closest.square == 0.0 {
+            return Some(0.0);
+        }
+        let triangle = closest.triangle as usize;
+        let normal = match closest.feature {
+            Feature::Face => self.normals.faces[triangle],
+            Feature::Edge(edge) => self.normals.edges[triangle][edge],
+            Feature::Corner(corner) => self.normals.corners[self.triangles[triangle][corner] as usize],
+        };
+        let (distance, away) = (closest.square.sqrt(), (p - closest.at).dot(&normal));
+        // A point is straight above the surface closest to it: where it is not, the surface has triangles without an area.
+        let doubtful = away.abs() <= 1e-6 * distance * normal.norm();
+        let inside =
+            if doubtful { nested::winding(&self.points, &self.triangles, p) > 0.5 } else { away < 0.0 };
+        Some(if inside { -distance } else { distance })
+    }
+
+    /// Where the surface cuts the line from a point inside to one outside, as a part of its length: where the distance, known
+    /// at both ends, is zero.
+    pub(crate) fn cut(&self, inside: (&Point3, f64), outside: (&Point3, f64)) -> f64 {
+        let line = outside.0 - inside.0;
+        let length = line.norm();
+        let (mut low, mut high) = ((0.0, inside.1), (1.0, outside.1));
+        // Illinois: the end that stays twice counts half, so both ends close in.
+        let mut last = 0;
+        for _ in 0..60 {
+            let t: f64 = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
+            let at = inside.0 + line * t;
+            // The distance changes no faster than the place does.
+            let reach = (low.1.abs() + (t - low.0) * length).max(high.1 + (high.0 - t) * length);
+            let distance =
+                self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at));
+            if distance.abs() <= 1e-9 * length || (high.0 - low.0) < 1e-12 {
+                return t;
+            }
+            if distance < 0.0 {
+                low = (t, distance);
+                high.1 *= if last == -1 { 0.5 } else { 1.0 };
+                last = -1;
+            } else {
+                high = (t, distance);
+                low.1 *= if last == 1 { 0.5 } else { 1.0 };
+                last = 1;
+            }
+        }
+        0.5 * (low.0 + high.0)
+    }
+}
+
+impl Normals {
+    fn new(points: &[Point3], triangles: &[[u32; 3]], neighbours: &[[u32; 3]]) -> Normals {
+        let unit = |v: Vector3| v.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let faces: Vec<Vector3> = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|p| points[p as usize]);
+                unit((b - a).cross(&(c - a)))
+            })
+            .collect();
+        let edges = neighbours.iter().zip(&faces).map(|(near, face)| near.map(|t| face + faces[t as usize]));
+        let edges = edges.collect();
+        let mut corners = vec![Vector3::zeros(); points.len()];
+        for (t, face) in triangles.iter().zip(&faces) {
+            let p = t.map(|p| points[p as usize]);
+            for corner in 0..3 {
+                let arms = [1, 2].map(|next| unit(p[(corner + next) % 3] - p[corner]));
+                corners[t[corner] as usize] += face * arms[0].dot(&arms[1]).clamp(-1.0, 1.0).acos();
+            }
+        }
+        Normals { faces, edges, corners }
+    }
+}

@@ -1,0 +1,86 @@
+//! Triangles as a file has them, and the corners that are one.
+
+use std::collections::HashMap;
+
+use crate::{Point3, Vector3};
+
+/// Triangles whose corners may be listed once for each, as in STL.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Soup {
+    /// Positions, in the unit of the file.
+    pub points: Vec<Point3>,
+    /// Corners of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Number of each triangle's face in the file, from 1: a face of many corners is several triangles.
+    pub faces: Vec<u32>,
+}
+
+impl Soup {
+    /// Adds a face of any number of corners, as triangles around its first.
+    pub(crate) fn face(&mut self, number: usize, corners: &[u32]) {
+        for pair in corners.windows(2).skip(1) {
+            self.triangles.push([corners[0], pair[0], pair[1]]);
+            self.faces.push(number as u32);
+        }
+    }
+
+    /// Corners nearer to each other than `tolerance` become one; triangles that lose a corner so are left out.
+    pub(super) fn welded(&self, tolerance: f64) -> Soup {
+        let mut points: Vec<Point3> = Vec::new();
+        let mut bins: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        let mut same: HashMap<[u64; 3], u32> = HashMap::new();
+        let bin = |p: &Point3| [p.x, p.y, p.z].map(|x| (x / tolerance).floor() as i64);
+        let mut place = |p: &Point3| {
+            // A sum makes a positive zero of a negative one.
+            let bits = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
+            if let Some(&known) = same.get(&bits) {
+                return known;
+            }
+            let found = if tolerance > 0.0 { near(&bins, &points, bin(p), p, tolerance) } else { None };
+            let index = found.unwrap_or_else(|| {
+                points.push(*p);
+                let index = points.len() as u32 - 1;
+                if tolerance > 0.0 {
+                    bins.entry(bin(p)).or_default().push(index);
+                }
+                index
+            });
+            same.insert(bits, index);
+            index
+        };
+        let new: Vec<u32> = self.points.iter().map(&mut place).collect();
+        let triangles = self.triangles.iter().map(|t| t.map(|p| new[p as usize])).zip(&self.faces);
+        let kept = triangles.filter(|([a, b, c], _)| a != b && b != c && a != c);
+        let (triangles, faces) = kept.map(|(t, &face)| (t, face)).unzip();
+        Soup { points, triangles, faces }
+    }
+
+    /// Length of the diagonal of the box around all corners.
+    pub(super) fn diagonal(&self) -> f64 {
+        let (low, high) = super::tree::bounds(self.points.iter().copied());
+        (high - low).norm()
+    }
+
+    /// The middle of a triangle.
+    pub(super) fn middle(&self, triangle: usize) -> Point3 {
+        Point3::from(self.corners(triangle).iter().map(|p| p.coords).sum::<Vector3>() / 3.0)
+    }
+
+    pub(super) fn corners(&self, triangle: usize) -> [Point3; 3] {
+        self.triangles[triangle].map(|p| self.points[p as usize])
+    }
+}
+
+/// The first known point that is near enough.
+fn near(
+    bins: &HashMap<[i64; 3], Vec<u32>>,
+    points: &[Point3],
+    [x, y, z]: [i64; 3],
+    p: &Point3,
+    tolerance: f64,
+) -> Option<u32> {
+    let around = (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [i, j, k])));
+    let key = |[i, j, k]: [i64; 3]| [x.saturating_add(i), y.saturating_add(j), z.saturating_add(k)];
+    let near = around.filter_map(|step| bins.get(&key(step))).flatten();
+    near.copied().filter(|&other| nalgebra::distance(&points[other as usize], p) <= tolerance).min()
+}

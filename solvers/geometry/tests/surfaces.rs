@@ -1,0 +1,362 @@
+//! Surface files: what is read, and the place of what is refused; distances and what is inside.
+
+mod common;
+
+use std::path::Path;
+
+use common::{bumpy, joined, moved, sphere_like, surface, torus};
+use geometry::shapes::Shape;
+use geometry::surface::{Soup, SurfaceProblem};
+use geometry::{Point3, Surface, cloud, files};
+use proptest::prelude::*;
+
+/// A tetrahedron of 1/6.
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+
+fn read(name: &str, bytes: &[u8]) -> Result<Surface, String> {
+    files::read_surface_bytes(bytes, Path::new(name), 1.0).map_err(|bad| bad.to_string())
+}
+
+fn stl_text(faces: &[[usize; 3]]) -> String {
+    let mut text = String::from("solid tet\n");
+    for face in faces {
+        text += "facet normal 0 0 0\n outer loop\n";
+        for corner in face.map(|i| CORNERS[i]) {
+            text += &format!("  vertex {} {} {}\n", corner[0], corner[1], corner[2]);
+        }
+        text += " endloop\nendfacet\n";
+    }
+    text + "endsolid tet\n"
+}
+
+fn stl_binary(faces: &[[usize; 3]], head: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![b' '; 80];
+    bytes[..head.len()].copy_from_slice(head);
+    bytes.extend((faces.len() as u32).to_le_bytes());
+    for face in faces {
+        bytes.extend([0u8; 12]);
+        for corner in face.map(|i| CORNERS[i]) {
+            bytes.extend(corner.iter().flat_map(|&x| (x as f32).to_le_bytes()));
+        }
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+fn obj(faces: &str) -> String {
+    let corners: String = CORNERS.iter().map(|p| format!("v {} {} {}\n", p[0], p[1], p[2])).collect();
+    format!("# a tetrahedron\nmtllib some.mtl\no tet\n{corners}vn 0 0 1\ns off\n{faces}")
+}
+
+const OBJ_FACES: &str = "f 1 3 2\nf 1//1 2//1 4//1\nf -3 -2 -1\nf 1/1/1 4/1/1 \\\n 3/1/1\n";
+
+fn ply_text(header: &str, faces: &str) -> String {
+    let corners: String = CORNERS.iter().map(|p| format!("{} {} {} 7\n", p[0], p[1], p[2])).collect();
+    format!("ply\nformat ascii 1.0\ncomment by hand\n{header}end_header\n{corners}{faces}")
+}
+
+const PLY_HEADER: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
+    element face 4\nproperty list uchar int vertex_indices\n";
+const PLY_FACES: &str = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+fn ply_binary(big: bool) -> Vec<u8> {
+    let order = if big { "big" } else { "little" };
+    let mut bytes = format!(
+        "ply\r\nformat binary_{order}_endian 1.0\r\nelement vertex 4\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n\
+         element face 4\r\nproperty uchar flags\r\nproperty list ushort uint vertex_index\r\nend_header\r\n"
+    )
+    .into_bytes();
+    let mut put = |of: &[u8]| {
+        let mut of = of.to_vec();
+        if big {
+            of.reverse();
+        }
+        bytes.extend(of);
+    };
+    CORNERS.iter().flatten().for_each(|x| put(&x.to_le_bytes()));
+    for face in FACES {
+        put(&[9u8]);
+        put(&3u16.to_le_bytes());
+        face.iter().for_each(|&i| put(&(i as u32).to_le_bytes()));
+    }
+    bytes
+}
+
+#[test]
+fn every_kind_of_surface_file_is_read() {
+    let quads = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    let two = stl_text(&FACES[..2]) + &stl_text(&FACES[2..]).to_uppercase();
+    for (name, bytes) in [
+        ("text.stl", stl_text(&FACES).into_bytes()),
+        ("lines.stl", stl_text(&FACES).replace('\n', "\r\n\r\n").into_bytes()),
+        ("two-solids.stl", two.into_bytes()),
+        ("binary.stl", stl_binary(&FACES, b"a comment")),
+        ("solid.stl", stl_binary(&FACES, b"solid and binary")),
+        ("any.obj", obj(OBJ_FACES).into_bytes()),
+        ("plain.obj", obj(quads).into_bytes()),
+        ("text.ply", ply_text(PLY_HEADER, PLY_FACES).into_bytes()),
+        ("little.ply", ply_binary(false)),
+        ("big.ply", ply_binary(true)),
+        ("wrong-suffix.msh", ply_binary(true)),
+    ] {
+        let surface = read(name, &bytes).unwrap_or_else(|bad| panic!("{bad}"));
+        assert_eq!((surface.points().len(), surface.triangles().len()), (4, 4), "{name}");
+        assert!((surface.volume() - 1.0 / 6.0).abs() < 1e-15, "{name}: {}", surface.volume());
+        let mesh = files::read_bytes(&bytes, Path::new(name), 1.0).unwrap_err().to_string();
+        assert!(mesh.contains("is a surface, not a mesh; `tissuebench mesh make`"), "{mesh}");
+    }
+    // Faces of four corners and more.
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let cube = read("cube.obj", cube.as_bytes()).unwrap();
+    assert_eq!(cube.triangles().len(), 12);
+    assert!((cube.volume() - 1.0).abs() < 1e-15 && (cube.area() - 6.0).abs() < 1e-15);
+}
+
+#[test]
+fn every_broken_file_is_refused_with_its_place() {
+    let text = stl_text(&FACES);
+    let cut = |bytes: Vec<u8>, at: usize| bytes[..bytes.len() - at].to_vec();
+    let obj = |from: &str, to: &str| obj(OBJ_FACES).replacen(from, to, 1).into_bytes();
+    let ply = |from: &str, to: &str| ply_text(PLY_HEADER, PLY_FACES).replacen(from, to, 1).into_bytes();
+    let mut nan = stl_binary(&FACES, b"");
+    nan[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut many = stl_binary(&FACES, b"");
+    many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    for (name, bytes, says) in [
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 nan 0", 1).into_bytes(),
+            "a.stl:2: triangle 1 has a coordinate",
+        ),
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 1", 1).into_bytes(),
+            "a.stl:5: expected a coordinate, found 'the end of the line'",
+        ),
+        (
+            "a.stl",
+            text.replacen("vertex 0 1 0", "vertex 0 1 0 0", 1).into_bytes(),
+            "a.stl:5: expected vertex and three",
+        ),
+        ("a.stl", text.replacen(" endloop\n", "", 1).into_bytes(), "a.stl:7: expected endloop"),
+        ("a.stl", text.replacen("outer loop", "outer", 1).into_bytes(), "a.stl:3: expected outer loop"),
+        (
+            "a.stl",
+            text.replacen("facet normal", "face", 1).into_bytes(),
+            "a.stl:2: expected facet or endsolid, found 'face",
+        ),
+        (
+            "a.stl",
+            text.replace("endsolid tet\n", "").into_bytes(),
+            "the file ends where endsolid should come",
+        ),
+        ("a.stl", text.as_bytes()[..150].to_vec(), "a.stl:12: the file ends where vertex"),
+        ("a.stl", (text.clone() + "facet\n").into_bytes(), "a.stl:31: expected solid, found 'facet'"),
+        (
+            "a.stl",
+            cut(stl_binary(&FACES, b""), 1),
+            "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283",
+        ),
+        ("a.stl", many, "4294967295 triangles take 214748364834 bytes"),
+        ("a.stl", nan, "a.stl: byte 134: triangle 2 has a coordinate that is not finite"),
+        ("a.stl", b"nonsense".to_vec(), "a comment of 80 bytes"),
+        ("a.stl", b"solid nothing\nendsolid\n".to_vec(), "0 triangles enclose nothing"),
+        ("a.obj", obj("v 1 0 0", "v 1 0"), "a.obj:5: expected a coordinate"),
+        ("a.obj", obj("v 1 0 0", "v 1 inf 0"), "a.obj:5: node 2 has a coordinate that is not finite"),
+        (
+            "a.obj",
+            obj("f 1 3 2", "f 1 3 9"),
+            "a.obj:10: face 1 names corner 9, which the file does not have before it",
+        ),
+        ("a.obj", obj("f 1 3 2", "f 0 3 2"), "face 1 names corner 0"),
+        ("a.obj", obj("-3 -2", "-5 -2"), "a.obj:12: face 3 names corner -5"),
+        ("a.obj", obj("f 1 3 2", "f 1 3"), "a.obj:10: expected a face of three corners or more"),
+        ("a.obj", obj("f 1 3 2", "f 1 x 2"), "a.obj:10: expected the number of a corner, found 'x'"),
+        (
+            "a.obj",
+            obj("s off", "wobble 3"),
+            "a.obj:9: expected v, f or another word of the format, found 'wobble 3'",
+        ),
+        ("a.obj", obj("3/1/1\n", "3/1/1 \\\n"), "the file ends where the rest of a line should come"),
+        ("a.ply", ply("end_header\n", ""), "a.ply:11: expected a line of a PLY header"),
+        ("a.ply", ply("format ascii", "format text"), "expected format ascii"),
+        ("a.ply", ply("format ascii 1.0\n", ""), "no format section"),
+        (
+            "a.ply",
+            ply("vertex 4", "vertex 4000000000"),
+            "a.ply:4: too many elements for the bytes of the file: 4000000000",
+        ),
+        ("a.ply", ply("vertex 4", "vertex 5"), "a.ply:"),
+        ("a.ply", ply("vertex 4", "vertex 3"), "a.ply:"),
+        ("a.ply", ply("face 4", "face 5"), "a.ply:20: the file ends where a value of an element should come"),
+        ("a.ply", ply("face 4", "face 3"), "a.ply:19: expected the end of the file, found '3'"),
+        ("a.ply", ply("float z", "float w"), "no vertex with x, y and z section"),
+        ("a.ply", ply("int vertex_indices", "int corners"), "no face with a list vertex_indices section"),
+        ("a.ply", ply("float x", "real x"), "a.ply:5: expected a type such as float or int"),
+        ("a.ply", ply("3 0 2 1", "3 0 2 7"), "a.ply:15: face 1 names corner 7"),
+        ("a.ply", ply("3 0 2 1", "3 0 2 1.5"), "face 1 names corner 1"),
+        ("a.ply", ply("3 0 2 1", "2 0 2"), "a.ply:15: expected a face of three corners or more, found '2'"),
+        ("a.ply", ply("3 0 2 1", "-3 0 2 1"), "expected the length of a list, found '-3'"),
+        ("a.ply", ply("1 0 0 7", "1 nan 0 7"), "node 1 has a coordinate that is not finite"),
+        ("a.ply", cut(ply_binary(false), 1), "the file ends where a value of an element should come"),
+        (
+            "a.ply",
+            [ply_binary(true), vec![1, 2, 3]].concat(),
+            "expected the end of the file, found '3 bytes more'",
+        ),
+        ("a.off", b"OFF\n4 4 6\n".to_vec(), "'OFF' begins no mesh file"),
+    ] {
+        let bad = read(name, &bytes).err().unwrap_or_else(|| panic!("read, but {says}"));
+        assert!(bad.contains(says), "{bad}\n  has no: {says}");
+    }
+}
+
+fn refused(soup: Soup) -> SurfaceProblem {
+    match Surface::new(soup, 1.0) {
+        Ok(_) => panic!("not refused"),
+        Err(problem) => problem,
+    }
+}
+
+#[test]
+fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
+    let of = |faces: &[[usize; 3]]| read("a.stl", stl_text(faces).as_bytes()).err().unwrap_or_default();
+    let open = of(&[FACES[0], FACES[1], FACES[2], [0, 3, 3]]);
+    assert!(open.starts_with("a.stl: 3 triangles enclose nothing"), "{open}");
+    let open = refused({
+        let mut soup = sphere_like(2, |n| n);
+        soup.triangles.remove(17);
+        soup.faces.remove(17);
+        soup
+    });
+    assert!(matches!(open, SurfaceProblem::Open { edges: 3, .. }), "{open}");
+    let turned = of(&[FACES[0], FACES[1], FACES[2], [0, 2, 3]]);
+    assert!(
+        turned.contains("triangles 1 and 4 turn opposite ways along their edge (0, 0, 0) to (0, 1, 0)"),
+        "{turned}"
+    );
+    let twice = of(&[FACES[0], FACES[1], FACES[2], FACES[3], FACES[3]]);
+    assert!(twice.contains("triangles 1, 4, 5 meet at one edge"), "{twice}");
+    let inverted = of(&FACES.map(|[a, b, c]| [a, c, b]));
+    assert!(inverted.contains("inside out at triangle 1, (0.3333333, 0.3333333, 0)"), "{inverted}");
+    assert!(inverted.contains("the volume is -1.666667e-1"), "{inverted}");
+}
+
+#[test]
+fn surfaces_that_cross_are_refused() {
+    let crossing = refused(joined(sphere_like(3, |n| n), moved(sphere_like(3, |n| n), [0.7, 0.1, 0.2])));
+    assert!(matches!(crossing, SurfaceProblem::Crossing { pairs: 100.., .. }), "{crossing}");
+    // One part pushed through the other side.
+    let pushed = refused(sphere_like(4, |n| if n.z > 0.8 { [n.x, n.y, n.z - 2.4].into() } else { n }));
+    assert!(matches!(pushed, SurfaceProblem::Crossing { .. }), "{pushed}");
+    // Exactly in one plane, edge on edge: signs decide, not rounding.
+    let cube = |at: [f64; 3]| {
+        let corner = |i: u32| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
+        let soup = Soup {
+            points: (0..8).map(corner).collect(),
+            triangles: faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+            faces: (1..=12).collect(),
+        };
+        moved(soup, at)
+    };
+    for by in [[0.5, 0.0, 0.0], [0.5, 0.5, 0.5], [1.0, 0.25, 0.25], [1.0, 1.0, 0.5]] {
+        let problem = refused(joined(cube([0.0; 3]), cube(by)));
+        assert!(
+            matches!(problem, SurfaceProblem::Crossing { .. } | SurfaceProblem::Branched { .. }),
+            "{by:?}: {problem}"
+        );
+    }
+    surface(joined(cube([0.0; 3]), cube([1.5, 0.0, 0.0])));
+}
+
+#[test]
+fn cavities_are_clockwise_and_bodies_within_bodies_are_none() {
+    let turned =
+        |soup: Soup| Soup { triangles: soup.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..soup };
+    let [outer, inner] = [1.0, 0.5].map(|r| sphere_like(4, move |n| r * n));
+    let hollow = surface(joined(outer.clone(), turned(inner.clone())));
+    assert!((hollow.volume() / (7.0 / 8.0 * 4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
+    assert!(hollow.signed_distance(&Point3::origin()) > 0.49);
+    let solid = refused(joined(outer, inner));
+    assert!(matches!(solid, SurfaceProblem::InsideOut { within: 1, .. }), "{solid}");
+    let flat = refused(sphere_like(1, |n| [n.x, n.y, 0.0 * n.z].into()));
+    assert!(
+        matches!(
+            flat,
+            SurfaceProblem::Crossing { .. }
+                | SurfaceProblem::Flat
+                | SurfaceProblem::Branched { .. }
+                | SurfaceProblem::Turned { .. }
+        ),
+        "{flat}"
+    );
+}
+
+#[test]
+fn corners_apart_by_rounding_are_one() {
+    let mut soup = Soup::default();
+    for (at, t) in sphere_like(3, |n| 40.0 * n).triangles.iter().enumerate() {
+        let base = sphere_like(3, |n| 40.0 * n);
+        let first = soup.points.len() as u32;
+        soup.points.extend(t.map(|p| base.points[p as usize] * (1.0 + 1e-8 * (at % 7) as f64)));
+        soup.triangles.push([first, first + 1, first + 2]);
+        soup.faces.push(at as u32 + 1);
+    }
+    assert_eq!(surface(soup).points().len(), 258);
+}
+
+#[test]
+fn distances_have_the_sign_of_the_body() {
+    let (ball, ring) = (surface(sphere_like(5, |n| n)), surface(torus(0.4, 128, 64)));
+    for i in 0..2000u32 {
+        let at = |n: u32| {
+            1.7 * (2.0
+                * f64::from((i.wrapping_mul(2_654_435_761) ^ n.wrapping_mul(40_503 * (i + 1))) % 10_007)
+                / 10_007.0
+                - 1.0)
+        };
+        let p = Point3::new(at(1), at(2), at(3));
+        assert!((ball.signed_distance(&p) - (p.coords.norm() - 1.0)).abs() < 2e-3, "{p}");
+        let around = (p.x.hypot(p.y) - 1.0).hypot(p.z) - 0.4;
+        assert!((ring.signed_distance(&p) - around).abs() < 3e-3, "{p}");
+    }
+}
+
+#[test]
+fn a_surface_is_a_body_for_clouds() {
+    let organ = surface(bumpy(4));
+    let nodes = cloud(&organ, 200, 1, &[]).unwrap();
+    assert_eq!(nodes.points.len(), 200);
+    let outer = nodes.points.iter().filter(|p| organ.signed_distance(p).abs() < 1e-12).count();
+    assert!(
+        nodes.points.iter().all(|p| organ.signed_distance(p) < 1e-12) && (100..180).contains(&outer),
+        "{outer}"
+    );
+    let [low, high] = Shape::bounds(&organ);
+    assert!(low.x < -1.2 && high.y > 0.8);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Bytes changed at random are read or refused, never more.
+    #[test]
+    fn changed_files_are_read_or_refused(kind in 0usize..4, places in prop::collection::vec((0usize..400, any::<u8>()), 1..6)) {
+        let mut bytes = match kind {
+            0 => stl_text(&FACES).into_bytes(),
+            1 => stl_binary(&FACES, b""),
+            2 => obj(OBJ_FACES).into_bytes(),
+            _ => ply_binary(false),
+        };
+        for (at, byte) in places {
+            let count = bytes.len();
+            bytes[at % count] = byte;
+        }
+        if let Ok(surface) = read(["a.stl", "a.stl", "a.obj", "a.ply"][kind], &bytes) {
+            prop_assert!(surface.volume().is_finite());
+        }
+    }
+}
