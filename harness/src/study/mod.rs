@@ -10,7 +10,6 @@ pub(crate) mod folder;
 mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;
-pub(crate) mod process_group;
 mod progress;
 #[cfg(test)]
 mod project;
