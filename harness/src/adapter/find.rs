@@ -73,11 +73,26 @@ impl Found {
     }
 }
 
-/// All adapters for a scene, the first of each name.
-pub(crate) fn all(scene: Option<&Path>) -> Result<Vec<Found>, Failure> {
+/// What was found of adapters.
+#[derive(Default)]
+pub(crate) struct All {
+    /// The first of each name.
+    pub(crate) found: Vec<Found>,
+    /// Folders whose `adapter.toml` is wrong, and what is wrong with it.
+    pub(crate) broken: Vec<(PathBuf, Failure)>,
+}
+
+/// All adapters for a scene.
+pub(crate) fn all(scene: Option<&Path>) -> All {
     let beside = scene.and_then(Path::parent).map(|folder| folder.join(BESIDE));
     let folders = given_folders().into_iter().chain(beside).chain([PathBuf::from(BESIDE)]);
-    let mut found: Vec<Found> = Vec::new();
+    let mut all = All::default();
+    let mut add = |all: &mut All, read: Result<Found, Failure>, folder: &Path| match read {
+        Ok(new) if all.found.iter().any(|known| known.manifest.name == new.manifest.name) => {}
+        Ok(new) => all.found.push(new),
+        Err(bad) if all.broken.iter().any(|(known, _)| known == folder) => drop(bad),
+        Err(bad) => all.broken.push((folder.to_path_buf(), bad)),
+    };
     for folder in folders {
         let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
@@ -85,30 +100,57 @@ pub(crate) fn all(scene: Option<&Path>) -> Result<Vec<Found>, Failure> {
         // A folder may be one adapter itself.
         paths.insert(0, folder);
         for path in paths {
-            found.extend(Found::in_folder(&path).transpose()?);
+            if let Some(read) = Found::in_folder(&path) {
+                add(&mut all, read, &path);
+            }
         }
     }
-    for files in SHIPPED {
-        found.push(Found::shipped(files)?);
-    }
-    let mut first: Vec<Found> = Vec::new();
-    for adapter in found {
-        if !first.iter().any(|known| known.manifest.name == adapter.manifest.name) {
-            first.push(adapter);
-        }
-    }
-    Ok(first)
+    SHIPPED.iter().for_each(|files| add(&mut all, Found::shipped(files), Path::new("shipped")));
+    all
 }
 
 /// The adapter of a name.
 pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
-    let mut all = all(scene)?;
-    if let Some(at) = all.iter().position(|found| found.manifest.name == name) {
-        return Ok(all.swap_remove(at));
+    let All { mut found, mut broken } = all(scene);
+    // One that is wrong does not stand aside for another of its name.
+    if let Some(at) = broken.iter().position(|(folder, _)| folder.file_name().is_some_and(|own| own == name)) {
+        return Err(broken.swap_remove(at).1);
     }
-    let names: Vec<&str> = all.iter().map(|found| found.manifest.name.as_str()).collect();
+    if let Some(at) = found.iter().position(|found| found.manifest.name == name) {
+        return Ok(found.swap_remove(at));
+    }
+    let names: Vec<&str> = found.iter().map(|found| found.manifest.name.as_str()).collect();
     let near = nearest(name, names.iter().copied());
     let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
     let help = format!("there are {}{near}; --adapters DIR names further folders", names.join(", "));
     Err(Failure::Input(format!("no adapter '{name}': {help}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MINE: &str = "name = \"mine\"\ntitle = \"Mine\"\nrun = [\"mine\"]\ncan = []\nelements = []\n";
+
+    #[test]
+    fn those_beside_a_scene_come_before_those_of_the_program_and_a_broken_one_stops_only_itself() {
+        let dir = tempfile::tempdir().unwrap();
+        let scene = dir.path().join("scene.toml");
+        let put = |name: &str, text: &str| {
+            let folder = dir.path().join("adapters").join(name);
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(folder.join(MANIFEST), text).unwrap();
+            folder
+        };
+        let mine = put("mine", MINE);
+        put("other", &MINE.replace("\"mine\"\ntitle", "\"dummy\"\ntitle"));
+        put("broken", "name = 3");
+        let of = |name: &str| find(name, Some(&scene));
+        assert_eq!(of("mine").unwrap().folder, Some(mine));
+        assert!(of("dummy").unwrap().folder.is_some() && of("calculix").unwrap().folder.is_none());
+        assert!(of("broken").unwrap_err().to_string().contains("broken/adapter.toml"));
+        let lost = of("calculx").unwrap_err().to_string();
+        assert!(lost.contains("did you mean 'calculix'?") && lost.contains("mine"), "{lost}");
+        assert_eq!(all(Some(&scene)).broken.len(), 1);
+    }
 }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use super::ci::CiArgs;
+use super::solve::SolveArgs;
+use crate::process::LeashArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
@@ -21,6 +23,10 @@ pub struct Cli {
     /// When words are coloured: on a terminal, unless NO_COLOR is set
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
+    /// A folder with adapters of other solvers, before those beside the scene, in TISSUEBENCH_ADAPTERS and shipped (may be given
+    /// several times)
+    #[arg(long, global = true, value_name = "DIR")]
+    pub adapters: Vec<PathBuf>,
     /// What to do
     #[command(subcommand)]
     pub command: Command,
@@ -54,6 +60,12 @@ pub enum Command {
     /// One run of a study in a process of its own
     #[command(hide = true)]
     Experiment(ExperimentArgs),
+    /// Another program on a leash: with its limits, and gone with whoever called it
+    #[command(hide = true)]
+    Leash(LeashArgs),
+    /// A problem in files solved by this program, as the adapters `tissuebench` and `dummy` call it
+    #[command(hide = true)]
+    Solve(SolveArgs),
     /// Join the shares of a study that were run by --shard, or by several machines, to the results of one run
     Merge(MergeArgs),
     /// Render tables, figures and the report of stored results

@@ -14,6 +14,7 @@ mod mesh_files;
 mod plan;
 mod reference;
 mod run;
+mod solve;
 mod text;
 mod verify;
 
@@ -25,6 +26,8 @@ use clap::CommandFactory;
 use reports::ReportError;
 
 use crate::Failure;
+use crate::adapter;
+use crate::process::leash::leash;
 use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
@@ -35,6 +38,7 @@ use merge::merge;
 use plan::plan;
 use reference::reference;
 use run::run;
+use solve::solve;
 use verify::verify;
 
 pub use args::{Cli, Command};
@@ -52,11 +56,14 @@ fn act(cli: Cli) -> u8 {
         return 3;
     }
     colour::choose(cli.color);
+    adapter::add_folders(&cli.adapters);
     match cli.command {
         Command::Run(args) => run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Merge(args) => merge(&args),
+        Command::Leash(args) => leash(&args),
+        Command::Solve(args) => solve(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out } => {
             let out = out.unwrap_or_else(|| results.join("report"));

@@ -11,6 +11,7 @@ use super::store::Store;
 use super::task::TaskResult;
 use super::{Plan, VerifyArgs};
 use crate::Failure;
+use crate::adapter;
 use crate::process::{Started, group, last_words};
 use crate::run::case_name;
 
@@ -111,6 +112,9 @@ impl<'a> Apart<'a> {
         command.args(self.args.quick.then_some("--quick"));
         if let Some(bytes) = self.args.apart.memory_limit {
             command.args(["--memory-limit", &bytes.to_string()]);
+        }
+        if let Ok(folders) = std::env::join_paths(adapter::given_folders()) {
+            command.env(adapter::FOLDERS, folders);
         }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         Ok(command)
