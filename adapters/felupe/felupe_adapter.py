@@ -6,6 +6,7 @@ from pathlib import Path
 
 import felupe
 import numpy as np
+from scipy.sparse.linalg import spsolve
 
 problem, answer = map(Path, sys.argv[1:3])
 KINDS = {
@@ -45,13 +46,13 @@ def solve(text, load):
             if still and np.linalg.norm(residual[free]) <= text["procedure"]["tolerance"] * scale:
                 break
             if trial == text["procedure"]["iterations"]:
-                if not (linear := text["procedure"]["kind"] == "linear"):
-                    return found, iterations, (step - 1) / steps
-                break
+                if text["procedure"]["kind"] == "linear":
+                    break
+                return found, iterations, (step - 1) / steps
             K = solid.assemble.matrix(field).tocsr()
             move = np.zeros_like(values)
             move[held] = target - values[held]
-            move[free] = felupe.solve.solve.spsolve(K[free][:, free], (residual - K @ move)[free])
+            move[free] = spsolve(K[free][:, free], (residual - K @ move)[free])
             u.values[:] += move.reshape(-1, 3)
             iterations += 1
         found.append(u.values.copy())

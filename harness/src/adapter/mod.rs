@@ -12,11 +12,11 @@ mod outside;
 mod run;
 mod work;
 
-pub(crate) use answer::{Answer, RESULT};
-pub(crate) use find::{Found, add_folders, all, find, given_folders};
-pub(crate) use outside::{Outside, label};
+pub(crate) use answer::RESULT;
+pub(crate) use find::{All, Found, add_folders, all, find, given_folders};
+pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};
-pub(crate) use work::{Folder, data_folder};
+pub(crate) use work::Folder;
 
 /// The environment variable with folders of adapters, as `PATH` has folders of programs.
 pub(crate) const FOLDERS: &str = "TISSUEBENCH_ADAPTERS";

@@ -11,6 +11,12 @@ use crate::process::Limits;
 #[derive(Clone, Debug)]
 pub(crate) struct Outside {
     pub(crate) adapter: Found,
+    pub(crate) about: About,
+}
+
+/// What a problem in files is called, and what its solver gets beside it.
+#[derive(Clone, Debug)]
+pub(crate) struct About {
     /// Name of the case.
     pub(crate) case: String,
     /// Id of the method.

@@ -22,10 +22,12 @@ const VERSION: Duration = Duration::from_secs(20);
 /// A problem in files, for an adapter.
 pub(crate) struct Question<'a> {
     pub(crate) adapter: &'a Found,
-    /// Where everything of this call is.
+    /// For what the adapter's programs need meanwhile.
     pub(crate) work: &'a Folder,
     /// The folder of the problem.
     pub(crate) problem: &'a Path,
+    /// The folder to answer in.
+    pub(crate) answer: &'a Path,
     /// Its id.
     pub(crate) id: &'a str,
     pub(crate) nodes: usize,
@@ -49,14 +51,14 @@ pub(crate) struct Answered {
 /// Calls an adapter and reads its answer.
 pub(crate) fn ask(question: &Question) -> Result<Answered, Foreign> {
     let failed = |reason: String| Foreign::new(ForeignStatus::Failed, reason);
-    let folder = question.work.inside("answer").map_err(failed)?;
-    let command = command(question, &folder)?;
+    let command = command(question)?;
     let call = call(&command, question.limits)
         .map_err(|bad| failed(format!("{} can't be called: {bad}", question.adapter.manifest.name)))?;
-    read(question, call, &folder)
+    read(question, call)
 }
 
-fn read(question: &Question, call: Call, folder: &Path) -> Result<Answered, Foreign> {
+fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
+    let folder = question.answer;
     let failed = |reason: String| Foreign::new(ForeignStatus::Failed, reason);
     let status = match call.end {
         End::Exited(status) => status,
@@ -96,12 +98,12 @@ fn said(call: &Call) -> String {
 }
 
 /// The program with its arguments, in the folder that it answers in.
-fn command(question: &Question, answer: &Path) -> Result<Command, Foreign> {
-    let Found { manifest, .. } = question.adapter;
+fn command(question: &Question) -> Result<Command, Foreign> {
+    let Question { adapter: Found { manifest, .. }, problem, answer, .. } = question;
     ready(question.adapter).map_err(|reason| Foreign::new(ForeignStatus::NotOffered, reason))?;
     let failed = |reason: String| Foreign::new(ForeignStatus::Failed, reason);
     let folder = programs(question.adapter, question.work).map_err(failed)?;
-    let word = |word: &String| fill(question.adapter, word, &folder, question.problem, answer);
+    let word = |word: &String| fill(question.adapter, word, &folder, problem, answer);
     let mut words = manifest.run.iter().map(word);
     let mut command = Command::new(words.next().unwrap_or_default());
     command.args(words).current_dir(answer);
@@ -207,6 +209,6 @@ pub(crate) fn version(adapter: &Found) -> Option<String> {
         let output = heard.recv_timeout(VERSION).ok()?.ok()?;
         let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         let line = text.iter().flat_map(|text| text.lines()).map(str::trim).find(|line| !line.is_empty())?;
-        Some(line.chars().take(80).collect())
+        Some(format!("{} ({})", adapter.manifest.title, line.chars().take(80).collect::<String>()))
     })
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
+use super::adapter::AdapterAction;
 use super::ci::CiArgs;
 use super::solve::SolveArgs;
 use crate::process::LeashArgs;
@@ -82,6 +83,14 @@ pub enum Command {
     Compare(CompareArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
+    /// Write the problem of one method as files that any solver can read
+    Export(ExportArgs),
+    /// Solvers outside this program: which there are, whether they are right, one call of them
+    Adapter {
+        /// What to do with them
+        #[command(subcommand)]
+        action: AdapterAction,
+    },
     /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
     List {
         /// Only this part, such as laws
@@ -160,6 +169,19 @@ pub struct ReferenceArgs {
     pub unit: LengthUnit,
     /// The file to write (JSON)
     #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `export`.
+#[derive(Args)]
+pub struct ExportArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The method: one of finite elements, or of another solver
+    #[arg(long, value_name = "ID")]
+    pub method: String,
+    /// The folder to write
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 

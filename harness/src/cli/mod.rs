@@ -1,11 +1,13 @@
 //! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
 //! 4 nothing ran, 5 incomplete.
 
+mod adapter;
 mod args;
 mod baseline;
 mod ci;
 mod colour;
 mod compare;
+mod export;
 mod interrupt;
 mod json;
 mod list;
@@ -26,13 +28,13 @@ use clap::CommandFactory;
 use reports::ReportError;
 
 use crate::Failure;
-use crate::adapter;
 use crate::process::leash::leash;
 use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
 use compare::compare;
+use export::export;
 use list::list;
 use merge::merge;
 use plan::plan;
@@ -56,7 +58,7 @@ fn act(cli: Cli) -> u8 {
         return 3;
     }
     colour::choose(cli.color);
-    adapter::add_folders(&cli.adapters);
+    crate::adapter::add_folders(&cli.adapters);
     match cli.command {
         Command::Run(args) => run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
@@ -74,6 +76,8 @@ fn act(cli: Cli) -> u8 {
             Ok(()) => 0,
             Err(code) => code,
         },
+        Command::Export(args) => export(&args),
+        Command::Adapter { action } => adapter::act(&action),
         Command::List { what } => list(what.as_deref()),
         Command::Schema { study } => {
             let schema = if study { scene::study_schema() } else { scene::schema() };

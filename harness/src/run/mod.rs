@@ -1,5 +1,6 @@
 //! One run: prepare, assemble, factor, solve (timed apart, repeated), then errors, probes and transfers.
 
+mod export;
 mod group;
 mod memory;
 pub(crate) mod mirror;

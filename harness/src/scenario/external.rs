@@ -1,14 +1,15 @@
 //! A method of a solver outside this program: its mesh, and whether its adapter takes what the scene asks for.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use cases::scene::{self, ProcedureKind};
+use cases::scene::{self, Family, ProcedureKind, Setting};
 
 use super::Scenario;
 use crate::Failure;
-use crate::adapter::{self, Outside};
+use crate::adapter::{self, About, Outside};
 use crate::discretise::Discretisation;
 use crate::error::{Foreign, ForeignStatus, Key};
 use crate::process::Limits;
@@ -26,18 +27,34 @@ impl Scenario<'_> {
             let reason = format!("{} {reason}", external.adapter);
             return Err(Foreign::new(ForeignStatus::NotOffered, reason).into());
         }
-        let outside = Outside {
-            adapter,
-            case: self.case.clone(),
-            method: self.method.id.clone(),
-            element,
-            settings: external.settings.clone(),
-            limits: Limits {
-                time: Duration::try_from_secs_f64(external.time_limit).unwrap_or(Duration::MAX),
-                memory: external.memory_limit,
-            },
+        let limits = Limits {
+            time: Duration::try_from_secs_f64(external.time_limit).unwrap_or(Duration::MAX),
+            memory: external.memory_limit,
         };
+        let about = self.about(element, external.settings.clone(), limits);
+        let outside = Outside { adapter, about };
         Ok(Discretisation { outside: Some(Arc::new(outside)), ..self.elements(&external.elements)? })
+    }
+
+    fn about(&self, element: &'static str, settings: BTreeMap<String, Setting>, limits: Limits) -> About {
+        About { case: self.case.clone(), method: self.method.id.clone(), element, settings, limits }
+    }
+
+    /// What the problem of a method of finite elements is called, whoever solves it.
+    pub(crate) fn about_elements(&self) -> Result<About, Failure> {
+        let fem = match &self.method.family {
+            Family::Fem(fem) => fem,
+            Family::External(_) => {
+                let outside = self.discretise()?.outside;
+                return Ok(outside.map(|outside| outside.about.clone()).expect("it has one"));
+            }
+            Family::Efg(_) | Family::OverMesh(_) => {
+                let problem = "is no finite elements: problems in files are of meshes";
+                return Err(self.locate(Failure::input(Key::Method("family"), problem, "give another method")));
+            }
+        };
+        let limits = Limits { time: Duration::from_secs(600), memory: 4 << 30 };
+        Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
     /// What the scene asks of a solver, each by its word in an adapter's `can` and for people. Procedures that problems in files

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use cases::scene::{Procedure, Setting};
+use contact::ToolShape;
 use geometry::{CellKind, Point3, files};
 use material::{Law, Material as _};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::Failure;
-use crate::adapter::{Outside, npy};
+use crate::adapter::{About, npy};
 use crate::error::{Foreign, ForeignStatus};
 use crate::procedure::Problem;
 
@@ -84,7 +85,7 @@ pub(crate) struct LimitsText {
 /// Writes the files of a problem, with these meshes; returns its id.
 pub(crate) fn write(
     problem: &Problem,
-    outside: &Outside,
+    about: &About,
     folder: &Path,
     meshes: &[String],
 ) -> Result<String, Failure> {
@@ -97,7 +98,7 @@ pub(crate) fn write(
         for name in meshes {
             files::write(problem.method.mesh(), &folder.join(name), 1.0).map_err(|bad| bad.to_string())?;
         }
-        let mut text = text(problem, outside);
+        let mut text = text(problem, about);
         text.id = id(&text, folder)?;
         let json = serde_json::to_string_pretty(&text).map_err(|bad| bad.to_string())?;
         save(&folder.join(TEXT), json.as_bytes())?;
@@ -145,7 +146,7 @@ fn arrays(problem: &Problem, folder: &Path) -> Result<(), String> {
     npy::write_floats(&folder.join("force.npy"), 3, force.iter().flat_map(|f| [f.x, f.y, f.z]))
 }
 
-fn text(problem: &Problem, outside: &Outside) -> Text {
+fn text(problem: &Problem, about: &About) -> Text {
     let Problem { method, setup, prepared, .. } = *problem;
     let materials = setup.laws.iter().zip(&setup.materials).zip(&setup.densities).enumerate();
     let procedure = match &setup.procedure {
@@ -160,9 +161,9 @@ fn text(problem: &Problem, outside: &Outside) -> Text {
     Text {
         schema: SCHEMA,
         id: String::new(),
-        case: outside.case.clone(),
-        method: outside.method.clone(),
-        element: outside.element.into(),
+        case: about.case.clone(),
+        method: about.method.clone(),
+        element: about.element.into(),
         points_per_cell: prepared.source.points_per_cell().unwrap_or(0),
         materials: materials
             .map(|(region, ((law, linear), &density))| MaterialText {
@@ -178,9 +179,9 @@ fn text(problem: &Problem, outside: &Outside) -> Text {
             })
             .collect(),
         procedure,
-        limits: LimitsText { seconds: outside.limits.time.as_secs_f64(), bytes: outside.limits.memory },
+        limits: LimitsText { seconds: about.limits.time.as_secs_f64(), bytes: about.limits.memory },
         threads: rayon::current_num_threads(),
-        settings: outside.settings.clone(),
+        settings: about.settings.clone(),
     }
 }
 
@@ -209,7 +210,7 @@ fn tools(problem: &Problem) -> Value {
         let axes: Vec<[f64; 3]> = placed.turned.row_iter().map(|row| [row[0], row[1], row[2]]).collect();
         json!({
             "name": placed.name,
-            "shape": tool.shape().name(),
+            "shape": shape(tool.shape()),
             "at": [at.x, at.y, at.z],
             "along": <[f64; 3]>::from(tool.along()),
             "axes": axes,
@@ -219,4 +220,16 @@ fn tools(problem: &Problem) -> Value {
         })
     };
     Value::Array(problem.setup.tools.iter().map(one).collect())
+}
+
+/// A shape in its own frame, m: about the origin; a cylinder's and a capsule's axis is z, a plate is z = 0 with the tool below.
+fn shape(shape: &ToolShape) -> Value {
+    let name = shape.name();
+    match shape {
+        ToolShape::RoundedBox(of) => json!({ "name": name, "half": of.half, "radius": of.radius }),
+        ToolShape::Sphere(of) => json!({ "name": name, "radius": of.radius }),
+        ToolShape::Cylinder(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
+        ToolShape::Capsule(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
+        ToolShape::Plate(_) => json!({ "name": name }),
+    }
 }
