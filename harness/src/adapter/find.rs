@@ -87,7 +87,7 @@ pub(crate) fn all(scene: Option<&Path>) -> All {
     let beside = scene.and_then(Path::parent).map(|folder| folder.join(BESIDE));
     let folders = given_folders().into_iter().chain(beside).chain([PathBuf::from(BESIDE)]);
     let mut all = All::default();
-    let mut add = |all: &mut All, read: Result<Found, Failure>, folder: &Path| match read {
+    let add = |all: &mut All, read: Result<Found, Failure>, folder: &Path| match read {
         Ok(new) if all.found.iter().any(|known| known.manifest.name == new.manifest.name) => {}
         Ok(new) => all.found.push(new),
         Err(bad) if all.broken.iter().any(|(known, _)| known == folder) => drop(bad),

@@ -5,6 +5,7 @@
 
 mod answer;
 mod builtin;
+mod checked;
 mod find;
 mod manifest;
 pub(crate) mod npy;
@@ -13,6 +14,7 @@ mod run;
 mod work;
 
 pub(crate) use answer::RESULT;
+pub(crate) use checked::{is_checked, note};
 pub(crate) use find::{All, Found, add_folders, all, find, given_folders};
 pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};

@@ -1,6 +1,6 @@
 //! Folders: one for each call, which is gone with it, and one for what a person has installed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Says where installed things go, in place of the usual folder of the system.
@@ -29,7 +29,8 @@ impl Folder {
         Ok(path)
     }
 
-    pub(crate) fn path(&self) -> &Path {
+    #[cfg(test)]
+    fn path(&self) -> &std::path::Path {
         &self.0
     }
 }

@@ -99,7 +99,7 @@ impl<'a> Apart<'a> {
             (Ok(ended), _) => self.failure(&ended),
             (Err(bad), _) => Failure::Run(format!("could not be started: {bad}")),
         };
-        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method.id, &failure)
+        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method, &failure)
     }
 
     fn command(&self, tables: &[usize], key: &str, answer: &Path) -> std::io::Result<Command> {

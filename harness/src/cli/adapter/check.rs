@@ -12,7 +12,7 @@ use crate::run::{Group, Repeats, RunOptions};
 const EXACT: f64 = 1e-8;
 /// Forces left over at free nodes against all forces, for each unit in the last digit of the answer: its elements are stiff
 /// against what rounding makes of neighbours.
-const BALANCE: f64 = 1e3;
+const BALANCE: f64 = 10.0;
 /// Relative difference from our own element.
 const AGREEMENT: f64 = 1e-6;
 /// Relative difference at large strain, of which each solver makes its own steps.
@@ -33,10 +33,10 @@ struct Case {
 
 const LINEAR: &str = "material = { law = \"linear\", young = \"20 kPa\", poisson = 0.3 }\n";
 const RIGID: &str = "support = [{ on = \"surface\", move = \"exact\" }]\n\
-    reference = { exact = \"rigid\", translation = [\"0.3 mm\", \"-0.2 mm\", \"0.1 mm\"], rotation = [0.001, -0.002, 0.0015] }\n";
+    reference = { exact = \"rigid\" }\n";
 const PATCH: &str = "support = [{ on = \"surface\", move = \"exact\" }]\n\
-    reference = { exact = \"affine\", gradient = [[0.001, 0.0004, 0.0], [0.0002, -0.0005, 0.0001], [0.0, 0.0003, 0.0002]] }\n";
-const LOADED: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }, { on = \"x-min\", move = { x = \"0.05 mm\" } }]\n\
+    reference = { exact = \"affine\" }\n";
+const LOADED: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }, { on = \"z-max\", move = { x = \"0.05 mm\" } }]\n\
     load = [{ on = \"z-max\", pressure = \"0.4 kPa\" }, { body = [\"100 N/m^3\", \"0 N/m^3\", \"-500 N/m^3\"] }]\n\
     reference = { method = \"ours\" }\n";
 const HELD: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }]\n\
@@ -92,6 +92,7 @@ pub(super) fn check(adapter: &Found) -> u8 {
         }
     }
     println!("{}: {} of {asked} passed", adapter.manifest.name, asked - failed);
+    adapter::note(adapter, asked > 0 && failed == 0);
     match (asked, failed) {
         (0, _) => 4,
         (_, 0) => 0,

@@ -23,6 +23,9 @@ pub struct SolveArgs {
     pub problem: PathBuf,
     /// The folder to answer in
     pub answer: PathBuf,
+    /// How to misbehave, in place of the setting `mode`
+    #[arg(long)]
+    pub mode: Option<String>,
 }
 
 /// What a misbehaving solver may do, by the setting `mode`.
@@ -51,10 +54,11 @@ fn answer(args: &SolveArgs) -> Result<u8, String> {
     if text.schema != SCHEMA {
         return Err(format!("{}: schema {} is not known, only {SCHEMA}", path.display(), text.schema));
     }
-    let mode = match text.settings.get("mode") {
-        None => "own",
-        Some(Setting::Text(mode)) => mode,
-        Some(other) => return Err(format!("mode {other:?}: give one of {MODES}")),
+    let mode = match (&args.mode, text.settings.get("mode")) {
+        (Some(mode), _) => mode,
+        (None, None) => "own",
+        (None, Some(Setting::Text(mode))) => mode,
+        (None, Some(other)) => return Err(format!("mode {other:?}: give one of {MODES}")),
     };
     match mode {
         "silence" => return Ok(0),
