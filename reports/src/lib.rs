@@ -22,6 +22,7 @@
 
 mod axis;
 pub mod baseline;
+mod claims;
 mod clouds;
 pub mod compare;
 mod error;
@@ -43,6 +44,7 @@ mod table;
 mod tables;
 mod text;
 
+pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};

@@ -81,6 +81,8 @@ pub enum Command {
     Baseline(BaselineArgs),
     /// Compare two results: numbers by tolerance, times as ratios with their confidence
     Compare(CompareArgs),
+    /// Hold published claims against stored results: validated, qualified or refuted
+    Claims(ClaimsArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
     /// Write the problem of one method as files that any solver can read
@@ -170,6 +172,16 @@ pub struct ReferenceArgs {
     /// The file to write (JSON)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
+}
+
+/// Arguments of `claims`.
+#[derive(Args)]
+pub struct ClaimsArgs {
+    /// A folder that `verify` or `run --out` wrote
+    pub results: PathBuf,
+    /// The claims
+    #[arg(long, value_name = "FILE", default_value = "cases/claims.toml")]
+    pub file: PathBuf,
 }
 
 /// Arguments of `export`.

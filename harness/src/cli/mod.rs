@@ -5,6 +5,7 @@ mod adapter;
 mod args;
 mod baseline;
 mod ci;
+mod claims;
 mod colour;
 mod compare;
 mod export;
@@ -33,6 +34,7 @@ use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
+use claims::claims;
 use compare::compare;
 use export::export;
 use list::list;
@@ -84,6 +86,7 @@ fn act(cli: Cli) -> u8 {
             println!("{schema:#}");
             0
         }
+        Command::Claims(args) => claims(&args),
         Command::Compare(args) => compare(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();
