@@ -163,7 +163,9 @@ impl Failure {
             Failure::Scene(error) => error.kind,
             Failure::At(finding) => finding.kind,
             Failure::Input(_) => ErrorKind::Invalid,
-            Failure::Foreign(foreign) if foreign.status == ForeignStatus::NotOffered => ErrorKind::NotAvailable,
+            Failure::Foreign(foreign) if foreign.status == ForeignStatus::NotOffered => {
+                ErrorKind::NotAvailable
+            }
             Failure::Foreign(_)
             | Failure::Efg(_)
             | Failure::Solve(_)

@@ -45,4 +45,4 @@ pub mod run;
 mod scenario;
 pub mod study;
 
-pub use error::Failure;
+pub use error::{Failure, Foreign, ForeignStatus};

@@ -50,11 +50,13 @@ fn tissuebench(dir: &TempDir, args: &[&str]) -> Done {
 #[cfg(target_os = "linux")]
 fn child_runs_in(part: &str) -> bool {
     let ids = std::fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path());
-    ids.filter(|path| path.file_name().unwrap().to_str().is_some_and(|name| name.parse::<u32>().is_ok())).any(|path| {
-        let said = std::fs::read(path.join("cmdline")).unwrap_or_default();
-        let at = std::fs::read_link(path.join("cwd")).unwrap_or_default();
-        String::from_utf8_lossy(&said).contains(CHILD) && at.to_string_lossy().contains(part)
-    })
+    ids.filter(|path| path.file_name().unwrap().to_str().is_some_and(|name| name.parse::<u32>().is_ok())).any(
+        |path| {
+            let said = std::fs::read(path.join("cmdline")).unwrap_or_default();
+            let at = std::fs::read_link(path.join("cwd")).unwrap_or_default();
+            String::from_utf8_lossy(&said).contains(CHILD) && at.to_string_lossy().contains(part)
+        },
+    )
 }
 
 fn value(object: &Value, metric: &str) -> f64 {
@@ -84,7 +86,9 @@ fn our_own_solution_comes_back_to_the_bit() {
 #[test]
 fn large_strain_comes_back_too() {
     let dir = tempfile::tempdir().unwrap();
-    let law = BLOCK.replace("\"linear\"", "\"neo-hookean\"").replace("0.3 }", "0.3 }\nprocedure = { kind = \"static\", steps = 3 }");
+    let law = BLOCK
+        .replace("\"linear\"", "\"neo-hookean\"")
+        .replace("0.3 }", "0.3 }\nprocedure = { kind = \"static\", steps = 3 }");
     let scene = write(&dir, "block.toml", &law.replace("OTHERS", &other("itself", "tissuebench", "")));
     let done = tissuebench(&dir, &["run", &scene, "--format", "json", "--once"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
@@ -118,7 +122,11 @@ fn every_misbehaviour_has_its_status() {
         assert_fails(&done, 3, says);
         assert!(done.stderr.contains("block.toml:10: key 'method[1].adapter': 'dummy'"), "{}", done.stderr);
         let object = &objects(&done.stdout)[0];
-        assert_eq!((&object["status"], &object["metrics"]), (&status.into(), &serde_json::json!({})), "{mode}");
+        assert_eq!(
+            (&object["status"], &object["metrics"]),
+            (&status.into(), &serde_json::json!({})),
+            "{mode}"
+        );
         #[cfg(target_os = "linux")]
         assert!(!child_runs_in("answer"), "{mode} has left a process");
     }
@@ -151,7 +159,11 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     write(&dir, "study.toml", study);
     let done = tissuebench(&dir, &["verify", "study.toml", "--quick", "--out", "results"]);
     assert_fails(&done, 3, "could not run: block nan: ");
-    assert!(done.stderr.contains("not-offered: scikit-fem has no hex20, only tet4, tet10, hex8"), "{}", done.stderr);
+    assert!(
+        done.stderr.contains("not-offered: scikit-fem has no hex20, only tet4, tet10, hex8"),
+        "{}",
+        done.stderr
+    );
     let table = std::fs::read_to_string(dir.path().join("results/report/tables/solvers.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(
@@ -169,7 +181,10 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     assert!(done.stderr.contains("not-offered"));
     // Tools are not offered either.
-    let tools = PRESSED.replace("method = [\n", &format!("method = [\n{}", dummy("own", "").replace("[3, 3, 2]", "[2, 2, 1]")));
+    let tools = PRESSED.replace(
+        "method = [\n",
+        &format!("method = [\n{}", dummy("own", "").replace("[3, 3, 2]", "[2, 2, 1]")),
+    );
     let scene = write(&dir, "pressed.toml", &tools);
     let done = tissuebench(&dir, &["run", &scene, "--method", "own"]);
     assert_fails(&done, 3, "not-offered: dummy does not take rigid tools ([[tool]])");
@@ -182,7 +197,11 @@ fn a_solver_ends_with_whoever_called_it() {
     write(&dir, "block.toml", &BLOCK.replace("OTHERS", &dummy("sleep", "")));
     let start = |args: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
-        command.args(args).current_dir(dir.path()).stderr(std::process::Stdio::null()).stdout(std::process::Stdio::null());
+        command
+            .args(args)
+            .current_dir(dir.path())
+            .stderr(std::process::Stdio::null())
+            .stdout(std::process::Stdio::null());
         command.spawn().unwrap()
     };
     let wait = |what: &str, holds: &dyn Fn() -> bool| {
@@ -199,8 +218,13 @@ fn a_solver_ends_with_whoever_called_it() {
     run.wait().unwrap();
     wait("it is gone with a killed program", &|| !child_runs_in(&of));
     // And with one that was in a process of its own, which the study ended.
-    write(&dir, "study.toml", "title = \"Solvers\"\n[[run]]\nscene = \"block.toml\"\nmethods = [\"sleep\"]\n");
-    let done = tissuebench(&dir, &["verify", "study.toml", "--isolate", "--time-limit", "2", "--out", "results"]);
+    write(
+        &dir,
+        "study.toml",
+        "title = \"Solvers\"\n[[run]]\nscene = \"block.toml\"\nmethods = [\"sleep\"]\n",
+    );
+    let done =
+        tissuebench(&dir, &["verify", "study.toml", "--isolate", "--time-limit", "2", "--out", "results"]);
     assert_fails(&done, 3, "out of time");
     wait("it is gone with an ended run", &|| !child_runs_in("answer"));
 }
@@ -215,7 +239,12 @@ fn a_check_passes_what_is_right_and_notes_it_until_the_adapter_changes() {
     assert!(text.contains("name = \"mine\""), "{text}");
     std::fs::write(&file, &text).unwrap();
     let done = tissuebench(&dir, &["adapter", "check", "mine"]);
-    assert_eq!((done.code, done.stdout.lines().last()), (0, Some("mine: 18 of 18 passed")), "{}", done.stdout);
+    assert_eq!(
+        (done.code, done.stdout.lines().last()),
+        (0, Some("mine: 18 of 18 passed")),
+        "{}",
+        done.stdout
+    );
     let scene = write(&dir, "block.toml", &BLOCK.replace("OTHERS", &other("other", "mine", "")));
     let codes = || {
         let done = tissuebench(&dir, &["run", &scene, "--format", "json", "--once", "--method", "other"]);
@@ -228,7 +257,11 @@ fn a_check_passes_what_is_right_and_notes_it_until_the_adapter_changes() {
     let done = tissuebench(&dir, &["adapter", "check", "mine"]);
     assert_fails(&done, 1, "");
     // A motion that is too long by a thousandth is wrong by that everywhere.
-    assert!(done.stdout.contains("FAILED  tet4   rigid motion") && done.stdout.contains("mine: 0 of 18 passed"), "{}", done.stdout);
+    assert!(
+        done.stdout.contains("FAILED  tet4   rigid motion") && done.stdout.contains("mine: 0 of 18 passed"),
+        "{}",
+        done.stdout
+    );
 }
 
 #[test]
@@ -251,7 +284,8 @@ fn a_problem_is_written_for_others() {
     assert_eq!(nodes, geometry::files::read(&problem.join("mesh.inp"), 1.0).unwrap());
     assert_eq!(nodes.points().len(), 245);
     let force = read("force.npy");
-    let values = force[force.len() - 245 * 24..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
+    let values =
+        force[force.len() - 245 * 24..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
     let down: f64 = values.skip(2).step_by(3).sum();
     assert!((down + 1.6).abs() < 1e-12, "{down}");
     assert!(!problem.join("tools.json").exists());
@@ -263,9 +297,14 @@ fn a_problem_is_written_for_others() {
     let pressed = write(&dir, "pressed.toml", PRESSED);
     let done = tissuebench(&dir, &["export", &pressed, "--method", "hex8", "--out", "pressed"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let tools: Value = serde_json::from_slice(&std::fs::read(dir.path().join("pressed/tools.json")).unwrap()).unwrap();
+    let tools: Value =
+        serde_json::from_slice(&std::fs::read(dir.path().join("pressed/tools.json")).unwrap()).unwrap();
     assert_eq!((&tools[1]["name"], &tools[1]["drive"]["closure"]), (&"base".into(), &1e-3.into()));
-    assert_fails(&tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]), 2, "is no finite elements");
+    assert_fails(
+        &tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]),
+        2,
+        "is no finite elements",
+    );
 }
 
 #[test]
@@ -274,7 +313,10 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
     let listed = tissuebench(&dir, &["adapter", "list"]);
     assert_eq!(listed.code, 0);
     for name in ["calculix", "dummy", "felupe", "scikit-fem", "tissuebench"] {
-        assert!(listed.stdout.contains(&format!("{name}: ")) && listed.stdout.contains("(shipped)"), "{name}");
+        assert!(
+            listed.stdout.contains(&format!("{name}: ")) && listed.stdout.contains("(shipped)"),
+            "{name}"
+        );
     }
     std::fs::create_dir_all(dir.path().join("more/broken")).unwrap();
     write(&dir, "more/broken/adapter.toml", "name = 3\n");

@@ -5,7 +5,17 @@ use std::path::{Path, PathBuf};
 
 /// From left to right.
 const ROOMS: [&str; 12] = [
-    "cli", "study", "run", "measure", "procedure", "prepare", "scenario", "discretise", "adapter", "outcome", "process",
+    "cli",
+    "study",
+    "run",
+    "measure",
+    "procedure",
+    "prepare",
+    "scenario",
+    "discretise",
+    "adapter",
+    "outcome",
+    "process",
     "error",
 ];
 

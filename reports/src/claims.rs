@@ -144,7 +144,8 @@ impl Claim {
                 held.extend(found);
             }
         }
-        let verdict = match (held.iter().all(|h| *h == Held::Always), held.iter().all(|h| *h == Held::Never)) {
+        let verdict = match (held.iter().all(|h| *h == Held::Always), held.iter().all(|h| *h == Held::Never))
+        {
             _ if held.is_empty() => ClaimVerdict::Untested,
             (true, _) => ClaimVerdict::Validated,
             (_, true) => ClaimVerdict::Refuted,
@@ -174,7 +175,10 @@ impl Relation {
         let bound = self.at_most * (1.0 + self.tolerance);
         let limit = format!("claimed at most {}", significant(self.at_most, 2));
         let Some(matched) = Matched::of(&right, &left) else {
-            let none = format!("no run has a time and {} on both sides, or they reach no error in common", self.error);
+            let none = format!(
+                "no run has a time and {} on both sides, or they reach no error in common",
+                self.error
+            );
             return (None, none);
         };
         let (least, most, what) = match self.kind {

@@ -44,8 +44,8 @@ mod table;
 mod tables;
 mod text;
 
-pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
+pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
 pub use provenance::{Machine, Program, Provenance, SceneHash};

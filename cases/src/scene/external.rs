@@ -143,7 +143,10 @@ method = [{ id = "other", family = "external", adapter = "dummy", element = "tet
         );
         assert_eq!((given.time_limit, given.memory_limit), (2.0, 10 << 20));
         assert_eq!(given.settings["mode"], Setting::Text("nan".into()));
-        assert_eq!((&given.settings["n"], &given.settings["fast"]), (&Setting::Number(2.0), &Setting::Flag(true)));
+        assert_eq!(
+            (&given.settings["n"], &given.settings["fast"]),
+            (&Setting::Number(2.0), &Setting::Flag(true))
+        );
         for (more, key) in [
             ("time_limit = \"0 s\"", "method[0].time_limit"),
             ("memory_limit = \"much\"", "method[0].memory_limit"),

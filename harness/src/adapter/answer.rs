@@ -137,7 +137,10 @@ mod tests {
         let path = dir.path().join(DISPLACEMENT);
         assert!(displacement(dir.path(), 2, 1).unwrap_err().contains("not there"));
         npy::write_floats(&path, 3, (0..6).map(f64::from)).unwrap();
-        assert_eq!(displacement(dir.path(), 2, 4).unwrap(), [[Vector3::new(0.0, 1.0, 2.0), Vector3::new(3.0, 4.0, 5.0)]]);
+        assert_eq!(
+            displacement(dir.path(), 2, 4).unwrap(),
+            [[Vector3::new(0.0, 1.0, 2.0), Vector3::new(3.0, 4.0, 5.0)]]
+        );
         assert!(displacement(dir.path(), 3, 1).unwrap_err().contains("not (3, 3)"));
         npy::write_floats(&path, 3, [0.0, 1.0, 2.0, f64::NAN, 4.0, f64::INFINITY].into_iter()).unwrap();
         let bad = displacement(dir.path(), 2, 1).unwrap_err();

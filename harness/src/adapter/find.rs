@@ -56,7 +56,11 @@ impl Found {
     /// Its files with their contents, by name; those of folders inside its own are not among them.
     pub(crate) fn files(&self) -> Vec<(String, Vec<u8>)> {
         let Some(folder) = &self.folder else {
-            return self.shipped.iter().map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())).collect();
+            return self
+                .shipped
+                .iter()
+                .map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()))
+                .collect();
         };
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let file = |path: PathBuf| {
@@ -113,7 +117,8 @@ pub(crate) fn all(scene: Option<&Path>) -> All {
 pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
     let All { mut found, mut broken } = all(scene);
     // One that is wrong does not stand aside for another of its name.
-    if let Some(at) = broken.iter().position(|(folder, _)| folder.file_name().is_some_and(|own| own == name)) {
+    if let Some(at) = broken.iter().position(|(folder, _)| folder.file_name().is_some_and(|own| own == name))
+    {
         return Err(broken.swap_remove(at).1);
     }
     if let Some(at) = found.iter().position(|found| found.manifest.name == name) {

@@ -75,8 +75,8 @@ fn all_digits() -> u32 {
 impl Manifest {
     /// Reads a file; `file` is its name in messages.
     pub(crate) fn parse(text: &str, file: &Path) -> Result<Manifest, String> {
-        let manifest: Manifest =
-            toml::from_str(text).map_err(|bad| format!("{}: {}", file.display(), bad.to_string().trim_end()))?;
+        let manifest: Manifest = toml::from_str(text)
+            .map_err(|bad| format!("{}: {}", file.display(), bad.to_string().trim_end()))?;
         manifest.check().map_err(|bad| format!("{}: {bad}", file.display()))?;
         Ok(manifest)
     }
@@ -91,9 +91,11 @@ impl Manifest {
         }
         let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
         let can: Vec<&str> = WORDS.into_iter().chain(laws).collect();
-        for (key, given, known) in
-            [("can", &self.can, &can[..]), ("elements", &self.elements, &ELEMENTS), ("reads", &self.reads, &READS)]
-        {
+        for (key, given, known) in [
+            ("can", &self.can, &can[..]),
+            ("elements", &self.elements, &ELEMENTS),
+            ("reads", &self.reads, &READS),
+        ] {
             if let Some(word) = given.iter().find(|word| !known.contains(&word.as_str())) {
                 return Err(format!("{key} names '{word}', which is not known; {}", suggest(word, known)));
             }

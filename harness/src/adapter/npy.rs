@@ -9,13 +9,21 @@ const ALIGNED: usize = 64;
 const LONGEST_HEAD: usize = 1 << 16;
 
 /// Writes numbers of so many columns; one column is a list.
-pub(crate) fn write_floats(path: &Path, columns: usize, values: impl Iterator<Item = f64>) -> Result<(), String> {
+pub(crate) fn write_floats(
+    path: &Path,
+    columns: usize,
+    values: impl Iterator<Item = f64>,
+) -> Result<(), String> {
     let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
     write(path, "<f8", columns, &bytes)
 }
 
 /// The same of whole numbers.
-pub(crate) fn write_integers(path: &Path, columns: usize, values: impl Iterator<Item = i64>) -> Result<(), String> {
+pub(crate) fn write_integers(
+    path: &Path,
+    columns: usize,
+    values: impl Iterator<Item = i64>,
+) -> Result<(), String> {
     let bytes: Vec<u8> = values.flat_map(i64::to_le_bytes).collect();
     write(path, "<i8", columns, &bytes)
 }
@@ -51,7 +59,8 @@ pub(crate) fn read(path: &Path) -> Result<Array, String> {
     let kind = after(head, "'descr':").ok_or("its head has no 'descr'")?;
     let kind = kind.trim_start().trim_start_matches('\'').split('\'').next().unwrap_or_default();
     let shape = after(head, "'shape':").and_then(shape).ok_or("its head has no 'shape'")?;
-    let of_columns = after(head, "'fortran_order':").is_some_and(|text| text.trim_start().starts_with("True"));
+    let of_columns =
+        after(head, "'fortran_order':").is_some_and(|text| text.trim_start().starts_with("True"));
     let size = match kind {
         "<f8" | "<i8" => 8,
         "<f4" | "<i4" => 4,
@@ -60,7 +69,10 @@ pub(crate) fn read(path: &Path) -> Result<Array, String> {
     let count = shape.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
     let wanted = count.and_then(|count| count.checked_mul(size));
     if wanted != Some(data.len()) {
-        return Err(format!("its head says {shape:?} numbers of {size} bytes, behind it are {} bytes", data.len()));
+        return Err(format!(
+            "its head says {shape:?} numbers of {size} bytes, behind it are {} bytes",
+            data.len()
+        ));
     }
     let value = |bytes: &[u8]| match (kind, bytes) {
         ("<f8", &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
@@ -148,7 +160,8 @@ mod tests {
     #[test]
     fn columns_become_rows_and_short_numbers_long_ones() {
         let head = "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n";
-        let data: Vec<u8> = [0f32, 10.0, 1.0, 11.0, 2.0, 12.0].into_iter().flat_map(f32::to_le_bytes).collect();
+        let data: Vec<u8> =
+            [0f32, 10.0, 1.0, 11.0, 2.0, 12.0].into_iter().flat_map(f32::to_le_bytes).collect();
         assert_eq!(file(head, &data).unwrap().values, [0.0, 1.0, 2.0, 10.0, 11.0, 12.0]);
         let whole: Vec<u8> = (0..6i32).flat_map(i32::to_le_bytes).collect();
         let head = "{'descr': '<i4', 'fortran_order': False, 'shape': (6,), }\n";
@@ -161,14 +174,19 @@ mod tests {
             let bad = file(head, data).unwrap_err();
             assert!(bad.contains(says), "{says}: {bad}");
         };
-        says("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 99999999999), }", b"", "99999999999");
+        says(
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 99999999999), }",
+            b"",
+            "99999999999",
+        );
         says("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }", &[0; 40], "40 bytes");
         says("{'descr': '>f8', 'fortran_order': False, 'shape': (1,), }", &[0; 8], "'>f8'");
         says("{'descr': '|O', 'fortran_order': False, 'shape': (1,), }", &[0; 8], "'|O'");
         says("{'descr': '<f8', 'fortran_order': False }", &[0; 8], "no 'shape'");
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.npy");
-        for (bytes, says) in [(&b"garbage"[..], "is no .npy"), (b"\x93NUMPY\x01\x00\xff\x00{", "ends within")] {
+        for (bytes, says) in [(&b"garbage"[..], "is no .npy"), (b"\x93NUMPY\x01\x00\xff\x00{", "ends within")]
+        {
             std::fs::write(&path, bytes).unwrap();
             assert!(read(&path).unwrap_err().contains(says));
         }

@@ -72,7 +72,9 @@ fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
         }
     };
     let answer = match Answer::read(folder) {
-        None if status.success() => return Err(failed(format!("ended without {}{}", super::RESULT, said(&call)))),
+        None if status.success() => {
+            return Err(failed(format!("ended without {}{}", super::RESULT, said(&call))));
+        }
         None => return Err(failed(format!("ended with {status}{}", said(&call)))),
         Some(answer) => answer.map_err(failed)?,
     };
@@ -120,7 +122,8 @@ fn programs(adapter: &Found, work: &Folder) -> Result<PathBuf, String> {
     }
     let folder = work.inside("adapter")?;
     for (name, bytes) in adapter.files() {
-        std::fs::write(folder.join(&name), bytes).map_err(|bad| format!("{name}: can't be written: {bad}"))?;
+        std::fs::write(folder.join(&name), bytes)
+            .map_err(|bad| format!("{name}: can't be written: {bad}"))?;
     }
     Ok(folder)
 }
@@ -163,9 +166,16 @@ pub(crate) fn ready(adapter: &Found) -> Result<(), String> {
     static KNOWN: Mutex<BTreeMap<String, Result<(), String>>> = Mutex::new(BTreeMap::new());
     let manifest = &adapter.manifest;
     once(&KNOWN, &format!("{manifest:?}"), || {
-        let say = if manifest.install.say.is_empty() { String::new() } else { format!(": {}", manifest.install.say) };
+        let say = if manifest.install.say.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", manifest.install.say)
+        };
         if let Some(program) = manifest.install.programs.iter().find(|program| !in_path(program)) {
-            return Err(format!("{} needs the program {program}, which is not installed{say}", manifest.name));
+            return Err(format!(
+                "{} needs the program {program}, which is not installed{say}",
+                manifest.name
+            ));
         }
         let uses_python = manifest.run.iter().any(|word| word.contains("{python}"));
         let packages = &manifest.install.python;
@@ -191,7 +201,8 @@ fn has_packages(python: &Path, packages: &[String]) -> bool {
     });
     let script = format!("import importlib.metadata as m; {}", names.collect::<Vec<_>>().join("; "));
     let mut command = Command::new(python);
-    let quiet = command.args(["-c", &script]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let quiet =
+        command.args(["-c", &script]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     quiet.status().is_ok_and(|status| status.success())
 }
 

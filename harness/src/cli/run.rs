@@ -98,7 +98,14 @@ impl Made<'_> {
         let reason = format!("reference stalled: {failure}");
         let (case, method) = (self.case.clone(), "reference".into());
         let status = failure.status().into();
-        self.set.failures.push(reports::Failure { case, method, reason, carried, status, ..Default::default() });
+        self.set.failures.push(reports::Failure {
+            case,
+            method,
+            reason,
+            carried,
+            status,
+            ..Default::default()
+        });
         self.code = failure.exit_code();
     }
 

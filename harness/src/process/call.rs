@@ -55,7 +55,7 @@ pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
     if let Some(stderr) = started.child().stderr.take() {
         std::thread::spawn(move || heard.send(last_words(stderr)));
     }
-    let watched = watch(&started, began, limits);
+    let watched = watch(&mut started, began, limits);
     let cpu = watched.cpu(started.id());
     let status = started.end()?;
     drop(leash);
@@ -99,13 +99,17 @@ impl Watched {
         #[cfg(target_os = "linux")]
         return super::members::waited_for(leash).map(|seconds| seconds + self.running);
         #[cfg(not(target_os = "linux"))]
-        return None.filter(|_: &f64| leash > 0);
+        {
+            let _ = leash;
+            None
+        }
     }
 }
 
-fn watch(started: &Started, began: Instant, limits: Limits) -> Watched {
+fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
     let id = started.id();
     let (ended, end) = mpsc::channel();
+    #[cfg(unix)]
     std::thread::spawn(move || {
         group::wait(id);
         ended.send(Instant::now())
@@ -119,6 +123,12 @@ fn watch(started: &Started, began: Instant, limits: Limits) -> Watched {
             return watched;
         }
         watched.wall = began.elapsed().as_secs_f64();
+        // Where nobody waits for it, it is looked for.
+        #[cfg(not(unix))]
+        if started.has_ended().unwrap_or(true) {
+            drop(ended);
+            return watched;
+        }
         look(&mut watched, id, limits.memory);
         if began.elapsed() >= limits.time {
             watched.end = Some(End::OutOfTime);

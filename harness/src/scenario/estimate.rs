@@ -3,7 +3,8 @@
 //! that a slip of the pen has made a thousand times too large.
 
 use cases::scene::{
-    Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
+    Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene,
+    SceneError, Size,
 };
 use geometry::shapes::Shape;
 use material::Material as _;

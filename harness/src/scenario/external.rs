@@ -50,7 +50,11 @@ impl Scenario<'_> {
             }
             Family::Efg(_) | Family::OverMesh(_) => {
                 let problem = "is no finite elements: problems in files are of meshes";
-                return Err(self.locate(Failure::input(Key::Method("family"), problem, "give another method")));
+                return Err(self.locate(Failure::input(
+                    Key::Method("family"),
+                    problem,
+                    "give another method",
+                )));
             }
         };
         let limits = Limits { time: Duration::from_secs(600), memory: 4 << 30 };

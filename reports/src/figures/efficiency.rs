@@ -255,8 +255,8 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Family;
     use crate::fronts::tests::run;
+    use crate::record::Family;
     use crate::select::runs;
 
     #[test]

@@ -46,7 +46,9 @@ fn text(ends: Option<&BTreeMap<&str, usize>>) -> String {
     let Some(ends) = ends else { return "not asked".into() };
     match ends.iter().collect::<Vec<_>>()[..] {
         [(status, 1)] => status.to_string(),
-        ref several => several.iter().map(|(status, n)| format!("{status} {n}")).collect::<Vec<_>>().join(", "),
+        ref several => {
+            several.iter().map(|(status, n)| format!("{status} {n}")).collect::<Vec<_>>().join(", ")
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use crate::Failure;
 use crate::adapter::{self, Answered, Found, Question, npy};
 use crate::cli::text::digits;
-use crate::process::Limits;
 use crate::procedure::external::problem::{TEXT, Text};
+use crate::process::Limits;
 
 /// Calls it and says what it answered; the exit code.
 pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8, Failure> {

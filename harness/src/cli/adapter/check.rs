@@ -44,10 +44,38 @@ const HELD: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }]\n\
     procedure = { kind = \"static\", steps = 4, tolerance = 1e-10 }\nreference = { method = \"ours\" }\n";
 
 const CASES: [Case; 6] = [
-    Case { what: "rigid motion", needs: &["linear"], scene: RIGID, metric: "relative-rms", bound: EXACT, by_digits: 1.0 },
-    Case { what: "linear patch", needs: &["linear"], scene: PATCH, metric: "relative-rms", bound: EXACT, by_digits: 1.0 },
-    Case { what: "balance of forces", needs: &["linear"], scene: LOADED, metric: "residual", bound: EXACT, by_digits: BALANCE },
-    Case { what: "agreement with our element", needs: &["linear"], scene: LOADED, metric: "relative-rms", bound: AGREEMENT, by_digits: 0.0 },
+    Case {
+        what: "rigid motion",
+        needs: &["linear"],
+        scene: RIGID,
+        metric: "relative-rms",
+        bound: EXACT,
+        by_digits: 1.0,
+    },
+    Case {
+        what: "linear patch",
+        needs: &["linear"],
+        scene: PATCH,
+        metric: "relative-rms",
+        bound: EXACT,
+        by_digits: 1.0,
+    },
+    Case {
+        what: "balance of forces",
+        needs: &["linear"],
+        scene: LOADED,
+        metric: "residual",
+        bound: EXACT,
+        by_digits: BALANCE,
+    },
+    Case {
+        what: "agreement with our element",
+        needs: &["linear"],
+        scene: LOADED,
+        metric: "relative-rms",
+        bound: AGREEMENT,
+        by_digits: 0.0,
+    },
     Case {
         what: "neo-hookean at large strain",
         needs: &["static", "neo-hookean"],
@@ -72,7 +100,8 @@ pub(super) fn check(adapter: &Found) -> u8 {
         eprintln!("tissuebench: {reason}");
         return 3;
     }
-    let can = |case: &&Case| case.needs.iter().all(|word| adapter.manifest.can.iter().any(|known| known == word));
+    let can =
+        |case: &&Case| case.needs.iter().all(|word| adapter.manifest.can.iter().any(|known| known == word));
     let mut failed = 0;
     let mut asked = 0;
     for element in &adapter.manifest.elements {

@@ -26,13 +26,16 @@ pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {
         .ok_or_else(|| Failure::Run("no folder for data: set TISSUEBENCH_DATA or HOME".into()))?;
     println!("{}: {} into {}", manifest.name, needs.python.join(", "), folder.display());
     run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-    run(Command::new(folder.join("bin/python")).args(["-m", "pip", "install", "--quiet"]).args(&needs.python))?;
+    run(Command::new(folder.join("bin/python"))
+        .args(["-m", "pip", "install", "--quiet"])
+        .args(&needs.python))?;
     Ok(0)
 }
 
 fn run(command: &mut Command) -> Result<(), Failure> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let status = command.status().map_err(|bad| Failure::Run(format!("{program} can't be started: {bad}")))?;
+    let status =
+        command.status().map_err(|bad| Failure::Run(format!("{program} can't be started: {bad}")))?;
     match status.success() {
         true => Ok(()),
         false => Err(Failure::Run(format!("{program} ended with {status}"))),
@@ -53,6 +56,9 @@ pub(super) fn copy(adapter: &Found, folder: &Path) -> Result<(), Failure> {
         let bytes = if file == "adapter.toml" { text.into_bytes() } else { bytes };
         std::fs::write(folder.join(&file), bytes).map_err(|source| bad(format!("{file}: {source}")))?;
     }
-    println!("{}: edit adapter.toml and its program, then: tissuebench adapter check {name}", folder.display());
+    println!(
+        "{}: edit adapter.toml and its program, then: tissuebench adapter check {name}",
+        folder.display()
+    );
     Ok(())
 }

@@ -52,7 +52,9 @@ pub(super) fn act(action: &AdapterAction) -> u8 {
         AdapterAction::Run { name, problem, answer } => {
             adapter::find(name, None).and_then(|found| call::call(&found, problem, answer))
         }
-        AdapterAction::Install { name } => adapter::find(name, None).and_then(|found| install::install(&found)),
+        AdapterAction::Install { name } => {
+            adapter::find(name, None).and_then(|found| install::install(&found))
+        }
         AdapterAction::Copy { name, folder } => {
             adapter::find(name, None).and_then(|found| install::copy(&found, folder)).map(|()| 0)
         }

@@ -94,7 +94,11 @@ fn found(folder: &Path, text: &Text, mode: &str, solved: Solved) -> Result<u8, S
         "stalled" => npy::write_floats(&path, 3, values().map(|u| 0.5 * u))?,
         "scaled" => npy::write_floats(&path, 3, values().map(|u| 1.001 * u))?,
         "zeros" => npy::write_floats(&path, 3, std::iter::repeat_n(0.0, 3 * nodes))?,
-        "nan" => npy::write_floats(&path, 3, values().enumerate().map(|(at, u)| if at == 7 { f64::NAN } else { u }))?,
+        "nan" => npy::write_floats(
+            &path,
+            3,
+            values().enumerate().map(|(at, u)| if at == 7 { f64::NAN } else { u }),
+        )?,
         "shape" => npy::write_floats(&path, 3, values().skip(3))?,
         "garbage" => write(&path, &[0x5a; 1000])?,
         other => return Err(format!("mode '{other}': give one of {MODES}")),

@@ -47,8 +47,13 @@ pub(super) fn solve(folder: &Path, text: &Text) -> Result<Solved, String> {
         let moduli = |m: &MaterialText| LinearElastic::new(m.young, m.poisson);
         let materials: Vec<LinearElastic> =
             text.materials.iter().map(moduli).collect::<Result<_, _>>().map_err(|bad| bad.to_string())?;
-        let body =
-            Body { nodes: mesh.points(), volume: &volume, materials: &materials, region: &region, dilation: None };
+        let body = Body {
+            nodes: mesh.points(),
+            volume: &volume,
+            materials: &materials,
+            region: &region,
+            dilation: None,
+        };
         let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
         let assembled = statics::assemble(&problem).map_err(|bad| bad.to_string())?;
         book("assemble");

@@ -55,7 +55,8 @@ pub(super) fn stages(outside: &Outside) -> Stages {
 pub(super) fn solve(problem: &Problem, outside: &Outside, meters: &mut Meters) -> Result<Solution, Failure> {
     let failed = |reason| Failure::from(Foreign::new(ForeignStatus::Failed, reason));
     // Asked once for all runs: no part of any.
-    let known_version = adapter::ready(&outside.adapter).ok().and_then(|()| adapter::version(&outside.adapter));
+    let known_version =
+        adapter::ready(&outside.adapter).ok().and_then(|()| adapter::version(&outside.adapter));
     let began = Instant::now();
     let work = Folder::new().map_err(failed)?;
     let (folder, to) = (work.inside("problem").map_err(failed)?, work.inside("answer").map_err(failed)?);
@@ -132,14 +133,17 @@ fn residual(problem: &Problem, u: &[Vector3], load: f64) -> Result<f64, Failure>
     let volume = &problem.prepared.volume;
     let outer = statics::nodal_forces(&volume.rows, &problem.prepared.loads())?;
     let mut inner = vec![Vector3::zeros(); outer.len()];
-    for (q, (h, w)) in volume.rows.at().displacement_gradients(u).iter().zip(volume.rows.weights()).enumerate() {
+    for (q, (h, w)) in
+        volume.rows.at().displacement_gradients(u).iter().zip(volume.rows.weights()).enumerate()
+    {
         let stress = law(problem, q).stress(h) * *w;
         let (nodes, gradients) = volume.rows.row(q);
         nodes.iter().zip(gradients).for_each(|(&node, g)| inner[node as usize] += stress * g);
     }
     let size = |forces: &[Vector3]| forces.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
     let largest = size(&inner).max(load * size(&outer));
-    let mut left: Vec<Vector3> = inner.iter().zip(&outer).map(|(inner, outer)| outer * load - inner).collect();
+    let mut left: Vec<Vector3> =
+        inner.iter().zip(&outer).map(|(inner, outer)| outer * load - inner).collect();
     for fixed in problem.prepared.fixed() {
         left[fixed.node as usize][usize::from(fixed.axis)] = 0.0;
     }

@@ -228,7 +228,9 @@ fn shape(shape: &ToolShape) -> Value {
     match shape {
         ToolShape::RoundedBox(of) => json!({ "name": name, "half": of.half, "radius": of.radius }),
         ToolShape::Sphere(of) => json!({ "name": name, "radius": of.radius }),
-        ToolShape::Cylinder(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
+        ToolShape::Cylinder(of) => {
+            json!({ "name": name, "radius": of.radius, "half-length": of.half_length })
+        }
         ToolShape::Capsule(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
         ToolShape::Plate(_) => json!({ "name": name }),
     }
