@@ -76,7 +76,7 @@ pub struct Foreign {
     /// Why.
     pub reason: String,
     /// The same at the key of the scene that it is about.
-    pub(crate) at: Option<SceneError>,
+    pub(crate) at: Option<Box<SceneError>>,
 }
 
 impl Foreign {

@@ -19,7 +19,9 @@ impl Scenario<'_> {
             Failure::Foreign(mut foreign) => {
                 let key = self.key(&Key::Method("adapter"));
                 let problem = format!("{}: {}", foreign.status.name(), foreign.reason);
-                foreign.at.get_or_insert_with(|| self.scene.error(ErrorKind::NotRun, &key, &problem, None));
+                foreign.at.get_or_insert_with(|| {
+                    Box::new(self.scene.error(ErrorKind::NotRun, &key, &problem, None))
+                });
                 return Failure::Foreign(foreign);
             }
             Failure::At(finding) => *finding,
