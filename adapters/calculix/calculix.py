@@ -2,13 +2,7 @@
 
 Python's own library is enough. settings: type = "C3D8I" (any element of as many nodes), solver = "ITERATIVE CHOLESKY".
 """
-import array
-import ast
-import json
-import struct
-import subprocess
-import sys
-import time
+import array, ast, json, struct, subprocess, sys, time
 from pathlib import Path
 
 problem, answer = map(Path, sys.argv[1:3])
