@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the program is made of, from the workspace's folder. Changes elsewhere (scenes, tests, docs) make no other program.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
+    "adapters",
     "Cargo.toml",
     "Cargo.lock",
     "rust-toolchain.toml",

@@ -32,6 +32,72 @@ pub enum Failure {
     /// The method could not run or did not converge.
     #[error("{0}")]
     Run(String),
+    /// A solver outside this program gave no numbers.
+    #[error("{0}")]
+    Foreign(Box<Foreign>),
+}
+
+/// What became of a run of a solver outside this program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForeignStatus {
+    /// It does not take the problem, and says so itself.
+    Refused,
+    /// It found no equilibrium.
+    Stalled,
+    /// It broke, or what it answers is no answer.
+    Failed,
+    /// It took longer than it may.
+    TimedOut,
+    /// The problem asks for what its adapter does not offer, or it is not installed here.
+    NotOffered,
+    /// Its answer is of another problem.
+    Stale,
+}
+
+impl ForeignStatus {
+    /// The word in records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            ForeignStatus::Refused => "refused",
+            ForeignStatus::Stalled => "stalled",
+            ForeignStatus::Failed => "failed",
+            ForeignStatus::TimedOut => "timed-out",
+            ForeignStatus::NotOffered => "not-offered",
+            ForeignStatus::Stale => "stale",
+        }
+    }
+}
+
+/// Why a solver outside this program gave no numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Foreign {
+    /// What became of it.
+    pub status: ForeignStatus,
+    /// Why.
+    pub reason: String,
+    /// The same at the key of the scene that it is about.
+    pub(crate) at: Option<Box<SceneError>>,
+}
+
+impl Foreign {
+    pub(crate) fn new(status: ForeignStatus, reason: impl Into<String>) -> Foreign {
+        Foreign { status, reason: reason.into(), at: None }
+    }
+}
+
+impl std::fmt::Display for Foreign {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.at {
+            Some(error) => error.fmt(f),
+            None => f.write_str(&self.reason),
+        }
+    }
+}
+
+impl From<Foreign> for Failure {
+    fn from(foreign: Foreign) -> Failure {
+        Failure::Foreign(Box::new(foreign))
+    }
 }
 
 /// A failure that knows its part of the scene, not yet the place in the file.
@@ -97,7 +163,11 @@ impl Failure {
             Failure::Scene(error) => error.kind,
             Failure::At(finding) => finding.kind,
             Failure::Input(_) => ErrorKind::Invalid,
-            Failure::Efg(_)
+            Failure::Foreign(foreign) if foreign.status == ForeignStatus::NotOffered => {
+                ErrorKind::NotAvailable
+            }
+            Failure::Foreign(_)
+            | Failure::Efg(_)
             | Failure::Solve(_)
             | Failure::Static(_)
             | Failure::Explicit(_)
@@ -129,6 +199,9 @@ impl Failure {
 
     /// The status of a run that ended with this, in its JSON object.
     pub fn status(&self) -> &'static str {
+        if let Failure::Foreign(foreign) = self {
+            return foreign.status.name();
+        }
         match self.kind() {
             ErrorKind::Invalid => "bad-input",
             ErrorKind::NotAvailable => "not-available",

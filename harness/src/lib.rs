@@ -2,7 +2,7 @@
 //!
 //! The modules are rooms in one order, and a room uses only those to its right (`tests/rooms.rs` checks it):
 //!
-//! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `outcome` > `error`
+//! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `adapter` > `outcome` > `process` > `error`
 //!
 //! Data flows the other way round: a scene (TOML, checked) becomes a `scenario::Scenario`, that a
 //! `scenario::setup::Setup` and a `discretise::Discretisation`, these the tables of `prepare::prepare`. A procedure
@@ -32,6 +32,7 @@
 #[macro_use]
 mod print;
 
+mod adapter;
 pub mod cli;
 mod discretise;
 mod error;
@@ -39,8 +40,9 @@ mod measure;
 pub mod outcome;
 mod prepare;
 mod procedure;
+mod process;
 pub mod run;
 mod scenario;
 pub mod study;
 
-pub use error::Failure;
+pub use error::{Failure, Foreign, ForeignStatus};

@@ -38,8 +38,28 @@ fn the_list_names_everything() {
 #[test]
 fn every_verb_has_help() {
     let dir = folder(&[]);
-    let verbs = ["run", "plan", "verify", "report", "baseline", "reference", "list", "schema", "mesh"];
-    let further = [vec!["mesh", "info"], vec!["mesh", "make"], vec!["mesh", "convert"]];
+    let verbs = [
+        "run",
+        "fields",
+        "plan",
+        "verify",
+        "report",
+        "baseline",
+        "claims",
+        "reference",
+        "export",
+        "adapter",
+        "list",
+        "schema",
+        "mesh",
+    ];
+    let further = [
+        vec!["mesh", "info"],
+        vec!["mesh", "make"],
+        vec!["mesh", "convert"],
+        vec!["adapter", "check"],
+        vec!["adapter", "run"],
+    ];
     let all = std::iter::once(vec![]).chain(verbs.map(|verb| vec![verb])).chain(further);
     let help = |verb: Vec<&str>| {
         let text = printed(dir.path(), &[&verb[..], &["--help"]].concat());

@@ -22,6 +22,7 @@
 
 mod axis;
 pub mod baseline;
+mod claims;
 mod clouds;
 pub mod compare;
 mod error;
@@ -44,6 +45,7 @@ mod tables;
 mod text;
 
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
+pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
 pub use provenance::{Machine, Program, Provenance, SceneHash};

@@ -39,10 +39,19 @@ pub enum Family {
     Efg,
     /// Another family of methods over a mesh.
     OverMesh,
+    /// A solver outside this program.
+    External,
     /// A transfer scheme.
     Interp,
     /// A stored or published reference.
     Reference,
+}
+
+impl Family {
+    /// Whether its methods are finite elements, whoever solves them.
+    pub(crate) fn is_elements(self) -> bool {
+        matches!(self, Family::Fem | Family::External)
+    }
 }
 
 /// What a case is for.
@@ -117,6 +126,9 @@ pub struct Record {
     pub polynomial: Option<bool>,
     /// Kernel that evaluated the internal forces of explicit dynamics.
     pub force_kernel: Option<String>,
+    /// The adapter of a solver outside this program, with its settings.
+    #[serde(default)]
+    pub adapter: Option<String>,
     /// Lanes that it ran in, such as `avx2`, or `plain` for one element at a time.
     pub lane_path: Option<String>,
     /// Linear solver that ran, such as `sparse-llt`.
@@ -204,6 +216,7 @@ impl Record {
         let words = |value: &Option<String>| value.clone();
         let number = |value: &Option<f64>| value.map(|v| v.to_string());
         let all = [
+            ("adapter", words(&self.adapter)),
             ("along", self.at.map(|at| format!("{} at {at}", self.axis))),
             ("basis", words(&self.basis)),
             ("support scale", number(&self.support_scale)),

@@ -156,7 +156,7 @@ pub struct PlanEntry {
 }
 
 /// A run that ended early: it gave no numbers, or those of a part of its load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// Case name.
     pub case: String,
@@ -167,6 +167,12 @@ pub struct Failure {
     /// The part of the load, 0 to 1, that its numbers are of; `None` where it gave none.
     #[serde(default)]
     pub carried: Option<f64>,
+    /// The word for how it ended, such as `stalled`.
+    #[serde(default)]
+    pub status: String,
+    /// The adapter of a solver outside this program, with its settings; empty for a run of this program.
+    #[serde(default)]
+    pub adapter: String,
 }
 
 /// What is to be said against the numbers of a run.

@@ -115,8 +115,10 @@ impl<'a> Series<'a> {
 /// Polynomial degree that the approximation holds completely.
 fn degree(record: &Record) -> Option<f64> {
     match (record.family, record.variant.as_str(), record.basis.as_deref()) {
-        (Family::Fem, "tet4" | "hex8", _) | (Family::Efg, _, Some("linear")) => Some(1.0),
-        (Family::Fem, "tet10" | "hex20", _) | (Family::Efg, _, Some("quadratic")) => Some(2.0),
+        (Family::Fem | Family::External, "tet4" | "hex8", _) | (Family::Efg, _, Some("linear")) => Some(1.0),
+        (Family::Fem | Family::External, "tet10" | "hex20", _) | (Family::Efg, _, Some("quadratic")) => {
+            Some(2.0)
+        }
         _ => None,
     }
 }

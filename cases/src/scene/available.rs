@@ -61,7 +61,7 @@ impl Scene {
                         help,
                     );
                 }
-                Family::Fem(_) | Family::OverMesh(_) => {}
+                Family::Fem(_) | Family::OverMesh(_) | Family::External(_) => {}
                 Family::Efg(_) if explicit => {
                     let help = "elements are: lumped parameters of smooth kernels have slow modes that no cloud has, and \
                                 parameters at supports are not displacements";

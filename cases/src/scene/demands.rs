@@ -121,7 +121,8 @@ fn vibrating(scene: &Scene, report: &mut Report) {
     let vibrates = scene.procedure.kind() == ProcedureKind::Modes;
     for (i, method) in scene.methods.iter().enumerate() {
         let key = format!("method[{i}].mass");
-        if vibrates && method.mass.is_none() {
+        let ours = !matches!(method.family, Family::External(_));
+        if vibrates && method.mass.is_none() && ours {
             report.missing(&key, "add mass = \"consistent\", \"lumped\" or \"transformed\"");
         }
         let help = "leave it out, or take [procedure] kind = \"modes\"";

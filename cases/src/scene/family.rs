@@ -113,6 +113,7 @@ impl Method {
     pub fn size(&self) -> Option<&Size> {
         match &self.family {
             Family::Fem(fem) => Some(&fem.size),
+            Family::External(external) => Some(&external.elements.size),
             Family::OverMesh(over) => Some(&over.size),
             Family::Efg(efg) => match &efg.cloud {
                 Cloud::Mesh { size, .. } => Some(size),
@@ -127,6 +128,7 @@ impl Method {
     pub fn resize(&mut self, size: &Size) {
         match &mut self.family {
             Family::Fem(fem) => fem.size = size.clone(),
+            Family::External(external) => external.elements.size = size.clone(),
             Family::OverMesh(over) => over.size = size.clone(),
             Family::Efg(efg) => match (&mut efg.cloud, size) {
                 (
@@ -144,6 +146,7 @@ impl Method {
         match &self.family {
             Family::Fem(_) => "fem",
             Family::Efg(_) => "efg",
+            Family::External(_) => "external",
             Family::OverMesh(over) => over.entry.name,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::external::External;
 use super::family::OverMesh;
 use super::region::Region;
 use super::words::words;
@@ -38,6 +39,8 @@ pub enum Family {
     Fem(Fem),
     /// Element-free Galerkin.
     Efg(Efg),
+    /// A solver outside this program.
+    External(External),
     /// Another family over a mesh.
     OverMesh(OverMesh),
 }

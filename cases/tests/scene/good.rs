@@ -437,7 +437,7 @@ fn all_shapes_and_laws_are_read() {
 fn the_schema_knows_every_key_of_the_outline() {
     let schema = schema();
     let methods = schema["properties"]["method"]["items"]["oneOf"].as_array().expect("kinds of methods");
-    assert!(methods.len() == 3 && methods[2]["properties"]["use"]["type"] == "string");
+    assert!(methods.len() == 4 && methods[3]["properties"]["use"]["type"] == "string");
     let keys = schema["properties"].as_object().expect("an object");
     for key in [
         "title",

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
+use super::adapter::AdapterAction;
 use super::ci::CiArgs;
+use super::solve::SolveArgs;
+use crate::process::LeashArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
@@ -21,6 +24,10 @@ pub struct Cli {
     /// When words are coloured: on a terminal, unless NO_COLOR is set
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
+    /// A folder with adapters of other solvers, before those beside the scene, in TISSUEBENCH_ADAPTERS and shipped (may be given
+    /// several times)
+    #[arg(long, global = true, value_name = "DIR")]
+    pub adapters: Vec<PathBuf>,
     /// What to do
     #[command(subcommand)]
     pub command: Command,
@@ -56,6 +63,12 @@ pub enum Command {
     /// One run of a study in a process of its own
     #[command(hide = true)]
     Experiment(ExperimentArgs),
+    /// Another program on a leash: with its limits, and gone with whoever called it
+    #[command(hide = true)]
+    Leash(LeashArgs),
+    /// A problem in files solved by this program, as the adapters `tissuebench` and `dummy` call it
+    #[command(hide = true)]
+    Solve(SolveArgs),
     /// Join the shares of a study that were run by --shard, or by several machines, to the results of one run
     Merge(MergeArgs),
     /// Render tables, figures and the report of stored results
@@ -70,8 +83,18 @@ pub enum Command {
     Baseline(BaselineArgs),
     /// Compare two results: numbers by tolerance, times as ratios with their confidence
     Compare(CompareArgs),
+    /// Hold published claims against stored results: validated, qualified or refuted
+    Claims(ClaimsArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes
     Reference(ReferenceArgs),
+    /// Write the problem of one method as files that any solver can read
+    Export(ExportArgs),
+    /// Solvers outside this program: which there are, whether they are right, one call of them
+    Adapter {
+        /// What to do with them
+        #[command(subcommand)]
+        action: AdapterAction,
+    },
     /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
     List {
         /// Only this part, such as laws
@@ -166,6 +189,29 @@ pub struct ReferenceArgs {
     pub unit: LengthUnit,
     /// The file to write (JSON)
     #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `claims`.
+#[derive(Args)]
+pub struct ClaimsArgs {
+    /// A folder that `verify` or `run --out` wrote
+    pub results: PathBuf,
+    /// The claims
+    #[arg(long, value_name = "FILE", default_value = "cases/claims.toml")]
+    pub file: PathBuf,
+}
+
+/// Arguments of `export`.
+#[derive(Args)]
+pub struct ExportArgs {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The method: one of finite elements, or of another solver
+    #[arg(long, value_name = "ID")]
+    pub method: String,
+    /// The folder to write
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 

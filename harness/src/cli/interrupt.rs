@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::study::process_group;
+use crate::process::group;
 
 /// From now on a signal ends the program with exit code 5 and a word on what is left.
 pub(super) fn install(out: Option<&Path>, resume: bool) {
     let out: Option<PathBuf> = out.map(Into::into);
     let handler = move || {
-        process_group::end_all();
+        group::end_all();
         match &out {
             Some(out) if resume => eprintln!(
                 "tissuebench: interrupted; {} is incomplete and keeps the finished runs: the same command with --resume goes on",

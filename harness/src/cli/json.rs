@@ -12,7 +12,7 @@ pub struct RunObject<'a> {
     method: &'a str,
     /// `ok`; `relaxed` where dynamic relaxation continued from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
     /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
-    /// or `could-not-run`.
+    /// or `could-not-run`; of a solver outside this program `refused`, `stalled`, `failed`, `timed-out`, `not-offered` or `stale`.
     status: &'static str,
     /// Why it failed or ended early, with file, line and key; absent on success.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,6 +37,9 @@ pub struct RunObject<'a> {
     /// Instructions of its lanes; absent where it is the plain loop.
     #[serde(skip_serializing_if = "Option::is_none")]
     lane_path: Option<&'a str>,
+    /// The adapter of a solver outside this program, with its settings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adapter: Option<&'a str>,
     /// What solved the equations of a linear procedure, or found the modes of vibration.
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_solver: Option<&'a str>,
@@ -150,6 +153,7 @@ impl<'a> RunObject<'a> {
             plan: &outcome.plan,
             force_kernel: outcome.identity.force_kernel.as_deref(),
             lane_path: outcome.identity.lane_path.as_deref(),
+            adapter: outcome.identity.adapter.as_deref(),
             linear_solver: outcome.identity.linear_solver.as_deref(),
             work: outcome.counters,
         }
@@ -174,6 +178,7 @@ impl<'a> RunObject<'a> {
             plan: &run.plan,
             force_kernel: None,
             lane_path: None,
+            adapter: None,
             linear_solver: None,
             work: Counters::default(),
         }

@@ -1,11 +1,14 @@
 //! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
 //! 4 nothing ran, 5 incomplete.
 
+mod adapter;
 mod args;
 mod baseline;
 mod ci;
+mod claims;
 mod colour;
 mod compare;
+mod export;
 mod fields;
 mod interrupt;
 mod json;
@@ -17,6 +20,7 @@ mod mesh_make;
 mod plan;
 mod reference;
 mod run;
+mod solve;
 mod text;
 mod verify;
 
@@ -28,16 +32,20 @@ use clap::CommandFactory;
 use reports::ReportError;
 
 use crate::Failure;
+use crate::process::leash::leash;
 use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
 use baseline::baseline;
+use claims::claims;
 use compare::compare;
+use export::export;
 use list::list;
 use merge::merge;
 use plan::plan;
 use reference::reference;
 use run::run;
+use solve::solve;
 use verify::verify;
 
 pub use args::{Cli, Command};
@@ -55,12 +63,15 @@ fn act(cli: Cli) -> u8 {
         return 3;
     }
     colour::choose(cli.color);
+    crate::adapter::add_folders(&cli.adapters);
     match cli.command {
         Command::Run(args) => run(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Merge(args) => merge(&args),
+        Command::Leash(args) => leash(&args),
+        Command::Solve(args) => solve(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out } => {
             let out = out.unwrap_or_else(|| results.join("report"));
@@ -71,12 +82,15 @@ fn act(cli: Cli) -> u8 {
             Ok(()) => 0,
             Err(code) => code,
         },
+        Command::Export(args) => export(&args),
+        Command::Adapter { action } => adapter::act(&action),
         Command::List { what } => list(what.as_deref()),
         Command::Schema { study } => {
             let schema = if study { scene::study_schema() } else { scene::schema() };
             println!("{schema:#}");
             0
         }
+        Command::Claims(args) => claims(&args),
         Command::Compare(args) => compare(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();

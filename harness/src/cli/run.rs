@@ -12,7 +12,7 @@ use crate::cli::{affordable_methods, fields, interrupt, open, report, take, text
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
-use crate::study::{self, check, stalled};
+use crate::study::{self, check, failed, stalled};
 
 /// Repeats of a single run's timings.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
@@ -103,7 +103,15 @@ impl Made<'_> {
         eprintln!("reference stalled: {failure} (every method is compared with the steps it reached)");
         let reason = format!("reference stalled: {failure}");
         let (case, method) = (self.case.clone(), "reference".into());
-        self.set.failures.push(reports::Failure { case, method, reason, carried });
+        let status = failure.status().into();
+        self.set.failures.push(reports::Failure {
+            case,
+            method,
+            reason,
+            carried,
+            status,
+            ..Default::default()
+        });
         self.code = failure.exit_code();
     }
 
@@ -145,8 +153,7 @@ impl Made<'_> {
         }
         let failure = unfinished.failure;
         eprintln!("{failure} (method '{}')", method.id);
-        let (case, method, reason) = (self.case.clone(), method.id.clone(), failure.to_string());
-        self.set.failures.push(reports::Failure { case, method, reason, carried: None });
+        self.set.failures.push(failed(&self.case, method, &failure));
         self.code = self.code.max(failure.exit_code());
     }
 

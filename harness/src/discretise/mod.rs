@@ -13,6 +13,7 @@ pub(crate) mod gradients;
 pub(crate) mod place;
 
 use crate::Failure;
+use crate::adapter::Outside;
 use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
 
@@ -120,6 +121,8 @@ pub struct Discretisation {
     pub shape_functions: String,
     /// Makes the source of its tables.
     pub source: MakeSource,
+    /// Who solves it, where that is not this program.
+    pub(crate) outside: Option<Arc<Outside>>,
 }
 
 /// The volume tables of a discretisation.

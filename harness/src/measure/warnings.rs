@@ -5,6 +5,7 @@ use catalogue::{metric, warning};
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
 use super::{Solved, exact_fit};
+use crate::adapter;
 use crate::discretise::Essential;
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
@@ -55,8 +56,18 @@ pub(crate) fn warnings(
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
     found.extend(run.solution.digits.and_then(few_digits));
+    found.extend(unchecked(run));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
     found
+}
+
+fn unchecked(run: &Solved) -> Option<Warning> {
+    let outside = run.method.outside.as_ref().filter(|outside| !adapter::is_checked(&outside.adapter))?;
+    let name = &outside.adapter.manifest.name;
+    let message = format!(
+        "{name} has not passed its check here as it is now, so that its numbers stand apart: tissuebench adapter check {name}"
+    );
+    Some(Warning::new(&warning::ADAPTER_UNCHECKED, 0.0, "", message))
 }
 
 fn outside(index: usize, probe: &Probe) -> Option<Warning> {

@@ -63,6 +63,13 @@ impl Timings {
         self.of(phase).wall.push(seconds);
     }
 
+    /// The same, with the seconds of the processors where they are known.
+    pub(crate) fn book_both(&mut self, phase: &'static str, seconds: f64, cpu: Option<f64>) {
+        let timed = self.of(phase);
+        timed.wall.push(seconds);
+        timed.cpu.extend(cpu);
+    }
+
     /// Makes the last two entries of a phase one: a pass that went through it twice.
     pub(crate) fn join(&mut self, phase: &'static str) {
         let timed = self.of(phase);

@@ -1,6 +1,7 @@
 //! How a scene is solved: one file for each procedure, with the stages it puts into the plan and its entry point.
 
 mod explicit;
+pub(crate) mod external;
 mod implicit_dynamic;
 mod linear;
 mod linear_solver;
@@ -12,6 +13,7 @@ mod solution;
 mod statics;
 
 use cases::scene::Procedure;
+use geometry::Point3;
 use material::Material as _;
 
 use crate::Failure;
@@ -34,6 +36,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) plan: &'a Plan,
     /// Called with every converged step of a static path, for those who wait.
     pub(crate) watch: Option<fn(&LoadStep)>,
+    /// Probe positions, m.
+    pub(crate) probes: &'a [Point3],
 }
 
 impl Problem<'_> {
@@ -47,6 +51,9 @@ impl Problem<'_> {
 
 /// Solves by the setup's procedure.
 pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
+    if let Some(outside) = &problem.method.outside {
+        return external::solve(problem, outside, meters);
+    }
     match &problem.setup.procedure {
         Procedure::Prepare => Ok(Solution::default()),
         Procedure::Linear { solver } => linear::solve(problem, *solver, meters),
@@ -102,6 +109,9 @@ impl Stages {
     }
 
     fn of(method: &Discretisation, setup: &Setup) -> Stages {
+        if let Some(outside) = &method.outside {
+            return external::stages(outside);
+        }
         match &setup.procedure {
             Procedure::Prepare => Stages::prepare(),
             Procedure::Linear { solver } => linear::stages(method, setup, *solver),

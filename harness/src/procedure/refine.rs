@@ -25,7 +25,8 @@ pub(crate) fn refined(
     for _ in 0..first.steps {
         let mut own = Meters::default();
         let prepared = prepare(&current, setup, plan, &mut own.counters)?;
-        let problem = Problem { method: &current, setup, prepared: &prepared, plan, watch: None };
+        let problem =
+            Problem { method: &current, setup, prepared: &prepared, plan, watch: None, probes: &[] };
         let solver = match setup.procedure {
             Procedure::Linear { solver } => solver,
             _ => LinearSolver::Auto,

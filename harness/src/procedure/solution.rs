@@ -4,6 +4,7 @@ use explicit::KernelInfo;
 use geometry::Vector3;
 use statics::SolveInfo;
 
+use super::external::OfProgram;
 use super::modes::Vibration;
 use crate::Failure;
 use crate::outcome::{LoadStep, Metric};
@@ -35,6 +36,8 @@ pub(crate) struct Solution {
     pub(crate) forces: Option<KernelInfo>,
     /// Why Newton's method ended early where relaxation continued to the whole load.
     pub(crate) relaxed: Option<Failure>,
+    /// Of a program outside this one that solved.
+    pub(crate) program: Option<OfProgram>,
 }
 
 /// The load steps of a path or the recorded states of a motion, as far as it came.
@@ -53,7 +56,10 @@ pub(crate) struct StepHistory {
 
 impl Solution {
     /// What solved the linear system, or the eigenproblem, of a procedure that has one.
-    pub(crate) fn solver(&self) -> Option<&'static str> {
+    pub(crate) fn solver(&self) -> Option<&str> {
+        if let Some(program) = &self.program {
+            return program.version.as_deref();
+        }
         let of_vibration = self.vibration.as_ref().map(|vibration| vibration.modes.solver());
         self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
     }

@@ -71,7 +71,7 @@ pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> R
 }
 
 fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(Solution, Limit), Failure> {
-    let Problem { method, setup, prepared, plan, watch } = *problem;
+    let Problem { method, setup, prepared, plan, watch, .. } = *problem;
     let contact = prepared.contact();
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
     let start = Instant::now();

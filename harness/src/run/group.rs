@@ -174,6 +174,11 @@ impl<'a> Group<'a> {
         }
     }
 
+    /// Probe positions, m.
+    pub(super) fn probes(&self) -> &[Point3] {
+        &self.probes
+    }
+
     /// What the reference took, once for all methods; nothing where none had to run.
     pub fn reference_counters(&self) -> Counters {
         self.reference_counters

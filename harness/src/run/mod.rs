@@ -1,5 +1,6 @@
 //! One run: prepare, assemble, factor, solve (timed apart, repeated), then errors, probes and transfers.
 
+mod export;
 mod group;
 mod memory;
 pub(crate) mod mirror;
@@ -69,7 +70,7 @@ fn on_pool(
     let method = refined.as_ref().unwrap_or(method);
     let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
     let mut outcome = Outcome::new(identity, size(method, &prepared, solution.dofs), plan);
-    outcome.memory = memory;
+    outcome.memory = solution.program.as_ref().map_or(memory, |program| program.memory);
     outcome.identity.linear_solver = solution.solver().map(Into::into);
     if request.states {
         outcome.states = Some(states(&run)?);
@@ -135,8 +136,11 @@ fn once(
         None
     };
     let current = refined.as_ref().unwrap_or(method);
-    let prepared = timings.time("prepare", || prepare(current, setup, plan, counters))?;
-    let problem = Problem { method: current, setup, prepared: &prepared, plan, watch: request.watch };
+    // What another solver has to be asked and measured with is none of its own time.
+    let phase = if current.outside.is_some() { "tables" } else { "prepare" };
+    let prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
+    let Request { watch, probes, .. } = *request;
+    let problem = Problem { method: current, setup, prepared: &prepared, plan, watch, probes };
     let solution = procedure::solve(&problem, meters)?;
     Ok(Pass { refined, prepared, solution })
 }
@@ -179,7 +183,7 @@ fn loaded(
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
     }
     outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes, outcome.last.as_ref());
-    if let Some(ask) = request.repeated.filter(|_| whole) {
+    if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }
     if request.picture {

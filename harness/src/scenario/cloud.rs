@@ -221,6 +221,7 @@ impl CloudMethod {
             refine,
             supports,
             shape_functions,
+            outside: None,
             source: Arc::new(move || {
                 let CloudMethod { background, followed, functions, integration, supports, separate, .. } =
                     &method;

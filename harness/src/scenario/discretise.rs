@@ -19,12 +19,13 @@ impl Scenario<'_> {
         let found = match &self.method.family {
             Family::Fem(fem) => self.elements(fem),
             Family::Efg(efg) => self.cloud(efg),
+            Family::External(external) => self.external(external),
             Family::OverMesh(over) => self.over_mesh(over),
         };
         found.map_err(|failure| self.locate(failure))
     }
 
-    fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
+    pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
         let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
         let standard = VolumeRule::STANDARD;
         let rule = if fem.reduced { standard.with(CellKind::Hex20, 2)? } else { standard };
@@ -40,6 +41,7 @@ impl Scenario<'_> {
             refine: None,
             supports: None,
             shape_functions: "one row per Gauss point of each element".into(),
+            outside: None,
             source: Arc::new(move || Ok(Box::new(Elements::new(mesh.clone(), rule)))),
         })
     }
@@ -61,6 +63,7 @@ impl Scenario<'_> {
             refine: None,
             supports: None,
             shape_functions: family.shape_functions.clone(),
+            outside: None,
             source: Arc::new(move || make(mesh.clone())),
         })
     }

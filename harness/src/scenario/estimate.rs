@@ -3,7 +3,8 @@
 //! that a slip of the pen has made a thousand times too large.
 
 use cases::scene::{
-    Body, Cloud, Element, ErrorKind, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
+    Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene,
+    SceneError, Size,
 };
 use geometry::shapes::Shape;
 use material::Material as _;
@@ -141,7 +142,7 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let body = &scene.body;
     let of_cloud = |count: usize| (count as f64, (count as f64).cbrt(), CLOUD);
     match family {
-        Family::Fem(fem) => {
+        Family::Fem(fem) | Family::External(External { elements: fem, .. }) => {
             let (cells, across) = cells(body, &fem.size);
             match fem.element {
                 Element::Tet4 | Element::Hex8 => (nodes(cells, 1.0), across, 1.0),

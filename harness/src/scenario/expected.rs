@@ -14,6 +14,9 @@ impl Scenario<'_> {
         let body = &self.scene.body;
         match &self.method.family {
             Family::Fem(fem) => nodes(body, kind(fem.element), &fem.size),
+            Family::External(external) => {
+                nodes(body, kind(external.elements.element), &external.elements.size)
+            }
             Family::OverMesh(over) => nodes(body, over.family.cells, &over.size),
             Family::Efg(efg) => {
                 let background =

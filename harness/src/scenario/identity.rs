@@ -5,6 +5,7 @@ use cases::scene::{self, Family, ProcedureKind};
 use reports::Purpose;
 
 use super::Scenario;
+use crate::adapter;
 use crate::outcome::Identity;
 
 impl Scenario<'_> {
@@ -29,6 +30,13 @@ impl Scenario<'_> {
         match &self.method.family {
             Family::Fem(fem) => of_elements(fem, identity),
             Family::Efg(efg) => of_cloud(efg, identity),
+            Family::External(external) => Identity {
+                family: reports::Family::External,
+                adapter: Some(adapter::label(&external.adapter, &external.settings)),
+                variant: external.elements.element.name().into(),
+                seed: external.elements.jitter.map_or(0, |j| j.seed),
+                ..identity
+            },
             Family::OverMesh(over) => Identity {
                 family: reports::Family::OverMesh,
                 variant: over.entry.name.into(),

@@ -16,6 +16,14 @@ impl Scenario<'_> {
     pub fn locate(&self, failure: Failure) -> Failure {
         let finding = match failure {
             Failure::Scene(_) => return failure,
+            Failure::Foreign(mut foreign) => {
+                let key = self.key(&Key::Method("adapter"));
+                let problem = format!("{}: {}", foreign.status.name(), foreign.reason);
+                foreign.at.get_or_insert_with(|| {
+                    Box::new(self.scene.error(ErrorKind::NotRun, &key, &problem, None))
+                });
+                return Failure::Foreign(foreign);
+            }
             Failure::At(finding) => *finding,
             Failure::Input(problem) => finding(ErrorKind::Invalid, Key::Method(""), problem, ""),
             Failure::Run(problem) => finding(ErrorKind::NotRun, Key::Method(""), problem, ""),
@@ -58,7 +66,7 @@ impl Scenario<'_> {
                 }
                 Functions::MaximumEntropy { .. } => Key::Method("basis"),
             },
-            Family::Fem(_) | Family::OverMesh(_) => Key::Method(""),
+            Family::Fem(_) | Family::External(_) | Family::OverMesh(_) => Key::Method(""),
         };
         let (kind, key, help) = match error {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {

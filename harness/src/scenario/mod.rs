@@ -6,6 +6,7 @@ mod cloud_file;
 mod discretise;
 mod estimate;
 mod expected;
+mod external;
 mod file_body;
 mod grading;
 mod identity;

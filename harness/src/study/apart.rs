@@ -1,22 +1,19 @@
 //! `--isolate`: each run of a study in a process of its own. The program starts itself with the hidden command `experiment`; what
 //! ends that process, or the time it may take, costs its run alone.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{ChildStderr, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::process_group::{self, Started};
 use super::store::Store;
 use super::task::TaskResult;
 use super::{Plan, VerifyArgs};
 use crate::Failure;
+use crate::adapter;
+use crate::process::{Started, group, last_words};
 use crate::run::case_name;
-
-/// Most of what a process said last that is kept.
-const LAST_WORDS: usize = 4096;
 
 /// Times between two looks whether a process has ended.
 const SHORTEST_PAUSE: Duration = Duration::from_micros(200);
@@ -33,7 +30,7 @@ pub struct ApartArgs {
     #[arg(long, value_name = "SECONDS", requires = "isolate", value_parser = seconds)]
     pub time_limit: Option<Duration>,
     /// Memory that a run may allocate, such as 500MB or 2GB (Linux)
-    #[arg(long, value_name = "BYTES", requires = "isolate", value_parser = bytes)]
+    #[arg(long, value_name = "BYTES", requires = "isolate", value_parser = cases::scene::bytes)]
     pub memory_limit: Option<u64>,
 }
 
@@ -69,21 +66,6 @@ fn seconds(text: &str) -> Result<Duration, String> {
     if limit.is_zero() { Err(fix.into()) } else { Ok(limit) }
 }
 
-/// A size as people write it.
-pub(crate) fn bytes(text: &str) -> Result<u64, String> {
-    let fix = "give a size such as 500MB or 2GB";
-    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
-    let unit = match text[digits.len()..].trim().to_ascii_uppercase().as_str() {
-        "" | "B" => 1,
-        "KB" | "K" => 1 << 10,
-        "MB" | "M" => 1 << 20,
-        "GB" | "G" => 1 << 30,
-        _ => return Err(fix.into()),
-    };
-    let count: u64 = digits.parse().map_err(|_| fix)?;
-    count.checked_mul(unit).filter(|bytes| *bytes > 0).ok_or_else(|| fix.into())
-}
-
 /// Starts a process for each run.
 pub(super) struct Apart<'a> {
     args: &'a VerifyArgs,
@@ -117,7 +99,7 @@ impl<'a> Apart<'a> {
             (Ok(ended), _) => self.failure(&ended),
             (Err(bad), _) => Failure::Run(format!("could not be started: {bad}")),
         };
-        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method.id, &failure)
+        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method, &failure)
     }
 
     fn command(&self, tables: &[usize], key: &str, answer: &Path) -> std::io::Result<Command> {
@@ -130,6 +112,9 @@ impl<'a> Apart<'a> {
         command.args(self.args.quick.then_some("--quick"));
         if let Some(bytes) = self.args.apart.memory_limit {
             command.args(["--memory-limit", &bytes.to_string()]);
+        }
+        if let Ok(folders) = std::env::join_paths(adapter::given_folders()) {
+            command.env(adapter::FOLDERS, folders);
         }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         Ok(command)
@@ -174,22 +159,11 @@ impl<'a> Apart<'a> {
     }
 }
 
-/// The end of what a process writes, however much that is.
-fn last_words(mut stderr: ChildStderr) -> String {
-    let (mut kept, mut buffer) = (Vec::new(), [0; LAST_WORDS]);
-    while let Ok(read @ 1..) = stderr.read(&mut buffer) {
-        kept.extend(&buffer[..read]);
-        let old = kept.len().saturating_sub(LAST_WORDS);
-        kept.drain(..old);
-    }
-    String::from_utf8_lossy(&kept).into_owned()
-}
-
 /// The command `experiment`: runs the task and writes its result.
 pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     // What the libraries keep for good is not the run's.
     algebra::reserve_workspaces();
-    process_group::limit(args.parent, args.memory_limit).map_err(|bad| Failure::Run(bad.to_string()))?;
+    group::limit(args.parent, args.memory_limit).map_err(|bad| Failure::Run(bad.to_string()))?;
     let unreadable = |errors: Vec<cases::scene::SceneError>| {
         Failure::Input(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     };
@@ -212,13 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_are_read_as_people_write_them() {
-        for (text, size) in [("4096", 4096), ("500MB", 500 << 20), ("2 GB", 2 << 30), ("3k", 3 << 10)] {
-            assert_eq!(bytes(text), Ok(size), "{text}");
-        }
-        for text in ["", "0", "MB", "-1GB", "1.5GB", "2TB", "99999999999GB"] {
-            assert!(bytes(text).is_err(), "{text}");
-        }
+    fn seconds_are_read_as_people_write_them() {
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
         for text in ["0", "-1", "nan", "inf", "soon", "1e300"] {
             assert!(seconds(text).is_err(), "{text}");

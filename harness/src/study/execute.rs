@@ -9,11 +9,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::apart::Apart;
+use super::files::files;
 use super::progress::{Progress, Running};
 use super::store::{Accept, Store};
-use super::task::{TaskResult, key};
+use super::task::{TaskResult, failed, key};
 use super::tasks::Task;
-use super::{Plan, QUICK, REPEATS, VerifyArgs, files};
+use super::{Plan, QUICK, REPEATS, VerifyArgs};
 use crate::Failure;
 use crate::outcome::Counters;
 use crate::run::{Group, RunOptions, case_name};
@@ -198,7 +199,7 @@ impl Plan {
         });
         let mut result = match group {
             Ok(group) => self.compared(task, group, self.options(task, args)),
-            Err(failure) => TaskResult::failed(&case_name(scene), &task.method.id, failure),
+            Err(failure) => TaskResult::failed(&case_name(scene), &task.method, failure),
         };
         result.counters += shared;
         result
@@ -206,7 +207,7 @@ impl Plan {
 
     /// The result of one method; where its reference ended early that is its failure.
     fn compared(&self, task: &Task, group: &Group, options: RunOptions) -> TaskResult {
-        let (case, method) = (case_name(&self.scenes[task.scene].2), &task.method.id);
+        let (case, method) = (case_name(&self.scenes[task.scene].2), &task.method);
         let run = || group.run(&group.scenario(task.method.clone(), task.level), options);
         let mut result = match caught(run) {
             Ok(Ok(outcome)) => TaskResult::finished(&outcome),
@@ -216,7 +217,7 @@ impl Plan {
         if let (Some(stalled), None) = (group.reference_stalled(), &result.failure) {
             let reason = format!("reference stalled: {stalled}");
             let carried = group.reference_carried();
-            let run = reports::Failure { case, method: method.clone(), reason, carried };
+            let run = reports::Failure { reason, carried, ..failed(&case, method, stalled) };
             result.failure = Some((run, stalled.exit_code()));
         }
         result

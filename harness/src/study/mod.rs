@@ -5,12 +5,12 @@ mod args;
 pub mod check;
 pub(crate) mod events;
 mod execute;
+mod files;
 mod filters;
 pub(crate) mod folder;
 mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;
-pub(crate) mod process_group;
 mod progress;
 #[cfg(test)]
 mod project;
@@ -29,6 +29,7 @@ use std::sync::atomic::AtomicUsize;
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
+use crate::error::ForeignStatus;
 use crate::outcome::{Counters, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
@@ -48,7 +49,7 @@ pub use filters::Filters;
 pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use summary::RunSummary;
-pub(crate) use task::stalled;
+pub(crate) use task::{failed, stalled};
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
@@ -309,12 +310,14 @@ impl Plan {
             // Along an axis it is a result how a run ends.
             if let Some((failure, code)) = result.failure.as_ref().filter(|_| !self.is_driven(task)) {
                 set.failures.push(failure.clone());
+                // What a solver does not offer is a result about it.
+                let offered = failure.status != ForeignStatus::NotOffered.name();
                 // Of many clouds one may stall: how many did is a result. One without any numbers is in no count. So is
                 // a path known to end where it does.
                 let counted = self.is_one_of_many(task) && !result.records.is_empty();
                 let known =
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
-                if !counted && !verdicts.iter().any(known) {
+                if offered && !counted && !verdicts.iter().any(known) {
                     failed.push(*code);
                     run.failure = Some(failure.reason.clone());
                 }
@@ -461,28 +464,4 @@ fn label(task: &Task, records: &[Record], seeded: bool) -> String {
         text += &format!(" seed={}", records.first().map_or(0, |r| r.seed));
     }
     text
-}
-
-/// Mesh files that a scene names: a changed mesh is a changed run.
-fn files(scene: &Scene) -> Vec<PathBuf> {
-    let mut found: Vec<PathBuf> = scene.methods.iter().flat_map(scene::Method::files).collect();
-    if let scene::Body::File(file) = &scene.body {
-        found.push(file.path.clone());
-    }
-    for transfer in &scene.output.transfers {
-        if let scene::Target::File(file) = &transfer.to {
-            found.push(file.path.clone());
-        }
-    }
-    if let Some(scene::Reference::Method { size: Some(size), .. }) = &scene.reference {
-        found.extend(size.file());
-    }
-    if let Some(scene::Reference::Record(path)) = &scene.reference {
-        found.push(path.clone());
-    }
-    let included: Vec<PathBuf> = found.iter().flat_map(|file| geometry::files::included(file)).collect();
-    found.extend(included);
-    found.sort();
-    found.dedup();
-    found
 }

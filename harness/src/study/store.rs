@@ -223,7 +223,8 @@ mod tests {
         let store = store(dir.path(), &Program::default(), &Machine::default());
         store.save("finished", &TaskResult::default()).unwrap();
         let failure = crate::Failure::Run("rigid".into());
-        store.save("failed", &TaskResult::failed("case", "method", &failure)).unwrap();
+        let failed = (reports::Failure { reason: failure.to_string(), ..reports::Failure::default() }, 3);
+        store.save("failed", &TaskResult { failure: Some(failed), ..TaskResult::default() }).unwrap();
         for (name, text) in [("half.json", "{"), ("killed.json.partial", ""), ("killed.claim", "")] {
             fs::write(store.folder.join(name), text).unwrap();
         }

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use cases::scene;
 use reports::{Failure as FailedRun, PlanEntry, Record, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
+use crate::adapter;
 use crate::outcome::{Counters, Outcome};
 
 /// What one run leaves.
@@ -40,14 +42,25 @@ impl TaskResult {
     }
 
     /// Of a run that gave no numbers.
-    pub fn failed(case: &str, method: &str, failure: &Failure) -> TaskResult {
-        let run = FailedRun {
-            case: case.into(),
-            method: method.into(),
-            reason: failure.to_string(),
-            carried: None,
-        };
+    pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> TaskResult {
+        let run = failed(case, method, failure);
         TaskResult { failure: Some((run, failure.exit_code())), ..TaskResult::default() }
+    }
+}
+
+/// A run that gave no numbers, among what failed.
+pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> FailedRun {
+    let adapter = match &method.family {
+        scene::Family::External(external) => adapter::label(&external.adapter, &external.settings),
+        _ => String::new(),
+    };
+    FailedRun {
+        case: case.into(),
+        method: method.id.clone(),
+        reason: failure.to_string(),
+        carried: None,
+        status: failure.status().into(),
+        adapter,
     }
 }
 
@@ -58,6 +71,8 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
         method: outcome.identity.method.clone(),
         reason: format!("{}: {failure}", outcome.status),
         carried: outcome.metric("load-carried").filter(|load| *load > 0.0),
+        status: outcome.status.into(),
+        adapter: outcome.identity.adapter.clone().unwrap_or_default(),
     }
 }
 

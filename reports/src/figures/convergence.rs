@@ -7,7 +7,6 @@ use super::style::{find, styles};
 use super::{Figure, PAGE, chosen, continued, paged};
 use crate::order::ROUNDING;
 use crate::quantity::label;
-use crate::record::Family;
 use crate::select::{Run, Series, labels, series};
 
 /// One figure (or more pages) per error: L2, energy, pressure.
@@ -38,7 +37,7 @@ fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
         .zip(&all)
         .map(|(label, s)| {
             let points: Vec<_> = s.points(quantity).into_iter().filter(|(_, e)| *e > ROUNDING).collect();
-            (label, s.is().family != Family::Fem, points, s.theory(quantity))
+            (label, !s.is().family.is_elements(), points, s.theory(quantity))
         })
         .filter(|(_, _, points, _)| points.len() > 1)
         .collect()

@@ -7,7 +7,6 @@ use super::style::{Style, find, styles};
 use super::{Figure, PAGE, chosen, continued, paged};
 use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, QUESTIONS, Question, pareto, point};
 use crate::quantity::label;
-use crate::record::Family;
 use crate::select::{Run, Series, kernels, labels, series};
 use crate::text::list;
 
@@ -68,7 +67,7 @@ fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
 fn clusters(all: &[Series], names: &[String], error: &str, clock: Clock) -> Vec<Cluster> {
     let cluster = |(label, s): (&String, &Series)| {
         let points = s.runs.iter().filter_map(|run| point(run, error, clock));
-        (label.clone(), s.is().family != Family::Fem, points.map(|(t, e)| (t, e.max(FLOOR))).collect())
+        (label.clone(), !s.is().family.is_elements(), points.map(|(t, e)| (t, e.max(FLOOR))).collect())
     };
     names.iter().zip(all).map(cluster).filter(|c: &Cluster| !c.2.is_empty()).collect()
 }
@@ -257,6 +256,7 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
 mod tests {
     use super::*;
     use crate::fronts::tests::run;
+    use crate::record::Family;
     use crate::select::runs;
 
     #[test]

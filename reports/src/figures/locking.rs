@@ -8,7 +8,6 @@ use super::style::{find, styles};
 use super::{Figure, PAGE, continued, paged};
 use crate::fronts::FLOOR;
 use crate::quantity::label;
-use crate::record::Family;
 use crate::select::{Run, competing, labels};
 
 /// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.
@@ -43,7 +42,7 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
         picked.push(sizes[sizes.len() / 2].clone());
     }
     let labels = labels(picked.iter().map(|s| s[0].is));
-    labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family != Family::Fem, s)).collect()
+    labels.into_iter().zip(picked).map(|(label, s)| (label, !s[0].is.family.is_elements(), s)).collect()
 }
 
 /// Displacement error, pressure error and tip deflection of every case with such sweeps.

@@ -2,7 +2,6 @@
 
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, point};
-use crate::record::Family;
 use crate::select::{Run, labels};
 use crate::text::{duration, list, percent, significant};
 
@@ -22,7 +21,7 @@ struct Timed<'a, 'r> {
 
 impl Timed<'_, '_> {
     fn is_fem(&self) -> bool {
-        self.run.is.family == Family::Fem
+        self.run.is.family.is_elements()
     }
 }
 

@@ -74,16 +74,16 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
 
 /// Times of clouds over those of elements at equal errors, as far as both go.
 #[derive(Debug, PartialEq)]
-struct Matched {
+pub(crate) struct Matched {
     /// Least and most.
-    ratio: (f64, f64),
+    pub(crate) ratio: (f64, f64),
     /// Least errors of elements and of clouds.
-    least: (f64, f64),
+    pub(crate) least: (f64, f64),
 }
 
 impl Matched {
     /// The least time within an error falls at the errors of the runs only: between them no ratio is other than at them.
-    fn of(fem: &[Point], efg: &[Point]) -> Option<Matched> {
+    pub(crate) fn of(fem: &[Point], efg: &[Point]) -> Option<Matched> {
         let within =
             |runs: &[Point], error: f64| runs.iter().filter(|p| p.1 <= error).map(|p| p.0).reduce(f64::min);
         let errors = || fem.iter().chain(efg).map(|p| p.1);

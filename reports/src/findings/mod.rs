@@ -11,6 +11,7 @@ mod stability;
 mod transfer;
 mod vibration;
 
+pub(crate) use claim::Matched;
 pub(crate) use transfer::source;
 
 use crate::clouds::Clouds;

@@ -11,6 +11,7 @@ mod outcome;
 mod placement;
 mod published;
 mod repeated;
+mod solvers;
 mod stability;
 mod timing;
 mod transfer;
@@ -45,6 +46,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         published::beside_ours(runs),
         published::rms_parts(runs),
         closure::force_closure(runs),
+        solvers::solvers(set),
         outcome::checks(set),
         outcome::failures(set),
         outcome::warnings(set),

@@ -171,6 +171,7 @@ mod tests {
             method: method.into(),
             reason: "stalled".into(),
             carried,
+            ..Failure::default()
         };
         let set = RunSet { failures: vec![run("tet10", Some(0.578)), run("efg", None)], ..RunSet::default() };
         assert_eq!(

@@ -409,6 +409,7 @@ pub fn study() -> RunSet {
         method: "efg-tight".into(),
         reason: "Too few neighbours at <0, 0, 1>: 3 of 4 & no fallback.".into(),
         carried: None,
+        ..Failure::default()
     }];
     for (stage, ran, why) in [
         ("contact search", false, "no tool"),

@@ -28,6 +28,11 @@ pub enum Load<'a> {
         /// One vector per volume point, N/m^3.
         values: Vec<Vector3>,
     },
+    /// Forces that somebody else has integrated, N.
+    Nodal {
+        /// One vector per node.
+        forces: Vec<Vector3>,
+    },
 }
 
 /// Nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
@@ -47,6 +52,13 @@ pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>,
             }
             Load::Body { values } => {
                 add(&mut force, volume.rows(), volume.weights(), values.len(), |q| values[q])?;
+            }
+            Load::Nodal { forces } => {
+                check_len("nodal forces", forces.len(), nodes)?;
+                if let Some(index) = forces.iter().position(|f| !f.iter().all(|c| c.is_finite())) {
+                    return Err(SolveError::NotFinite { what: "force at node", index });
+                }
+                force.iter_mut().zip(forces).for_each(|(sum, f)| *sum += f);
             }
         }
     }

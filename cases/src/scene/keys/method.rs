@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::scene::external::ExternalKeys;
 use crate::scene::family::OverMeshKeys;
 use crate::scene::method::{
     Basis, ConstraintRows, Dilation, Element, Entropy, EssentialKind, Mass, Regions, SupportShape,
@@ -47,6 +48,7 @@ pub(crate) struct JitterKeys {
 pub(crate) enum MethodKeys {
     Fem(FemKeys),
     Efg(Box<EfgKeys>),
+    External(Box<ExternalKeys>),
     #[serde(untagged)]
     OverMesh(OverMeshKeys),
 }
@@ -60,6 +62,8 @@ enum TypedKeys {
     Fem(FemKeys),
     /// Element-free Galerkin
     Efg(Box<EfgKeys>),
+    /// A solver outside this program, which an adapter calls
+    External(Box<ExternalKeys>),
 }
 
 impl JsonSchema for MethodKeys {

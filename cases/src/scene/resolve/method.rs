@@ -1,5 +1,6 @@
 //! Methods and their sizes.
 
+use crate::scene::external::external;
 use crate::scene::family::over_mesh;
 use crate::scene::keys::*;
 use crate::scene::method::*;
@@ -29,6 +30,7 @@ pub(super) fn method(keys: MethodKeys, index: usize, report: &mut Report) -> Opt
             })
         }
         MethodKeys::Efg(efg) => efg_method(*efg, &key, report),
+        MethodKeys::External(keys) => external(*keys, &key, report),
         MethodKeys::OverMesh(keys) => over_mesh(keys, &key, report),
     }
 }

@@ -106,7 +106,7 @@ pub(super) fn raw<D: Dim>(q: [Q<D>; 3]) -> [f64; 3] {
     q.map(|q| q.0)
 }
 
-pub(super) fn positive(value: f64, key: &str, report: &mut Report) -> f64 {
+pub(crate) fn positive(value: f64, key: &str, report: &mut Report) -> f64 {
     report.require(value > 0.0, key, "is not positive", "give a value above zero");
     value
 }

@@ -1,8 +1,11 @@
 //! A process with all that it starts: limited, ended as a whole, and gone with the process that started it.
 
-use std::io;
+use std::io::{self, Read};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::{Mutex, PoisonError};
+
+/// Most of what a process said last that is kept.
+const LAST_WORDS: usize = 4096;
 
 /// Numbers of the processes that run now. Locked while one is started, so that none is missed when all are ended.
 static RUNNING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
@@ -12,12 +15,12 @@ fn running() -> std::sync::MutexGuard<'static, Vec<u32>> {
 }
 
 /// A process in a group of its own.
-pub(super) struct Started {
+pub(crate) struct Started {
     child: Child,
 }
 
 impl Started {
-    pub(super) fn new(command: &mut Command) -> io::Result<Started> {
+    pub(crate) fn new(command: &mut Command) -> io::Result<Started> {
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(command, 0);
         let mut running = running();
@@ -26,25 +29,34 @@ impl Started {
         Ok(Started { child })
     }
 
-    pub(super) fn child(&mut self) -> &mut Child {
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    pub(crate) fn child(&mut self) -> &mut Child {
         &mut self.child
     }
 
     /// Whether it has ended. It is not waited for: its number stays its own until its group is ended too.
     #[cfg(unix)]
-    pub(super) fn has_ended(&mut self) -> io::Result<bool> {
+    pub(crate) fn has_ended(&mut self) -> io::Result<bool> {
         use rustix::process::{WaitId, WaitIdOptions, waitid};
         let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
         Ok(waitid(WaitId::Pid(pid(self.child.id())), options)?.is_some())
     }
 
     #[cfg(not(unix))]
-    pub(super) fn has_ended(&mut self) -> io::Result<bool> {
+    pub(crate) fn has_ended(&mut self) -> io::Result<bool> {
         Ok(self.child.try_wait()?.is_some())
     }
 
+    /// Ends what is left of it and of its group, without waiting for it.
+    pub(super) fn kill(&self) {
+        kill(self.child.id());
+    }
+
     /// Ends what is left of it and of its group.
-    pub(super) fn end(mut self) -> io::Result<ExitStatus> {
+    pub(crate) fn end(mut self) -> io::Result<ExitStatus> {
         let mut running = running();
         kill(self.child.id());
         let _ = self.child.kill();
@@ -52,6 +64,26 @@ impl Started {
         running.retain(|id| *id != self.child.id());
         status
     }
+}
+
+/// Waits until a process has ended; its number stays its own until it is waited for otherwise.
+#[cfg(unix)]
+pub(super) fn wait(id: u32) {
+    use rustix::process::{WaitId, WaitIdOptions, waitid};
+    while let Err(rustix::io::Errno::INTR) =
+        waitid(WaitId::Pid(pid(id)), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT)
+    {}
+}
+
+/// The end of what a process writes, however much that is.
+pub(crate) fn last_words(mut from: impl Read) -> String {
+    let (mut kept, mut buffer) = (Vec::new(), [0; LAST_WORDS]);
+    while let Ok(read @ 1..) = from.read(&mut buffer) {
+        kept.extend(&buffer[..read]);
+        let old = kept.len().saturating_sub(LAST_WORDS);
+        kept.drain(..old);
+    }
+    String::from_utf8_lossy(&kept).into_owned()
 }
 
 /// Ends all groups, and lets no other one begin: for a program that is about to exit.
@@ -67,29 +99,38 @@ fn pid(id: u32) -> rustix::process::Pid {
 }
 
 #[cfg(unix)]
-fn kill(id: u32) {
+pub(super) fn kill(id: u32) {
     let _ = rustix::process::kill_process_group(pid(id), rustix::process::Signal::KILL);
 }
 
 #[cfg(not(unix))]
-fn kill(_: u32) {}
+pub(super) fn kill(_: u32) {}
 
 /// Ends this process with its parent and limits what it may allocate from now on.
 ///
 /// The limit is of what can be written to, not of addresses: an allocator reserves 64 MB of these for each thread.
 #[cfg(target_os = "linux")]
-pub(super) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
-    use rustix::process::{Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setrlimit};
+pub(crate) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
+    use rustix::process::{Signal, getppid, set_parent_process_death_signal};
     set_parent_process_death_signal(Some(Signal::KILL))?;
     // It may have died before.
     if getppid().map(rustix::process::Pid::as_raw_nonzero).map(|id| id.get().cast_unsigned()) != Some(parent)
     {
         return Err(io::Error::other("the study that started it has ended"));
     }
-    if let Some(bytes) = memory {
-        let most = Some(allocated()?.saturating_add(bytes));
-        setrlimit(Resource::Data, Rlimit { current: most, maximum: most })?;
-    }
+    memory.map_or(Ok(()), limit_memory)
+}
+
+/// Limits what this process, and each one that it starts, may allocate from now on.
+#[cfg(target_os = "linux")]
+pub(super) fn limit_memory(bytes: u64) -> io::Result<()> {
+    use rustix::process::{Resource, Rlimit, setrlimit};
+    let most = Some(allocated()?.saturating_add(bytes));
+    Ok(setrlimit(Resource::Data, Rlimit { current: most, maximum: most })?)
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(super) fn limit_memory(_: u64) -> io::Result<()> {
     Ok(())
 }
 
@@ -103,7 +144,7 @@ fn allocated() -> io::Result<u64> {
 }
 
 #[cfg(not(target_os = "linux"))]
-pub(super) fn limit(_: u32, memory: Option<u64>) -> io::Result<()> {
+pub(crate) fn limit(_: u32, memory: Option<u64>) -> io::Result<()> {
     match memory {
         None => Ok(()),
         Some(_) => Err(io::Error::other("--memory-limit is for Linux only")),

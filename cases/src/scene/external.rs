@@ -1,0 +1,158 @@
+//! Methods of solvers outside this program: finite elements of our meshes, solved by a program that an adapter calls.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::keys::{JitterKeys, SizeKeys};
+use super::method::{Dilation, Element, Family, Fem, Method};
+use super::report::Report;
+use super::resolve::{jitter, positive, size};
+use super::units::{Q, Time};
+
+/// Seconds that a run of another solver may take where the file gives none.
+const TIME_LIMIT: f64 = 600.0;
+/// Bytes that its processes may have together where the file gives none: 4 GB.
+const MEMORY_LIMIT: u64 = 4 << 30;
+
+/// Settings of a method of another solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct External {
+    /// Name of the adapter.
+    pub adapter: String,
+    /// The elements, their functions those of ours of that name: errors are measured with these.
+    pub elements: Fem,
+    /// What the adapter takes beside the problem.
+    pub settings: BTreeMap<String, Setting>,
+    /// Seconds that a run may take.
+    pub time_limit: f64,
+    /// Bytes that its processes may have together.
+    pub memory_limit: u64,
+}
+
+/// A setting of an adapter: a truth value, a number or a text
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Setting {
+    /// A truth value.
+    Flag(bool),
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ExternalKeys {
+    pub id: String,
+    /// Methods of one series differ in size only; the id unless given
+    pub series: Option<String>,
+    /// Name of the adapter, as `tissuebench adapter list` has it
+    pub adapter: String,
+    pub element: Element,
+    pub size: SizeKeys,
+    pub jitter: Option<JitterKeys>,
+    /// What the adapter takes beside the problem; its page says what
+    #[serde(default)]
+    pub settings: BTreeMap<String, Setting>,
+    /// Time that a run may take; 600 s unless given
+    pub time_limit: Option<Q<Time>>,
+    /// Memory that all processes of a run may have together, such as "500 MB"; "4 GB" unless given
+    pub memory_limit: Option<String>,
+}
+
+/// The method that the keys at `key` ask for.
+pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Option<Method> {
+    let at = |name: &str| format!("{key}.{name}");
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+    let sound = !keys.adapter.is_empty() && keys.adapter.chars().all(plain);
+    report.require(sound, &at("adapter"), "is no name of an adapter", "tissuebench adapter list has them");
+    let size = size(keys.size, &at("size"), report);
+    let jitter = jitter(keys.jitter, key, report);
+    let time_limit = keys.time_limit.map_or(TIME_LIMIT, |q| positive(q.0, &at("time_limit"), report));
+    let memory_limit = keys.memory_limit.map_or(Ok(MEMORY_LIMIT), |text| bytes(&text));
+    report.require(memory_limit.is_ok(), &at("memory_limit"), "is no size", BYTES);
+    let (element, dilation) = (keys.element, Dilation::Standard);
+    let elements = Fem { element, dilation, reduced: false, size: size?, jitter };
+    let external = External {
+        adapter: keys.adapter,
+        elements,
+        settings: keys.settings,
+        time_limit,
+        memory_limit: memory_limit.unwrap_or(MEMORY_LIMIT),
+    };
+    let series = keys.series.unwrap_or_else(|| keys.id.clone());
+    Some(Method { id: keys.id, series, family: Family::External(external), mass: None })
+}
+
+/// What a size is.
+const BYTES: &str = "give a size such as 500MB or 2GB";
+
+/// A size as people write it, in bytes.
+///
+/// # Errors
+/// What would be one.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = match text[digits.len()..].trim().to_ascii_uppercase().as_str() {
+        "" | "B" => 1,
+        "KB" | "K" => 1 << 10,
+        "MB" | "M" => 1 << 20,
+        "GB" | "G" => 1 << 30,
+        _ => return Err(BYTES.into()),
+    };
+    let count: u64 = digits.parse().map_err(|_| BYTES)?;
+    count.checked_mul(unit).filter(|bytes| *bytes > 0).ok_or_else(|| BYTES.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_as_people_write_them() {
+        for (text, size) in [("4096", 4096), ("500MB", 500 << 20), ("2 GB", 2 << 30), ("3k", 3 << 10)] {
+            assert_eq!(bytes(text), Ok(size), "{text}");
+        }
+        for text in ["", "0", "MB", "-1GB", "1.5GB", "2TB", "99999999999GB"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+    }
+
+    const SCENE: &str = r#"title = "A block"
+body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ where = "z == 0 mm", fix = "xyz" }]
+load = [{ on = "z-max", pressure = "1 kPa" }]
+method = [{ id = "other", family = "external", adapter = "dummy", element = "tet10", size = { level = 1 }, MORE }]
+"#;
+
+    #[test]
+    fn a_method_has_limits_whether_they_are_given_or_not() {
+        let read = |more: &str| crate::scene::parse(&SCENE.replace("MORE", more), "block.toml");
+        let of = |more: &str| match &read(more).unwrap().methods[0].family {
+            Family::External(external) => external.clone(),
+            other => panic!("{other:?}"),
+        };
+        let plain = of("");
+        assert_eq!((plain.time_limit, plain.memory_limit), (TIME_LIMIT, MEMORY_LIMIT));
+        let given = of(
+            "time_limit = \"2 s\", memory_limit = \"10 MB\", settings = { mode = \"nan\", n = 2, fast = true }",
+        );
+        assert_eq!((given.time_limit, given.memory_limit), (2.0, 10 << 20));
+        assert_eq!(given.settings["mode"], Setting::Text("nan".into()));
+        assert_eq!(
+            (&given.settings["n"], &given.settings["fast"]),
+            (&Setting::Number(2.0), &Setting::Flag(true))
+        );
+        for (more, key) in [
+            ("time_limit = \"0 s\"", "method[0].time_limit"),
+            ("memory_limit = \"much\"", "method[0].memory_limit"),
+            ("dilation = \"mixed\"", "method[0].dilation"),
+        ] {
+            assert_eq!(read(more).unwrap_err()[0].key, key);
+        }
+    }
+}

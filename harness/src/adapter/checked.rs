@@ -1,0 +1,43 @@
+//! Which adapters have passed their check here, as they are now.
+
+use std::path::PathBuf;
+
+use super::find::Found;
+use super::run::version;
+use super::work::data_folder;
+
+fn file(adapter: &Found) -> Option<PathBuf> {
+    Some(data_folder()?.join("adapters").join(&adapter.manifest.name).join("checked"))
+}
+
+/// Of all that the check depends on.
+fn state(adapter: &Found) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for (name, bytes) in adapter.files() {
+        hasher.update(name.as_bytes()).update(&(bytes.len() as u64).to_le_bytes()).update(&bytes);
+    }
+    hasher.update(version(adapter).unwrap_or_default().as_bytes());
+    format!("{}\n", hasher.finalize().to_hex())
+}
+
+/// Notes that an adapter has passed, or has not. Where nothing can be written, nothing is known.
+pub(crate) fn note(adapter: &Found, passed: bool) {
+    let Some(file) = file(adapter) else { return };
+    if !passed {
+        let _ = std::fs::remove_file(file);
+        return;
+    }
+    let folder = file.parent().map(std::fs::create_dir_all);
+    if let Err(bad) = folder.unwrap_or(Ok(())).and_then(|()| std::fs::write(&file, state(adapter))) {
+        eprintln!(
+            "tissuebench: {}: can't be written: {bad}; the adapter counts as unchecked",
+            file.display()
+        );
+    }
+}
+
+/// Whether an adapter has passed as it is now.
+pub(crate) fn is_checked(adapter: &Found) -> bool {
+    let noted = file(adapter).and_then(|file| std::fs::read_to_string(file).ok());
+    noted.is_some_and(|noted| noted == state(adapter))
+}

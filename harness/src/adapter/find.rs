@@ -1,0 +1,161 @@
+//! Where adapters are: in the folders that a person names, beside the scene, in the folder that the program is called in, and in the
+//! program.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use catalogue::nearest;
+
+use super::FOLDERS;
+use super::builtin::{Files, SHIPPED};
+use super::manifest::Manifest;
+use crate::Failure;
+
+/// What a folder of adapters is called beside a scene.
+const BESIDE: &str = "adapters";
+const MANIFEST: &str = "adapter.toml";
+
+/// Folders of the command line.
+static GIVEN: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Looks in these folders first. Only the first call counts.
+pub(crate) fn add_folders(folders: &[PathBuf]) {
+    let _ = GIVEN.set(folders.to_vec());
+}
+
+/// The folders that a person has named, on the command line or in the environment.
+pub(crate) fn given_folders() -> Vec<PathBuf> {
+    let environment = std::env::var_os(FOLDERS).unwrap_or_default();
+    let of_environment = std::env::split_paths(&environment).filter(|path| !path.as_os_str().is_empty());
+    GIVEN.get().into_iter().flatten().cloned().chain(of_environment).collect()
+}
+
+/// An adapter and where it was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    pub(crate) manifest: Manifest,
+    /// `None` where it is one that this program brings with it.
+    pub(crate) folder: Option<PathBuf>,
+    shipped: Files,
+}
+
+impl Found {
+    fn shipped(files: Files) -> Result<Found, Failure> {
+        let text = files.first().map_or("", |(_, text)| text);
+        let manifest = Manifest::parse(text, Path::new(MANIFEST)).map_err(Failure::Input)?;
+        Ok(Found { manifest, folder: None, shipped: files })
+    }
+
+    fn in_folder(folder: &Path) -> Option<Result<Found, Failure>> {
+        let file = folder.join(MANIFEST);
+        let text = std::fs::read_to_string(&file).ok()?;
+        let found = |manifest| Found { manifest, folder: Some(folder.to_path_buf()), shipped: &[] };
+        Some(Manifest::parse(&text, &file).map(found).map_err(Failure::Input))
+    }
+
+    /// Its files with their contents, by name; those of folders inside its own are not among them.
+    pub(crate) fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let Some(folder) = &self.folder else {
+            return self
+                .shipped
+                .iter()
+                .map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()))
+                .collect();
+        };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let file = |path: PathBuf| {
+            Some((path.file_name()?.to_string_lossy().into_owned(), std::fs::read(&path).ok()?))
+        };
+        let mut files: Vec<_> = entries.filter_map(|entry| file(entry.path())).collect();
+        files.sort();
+        files
+    }
+
+    /// Where it is, for people.
+    pub(crate) fn place(&self) -> String {
+        self.folder.as_ref().map_or("shipped".into(), |folder| folder.display().to_string())
+    }
+}
+
+/// What was found of adapters.
+#[derive(Default)]
+pub(crate) struct All {
+    /// The first of each name.
+    pub(crate) found: Vec<Found>,
+    /// Folders whose `adapter.toml` is wrong, and what is wrong with it.
+    pub(crate) broken: Vec<(PathBuf, Failure)>,
+}
+
+/// All adapters for a scene.
+pub(crate) fn all(scene: Option<&Path>) -> All {
+    let beside = scene.and_then(Path::parent).map(|folder| folder.join(BESIDE));
+    let folders = given_folders().into_iter().chain(beside).chain([PathBuf::from(BESIDE)]);
+    let mut all = All::default();
+    let add = |all: &mut All, read: Result<Found, Failure>, folder: &Path| match read {
+        Ok(new) if all.found.iter().any(|known| known.manifest.name == new.manifest.name) => {}
+        Ok(new) => all.found.push(new),
+        Err(bad) if all.broken.iter().any(|(known, _)| known == folder) => drop(bad),
+        Err(bad) => all.broken.push((folder.to_path_buf(), bad)),
+    };
+    for folder in folders {
+        let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        paths.sort();
+        // A folder may be one adapter itself.
+        paths.insert(0, folder);
+        for path in paths {
+            if let Some(read) = Found::in_folder(&path) {
+                add(&mut all, read, &path);
+            }
+        }
+    }
+    SHIPPED.iter().for_each(|files| add(&mut all, Found::shipped(files), Path::new("shipped")));
+    all
+}
+
+/// The adapter of a name.
+pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
+    let All { mut found, mut broken } = all(scene);
+    // One that is wrong does not stand aside for another of its name.
+    if let Some(at) = broken.iter().position(|(folder, _)| folder.file_name().is_some_and(|own| own == name))
+    {
+        return Err(broken.swap_remove(at).1);
+    }
+    if let Some(at) = found.iter().position(|found| found.manifest.name == name) {
+        return Ok(found.swap_remove(at));
+    }
+    let names: Vec<&str> = found.iter().map(|found| found.manifest.name.as_str()).collect();
+    let near = nearest(name, names.iter().copied());
+    let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+    let help = format!("there are {}{near}; --adapters DIR names further folders", names.join(", "));
+    Err(Failure::Input(format!("no adapter '{name}': {help}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MINE: &str = "name = \"mine\"\ntitle = \"Mine\"\nrun = [\"mine\"]\ncan = []\nelements = []\n";
+
+    #[test]
+    fn those_beside_a_scene_come_before_those_of_the_program_and_a_broken_one_stops_only_itself() {
+        let dir = tempfile::tempdir().unwrap();
+        let scene = dir.path().join("scene.toml");
+        let put = |name: &str, text: &str| {
+            let folder = dir.path().join("adapters").join(name);
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(folder.join(MANIFEST), text).unwrap();
+            folder
+        };
+        let mine = put("mine", MINE);
+        put("other", &MINE.replace("\"mine\"\ntitle", "\"dummy\"\ntitle"));
+        put("broken", "name = 3");
+        let of = |name: &str| find(name, Some(&scene));
+        assert_eq!(of("mine").unwrap().folder, Some(mine));
+        assert!(of("dummy").unwrap().folder.is_some() && of("calculix").unwrap().folder.is_none());
+        assert!(of("broken").unwrap_err().to_string().contains("broken/adapter.toml"));
+        let lost = of("calculx").unwrap_err().to_string();
+        assert!(lost.contains("did you mean 'calculix'?") && lost.contains("mine"), "{lost}");
+        assert_eq!(all(Some(&scene)).broken.len(), 1);
+    }
+}

@@ -1,0 +1,156 @@
+//! `adapter.toml`: what an adapter says of itself.
+
+use std::path::Path;
+
+use catalogue::suggest;
+use material::LAWS;
+use serde::Deserialize;
+
+/// What the words of `can` are, beside the names of laws.
+const WORDS: [&str; 3] = ["linear", "static", "tools"];
+const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
+const READS: [&str; 2] = ["mesh.inp", "mesh.vtu"];
+/// Digits of a displacement that is written as it is.
+const ALL_DIGITS: u32 = 15;
+
+/// An adapter as its file has it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Manifest {
+    /// As scenes name it; the name of its folder too.
+    pub(crate) name: String,
+    /// One line: which solver.
+    pub(crate) title: String,
+    /// The program with its arguments. `{problem}` and `{answer}` are folders, `{python}` the adapter's own Python or `python3`,
+    /// `{tissuebench}` this program; an argument that is a file of the adapter's folder stands for its path.
+    pub(crate) run: Vec<String>,
+    /// A command that prints the version of the solver.
+    #[serde(default)]
+    pub(crate) version: Vec<String>,
+    /// Procedures and laws, by their names in scenes, and "tools".
+    pub(crate) can: Vec<String>,
+    /// Elements, by their names in scenes.
+    pub(crate) elements: Vec<String>,
+    /// Digits of its answer: text files have few.
+    #[serde(default = "all_digits")]
+    pub(crate) digits: u32,
+    /// How it takes the number of threads.
+    #[serde(default)]
+    pub(crate) threads: Threads,
+    /// Mesh files that it reads beside the arrays, which are written for it: mesh.inp, mesh.vtu.
+    #[serde(default)]
+    pub(crate) reads: Vec<String>,
+    /// What it needs.
+    #[serde(default)]
+    pub(crate) install: Install,
+}
+
+/// How an adapter takes the number of threads.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Threads {
+    /// In this environment variable.
+    pub(crate) env: Option<String>,
+}
+
+/// What an adapter needs.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Install {
+    /// Python packages, for a virtual environment of its own.
+    #[serde(default)]
+    pub(crate) python: Vec<String>,
+    /// Programs that have to be in the `PATH`.
+    #[serde(default)]
+    pub(crate) programs: Vec<String>,
+    /// Where these come from, for people.
+    #[serde(default)]
+    pub(crate) say: String,
+}
+
+fn all_digits() -> u32 {
+    ALL_DIGITS
+}
+
+impl Manifest {
+    /// Reads a file; `file` is its name in messages.
+    pub(crate) fn parse(text: &str, file: &Path) -> Result<Manifest, String> {
+        let manifest: Manifest = toml::from_str(text)
+            .map_err(|bad| format!("{}: {}", file.display(), bad.to_string().trim_end()))?;
+        manifest.check().map_err(|bad| format!("{}: {bad}", file.display()))?;
+        Ok(manifest)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+        if self.name.is_empty() || !self.name.chars().all(plain) {
+            return Err(format!("name '{}' is no name; use letters, digits, '-' and '_'", self.name));
+        }
+        if self.run.is_empty() {
+            return Err("run is empty; give a program with its arguments".into());
+        }
+        let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
+        let can: Vec<&str> = WORDS.into_iter().chain(laws).collect();
+        for (key, given, known) in [
+            ("can", &self.can, &can[..]),
+            ("elements", &self.elements, &ELEMENTS),
+            ("reads", &self.reads, &READS),
+        ] {
+            if let Some(word) = given.iter().find(|word| !known.contains(&word.as_str())) {
+                return Err(format!("{key} names '{word}', which is not known; {}", suggest(word, known)));
+            }
+        }
+        match (1..=ALL_DIGITS).contains(&self.digits) {
+            true => Ok(()),
+            false => Err(format!("digits = {} is no number of digits; give 1 to {ALL_DIGITS}", self.digits)),
+        }
+    }
+
+    /// Why it does not take what a scene asks for, in the words of `can`; `None` where it does.
+    pub(crate) fn refusal(&self, element: &str, asked: &[(&str, String)]) -> Option<String> {
+        if !self.elements.iter().any(|known| known == element) {
+            return Some(format!("has no {element}, only {}", self.elements.join(", ")));
+        }
+        let missing = asked.iter().find(|(word, _)| !self.can.iter().any(|known| known == word));
+        missing.map(|(_, what)| format!("does not take {what}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOUND: &str = "name = \"mine\"\ntitle = \"Mine\"\nrun = [\"mine\", \"{problem}\", \"{answer}\"]\n\
+                         can = [\"linear\", \"static\"]\nelements = [\"tet4\"]\n";
+
+    fn parse(text: &str) -> Result<Manifest, String> {
+        Manifest::parse(text, Path::new("mine/adapter.toml"))
+    }
+
+    #[test]
+    fn a_file_is_read_or_refused_with_what_is_wrong() {
+        let sound = parse(SOUND).unwrap();
+        assert_eq!((sound.digits, sound.threads.env, sound.reads.len()), (15, None, 0));
+        for (from, to, says) in [
+            ("\"static\"", "\"statics\"", "can names 'statics'"),
+            ("\"tet4\"", "\"tet5\"", "elements names 'tet5'"),
+            ("\"mine\"\ntitle", "\"my own\"\ntitle", "name 'my own' is no name"),
+            ("title = \"Mine\"\n", "", "missing field `title`"),
+            ("title", "titel", "line 2"),
+            ("run = [\"mine\", \"{problem}\", \"{answer}\"]", "run = []", "run is empty"),
+            ("can", "digits = 0\ncan", "digits = 0"),
+        ] {
+            let bad = parse(&SOUND.replacen(from, to, 1)).unwrap_err();
+            assert!(bad.contains(says) && bad.starts_with("mine/adapter.toml: "), "{says}: {bad}");
+        }
+    }
+
+    #[test]
+    fn what_it_does_not_take_is_named() {
+        let sound = parse(SOUND).unwrap();
+        let asked = [("linear", "the linear law".to_string()), ("tools", "rigid tools".to_string())];
+        assert_eq!(sound.refusal("tet4", &asked[..1]), None);
+        assert_eq!(sound.refusal("tet4", &asked).as_deref(), Some("does not take rigid tools"));
+        assert_eq!(sound.refusal("hex8", &asked).as_deref(), Some("has no hex8, only tet4"));
+    }
+}

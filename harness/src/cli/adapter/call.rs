@@ -1,0 +1,64 @@
+//! `tissuebench adapter run`: one call of a solver, outside of any scene.
+
+use std::path::Path;
+use std::time::Duration;
+
+use crate::Failure;
+use crate::adapter::{self, Answered, Found, Question, npy};
+use crate::cli::text::digits;
+use crate::procedure::external::problem::{TEXT, Text};
+use crate::process::Limits;
+
+/// Calls it and says what it answered; the exit code.
+pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8, Failure> {
+    let path = problem.join(TEXT);
+    let wrong = |bad: String| Failure::Input(format!("{}: {bad}", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|bad| wrong(bad.to_string()))?;
+    let text: Text = serde_json::from_str(&text).map_err(|bad| wrong(bad.to_string()))?;
+    let nodes = npy::read(&problem.join("nodes.npy")).map_err(Failure::Input)?.shape.first().copied();
+    let folder = |path: &Path| {
+        std::fs::create_dir_all(path)
+            .and_then(|()| path.canonicalize())
+            .map_err(|bad| Failure::Input(format!("{}: {bad}", path.display())))
+    };
+    let (problem, answer) = (folder(problem)?, folder(answer)?);
+    let work = adapter::Folder::new().map_err(Failure::Run)?;
+    let limits = Limits {
+        time: Duration::try_from_secs_f64(text.limits.seconds).unwrap_or(Duration::MAX),
+        memory: text.limits.bytes,
+    };
+    let answered = adapter::ask(&Question {
+        adapter,
+        work: &work,
+        problem: &problem,
+        answer: &answer,
+        id: &text.id,
+        nodes: nodes.unwrap_or_default(),
+        steps: text.procedure.steps,
+        limits,
+        threads: text.threads,
+    });
+    match answered {
+        Ok(answered) => say(&answered),
+        Err(foreign) => {
+            eprintln!("{}: {foreign}", foreign.status.name());
+            return Ok(3);
+        }
+    }
+    Ok(0)
+}
+
+fn say(answered: &Answered) {
+    let Answered { call, answer, fields, stalled } = answered;
+    match stalled {
+        Some(stalled) => println!("stalled: {stalled}"),
+        None => println!("ok"),
+    }
+    let cpu = call.cpu.map_or(String::new(), |cpu| format!(", {} s of the processors", digits(cpu)));
+    println!("  took        {} s{cpu}, {} MB", digits(call.wall), call.memory >> 20);
+    for (phase, seconds) in &answer.phases {
+        println!("  own {phase:<8}{} s", digits(*seconds));
+    }
+    let largest = fields.iter().flatten().map(|u| u.norm()).fold(0.0, f64::max);
+    println!("  largest     {} mm", digits(1e3 * largest));
+}

@@ -1,0 +1,160 @@
+//! `tissuebench adapter check`: whether a solver is right where right is known. Only then are its times worth a look.
+
+use cases::scene;
+
+use crate::Failure;
+use crate::adapter::{self, Found};
+use crate::cli::text::digits;
+use crate::outcome::Outcome;
+use crate::run::{Group, Repeats, RunOptions};
+
+/// Relative error of an exact solution, where all digits are answered.
+const EXACT: f64 = 1e-8;
+/// Forces left over at free nodes against all forces, for each unit in the last digit of the answer: its elements are stiff
+/// against what rounding makes of neighbours.
+const BALANCE: f64 = 10.0;
+/// Relative difference from our own element.
+const AGREEMENT: f64 = 1e-6;
+/// Relative difference at large strain, of which each solver makes its own steps.
+const LARGE: f64 = 1e-5;
+
+/// A question: a body of bent cells, what acts on it, and what is compared.
+struct Case {
+    what: &'static str,
+    /// Procedure and law that it needs, in the words of `can`.
+    needs: &'static [&'static str],
+    scene: &'static str,
+    /// The number that is judged, and its bound.
+    metric: &'static str,
+    bound: f64,
+    /// Against exact solutions and in balances digits that are not answered are forgiven.
+    by_digits: f64,
+}
+
+const LINEAR: &str = "material = { law = \"linear\", young = \"20 kPa\", poisson = 0.3 }\n";
+const RIGID: &str = "support = [{ on = \"surface\", move = \"exact\" }]\n\
+    reference = { exact = \"rigid\" }\n";
+const PATCH: &str = "support = [{ on = \"surface\", move = \"exact\" }]\n\
+    reference = { exact = \"affine\" }\n";
+const LOADED: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }, { on = \"z-max\", move = { x = \"0.05 mm\" } }]\n\
+    load = [{ on = \"z-max\", pressure = \"0.4 kPa\" }, { body = [\"100 N/m^3\", \"0 N/m^3\", \"-500 N/m^3\"] }]\n\
+    reference = { method = \"ours\" }\n";
+const HELD: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }]\n\
+    load = [{ on = \"z-max\", pressure = \"2 kPa\" }, { on = \"x-max\", traction = [\"0.5 kPa\", \"0.2 kPa\", \"0 kPa\"] }]\n\
+    procedure = { kind = \"static\", steps = 4, tolerance = 1e-10 }\nreference = { method = \"ours\" }\n";
+
+const CASES: [Case; 6] = [
+    Case {
+        what: "rigid motion",
+        needs: &["linear"],
+        scene: RIGID,
+        metric: "relative-rms",
+        bound: EXACT,
+        by_digits: 1.0,
+    },
+    Case {
+        what: "linear patch",
+        needs: &["linear"],
+        scene: PATCH,
+        metric: "relative-rms",
+        bound: EXACT,
+        by_digits: 1.0,
+    },
+    Case {
+        what: "balance of forces",
+        needs: &["linear"],
+        scene: LOADED,
+        metric: "residual",
+        bound: EXACT,
+        by_digits: BALANCE,
+    },
+    Case {
+        what: "agreement with our element",
+        needs: &["linear"],
+        scene: LOADED,
+        metric: "relative-rms",
+        bound: AGREEMENT,
+        by_digits: 0.0,
+    },
+    Case {
+        what: "neo-hookean at large strain",
+        needs: &["static", "neo-hookean"],
+        scene: HELD,
+        metric: "relative-rms",
+        bound: LARGE,
+        by_digits: 0.0,
+    },
+    Case {
+        what: "neo-hookean-isochoric at large strain",
+        needs: &["static", "neo-hookean-isochoric"],
+        scene: HELD,
+        metric: "relative-rms",
+        bound: LARGE,
+        by_digits: 0.0,
+    },
+];
+
+/// Asks every question for every element; the exit code.
+pub(super) fn check(adapter: &Found) -> u8 {
+    if let Err(reason) = adapter::ready(adapter) {
+        eprintln!("tissuebench: {reason}");
+        return 3;
+    }
+    let can =
+        |case: &&Case| case.needs.iter().all(|word| adapter.manifest.can.iter().any(|known| known == word));
+    let mut failed = 0;
+    let mut asked = 0;
+    for element in &adapter.manifest.elements {
+        for case in CASES.iter().filter(can) {
+            asked += 1;
+            let (word, said) = match value(adapter, case, element) {
+                Ok(value) => {
+                    let bound = case.bound.max(case.by_digits * 0.1f64.powi(adapter.manifest.digits as i32));
+                    // Written so that a NaN fails.
+                    let holds = value <= bound;
+                    (holds, format!("{} {}, at most {}", case.metric, digits(value), digits(bound)))
+                }
+                Err(failure) => (false, failure.to_string()),
+            };
+            failed += usize::from(!word);
+            println!("{}  {element:<6} {:<38} {said}", if word { "passed" } else { "FAILED" }, case.what);
+        }
+    }
+    println!("{}: {} of {asked} passed", adapter.manifest.name, asked - failed);
+    adapter::note(adapter, asked > 0 && failed == 0);
+    match (asked, failed) {
+        (0, _) => 4,
+        (_, 0) => 0,
+        _ => 1,
+    }
+}
+
+/// What the solver answers to one question.
+fn value(adapter: &Found, case: &Case, element: &str) -> Result<f64, Failure> {
+    let Outcome { metrics, stalled, .. } = run(adapter, case, element)?;
+    if let Some(failure) = stalled {
+        return Err(failure);
+    }
+    let found = metrics.iter().find(|metric| metric.name() == case.metric);
+    found.map(|metric| metric.value).ok_or_else(|| Failure::Run(format!("gives no {}", case.metric)))
+}
+
+fn run(adapter: &Found, case: &Case, element: &str) -> Result<Outcome, Failure> {
+    let name = &adapter.manifest.name;
+    let law = case.needs.iter().find(|word| word.starts_with("neo"));
+    let material = law.map_or(LINEAR.into(), |law| LINEAR.replace("\"linear\"", &format!("{law:?}")));
+    let size = "size = { cells = [3, 2, 2] }, jitter = { fraction = 0.15, seed = 3 }";
+    let text = format!(
+        "title = {:?}\nbody = {{ shape = \"box\", size = [\"30 mm\", \"20 mm\", \"20 mm\"] }}\n{material}{}\
+         method = [{{ id = \"ours\", family = \"fem\", element = {element:?}, {size} }},\
+         {{ id = \"theirs\", family = \"external\", adapter = {name:?}, element = {element:?}, {size} }}]\n",
+        case.what, case.scene
+    );
+    let errors = |errors: Vec<scene::SceneError>| {
+        Failure::Run(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    };
+    let scene = scene::parse(&text, "check.toml").map_err(errors)?;
+    let group = Group::new(&scene, None, Repeats::ONCE)?;
+    let scenario = group.scenario(scene.methods[1].clone(), 0);
+    group.run(&scenario, RunOptions::default()).map_err(|unfinished| unfinished.failure)
+}

@@ -1,0 +1,32 @@
+//! `tissuebench claims`: published claims held against stored results.
+
+use reports::{ClaimVerdict, read_claims, read_run};
+
+use crate::cli::args::ClaimsArgs;
+use crate::cli::unreported;
+
+/// Prints what the results say of each claim; the exit code.
+pub(super) fn claims(args: &ClaimsArgs) -> u8 {
+    let read = read_claims(&args.file).and_then(|claims| Ok((claims, read_run(&args.results)?)));
+    let (claims, set) = match read {
+        Ok(read) => read,
+        Err(bad) => return unreported(&bad),
+    };
+    let (mut tested, mut unexpected) = (0, 0);
+    for claim in &claims {
+        let judged = claim.judge(&set);
+        println!("{}: {}: {} ({})", judged.verdict.name(), claim.id, claim.says, claim.source);
+        judged.lines.iter().for_each(|line| println!("  {line}"));
+        let known = judged.verdict != ClaimVerdict::Untested;
+        tested += usize::from(known);
+        if let Some(expected) = claim.expect.filter(|expected| known && *expected != judged.verdict) {
+            eprintln!("tissuebench: {}: {} was expected", claim.id, expected.name());
+            unexpected += 1;
+        }
+    }
+    match (tested, unexpected) {
+        (0, _) => 4,
+        (_, 0) => 0,
+        _ => 1,
+    }
+}

@@ -1,0 +1,142 @@
+//! The hidden command `solve`: a problem in files solved by this program, as any other one would that an adapter calls. It measures what
+//! the protocol costs and, asked to misbehave, tests whoever calls it.
+
+mod own;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use cases::scene::Setting;
+use clap::Args;
+use serde_json::json;
+
+use crate::adapter::{RESULT, npy};
+use crate::procedure::external::problem::{SCHEMA, TEXT, Text};
+use own::Solved;
+
+/// Arguments of the hidden command `solve`.
+#[derive(Args)]
+pub struct SolveArgs {
+    /// The folder of the problem
+    pub problem: PathBuf,
+    /// The folder to answer in
+    pub answer: PathBuf,
+    /// How to misbehave, in place of the setting `mode`
+    #[arg(long)]
+    pub mode: Option<String>,
+}
+
+/// What a misbehaving solver may do, by the setting `mode`.
+const MODES: &str = "own, zeros, scaled, garbage, nan, shape, result, silence, exit, sleep, children, memory, refused, stalled, stale";
+
+/// How long a child that is left behind would stay, in seconds; a number that no other process has.
+const CHILD: &str = "86387";
+
+/// Solves and answers; the exit code.
+pub(super) fn solve(args: &SolveArgs) -> u8 {
+    match answer(args) {
+        Ok(code) => code,
+        Err(reason) => {
+            eprintln!("tissuebench solve: {reason}");
+            let result = json!({ "status": "failed", "message": reason });
+            let _ = std::fs::write(args.answer.join(RESULT), result.to_string());
+            3
+        }
+    }
+}
+
+fn answer(args: &SolveArgs) -> Result<u8, String> {
+    let path = args.problem.join(TEXT);
+    let text = std::fs::read_to_string(&path).map_err(|bad| format!("{}: {bad}", path.display()))?;
+    let text: Text = serde_json::from_str(&text).map_err(|bad| format!("{}: {bad}", path.display()))?;
+    if text.schema != SCHEMA {
+        return Err(format!("{}: schema {} is not known, only {SCHEMA}", path.display(), text.schema));
+    }
+    let mode = match (&args.mode, text.settings.get("mode")) {
+        (Some(mode), _) => mode,
+        (None, None) => "own",
+        (None, Some(Setting::Text(mode))) => mode,
+        (None, Some(other)) => return Err(format!("mode {other:?}: give one of {MODES}")),
+    };
+    match mode {
+        "silence" => return Ok(0),
+        "exit" => {
+            eprintln!("a last word");
+            return Ok(7);
+        }
+        "sleep" => {
+            leave_a_child()?;
+            std::thread::sleep(Duration::from_secs(86400));
+            return Ok(0);
+        }
+        "memory" => take_memory(),
+        "refused" => return said(&args.answer, &text, "refused", "nothing of this kind"),
+        "result" => {
+            write(&args.answer.join(RESULT), b"{ \"status\": \"ok\"")?;
+            return Ok(0);
+        }
+        "children" => leave_a_child()?,
+        _ => {}
+    }
+    let solved = own::solve(&args.problem, &text)?;
+    found(&args.answer, &text, mode, solved)
+}
+
+/// Writes a displacement, as it is or as the mode has it.
+fn found(folder: &Path, text: &Text, mode: &str, solved: Solved) -> Result<u8, String> {
+    let path = folder.join("displacement.npy");
+    let nodes = solved.u.len();
+    let values = || solved.u.iter().flat_map(|u| [u.x, u.y, u.z]);
+    match mode {
+        "own" | "children" | "stale" => npy::write_floats(&path, 3, values())?,
+        "stalled" => npy::write_floats(&path, 3, values().map(|u| 0.5 * u))?,
+        "scaled" => npy::write_floats(&path, 3, values().map(|u| 1.001 * u))?,
+        "zeros" => npy::write_floats(&path, 3, std::iter::repeat_n(0.0, 3 * nodes))?,
+        "nan" => npy::write_floats(
+            &path,
+            3,
+            values().enumerate().map(|(at, u)| if at == 7 { f64::NAN } else { u }),
+        )?,
+        "shape" => npy::write_floats(&path, 3, values().skip(3))?,
+        "garbage" => write(&path, &[0x5a; 1000])?,
+        other => return Err(format!("mode '{other}': give one of {MODES}")),
+    }
+    let id = if mode == "stale" { "another" } else { &text.id };
+    let (status, load) = if mode == "stalled" { ("stalled", Some(0.5)) } else { ("ok", None) };
+    let result = json!({
+        "status": status,
+        "message": if load.is_some() { "asked to stop half way" } else { "" },
+        "load": load,
+        "version": format!("tissuebench {}", env!("CARGO_PKG_VERSION")),
+        "problem": id,
+        "phases": solved.phases,
+        "counts": solved.counts,
+    });
+    write(&folder.join(RESULT), result.to_string().as_bytes())?;
+    Ok(0)
+}
+
+fn said(folder: &Path, text: &Text, status: &str, message: &str) -> Result<u8, String> {
+    let result = json!({ "status": status, "message": message, "problem": text.id });
+    write(&folder.join(RESULT), result.to_string().as_bytes())?;
+    Ok(0)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
+}
+
+fn leave_a_child() -> Result<(), String> {
+    Command::new("sleep").arg(CHILD).spawn().map(drop).map_err(|bad| format!("sleep can't be started: {bad}"))
+}
+
+/// Takes memory until there is no more.
+fn take_memory() {
+    let mut taken: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    for block in 0.. {
+        taken.insert(block, vec![1; 16 << 20]);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}

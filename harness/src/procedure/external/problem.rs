@@ -1,0 +1,237 @@
+//! A problem as files: a text of what it is, and arrays of nodes, cells, supports and forces. All numbers are SI.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use cases::scene::{Procedure, Setting};
+use contact::ToolShape;
+use geometry::{CellKind, Point3, files};
+use material::{Law, Material as _};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::Failure;
+use crate::adapter::{About, npy};
+use crate::error::{Foreign, ForeignStatus};
+use crate::procedure::Problem;
+
+/// Version of these files: one that a reader does not know, it refuses.
+pub(crate) const SCHEMA: u32 = 1;
+/// The text.
+pub(crate) const TEXT: &str = "problem.json";
+/// Arrays, in the order that they are part of the problem's id.
+pub(crate) const ARRAYS: [&str; 6] =
+    ["nodes.npy", "cells.npy", "regions.npy", "fixed.npy", "force.npy", "probes.npy"];
+/// Meshes for programs that read no arrays.
+pub(crate) const MESHES: [&str; 2] = ["mesh.inp", "mesh.vtu"];
+
+/// `problem.json`.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Text {
+    /// Version of the files.
+    pub(crate) schema: u32,
+    /// Of all that is in them; an answer may repeat it.
+    pub(crate) id: String,
+    pub(crate) case: String,
+    pub(crate) method: String,
+    /// `tet4`, `tet10`, `hex8` or `hex20`: rows of `cells.npy` have the node order of VTK.
+    pub(crate) element: String,
+    /// Points per cell of our own quadrature; curved cells differ by it.
+    pub(crate) points_per_cell: usize,
+    /// One per number in `regions.npy`.
+    pub(crate) materials: Vec<MaterialText>,
+    pub(crate) procedure: ProcedureText,
+    pub(crate) limits: LimitsText,
+    pub(crate) threads: usize,
+    /// What the scene gives the adapter beside the problem.
+    pub(crate) settings: BTreeMap<String, Setting>,
+}
+
+/// A law with its constants; moduli are those at small strain.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct MaterialText {
+    pub(crate) region: String,
+    /// By its name in scenes.
+    pub(crate) law: String,
+    pub(crate) young: f64,
+    pub(crate) poisson: f64,
+    pub(crate) mu: f64,
+    pub(crate) lambda: f64,
+    pub(crate) bulk: f64,
+    /// kg/m^3.
+    pub(crate) density: Option<f64>,
+    /// What a law has beside its moduli.
+    pub(crate) constants: Value,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct ProcedureText {
+    /// `linear` or `static`.
+    pub(crate) kind: String,
+    /// Equal load steps; 0 of a linear procedure.
+    pub(crate) steps: usize,
+    /// Relative residual of a step.
+    pub(crate) tolerance: f64,
+    /// Most iterations of a step.
+    pub(crate) iterations: usize,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct LimitsText {
+    pub(crate) seconds: f64,
+    pub(crate) bytes: u64,
+}
+
+/// Writes the files of a problem, with these meshes; returns its id.
+pub(crate) fn write(
+    problem: &Problem,
+    about: &About,
+    folder: &Path,
+    meshes: &[String],
+) -> Result<String, Failure> {
+    let written = || -> Result<String, String> {
+        arrays(problem, folder)?;
+        if !problem.setup.tools.is_empty() {
+            let text = serde_json::to_string_pretty(&tools(problem)).map_err(|bad| bad.to_string())?;
+            save(&folder.join("tools.json"), text.as_bytes())?;
+        }
+        for name in meshes {
+            files::write(problem.method.mesh(), &folder.join(name), 1.0).map_err(|bad| bad.to_string())?;
+        }
+        let mut text = text(problem, about);
+        text.id = id(&text, folder)?;
+        let json = serde_json::to_string_pretty(&text).map_err(|bad| bad.to_string())?;
+        save(&folder.join(TEXT), json.as_bytes())?;
+        Ok(text.id)
+    };
+    written().map_err(|reason| Foreign::new(ForeignStatus::Failed, reason).into())
+}
+
+fn save(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
+}
+
+/// Of the text without limits and threads, which do not change a solution, and of all arrays.
+fn id(text: &Text, folder: &Path) -> Result<String, String> {
+    let mut hasher = blake3::Hasher::new();
+    let Text { schema, element, materials, procedure, settings, .. } = text;
+    let what = json!([schema, element, materials, procedure, settings]);
+    hasher.update(what.to_string().as_bytes());
+    for name in ARRAYS.into_iter().chain(["tools.json"]) {
+        hasher.update(&std::fs::read(folder.join(name)).unwrap_or_default());
+    }
+    Ok(hasher.finalize().to_hex()[..16].to_string())
+}
+
+fn arrays(problem: &Problem, folder: &Path) -> Result<(), String> {
+    let Problem { method, prepared, .. } = *problem;
+    let mesh = method.mesh();
+    let points = |name: &str, points: &[Point3]| {
+        npy::write_floats(&folder.join(name), 3, points.iter().flat_map(|p| [p.x, p.y, p.z]))
+    };
+    points("nodes.npy", method.nodes())?;
+    points("probes.npy", problem.probes)?;
+    let kind = mesh.uniform_kind().unwrap_or(CellKind::Tet4);
+    let nodes = (0..mesh.cell_count()).flat_map(|cell| mesh.cell(cell)).map(|&node| i64::from(node));
+    npy::write_integers(&folder.join("cells.npy"), kind.node_count(), nodes)?;
+    let regions = (0..mesh.cell_count()).map(|cell| i64::from(mesh.region(cell)));
+    npy::write_integers(&folder.join("regions.npy"), 1, regions)?;
+    // A corner of two supports is fixed twice, to the same value.
+    let fixed: BTreeMap<(u32, u8), f64> =
+        prepared.fixed().iter().map(|dof| ((dof.node, dof.axis), dof.value)).collect();
+    let rows = fixed.iter().flat_map(|(&(node, axis), &value)| [f64::from(node), f64::from(axis), value]);
+    npy::write_floats(&folder.join("fixed.npy"), 3, rows)?;
+    let force =
+        statics::nodal_forces(&prepared.volume.rows, &prepared.loads()).map_err(|bad| bad.to_string())?;
+    npy::write_floats(&folder.join("force.npy"), 3, force.iter().flat_map(|f| [f.x, f.y, f.z]))
+}
+
+fn text(problem: &Problem, about: &About) -> Text {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let materials = setup.laws.iter().zip(&setup.materials).zip(&setup.densities).enumerate();
+    let procedure = match &setup.procedure {
+        Procedure::Static(asked) => ProcedureText {
+            kind: "static".into(),
+            steps: asked.steps,
+            tolerance: asked.newton.tolerance,
+            iterations: asked.newton.iterations,
+        },
+        _ => ProcedureText { kind: "linear".into(), steps: 0, tolerance: 1e-10, iterations: 1 },
+    };
+    Text {
+        schema: SCHEMA,
+        id: String::new(),
+        case: about.case.clone(),
+        method: about.method.clone(),
+        element: about.element.into(),
+        points_per_cell: prepared.source.points_per_cell().unwrap_or(0),
+        materials: materials
+            .map(|(region, ((law, linear), &density))| MaterialText {
+                region: method.mesh().region_names()[region].clone(),
+                law: law.name().into(),
+                young: linear.young(),
+                poisson: linear.poisson(),
+                mu: law.mu(),
+                lambda: law.lambda(),
+                bulk: law.bulk(),
+                density,
+                constants: constants(law),
+            })
+            .collect(),
+        procedure,
+        limits: LimitsText { seconds: about.limits.time.as_secs_f64(), bytes: about.limits.memory },
+        threads: rayon::current_num_threads(),
+        settings: about.settings.clone(),
+    }
+}
+
+/// What a law has beside its moduli.
+fn constants(law: &Law) -> Value {
+    match law {
+        Law::NeoHookeanIsochoric(law) => json!({ "c10": law.c10(), "d1": law.d1() }),
+        Law::MooneyRivlin(law) => json!({ "c10": law.c10(), "c01": law.c01(), "bulk": law.bulk() }),
+        Law::Ogden(law) => {
+            let terms = law.terms().iter().map(|(mu, alpha)| json!({ "mu": mu, "alpha": alpha }));
+            json!({ "terms": terms.collect::<Vec<_>>(), "bulk": law.bulk() })
+        }
+        _ => json!({}),
+    }
+}
+
+/// The tools with their frames and ways; their surfaces are those of the scene's shapes.
+fn tools(problem: &Problem) -> Value {
+    let one = |placed: &crate::scenario::PlacedTool| {
+        let tool = &placed.tool;
+        let (law, at) = (tool.law(), tool.place(0.0));
+        let drive = match placed.drive {
+            contact::Drive::Closure(closure) => json!({ "closure": closure }),
+            contact::Drive::Force(force) => json!({ "force": force }),
+        };
+        let axes: Vec<[f64; 3]> = placed.turned.row_iter().map(|row| [row[0], row[1], row[2]]).collect();
+        json!({
+            "name": placed.name,
+            "shape": shape(tool.shape()),
+            "at": [at.x, at.y, at.z],
+            "along": <[f64; 3]>::from(tool.along()),
+            "axes": axes,
+            "drive": drive,
+            "penalty": law.penalty(),
+            "friction": law.friction(),
+        })
+    };
+    Value::Array(problem.setup.tools.iter().map(one).collect())
+}
+
+/// A shape in its own frame, m: about the origin; a cylinder's and a capsule's axis is z, a plate is z = 0 with the tool below.
+fn shape(shape: &ToolShape) -> Value {
+    let name = shape.name();
+    match shape {
+        ToolShape::RoundedBox(of) => json!({ "name": name, "half": of.half, "radius": of.radius }),
+        ToolShape::Sphere(of) => json!({ "name": name, "radius": of.radius }),
+        ToolShape::Cylinder(of) => {
+            json!({ "name": name, "radius": of.radius, "half-length": of.half_length })
+        }
+        ToolShape::Capsule(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
+        ToolShape::Plate(_) => json!({ "name": name }),
+    }
+}

@@ -1,0 +1,156 @@
+//! One call of another program: as long as it may take, with as much memory as it may have, and measured.
+
+use std::io;
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use super::group::{self, Started, last_words};
+
+/// Times between two looks at what the processes take: a tenth of what they took so far.
+const SHORTEST_PAUSE: Duration = Duration::from_millis(3);
+const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+/// How long the last words of a program are waited for: what it has started may keep its end of the pipe open.
+const LAST_WORDS: Duration = Duration::from_secs(1);
+
+/// What a call may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    pub(crate) time: Duration,
+    /// Bytes of all processes together.
+    pub(crate) memory: u64,
+}
+
+/// How a call ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum End {
+    /// By itself.
+    Exited(ExitStatus),
+    OutOfTime,
+    OutOfMemory,
+}
+
+/// A call that has ended, with all that it had started.
+#[derive(Debug)]
+pub(crate) struct Call {
+    pub(crate) end: End,
+    /// Seconds by the clock on the wall.
+    pub(crate) wall: f64,
+    /// Seconds of the processors, to a hundredth; known on Linux.
+    pub(crate) cpu: Option<f64>,
+    /// Most bytes that all processes had together; known on Linux, 0 elsewhere.
+    pub(crate) memory: u64,
+    /// The end of what it wrote to stderr.
+    pub(crate) last_words: String,
+}
+
+/// Calls a program on a leash: its group ends with it, with its limits, or with this process.
+pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
+    let mut command = leashed(program, limits.memory)?;
+    let began = Instant::now();
+    let mut started = Started::new(&mut command)?;
+    // Kept open as long as this process is there: the leash pulls when it closes.
+    let leash = started.child().stdin.take();
+    let (heard, words) = mpsc::channel();
+    if let Some(stderr) = started.child().stderr.take() {
+        std::thread::spawn(move || heard.send(last_words(stderr)));
+    }
+    let watched = watch(&mut started, began, limits);
+    let cpu = watched.cpu(started.id());
+    let status = started.end()?;
+    drop(leash);
+    let end = watched.end.unwrap_or(End::Exited(status));
+    let last_words = words.recv_timeout(LAST_WORDS).unwrap_or_default();
+    Ok(Call { end, wall: watched.wall, cpu, memory: watched.memory, last_words })
+}
+
+/// This program as the leash of another one.
+fn leashed(program: &Command, memory: u64) -> io::Result<Command> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(["leash", "--memory-limit", &memory.to_string(), "--"]);
+    command.arg(program.get_program()).args(program.get_args());
+    for (key, value) in program.get_envs() {
+        match value {
+            Some(value) => command.env(key, value),
+            None => command.env_remove(key),
+        };
+    }
+    program.get_current_dir().into_iter().for_each(|folder| {
+        command.current_dir(folder);
+    });
+    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    Ok(command)
+}
+
+/// What was seen of a group until its first process ended, or had to.
+#[derive(Default)]
+struct Watched {
+    /// `None` where it ended by itself.
+    end: Option<End>,
+    wall: f64,
+    memory: u64,
+    /// Seconds of the processors that processes had which nobody has waited for.
+    #[cfg_attr(not(target_os = "linux"), allow(dead_code))]
+    running: f64,
+}
+
+impl Watched {
+    fn cpu(&self, leash: u32) -> Option<f64> {
+        #[cfg(target_os = "linux")]
+        return super::members::waited_for(leash).map(|seconds| seconds + self.running);
+        #[cfg(not(target_os = "linux"))]
+        {
+            let _ = leash;
+            None
+        }
+    }
+}
+
+fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
+    let id = started.id();
+    let (ended, end) = mpsc::channel();
+    #[cfg(unix)]
+    std::thread::spawn(move || {
+        group::wait(id);
+        ended.send(Instant::now())
+    });
+    let mut watched = Watched::default();
+    loop {
+        let pause = (began.elapsed() / 10).clamp(SHORTEST_PAUSE, LONGEST_PAUSE);
+        let left = limits.time.saturating_sub(began.elapsed());
+        if let Ok(at) = end.recv_timeout(pause.min(left)) {
+            watched.wall = (at - began).as_secs_f64();
+            return watched;
+        }
+        watched.wall = began.elapsed().as_secs_f64();
+        // Where nobody waits for it, it is looked for.
+        #[cfg(not(unix))]
+        if started.has_ended().unwrap_or(true) {
+            drop(ended);
+            return watched;
+        }
+        look(&mut watched, id, limits.memory);
+        if began.elapsed() >= limits.time {
+            watched.end = Some(End::OutOfTime);
+        }
+        if watched.end.is_some() {
+            started.kill();
+            // Whatever is killed ends, but a process that waits for a disk does so later.
+            let _ = end.recv_timeout(limits.time);
+            return watched;
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn look(watched: &mut Watched, id: u32, limit: u64) {
+    let members = super::members::of(id);
+    watched.memory = watched.memory.max(members.memory).max(members.largest);
+    watched.running = members.seconds;
+    if members.memory > limit {
+        watched.end = Some(End::OutOfMemory);
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn look(_: &mut Watched, _: u32, _: u64) {}

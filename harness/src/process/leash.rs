@@ -1,0 +1,63 @@
+//! The hidden command `leash`: runs another program in its own group, and ends that group when whoever started it is gone.
+//!
+//! A program that starts others leaves them behind if it is killed. Its leash does not: its stdin is a pipe that the system closes with
+//! the process at the other end, whatever ends that.
+
+use std::ffi::OsString;
+use std::io::Read;
+use std::process::{Command, ExitStatus, Stdio};
+
+use clap::Args;
+
+use super::group;
+
+/// As shells have it: a program that is not there, and one that a signal has ended.
+const NOT_FOUND: u8 = 127;
+const SIGNAL: i32 = 128;
+
+/// Arguments of the hidden command `leash`.
+#[derive(Args)]
+pub struct LeashArgs {
+    /// Memory that each process may allocate
+    #[arg(long)]
+    pub memory_limit: Option<u64>,
+    /// The program with its arguments
+    #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    pub command: Vec<OsString>,
+}
+
+/// Runs the program; returns its exit code.
+pub(crate) fn leash(args: &LeashArgs) -> u8 {
+    std::thread::spawn(|| {
+        let mut pipe = [0; 64];
+        while let Ok(1..) = std::io::stdin().read(&mut pipe) {}
+        end_own_group();
+    });
+    if let Some(bad) = args.memory_limit.and_then(|bytes| group::limit_memory(bytes).err()) {
+        eprintln!("tissuebench: the memory can't be limited: {bad}");
+    }
+    let Some((program, rest)) = args.command.split_first() else { return 2 };
+    match Command::new(program).args(rest).stdin(Stdio::null()).status() {
+        Ok(status) => code(status),
+        Err(bad) => {
+            eprintln!("tissuebench: {} can't be started: {bad}", program.to_string_lossy());
+            NOT_FOUND
+        }
+    }
+}
+
+fn code(status: ExitStatus) -> u8 {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        return u8::try_from(SIGNAL + signal).unwrap_or(1);
+    }
+    status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)
+}
+
+/// Ends the group that this process leads, itself included. One that it does not lead is somebody else's.
+fn end_own_group() {
+    #[cfg(unix)]
+    if rustix::process::getpgrp() == rustix::process::getpid() {
+        group::kill(std::process::id());
+    }
+}

@@ -1,0 +1,79 @@
+//! A method of a solver outside this program: its mesh, and whether its adapter takes what the scene asks for.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use cases::scene::{self, Family, ProcedureKind, Setting};
+
+use super::Scenario;
+use crate::Failure;
+use crate::adapter::{self, About, Outside};
+use crate::discretise::Discretisation;
+use crate::error::{Foreign, ForeignStatus, Key};
+use crate::process::Limits;
+
+impl Scenario<'_> {
+    /// The mesh of the elements that the solver is said to have, and who solves.
+    pub(super) fn external(&self, external: &scene::External) -> Result<Discretisation, Failure> {
+        let bad = |failure: Failure| match failure {
+            Failure::Input(problem) => Failure::input(Key::Method("adapter"), problem, ""),
+            other => other,
+        };
+        let adapter = adapter::find(&external.adapter, Some(Path::new(self.scene.file()))).map_err(bad)?;
+        let element = external.elements.element.name();
+        if let Some(reason) = adapter.manifest.refusal(element, &self.asked()) {
+            let reason = format!("{} {reason}", external.adapter);
+            return Err(Foreign::new(ForeignStatus::NotOffered, reason).into());
+        }
+        let limits = Limits {
+            time: Duration::try_from_secs_f64(external.time_limit).unwrap_or(Duration::MAX),
+            memory: external.memory_limit,
+        };
+        let about = self.about(element, external.settings.clone(), limits);
+        let outside = Outside { adapter, about };
+        Ok(Discretisation { outside: Some(Arc::new(outside)), ..self.elements(&external.elements)? })
+    }
+
+    fn about(&self, element: &'static str, settings: BTreeMap<String, Setting>, limits: Limits) -> About {
+        About { case: self.case.clone(), method: self.method.id.clone(), element, settings, limits }
+    }
+
+    /// What the problem of a method of finite elements is called, whoever solves it.
+    pub(crate) fn about_elements(&self) -> Result<About, Failure> {
+        let fem = match &self.method.family {
+            Family::Fem(fem) => fem,
+            Family::External(_) => {
+                let outside = self.discretise()?.outside;
+                return Ok(outside.map(|outside| outside.about.clone()).expect("it has one"));
+            }
+            Family::Efg(_) | Family::OverMesh(_) => {
+                let problem = "is no finite elements: problems in files are of meshes";
+                return Err(self.locate(Failure::input(
+                    Key::Method("family"),
+                    problem,
+                    "give another method",
+                )));
+            }
+        };
+        let limits = Limits { time: Duration::from_secs(600), memory: 4 << 30 };
+        Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
+    }
+
+    /// What the scene asks of a solver, each by its word in an adapter's `can` and for people. Procedures that problems in files
+    /// do not have yet are words of no adapter.
+    fn asked(&self) -> Vec<(&'static str, String)> {
+        let kind = self.scene.procedure.kind();
+        let mut asked = vec![match kind {
+            ProcedureKind::Linear => ("linear", "a linear procedure".into()),
+            ProcedureKind::Static => ("static", "load steps (kind = \"static\")".into()),
+            other => ("", format!("kind = \"{}\", which problems in files do not have yet", other.name())),
+        }];
+        asked.extend(self.scene.materials().map(|(_, m)| (m.name(), format!("the law \"{}\"", m.name()))));
+        if !self.scene.tools.is_empty() {
+            asked.push(("tools", "rigid tools ([[tool]])".into()));
+        }
+        asked
+    }
+}
