@@ -269,7 +269,7 @@ at_most = 0.01
     fn a_file_that_is_none_of_claims_is_refused_with_its_line() {
         for (from, to, says) in [
             ("at_most = 0.01", "at_most = -1", "at_most above 0"),
-            ("time-ratio", "time-ratios", "line 16"),
+            ("time-ratio", "time-ratios", "line 14"),
             ("scenes = [\"jaws\"]", "scenes = []", "needs scenes"),
             ("source", "sauce", "line 3"),
         ] {
