@@ -56,12 +56,12 @@ impl Baseline {
 
     /// Writes a baseline file: one line for each quantity, numbers with the fewest digits that give the same bits again.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
-        let mut text = format!("{HEADER}processor = {:?}\n", self.processor);
+        let mut text = format!("{HEADER}processor = {}\n", quoted(&self.processor));
         for (run, numbers) in &self.runs {
-            text += &format!("\n[runs.{run:?}]\n");
+            text += &format!("\n[runs.{}]\n", quoted(run));
             for (quantity, values) in numbers {
                 let values: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
-                text += &format!("{quantity:?} = [{}]\n", values.join(", "));
+                text += &format!("{} = [{}]\n", quoted(quantity), values.join(", "));
             }
         }
         write_text(path, text)
@@ -74,6 +74,11 @@ impl Baseline {
 }
 
 const HEADER: &str = "# Accepted numbers of a study's quick tier, SI. Made and compared by `cargo xtask baseline`; not to be edited by hand.\n";
+
+/// A string of TOML: the escapes of JSON are among its own, and it has one more character that needs one.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
 
 /// Case, method, settings and size of a record.
 fn run_name(r: &Record) -> String {

@@ -150,6 +150,17 @@ mod tests {
     }
 
     #[test]
+    fn any_name_is_read_as_it_was_written() {
+        let name = "a \"b\" \\ \u{feff}\u{7f}\n\u{1}\u{200b} \u{e4}";
+        let file = std::env::temp_dir().join(format!("tissuebench-names-{}.toml", std::process::id()));
+        let written = one(name, name, &[1.5, -0.0], name);
+        written.save(&file).unwrap();
+        let read = Baseline::load(&file);
+        std::fs::remove_file(&file).unwrap();
+        assert_eq!(read.unwrap(), written);
+    }
+
+    #[test]
     fn one_bit_is_a_difference_on_the_same_processor_and_none_on_another() {
         let before = one("a", "rms [m]", &[0.3], "p");
         let next = f64::from_bits(0.3f64.to_bits() + 1);
