@@ -66,7 +66,7 @@ warnings! {
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
-        "a solver outside this program has not passed `tissuebench adapter check` as it is now";
+        "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
     FEW_DIGITS: "few-digits", None,
         "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
     ESTIMATED_ERROR: "estimated-error", None,
