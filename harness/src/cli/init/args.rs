@@ -42,7 +42,7 @@ pub struct InitArgs {
     /// Methods, each in three sizes: tet4, tet4-nodal, tet10 and efg (default: tet4,tet10,efg)
     #[arg(long, value_name = "LIST")]
     pub methods: Option<String>,
-    /// About how many nodes the finest size of each method has (default: 1000)
+    /// About how many nodes the finest size of each method has; tet10 has twice as many (default: 1000)
     #[arg(long, value_name = "N", conflicts_with = "spacing")]
     pub nodes: Option<String>,
     /// In place of --nodes: the mean length of the edges of the finest size
