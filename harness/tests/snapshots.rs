@@ -39,6 +39,7 @@ fn the_list_names_everything() {
 fn every_verb_has_help() {
     let dir = folder(&[]);
     let verbs = [
+        "init",
         "run",
         "fields",
         "plan",

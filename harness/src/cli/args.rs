@@ -6,6 +6,7 @@ use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use super::adapter::AdapterAction;
 use super::ci::CiArgs;
+use super::init::InitArgs;
 use super::solve::SolveArgs;
 use crate::process::LeashArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
@@ -36,6 +37,10 @@ pub struct Cli {
 /// What to do.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Write a scene of an organ under a plate, to be run as it is
+    ///
+    /// What no option gives is asked on a terminal; elsewhere defaults are taken, and named in the output.
+    Init(InitArgs),
     /// Run one scene, with some or all of its methods
     Run(RunArgs),
     /// Run methods of a scene and write the body at every recorded state, as .vtu files and a .pvd series that ParaView opens
@@ -323,7 +328,7 @@ pub struct MakeArgs {
 }
 
 /// A length with its unit, m.
-fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let metres = catalogue::Dimension::Length.read(text).map_err(|bad| bad.to_string())?;
     if metres > 0.0 { Ok(metres) } else { Err("a length above zero".into()) }
 }
@@ -337,7 +342,7 @@ pub struct LengthUnit {
     pub metres: f64,
 }
 
-fn length_unit(text: &str) -> Result<LengthUnit, String> {
+pub(super) fn length_unit(text: &str) -> Result<LengthUnit, String> {
     let known = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)];
     let found = known.into_iter().find(|(name, _)| *name == text);
     let (name, metres) = found.ok_or("a length unit: m, cm, mm or um")?;

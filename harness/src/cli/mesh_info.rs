@@ -225,7 +225,7 @@ fn extent_json(low: Point3, high: Point3) -> [[f64; 2]; 3] {
 
 /// The unit in which a body of that longest extent (m, read in the unit given) is as long as organs are; the one given if it is, `None`
 /// if none is.
-fn guess(longest: f64, unit: LengthUnit) -> Option<&'static str> {
+pub(super) fn guess(longest: f64, unit: LengthUnit) -> Option<&'static str> {
     let own = longest / unit.metres;
     let known = [(unit.name, unit.metres), ("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("um", 1e-6)];
     let fits = |metres: f64| (LONG[0]..=LONG[1]).contains(&(own * metres));

@@ -10,6 +10,7 @@ mod colour;
 mod compare;
 mod export;
 mod fields;
+mod init;
 mod interrupt;
 mod json;
 mod list;
@@ -65,6 +66,7 @@ fn act(cli: Cli) -> u8 {
     colour::choose(cli.color);
     crate::adapter::add_folders(&cli.adapters);
     match cli.command {
+        Command::Init(args) => init::init(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Run(args) => run(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),

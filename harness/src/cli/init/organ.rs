@@ -1,0 +1,88 @@
+//! The body of the file: its extent, the names it gives, and points inside.
+
+use std::path::Path;
+
+use geometry::surface::BoundaryFaces;
+use geometry::{Point3, Surface, files};
+
+use super::args::Side;
+use crate::Failure;
+use crate::cli::args::LengthUnit;
+use crate::cli::mesh_files::input;
+
+/// Points along each axis among which the middle of a bent body is searched.
+const GRID: usize = 11;
+/// Probes lie at least this part of the smallest extent below the surface, which coarse meshes cut off.
+const BELOW: f64 = 0.05;
+
+/// A body that a plate can press.
+pub(super) struct Organ {
+    /// Its boundary, in metres.
+    pub surface: Surface,
+    /// Surfaces that the file names.
+    pub names: Vec<String>,
+    /// Lowest and highest corner of its box, m.
+    pub bounds: [Point3; 2],
+}
+
+impl Organ {
+    /// Reads a closed surface or a mesh.
+    pub fn read(file: &Path, unit: LengthUnit) -> Result<Organ, Failure> {
+        let (surface, names) = if files::is_surface(file) {
+            (files::read_surface(file, unit.metres).map_err(input)?, Vec::new())
+        } else {
+            let mesh = files::read(file, unit.metres).map_err(input)?;
+            let boundary = BoundaryFaces::new(&mesh);
+            let boundary = boundary.map_err(|bad| input(format!("{}: {bad}", file.display())))?;
+            (boundary.surface, mesh.group_names().map(String::from).collect())
+        };
+        let bounds = surface.bounds();
+        Ok(Organ { surface, names, bounds })
+    }
+
+    /// Length of its box along an axis, m.
+    pub fn extent(&self, axis: usize) -> f64 {
+        self.bounds[1][axis] - self.bounds[0][axis]
+    }
+
+    /// Its shortest side, m.
+    pub fn smallest_extent(&self) -> f64 {
+        (0..3).map(|axis| self.extent(axis)).fold(f64::MAX, f64::min)
+    }
+
+    /// Its longest side, m.
+    pub fn largest_extent(&self) -> f64 {
+        (0..3).map(|axis| self.extent(axis)).fold(0.0, f64::max)
+    }
+
+    /// The point that a plate from this side touches first.
+    pub fn first_touched(&self, side: Side) -> Point3 {
+        let ahead = |p: &Point3| side.sign() * p[side.axis()];
+        let first = self.surface.points()[0];
+        self.surface.points().iter().fold(first, |best, p| if ahead(p) > ahead(&best) { *p } else { best })
+    }
+
+    /// Close to the plate: just below the point that it touches first.
+    pub fn near(&self, side: Side) -> Point3 {
+        let mut p = self.first_touched(side);
+        p[side.axis()] -= side.sign() * BELOW * self.smallest_extent();
+        if self.depth(&p) > 0.0 { p } else { self.first_touched(side) }
+    }
+
+    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points.
+    pub fn middle(&self) -> Point3 {
+        let middle = nalgebra::center(&self.bounds[0], &self.bounds[1]);
+        if self.depth(&middle) > 2.0 * BELOW * self.smallest_extent() {
+            return middle;
+        }
+        let at =
+            |k: usize, axis: usize| self.bounds[0][axis] + self.extent(axis) * (k as f64 + 0.5) / GRID as f64;
+        let grid = (0..GRID.pow(3))
+            .map(|k| Point3::new(at(k % GRID, 0), at(k / GRID % GRID, 1), at(k / GRID / GRID, 2)));
+        grid.fold(middle, |best, p| if self.depth(&p) > self.depth(&best) { p } else { best })
+    }
+
+    fn depth(&self, p: &Point3) -> f64 {
+        -self.surface.signed_distance(p)
+    }
+}

@@ -1,0 +1,313 @@
+//! The text of a scene, with comments that say what each part is for and what to try next.
+
+use std::fmt::Write as _;
+
+use geometry::Point3;
+
+use super::args::{Method, Side, Strain, word};
+use crate::cli::args::LengthUnit;
+
+/// The finest size of each method has all nodes; the others these parts of it.
+const SIZES: [(&str, f64); 3] = [("coarse", 0.25), ("medium", 0.5), ("fine", 1.0)];
+/// The reference has so many times as many nodes.
+const FINER: f64 = 6.0;
+/// Pressure of a plate per penetration, over Young's modulus by the body's height: tissue then goes into the plate by a
+/// five-hundredth of its shortening.
+const STIFF: f64 = 500.0;
+/// At small strain the outermost part of the height is moved or loaded, as no plate finds where it touches.
+const PRESSED: f64 = 0.1;
+
+/// Everything that the scene says.
+pub(super) struct Wanted {
+    pub title: String,
+    /// The file, as the scene names it.
+    pub path: String,
+    pub unit: LengthUnit,
+    pub strain: Strain,
+    pub young: String,
+    /// The same, Pa.
+    pub young_value: f64,
+    pub poisson: f64,
+    /// What is held: comparisons or names.
+    pub hold: Hold,
+    pub side: Side,
+    /// The box of the body, m.
+    pub bounds: [Point3; 2],
+    pub drive: Drive,
+    /// Distance from which the plate starts, m.
+    pub gap: f64,
+    pub methods: Vec<Method>,
+    pub size: Size,
+    /// Close to the plate, and in the middle.
+    pub probes: [Point3; 2],
+}
+
+/// What is held.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Hold {
+    Where(String),
+    On(String),
+}
+
+/// What the plate does.
+pub(super) enum Drive {
+    /// It goes into the height of the body by this much, m.
+    Closure(f64),
+    /// A force, at small strain a pressure.
+    Load(String),
+}
+
+/// The finest size of each method.
+#[derive(Clone, Copy)]
+pub(super) enum Size {
+    Nodes(f64),
+    /// m.
+    Spacing(f64),
+}
+
+impl Size {
+    /// The size with so many times the nodes.
+    fn times(self, nodes: f64) -> Size {
+        match self {
+            Size::Nodes(count) => Size::Nodes((count * nodes).round()),
+            Size::Spacing(length) => Size::Spacing(length / nodes.cbrt()),
+        }
+    }
+}
+
+/// The whole scene.
+pub(super) fn text(wanted: &Wanted) -> String {
+    let parts = [head(wanted), wanted.held(), wanted.pressed(), wanted.compared(), wanted.run_by()];
+    parts.join("\n")
+}
+
+/// Text as TOML quotes it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// A length in a unit, to a thousandth of the largest power of ten in the body's size.
+pub(super) fn length(metres: f64, unit: LengthUnit, largest: f64) -> String {
+    let decimals = (3.0 - (largest / unit.metres).log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{:.decimals$}", metres / unit.metres);
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text = if text == "-0" { "0" } else { text };
+    format!("{text} {}", unit.name)
+}
+
+fn head(wanted: &Wanted) -> String {
+    let law = match wanted.strain {
+        Strain::Large => "neo-hookean",
+        Strain::Small => "linear",
+    };
+    format!(
+        r#"# Written by `tissuebench init`. Run it:  tissuebench run THIS --out RESULTS   (then open RESULTS/report/report.html)
+# `tissuebench plan THIS` says what a run does, `tissuebench list` which other names there are.
+title = {title}
+
+# The body: a closed surface is filled with tetrahedra as fine as each method says; of a mesh the boundary is.
+[body]
+shape = "file"
+path = {path}
+unit = "{unit}"
+
+# The tissue. Nearer to 0.5 it keeps its volume better, and simple elements lock: try 0.49 and see which errors grow.
+# `tissuebench list laws` names the others.
+[material]
+law = "{law}"
+young = {young}
+poisson = {poisson}
+"#,
+        title = quoted(&wanted.title),
+        path = quoted(&wanted.path),
+        unit = wanted.unit.name,
+        young = quoted(&wanted.young),
+        poisson = wanted.poisson,
+    )
+}
+
+impl Wanted {
+    fn length(&self, metres: f64) -> String {
+        length(metres, self.unit, (self.bounds[1] - self.bounds[0]).amax())
+    }
+
+    fn axis(&self) -> &'static str {
+        ["x", "y", "z"][self.side.axis()]
+    }
+
+    fn height(&self) -> f64 {
+        let axis = self.side.axis();
+        self.bounds[1][axis] - self.bounds[0][axis]
+    }
+
+    /// Coordinate of the outermost point on the side of the plate, m.
+    fn end(&self) -> f64 {
+        self.bounds[usize::from(self.side.sign() > 0.0)][self.side.axis()]
+    }
+
+    fn held(&self) -> String {
+        let place = match &self.hold {
+            Hold::Where(region) => format!("where = {}", quoted(region)),
+            Hold::On(name) => format!("on = {}", quoted(name)),
+        };
+        let [low, high] = self.bounds.map(|p| [0, 1, 2].map(|axis| self.length(p[axis])));
+        format!(
+            r#"# What is held: nodes where comparisons hold, joined by 'and', or `on` a surface that a mesh file names.
+# The body is x = {} to {}, y = {} to {}, z = {} to {}. fix = "xy" lets it slide along z.
+[[support]]
+{place}
+fix = "xyz"
+"#,
+            low[0], high[0], low[1], high[1], low[2], high[2]
+        )
+    }
+
+    fn pressed(&self) -> String {
+        match (self.strain, &self.drive) {
+            (Strain::Large, drive) => self.plate(drive),
+            (Strain::Small, drive) => {
+                let (than, inside) = if self.side.sign() > 0.0 { (">=", -1.0) } else { ("<=", 1.0) };
+                let from = self.length(self.end() + inside * PRESSED * self.height());
+                let place = format!("where = \"{} {than} {from}\"", self.axis());
+                match drive {
+                    Drive::Closure(by) => format!(
+                        r#"# The end of the body at the plate, moved as one, as if it stuck. At small strain nothing finds where it touches: for a plate in
+# contact, run `tissuebench init --strain large`.
+[[support]]
+{place}
+move = {{ {} = "{}" }}
+"#,
+                        self.axis(),
+                        self.length(-self.side.sign() * by)
+                    ),
+                    Drive::Load(pressure) => format!(
+                        r#"# The end of the body, under pressure.
+[[load]]
+{place}
+pressure = {}
+"#,
+                        quoted(pressure)
+                    ),
+                }
+            }
+        }
+    }
+
+    fn plate(&self, drive: &Drive) -> String {
+        let mut at = nalgebra::center(&self.bounds[0], &self.bounds[1]);
+        at[self.side.axis()] = self.end() + self.side.sign() * self.gap;
+        let at = [0, 1, 2].map(|axis| format!("\"{}\"", self.length(at[axis]))).join(", ");
+        let along = [0, 1, 2].map(|axis| match axis == self.side.axis() {
+            true if self.side.sign() > 0.0 => "-1",
+            true => "1",
+            false => "0",
+        });
+        let along = along.join(", ");
+        let drive = match drive {
+            Drive::Closure(by) => format!("closure = \"{}\"", self.length(by + self.gap)),
+            Drive::Load(force) => format!("force = {}", quoted(force)),
+        };
+        // MPa/mm is 1e9 Pa/m.
+        let penalty = STIFF * self.young_value / self.height() / 1e9;
+        format!(
+            r#"# A rigid plate from the {side}. `closure` is its way, `force` its force; `penalty` its pressure per penetration. Other shapes:
+# sphere, cylinder, capsule, rounded-box; friction = 0.3 needs `stick` too.
+[[tool]]
+name = "plate"
+shape = "plate"
+at = [{at}]
+along = [{along}]
+drive = {{ {drive} }}
+penalty = "{penalty:.2e} MPa/mm"
+
+# Load steps, each solved to equilibrium and recorded. A step that fails is halved.
+[procedure]
+kind = "static"
+steps = 4
+"#,
+            side = word(self.side),
+        )
+    }
+
+    fn compared(&self) -> String {
+        let preferred = [Method::Tet10, Method::Efg, Method::Tet4Nodal, Method::Tet4];
+        let method = preferred.into_iter().find(|method| self.methods.contains(method));
+        let method = method.map_or(String::new(), |method| format!("{}-fine", word(method)));
+        let [near, middle] =
+            self.probes.map(|p| [0, 1, 2].map(|axis| format!("\"{}\"", self.length(p[axis]))).join(", "));
+        format!(
+            r#"# What errors are measured against: a method below on a finer mesh. Take it finer until the errors stay as they are. Once it is
+# good, `tissuebench reference` stores it, and `record = "FILE"` takes it from there.
+[reference]
+method = "{method}"
+size = {{ {size} }}
+
+# Points where displacements are reported: close to the plate, and in the middle.
+[output]
+probes = [[{near}], [{middle}]]
+"#,
+            size = self.size_key(self.size.times(FINER)),
+        )
+    }
+
+    fn size_key(&self, size: Size) -> String {
+        match size {
+            Size::Nodes(count) => format!("nodes = {count:.0}"),
+            Size::Spacing(length) => format!("spacing = \"{}\"", self.length(length)),
+        }
+    }
+
+    /// Every method in three sizes.
+    fn run_by(&self) -> String {
+        let mut text = String::from(
+            "# What is run: each method in three sizes makes one curve of run time against error. Leave out what you need not.\n\
+             # `nodes` is met within some percent; `spacing = \"3 mm\"` is the mean length of the edges.\n",
+        );
+        for &method in &self.methods {
+            writeln!(text, "\n# {}", about(method)).expect("a string");
+            for (name, part) in SIZES {
+                // Small meshes of tet10 are few cells: half of its nodes are on their edges.
+                let doubled = if method == Method::Tet10 { 2.0 } else { 1.0 };
+                let size = self.size.times(doubled * part);
+                let id = word(method);
+                writeln!(text, "[[method]]\nid = \"{id}-{name}\"\nseries = \"{id}\"").expect("a string");
+                let size = match (method, size) {
+                    (Method::Efg, Size::Nodes(_)) => self.size_key(size),
+                    _ => format!("size = {{ {} }}", self.size_key(size)),
+                };
+                writeln!(text, "{}{size}\n", keys(method)).expect("a string");
+            }
+            text.truncate(text.trim_end().len());
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn about(method: Method) -> &'static str {
+    match method {
+        Method::Tet4 => "tet4: the simplest element; too stiff where tissue keeps its volume.",
+        Method::Tet4Nodal => {
+            "tet4-nodal: the same with volume changes averaged at nodes, which does not lock."
+        }
+        Method::Tet10 => {
+            "tet10: curved displacements, fewer elements for the same error. Twice the nodes of the others, as edges have them too."
+        }
+        Method::Efg => {
+            "efg: element-free Galerkin, a cloud of nodes over cells that only integrate. Try basis = \"quadratic\" with \
+             support_scale = 2.2."
+        }
+    }
+}
+
+fn keys(method: Method) -> &'static str {
+    match method {
+        Method::Tet4 => "family = \"fem\"\nelement = \"tet4\"\n",
+        Method::Tet4Nodal => "family = \"fem\"\nelement = \"tet4\"\ndilation = \"nodal-mean\"\n",
+        Method::Tet10 => "family = \"fem\"\nelement = \"tet10\"\n",
+        Method::Efg => {
+            "family = \"efg\"\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\nbasis = \"linear\"\n\
+             integration = { rule = \"cell-smoothed\", points = 1 }\nessential = \"penalty\"\n"
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! From the surface of an organ to numbers and a picture with no file edited by hand.
+
+mod common;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use common::{assert_fails, inside, objects, tissuebench, write};
+use tempfile::TempDir;
+
+/// A bean of about 70 x 40 x 30 mm in STL: an ellipsoid bent so that its middle lies near its hollow side, as a kidney's does.
+fn bean() -> String {
+    let (along, around) = (20, 28);
+    let at = |i: usize, j: usize| {
+        let (t, p) = (
+            std::f64::consts::PI * i as f64 / along as f64,
+            std::f64::consts::TAU * (j % around) as f64 / around as f64,
+        );
+        let ring = if i == 0 || i == along { 0.0 } else { t.sin() };
+        let y = 35.0 * t.cos();
+        [18.0 * ring * p.cos() + 0.012 * y * y, y, -15.0 * ring * p.sin()]
+    };
+    let mut text = String::from("solid bean\n");
+    let mut triangle = |corners: [[f64; 3]; 3]| {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in corners {
+            writeln!(text, "vertex {x} {y} {z}").unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    };
+    for i in 0..along {
+        for j in 0..around {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if i + 1 < along {
+                triangle([a, b, c]);
+            }
+            if i > 0 {
+                triangle([a, c, d]);
+            }
+        }
+    }
+    text + "endsolid\n"
+}
+
+/// Whether there is a file of this suffix in a folder.
+fn has(folder: &Path, suffix: &str) -> bool {
+    let entries =
+        std::fs::read_dir(folder).map(|entries| entries.map(|e| e.unwrap().path()).collect::<Vec<_>>());
+    entries.unwrap_or_default().iter().any(|path| path.extension().is_some_and(|e| e == suffix))
+}
+
+/// A folder with the bean, and the paths of file and scene.
+fn folder() -> (TempDir, String, String) {
+    let dir = tempfile::tempdir().unwrap();
+    let file = write(&dir, "bean.stl", &bean());
+    let out = inside(&dir, "bean.toml");
+    (dir, file, out)
+}
+
+#[test]
+fn a_surface_becomes_a_scene_that_runs() {
+    let (dir, file, out) = folder();
+    let done = tissuebench(&["init", "--file", &file, "--unit", "mm", "--nodes", "200", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    for named in [
+        "--young \"20 kPa\"",
+        "--poisson \"0.45\"",
+        "--press-from \"top\"",
+        "--hold \"z <= -9 mm\"",
+        "--closure \"1.5 mm\"",
+    ] {
+        assert!(done.stdout.contains(named), "no {named} in {}", done.stdout);
+    }
+    assert!(!done.stdout.contains("--unit \""), "{}", done.stdout);
+    let results = inside(&dir, "results");
+    let done = tissuebench(&["run", &out, "--once", "--format", "json", "--out", &results]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(!done.stderr.contains("probe-outside"), "{}", done.stderr);
+    let runs = objects(&done.stdout);
+    assert_eq!(runs.len(), 9);
+    let errors = runs.iter().map(|run| run["metrics"]["relative-rms"]["value"].as_f64());
+    assert!(errors.clone().all(|error| error.is_some_and(|e| e > 0.0)), "{:?}", errors.collect::<Vec<_>>());
+    let results = Path::new(&results);
+    assert!(results.join("report/report.html").is_file() && has(&results.join("volumes"), "pvd"));
+    assert!(has(&results.join("report/figures"), "svg"), "no figure");
+}
+
+#[test]
+fn a_scene_is_replaced_only_by_force() {
+    let (dir, file, out) = folder();
+    let init = |more: &[&str]| tissuebench(&[&["init", "--file", &file, "--out", &out], more].concat());
+    assert_eq!(init(&[]).code, 0);
+    let first = std::fs::read_to_string(&out).unwrap();
+    assert_fails(&init(&["--young", "5 kPa"]), 2, "bean.toml: exists; --force replaces it");
+    assert_eq!(std::fs::read_to_string(&out).unwrap(), first);
+    assert_eq!(init(&["--young", "5 kPa", "--force"]).code, 0);
+    assert!(std::fs::read_to_string(&out).unwrap().contains("young = \"5 kPa\""));
+    let onto = tissuebench(&["init", "--file", &file, "--out", &file, "--force"]);
+    assert_fails(&onto, 2, "is the file that is read");
+    drop(dir);
+}
+
+/// Every side, method, drive and strain makes a scene that can be planned; a few are run.
+#[test]
+fn every_choice_makes_a_scene() {
+    let (dir, file, _) = folder();
+    let sides = ["top", "bottom", "left", "right", "front", "back"];
+    for side in sides {
+        let out = inside(&dir, &format!("{side}.toml"));
+        let args = [
+            "--file",
+            &file,
+            "--press-from",
+            side,
+            "--methods",
+            "tet4-nodal",
+            "--nodes",
+            "400",
+            "--out",
+            &out,
+        ];
+        let done = tissuebench(&[&["init"][..], &args].concat());
+        assert_eq!(done.code, 0, "{side}: {}", done.stderr);
+        assert_eq!(tissuebench(&["plan", &out]).code, 0, "{side}");
+        let scene = cases::scene::load(Path::new(&out)).unwrap();
+        assert_eq!((scene.methods.len(), scene.tools.len(), scene.supports.len()), (3, 1, 1), "{side}");
+    }
+    let choices: [&[&str]; 4] = [
+        &["--strain", "small", "--methods", "tet4,tet4-nodal,tet10,efg"],
+        &["--strain", "small", "--load", "1 kPa", "--methods", "efg", "--spacing", "7 mm"],
+        &["--load", "0.3 N", "--methods", "tet4", "--press-from", "right"],
+        &["--gap", "1 mm", "--closure", "2 mm", "--methods", "tet4", "--spacing", "7 mm"],
+    ];
+    for (at, choice) in choices.iter().enumerate() {
+        let out = inside(&dir, &format!("choice-{at}.toml"));
+        let size: &[&str] = if choice.contains(&"--spacing") { &[] } else { &["--nodes", "160"] };
+        let done = tissuebench(&[&["init", "--file", &file, "--out", &out], *choice, size].concat());
+        assert_eq!(done.code, 0, "{choice:?}: {}", done.stderr);
+        let done = tissuebench(&["run", &out, "--once"]);
+        assert_eq!(done.code, 0, "{choice:?}: {}", done.stderr);
+    }
+}
+
+#[test]
+fn what_makes_no_scene_is_refused_by_its_option() {
+    let (dir, file, out) = folder();
+    let refused = |more: &[&str], says: &str| {
+        assert_fails(&tissuebench(&[&["init", "--file", &file, "--out", &out], more].concat()), 2, says);
+        assert!(!Path::new(&out).exists(), "{more:?}");
+    };
+    refused(&["--young", "20"], "--young '20': ");
+    refused(&["--poisson", "0.5"], "--poisson '0.5': a number from 0 to below 0.5");
+    refused(&["--unit", "inch"], "--unit 'inch': is not a length unit: m, cm, mm or um");
+    refused(&["--press-from", "botom"], "did you mean 'bottom'?");
+    refused(&["--hold", "lid"], "--hold 'lid': the file names no surface; or write comparisons");
+    refused(&["--hold", "z < 3"], "--hold");
+    refused(&["--hold", "z < -30 mm"], "no corner of the surface lies there");
+    refused(&["--hold", "z < 30 mm"], "holds the whole body");
+    refused(&["--hold", "z > 10 mm"], "holds what the plate from the top touches first");
+    refused(&["--closure", "40 mm"], "the body is only 30 mm high");
+    refused(&["--load", "1 kPa"], "--load '1 kPa': ");
+    refused(&["--gap", "1 mm", "--strain", "small"], "there is no plate at small strain");
+    refused(&["--methods", "tet4,hex8"], "'hex8' is none of tet4, tet4-nodal, tet10, efg");
+    refused(&["--nodes", "3"], "--nodes '3': a number from 100 to 200000");
+    refused(&["--spacing", "20 mm"], "is too large for the body");
+    assert_fails(&tissuebench(&["init", "--out", &out]), 2, "--file is needed");
+    assert_fails(&tissuebench(&["init", "--file", &inside(&dir, "none.stl")]), 2, "there is no such file");
+}
