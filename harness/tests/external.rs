@@ -39,6 +39,7 @@ fn dummy(mode: &str, more: &str) -> String {
 fn tissuebench(dir: &TempDir, args: &[&str]) -> Done {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
     command.args(args).current_dir(dir.path()).env("TISSUEBENCH_DATA", dir.path().join("data"));
+    command.env("TMPDIR", dir.path());
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     let (stdout, stderr) = (text(output.stdout), text(output.stderr));
@@ -46,15 +47,16 @@ fn tissuebench(dir: &TempDir, args: &[&str]) -> Done {
     Done { code: output.status.code().unwrap(), stdout, stderr }
 }
 
-/// Whether a child of a dummy of a test is left. Its folder of answers, which it works in, has the number of the program that called it.
+/// Whether a child of a dummy of a test is left: the folder of answers that it works in is in that of the test.
 #[cfg(target_os = "linux")]
-fn child_runs_in(part: &str) -> bool {
+fn child_runs_in(dir: &TempDir) -> bool {
+    let folder = dir.path().to_str().unwrap();
     let ids = std::fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path());
     ids.filter(|path| path.file_name().unwrap().to_str().is_some_and(|name| name.parse::<u32>().is_ok())).any(
         |path| {
             let said = std::fs::read(path.join("cmdline")).unwrap_or_default();
             let at = std::fs::read_link(path.join("cwd")).unwrap_or_default();
-            String::from_utf8_lossy(&said).contains(CHILD) && at.to_string_lossy().contains(part)
+            String::from_utf8_lossy(&said).contains(CHILD) && at.to_string_lossy().contains(folder)
         },
     )
 }
@@ -128,7 +130,7 @@ fn every_misbehaviour_has_its_status() {
             "{mode}"
         );
         #[cfg(target_os = "linux")]
-        assert!(!child_runs_in("answer"), "{mode} has left a process");
+        assert!(!child_runs_in(&dir), "{mode} has left a process");
     }
 }
 
@@ -142,7 +144,7 @@ fn wrong_numbers_are_measured_and_children_end() {
     let found: Vec<f64> = objects(&done.stdout).iter().map(|object| value(object, "relative-rms")).collect();
     assert!(found[1] == 1.0 && (found[2] - 1e-3).abs() < 1e-9 && found[3] == 0.0, "{found:?}");
     #[cfg(target_os = "linux")]
-    assert!(!child_runs_in("answer"));
+    assert!(!child_runs_in(&dir));
 }
 
 #[test]
@@ -200,6 +202,7 @@ fn a_solver_ends_with_whoever_called_it() {
         command
             .args(args)
             .current_dir(dir.path())
+            .env("TMPDIR", dir.path())
             .stderr(std::process::Stdio::null())
             .stdout(std::process::Stdio::null());
         command.spawn().unwrap()
@@ -212,11 +215,10 @@ fn a_solver_ends_with_whoever_called_it() {
         }
     };
     let mut run = start(&["run", "block.toml", "--method", "sleep"]);
-    let of = format!("tissuebench-{}-", run.id());
-    wait("it sleeps", &|| child_runs_in(&of));
+    wait("it sleeps", &|| child_runs_in(&dir));
     run.kill().unwrap();
     run.wait().unwrap();
-    wait("it is gone with a killed program", &|| !child_runs_in(&of));
+    wait("it is gone with a killed program", &|| !child_runs_in(&dir));
     // And with one that was in a process of its own, which the study ended.
     write(
         &dir,
@@ -226,7 +228,7 @@ fn a_solver_ends_with_whoever_called_it() {
     let done =
         tissuebench(&dir, &["verify", "study.toml", "--isolate", "--time-limit", "2", "--out", "results"]);
     assert_fails(&done, 3, "out of time");
-    wait("it is gone with an ended run", &|| !child_runs_in("answer"));
+    wait("it is gone with an ended run", &|| !child_runs_in(&dir));
 }
 
 #[test]
