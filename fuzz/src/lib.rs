@@ -9,6 +9,7 @@
 //! cargo +nightly fuzz run --fuzz-dir fuzz/engine --sanitizer none scene fuzz/corpus/scene
 //! ```
 
+mod adapter;
 mod expression;
 mod mesh;
 mod records;
@@ -26,13 +27,14 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     Target { name: "scene", run: scene::run },
     Target { name: "study", run: study::run },
     Target { name: "expression", run: expression::run },
     Target { name: "mesh", run: mesh::run },
     Target { name: "records", run: records::run },
     Target { name: "reference", run: reference::run },
+    Target { name: "adapter", run: adapter::run },
 ];
 
 /// Files that fuzzed scenes and studies name.

@@ -45,4 +45,5 @@ pub mod run;
 mod scenario;
 pub mod study;
 
+pub use adapter::try_readers;
 pub use error::{Failure, Foreign, ForeignStatus};

@@ -5,7 +5,7 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "dofs",
     "elements",
     "linear_solver",
@@ -17,6 +17,7 @@ const KEYS: [&str; 14] = [
     "probes",
     "scene",
     "status",
+    "supports",
     "tools",
     "warnings",
     "work",

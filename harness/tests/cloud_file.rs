@@ -40,6 +40,43 @@ fn a_file_of_nodes_is_a_cloud() {
     }
 }
 
+/// An array of three columns in NumPy's format.
+fn npy(rows: &[[f64; 3]]) -> Vec<u8> {
+    let mut head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, 3), }}", rows.len());
+    while (10 + head.len() + 1) % 64 != 0 {
+        head.push(' ');
+    }
+    head.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((head.len() as u16).to_le_bytes());
+    bytes.extend(head.bytes());
+    rows.iter().flatten().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn an_array_of_numpy_is_a_cloud() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut rows: Vec<[f64; 3]> =
+        (0..36).map(|n| [10 * (n / 9), 10 * (n / 3 % 3), 10 * (n % 3)].map(f64::from)).collect();
+    let run = |rows: &[[f64; 3]], bytes: Option<&[u8]>| {
+        let made = npy(rows);
+        std::fs::write(dir.path().join("nodes.npy"), bytes.unwrap_or(&made)).unwrap();
+        let text = scene(r#"cloud = { file = "nodes.npy", unit = "mm" }"#);
+        tissuebench(&["run", &write(&dir, "scene.toml", &text), "--format", "json"])
+    };
+    let done = run(&rows, None);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let object: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert!(object["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-12 && object["nodes"] == 36, "{object}");
+    assert_fails(&run(&rows, Some(b"x,y,z")), 2, "nodes.npy is no .npy file");
+    assert_fails(&run(&[], None), 2, "has an array of shape [0, 3]");
+    rows[7][1] = f64::NAN;
+    assert_fails(&run(&rows, None), 2, "nodes.npy has NaN in row 7, column 1");
+    rows[7] = rows[4];
+    assert_fails(&run(&rows, None), 2, "has node 4 and node 7 in the same place");
+}
+
 #[test]
 fn what_disagrees_is_refused_with_numbers() {
     let dir = tempfile::tempdir().unwrap();

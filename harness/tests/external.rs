@@ -192,6 +192,80 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     assert_fails(&done, 3, "not-offered: dummy does not take rigid tools ([[tool]])");
 }
 
+/// A study that asks other solvers for the elements of a scene; BESIDE stands for more keys.
+const SIDE_BY_SIDE: &str = r#"title = "Solvers"
+[[run]]
+scene = "block.toml"
+adapters = ["tissuebench", "dummy"]
+quick = true
+BESIDE
+"#;
+
+#[test]
+fn a_study_puts_other_solvers_beside_the_elements_of_a_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    let more = "{ id = \"fine\", family = \"fem\", element = \"tet10\", size = { cells = [4, 4, 3] } }, \
+        { id = \"mean\", family = \"fem\", element = \"tet4\", dilation = \"nodal-mean\", size = { cells = [3, 3, 2] } },";
+    write(&dir, "block.toml", &BLOCK.replace("OTHERS", more).replace("\"ours\" }", "\"fine\" }"));
+    let check =
+        "[[run.check]]\nmetric = \"residual\"\nmethod = [\"ours-dummy\", \"fine-dummy\"]\nat_most = 1e-9";
+    write(&dir, "study.toml", &SIDE_BY_SIDE.replace("BESIDE", check));
+    let run = |more: &[&str]| {
+        let done =
+            tissuebench(&dir, &[&["verify", "study.toml", "--out", "results", "--verbose"], more].concat());
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        done
+    };
+    let done = run(&[]);
+    assert!(done.stdout.contains("7 runs, ") && done.stdout.contains("2 passed"), "{}", done.stdout);
+    let table = |name: &str| {
+        let path = dir.path().join(format!("results/report/tables/{name}.csv"));
+        std::fs::read_to_string(path).unwrap().lines().map(String::from).collect::<Vec<_>>()
+    };
+    assert_eq!(table("solvers"), ["case,tissuebench (own),dummy,tissuebench", "block,ok 3,ok 2,ok 2"]);
+    // A row for each of them, with the same error.
+    let times = table("solver-times");
+    assert_eq!(times.len(), 5, "{times:?}");
+    let of_ours: Vec<&String> = times.iter().filter(|row| row.starts_with("block,0.3,tet10,245,")).collect();
+    assert!(of_ours.len() == 2 && of_ours.iter().all(|row| row.ends_with(",1e0")), "{times:?}");
+    let listed = run(&["--list"]);
+    assert!(listed.stdout.contains("ours-tissuebench"), "{}", listed.stdout);
+    // Each in a process of its own, too.
+    run(&["--isolate"]);
+    for (from, to, says) in [
+        ("\"dummy\"]", "\"a b\"]", "run[0].adapters[1]"),
+        ("\"dummy\"]", "\"tissuebench\"]", "run[0].adapters[1]"),
+        ("quick", "methods = [\"mean\"]\nquick", "key 'run[0].adapters': have no method to solve"),
+    ] {
+        write(&dir, "study.toml", &SIDE_BY_SIDE.replace("BESIDE", "").replace(from, to));
+        assert_fails(&tissuebench(&dir, &["verify", "study.toml", "--out", "results"]), 2, says);
+    }
+    // What is wrong with one is wrong with the method that it is beside.
+    write(&dir, "study.toml", &SIDE_BY_SIDE.replace("BESIDE", "").replace("\"dummy\"", "\"none\""));
+    let done = tissuebench(&dir, &["verify", "study.toml", "--out", "results"]);
+    assert!(done.code != 0 && done.stderr.contains("block.toml:9: key 'method[0]"), "{}", done.stderr);
+}
+
+#[test]
+fn a_new_version_of_a_solver_is_run_again() {
+    let dir = tempfile::tempdir().unwrap();
+    assert_eq!(tissuebench(&dir, &["adapter", "copy", "dummy", "adapters/mine"]).code, 0);
+    let version = write(&dir, "version", "mine 1");
+    let file = dir.path().join("adapters/mine/adapter.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, format!("{text}version = [\"cat\", {version:?}]\n")).unwrap();
+    write(&dir, "block.toml", &BLOCK.replace("OTHERS", &other("other", "mine", "")));
+    write(&dir, "study.toml", "title = \"Solvers\"\n[[run]]\nscene = \"block.toml\"\n");
+    let stored = || {
+        let done = tissuebench(&dir, &["verify", "study.toml", "--resume", "--out", "results"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        done.stderr.lines().find(|line| line.contains("were stored")).unwrap_or_default().to_string()
+    };
+    assert_eq!((stored().as_str(), stored().as_str()), ("", "2 of 2 runs were stored"));
+    write(&dir, "version", "mine 2");
+    assert_eq!(stored(), "1 of 2 runs were stored", "ours alone");
+}
+
 #[test]
 #[cfg(target_os = "linux")]
 fn a_solver_ends_with_whoever_called_it() {
@@ -314,7 +388,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let listed = tissuebench(&dir, &["adapter", "list"]);
     assert_eq!(listed.code, 0);
-    for name in ["calculix", "dummy", "felupe", "scikit-fem", "tissuebench"] {
+    for name in ["calculix", "dummy", "felupe", "ngsolve", "scikit-fem", "tissuebench"] {
         assert!(
             listed.stdout.contains(&format!("{name}: ")) && listed.stdout.contains("(shipped)"),
             "{name}"
@@ -332,7 +406,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
 #[test]
 fn installed_solvers_pass_their_check() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    for name in ["calculix", "scikit-fem", "felupe"] {
+    for name in ["calculix", "scikit-fem", "felupe", "ngsolve"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
         let output = command.args(["adapter", "check", name]).current_dir(root).output().unwrap();
         let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());

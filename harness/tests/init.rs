@@ -82,7 +82,17 @@ fn a_surface_becomes_a_scene_that_runs() {
     assert!(errors.clone().all(|error| error.is_some_and(|e| e > 0.0)), "{:?}", errors.collect::<Vec<_>>());
     let results = Path::new(&results);
     assert!(results.join("report/report.html").is_file() && has(&results.join("volumes"), "pvd"));
-    assert!(has(&results.join("report/figures"), "svg"), "no figure");
+    for (folder, suffix) in [("report/figures", "svg"), ("report/figures", "png"), ("report/tables", "csv")] {
+        assert!(has(&results.join(folder), suffix), "no {suffix} in {folder}");
+    }
+    let table = std::fs::read_to_string(results.join("report/tables/support-forces.csv")).unwrap();
+    assert!(table.lines().count() == 1 + 3, "a support of the finest run of each method: {table}");
+    // What holds the organ bears the plate.
+    for run in &runs {
+        let [held, plate] =
+            ["reaction-z", "tool-force"].map(|name| run["metrics"][name]["value"].as_f64().unwrap());
+        assert!((held - plate).abs() < 1e-4 * plate, "{held} N of {plate} N");
+    }
 }
 
 #[test]

@@ -90,9 +90,9 @@ fn report(out: &str, name: &str) -> Vec<(String, String)> {
         }
     }
     let page = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
-    all.extend(page.split("<h3").skip(1).map(|part| {
-        let heading = part.split("</h3>").next().unwrap_or_default();
-        ("heading".to_string(), heading.replace(name, "NAME"))
+    all.extend(page.split("\"title\":\"").skip(1).map(|part| {
+        let title = part.split('"').next().unwrap_or_default();
+        ("title".to_string(), title.replace(name, "NAME"))
     }));
     all.sort();
     all

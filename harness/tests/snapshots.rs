@@ -41,6 +41,7 @@ fn every_verb_has_help() {
     let verbs = [
         "init",
         "run",
+        "pick",
         "fields",
         "plan",
         "verify",

@@ -81,7 +81,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// Case, method, settings and size of a record.
-fn run_name(r: &Record) -> String {
+pub(crate) fn run_name(r: &Record) -> String {
     let mut name = format!("{} {} {}", r.case, r.method, r.variant);
     let settings: Vec<String> = r.settings().iter().map(|(key, value)| format!("{key}={value}")).collect();
     if !settings.is_empty() {

@@ -19,7 +19,7 @@ use crate::text::significant;
 pub enum ClaimVerdict {
     /// Every relation holds in every scene.
     Validated,
-    /// Some hold, or hold at some errors only.
+    /// Some hold, or hold at some errors only, or some have no runs.
     Qualified,
     /// None holds at any error.
     Refuted,
@@ -141,15 +141,19 @@ impl Claim {
             for relation in &self.relation {
                 let (found, line) = relation.holds(&of_scene, &self.left, &self.right);
                 lines.push(format!("{scene}: {line}"));
-                held.extend(found);
+                held.push(found);
             }
         }
-        let verdict = match (held.iter().all(|h| *h == Held::Always), held.iter().all(|h| *h == Held::Never))
-        {
-            _ if held.is_empty() => ClaimVerdict::Untested,
-            (true, _) => ClaimVerdict::Validated,
-            (_, true) => ClaimVerdict::Refuted,
-            _ => ClaimVerdict::Qualified,
+        // One relation without runs keeps a claim from being validated or refuted as a whole.
+        let all = |wanted: Option<Held>| held.iter().all(|found| *found == wanted);
+        let verdict = if all(None) {
+            ClaimVerdict::Untested
+        } else if all(Some(Held::Always)) {
+            ClaimVerdict::Validated
+        } else if all(Some(Held::Never)) {
+            ClaimVerdict::Refuted
+        } else {
+            ClaimVerdict::Qualified
         };
         Judged { verdict, lines }
     }
@@ -235,6 +239,10 @@ at_most = 0.01
     }
 
     fn judged(efg: f64, error: f64) -> Judged {
+        judged_of(CLAIM, efg, error)
+    }
+
+    fn judged_of(claim: &str, efg: f64, error: f64) -> Judged {
         let fem = [
             run(("tet4", Family::Fem), 100, 10.0, &[("relative-rms", 0.2)]),
             run(("hex20", Family::Fem), 200, 1000.0, &[("relative-rms", 0.1)]),
@@ -243,7 +251,7 @@ at_most = 0.01
         ];
         let cloud = run(("efg", Family::Efg), 83, efg, &[("relative-rms", error)]);
         let set = RunSet { records: fem.into_iter().flatten().chain(cloud).collect(), ..RunSet::default() };
-        claims(CLAIM).unwrap()[0].judge(&set)
+        claims(claim).unwrap()[0].judge(&set)
     }
 
     #[test]
@@ -261,6 +269,9 @@ at_most = 0.01
                 "jaws: time at equal error (relative-rms) 0.50 to 50 times as large, claimed at most 0.010: does not hold",
             ]
         );
+        // What holds in one scene is not validated by another that nobody has run.
+        let twice = CLAIM.replace("[\"jaws\"]", "[\"jaws\", \"liver\"]");
+        assert_eq!(judged_of(&twice, 0.05, 0.105).verdict, ClaimVerdict::Qualified);
         let untested = claims(CLAIM).unwrap()[0].judge(&RunSet::default());
         assert_eq!((untested.verdict, untested.lines.len()), (ClaimVerdict::Untested, 2));
     }

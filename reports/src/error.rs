@@ -88,5 +88,5 @@ pub enum ReportError {
     },
     /// The report page couldn't be filled in.
     #[error("report page: {0}")]
-    Page(#[from] minijinja::Error),
+    Page(#[from] serde_json::Error),
 }

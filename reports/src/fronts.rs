@@ -27,12 +27,17 @@ pub(crate) const QUESTIONS: [Question; 4] = [
 ];
 
 impl Question {
+    /// Whether it is measured by one quantity alone, and this one.
+    pub(crate) fn errors_are(&self, quantity: &str) -> bool {
+        self.errors == [quantity]
+    }
+
     /// The error by which a case answers, where any of its runs has one.
     ///
     /// What the scene prescribes is right with every method, which answers nothing: the force of a tool driven by force (up to
     /// the tolerance of Newton's method), and a largest displacement that a support has.
     pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static str> {
-        if self.errors == ["peak-error"] && is_peak_prescribed(runs) {
+        if self.errors_are("peak-error") && is_peak_prescribed(runs) {
             return None;
         }
         let found = |quantity: &str| {
@@ -135,6 +140,16 @@ pub(crate) const DEADLINES: [Deadline; 2] = [
 pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
     let (time, error) = (clock.seconds(run)?, worst(run, quantity)?);
     (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
+}
+
+/// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
+const CHANCE: f64 = 3.0;
+
+/// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger.
+/// Within what is asked for, a run answers if this is.
+pub(crate) fn counts(run: &Run, question: &Question, displacement: Option<&str>, error: f64) -> f64 {
+    let companion = displacement.filter(|_| question.scalar).and_then(|quantity| worst(run, quantity));
+    error.max(companion.unwrap_or(0.0) / CHANCE)
 }
 
 /// The runs that no other beats in both time and error, by rising time.
@@ -250,6 +265,20 @@ pub(crate) mod tests {
         assert_eq!(seconds(&[("repeated:p99", 0.02)]), Some(0.02));
         // What the clock can't tell is no time.
         assert_eq!(seconds(&[("repeated:p99", 0.9e-6)]), None);
+    }
+
+    #[test]
+    fn a_number_right_by_chance_counts_as_a_third_of_the_error_of_its_field() {
+        let counted = |question: &Question, errors: &[(&str, f64)], error: f64| {
+            let records = run(("efg", Family::Efg), 83, 1.0, errors);
+            counts(&runs(&records)[0], question, Some("relative-rms"), error)
+        };
+        let force = &QUESTIONS[2];
+        assert_eq!(counted(force, &[("relative-rms", 0.69)], 0.001), 0.69 / 3.0);
+        assert_eq!(counted(force, &[("relative-rms", 0.02)], 0.01), 0.01);
+        assert_eq!(counted(force, &[], 0.01), 0.01);
+        // A field is no single number.
+        assert_eq!(counted(&QUESTIONS[1], &[("relative-rms", 0.69)], 0.01), 0.01);
     }
 
     #[test]

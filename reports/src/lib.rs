@@ -20,10 +20,13 @@
 //! # }
 //! ```
 
+mod asks;
 mod axis;
 pub mod baseline;
+mod body;
 mod claims;
 mod clouds;
+pub mod commits;
 pub mod compare;
 mod error;
 mod figures;
@@ -31,7 +34,10 @@ mod findings;
 mod frame;
 mod fronts;
 mod history;
+mod look;
 mod order;
+mod page;
+mod plot;
 mod provenance;
 mod published;
 mod quantity;
@@ -45,6 +51,7 @@ mod tables;
 mod text;
 
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
+pub use body::{Body, BodyState, Faces, Skin, pack};
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};

@@ -63,4 +63,7 @@ pub struct SceneHash {
     pub case: String,
     /// BLAKE3 hash of the file, hexadecimal.
     pub blake3: String,
+    /// What the scene is, in its own words.
+    #[serde(default)]
+    pub title: String,
 }

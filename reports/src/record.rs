@@ -47,13 +47,6 @@ pub enum Family {
     Reference,
 }
 
-impl Family {
-    /// Whether its methods are finite elements, whoever solves them.
-    pub(crate) fn is_elements(self) -> bool {
-        matches!(self, Family::Fem | Family::External)
-    }
-}
-
 /// What a case is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

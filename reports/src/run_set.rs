@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
+use crate::body::Body;
 use crate::error::ReportError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
@@ -82,6 +83,9 @@ pub struct SurfaceField {
     /// A section between the tools.
     #[serde(default)]
     pub section: Option<Section>,
+    /// What a view in three dimensions shows.
+    #[serde(default)]
+    pub body: Option<Body>,
 }
 
 /// A tool as points whose convex hull it is.

@@ -8,7 +8,7 @@
 //! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers, or those of a part of their load |
 //! | `warnings.json` | what is to be said against the numbers of runs |
 //! | `axes.json` | how methods fare along the axes of the study |
-//! | `fields/CASE--METHOD.json` | surface displacements; with tools also these and a section with its pressure |
+//! | `fields/CASE--METHOD.json` | surface displacements, and the surface at some states for a view in three dimensions; with tools also these and a section with its pressure |
 //! | `incomplete.json` | there from the beginning of a study or run until all of the above is written |
 //!
 //! Each file is written beside its place and renamed: it is whole, the older one, or not there. Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.

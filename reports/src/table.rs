@@ -36,6 +36,12 @@ struct Entry {
     exact: Vec<String>,
 }
 
+impl Entry {
+    fn exact(&self) -> &str {
+        self.exact.first().map_or("", String::as_str)
+    }
+}
+
 /// A titled table; units stand in its header, what is absent is a dash explained below it.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
@@ -114,6 +120,11 @@ impl Table {
     /// Rows as shown.
     pub(crate) fn shown(&self) -> Vec<Vec<&str>> {
         self.rows.iter().map(|row| row.iter().map(|e| e.shown.as_str()).collect()).collect()
+    }
+
+    /// Rows as CSV has them; of a median and its spread the median.
+    pub(crate) fn exact(&self) -> Vec<Vec<&str>> {
+        self.rows.iter().map(|row| row.iter().map(Entry::exact).collect()).collect()
     }
 
     /// What the dash means, where there is one.

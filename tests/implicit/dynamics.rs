@@ -185,7 +185,7 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let newton = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
     let quasi =
         StaticParams { steps: 20, smallest: 1.0 / 64.0, newton, augmentations: 0, limit_within: None };
-    let still = solve_static(&body, &quasi, |_, _, _| ()).unwrap();
+    let still = solve_static(&body, &quasi, |_, _| ()).unwrap();
     assert_eq!(still.failure, None);
 
     let mass = block.lumped(DENSITY);

@@ -98,7 +98,7 @@ fn first_contact_in_one_step() {
                 tools: &tools,
                 ..model.problem(&law)
             };
-            solve_static(&problem, &steps(count), |_, _, _| {}).unwrap()
+            solve_static(&problem, &steps(count), |_, _| {}).unwrap()
         };
         let path = run([Drive::Closure(5e-3); 2], 10);
         assert!(path.failure.is_none(), "{method:?}: {:?}", path.failure);

@@ -65,7 +65,7 @@ impl Pressed {
     }
 
     fn path(&self, closure: f64, count: usize) -> StaticPath {
-        self.with(closure, |problem| solve_static(problem, &cut(count), |_, _, _| {}).unwrap())
+        self.with(closure, |problem| solve_static(problem, &cut(count), |_, _| {}).unwrap())
     }
 
     /// Force on the tool at the end.
@@ -222,7 +222,7 @@ fn an_overlap_without_a_force_is_an_error() {
             tools: &tools,
             ..pressed.model.problem(&pressed.law)
         };
-        solve_static(&problem, &cut(2), |_, _, _| {})
+        solve_static(&problem, &cut(2), |_, _| {})
     };
     let path = run(1e-4).unwrap();
     // The half of it is reported: from there the points may still be about to touch.

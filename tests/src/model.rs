@@ -147,7 +147,7 @@ pub fn steps(steps: usize) -> StaticParams {
 
 /// The whole way, or a panic with what ended it.
 pub fn solve(name: &str, problem: &StaticProblem, params: &StaticParams) -> StaticPath {
-    let path = solve_static(problem, params, |_, _, _| {}).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let path = solve_static(problem, params, |_, _| {}).unwrap_or_else(|e| panic!("{name}: {e}"));
     if let Some(failure) = &path.failure {
         panic!("{name}: {failure}");
     }

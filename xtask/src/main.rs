@@ -4,6 +4,7 @@
 
 mod instructions;
 mod mutants;
+mod python;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -73,6 +74,8 @@ enum Task {
     /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
     /// run twice or changed
     Survive,
+    /// Build the wheel of the Python module and test it in a fresh virtual environment, where maturin, numpy and pytest are installed
+    Python,
     /// What continuous integration runs: format, lints, docs, tests, quick verification
     Ci,
 }
@@ -113,6 +116,7 @@ fn run(task: Task) -> Result<u8> {
                 ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
             cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
         }
+        Task::Python => python::python(&root()),
         Task::Ci => ci(),
     }
 }
@@ -136,6 +140,10 @@ fn ci() -> Result<u8> {
     if code != 0 {
         return Ok(code);
     }
+    let code = page(&root().join("results/report/report.html"))?;
+    if code != 0 {
+        return Ok(code);
+    }
     let code = tissuebench("baseline", &["results".into(), "--check".into()])?;
     if code != 0 {
         return Ok(code);
@@ -145,7 +153,35 @@ fn ci() -> Result<u8> {
         return Ok(code);
     }
     let code = compare_stress(&["--check".into()])?;
-    if code != 0 { Ok(code) } else { instructions::instructions(&root(), false) }
+    if code != 0 {
+        return Ok(code);
+    }
+    let code = instructions::instructions(&root(), false)?;
+    if code != 0 { Ok(code) } else { python::python(&root()) }
+}
+
+/// The page of the verification in a browser, where node and Chromium are; and its script built again, where `npm ci` was run.
+fn page(report: &Path) -> Result<u8> {
+    let folder = root().join("reports/page");
+    if Command::new("node").arg("--version").output().is_err() {
+        eprintln!("xtask: node is not installed: the page is not tested in a browser");
+        return Ok(0);
+    }
+    let node = |args: &[&std::ffi::OsStr]| -> Result<u8> {
+        let done = Command::new("node").args(args).current_dir(&folder).status();
+        Ok(code_of(done.context("could not start node")?))
+    };
+    if folder.join("node_modules").is_dir() {
+        let code = node(&["build.mjs".as_ref(), "--check".as_ref()])?;
+        if code != 0 {
+            return Ok(code);
+        }
+    } else {
+        eprintln!(
+            "xtask: no reports/page/node_modules: the page's script is not built again (`npm ci` there)"
+        );
+    }
+    node(&["test/page.mjs".as_ref(), report.as_os_str()])
 }
 
 /// Where methods bend and break; fails where one is wrong without a word. Its numbers are asked for, not its times: as many runs at

@@ -107,6 +107,7 @@ fn unsolved(scene: &Scene, report: &mut Report) {
     for (key, given) in [
         ("reference", scene.reference.is_some()),
         ("output.probes", !output.probes.is_empty()),
+        ("output.means", !output.means.is_empty()),
         ("output.transfer", !output.transfers.is_empty()),
         ("output.beside", output.beside.is_some()),
         ("output.repeated", output.repeated.is_some()),
@@ -144,6 +145,7 @@ fn vibrating(scene: &Scene, report: &mut Report) {
     for (key, given) in [
         ("load[0]", !scene.loads.is_empty()),
         ("output.probes", !output.probes.is_empty()),
+        ("output.means", !output.means.is_empty()),
         ("output.transfer", !output.transfers.is_empty()),
         ("output.beside", output.beside.is_some()),
         ("reference", matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)))),

@@ -66,9 +66,7 @@ pub(crate) struct ExternalKeys {
 /// The method that the keys at `key` ask for.
 pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Option<Method> {
     let at = |name: &str| format!("{key}.{name}");
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
-    let sound = !keys.adapter.is_empty() && keys.adapter.chars().all(plain);
-    report.require(sound, &at("adapter"), "is no name of an adapter", "tissuebench adapter list has them");
+    report.require(is_adapter(&keys.adapter), &at("adapter"), NO_ADAPTER, ADAPTERS);
     let size = size(keys.size, &at("size"), report);
     let jitter = jitter(keys.jitter, key, report);
     let time_limit = keys.time_limit.map_or(TIME_LIMIT, |q| positive(q.0, &at("time_limit"), report));
@@ -85,6 +83,41 @@ pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Op
     };
     let series = keys.series.unwrap_or_else(|| keys.id.clone());
     Some(Method { id: keys.id, series, family: Family::External(external), mass: None })
+}
+
+impl Method {
+    /// The same elements of the same size by another solver; `None` where they are none that others have.
+    pub fn solved_by(&self, adapter: &str) -> Option<Method> {
+        let Family::Fem(fem) = &self.family else { return None };
+        if fem.dilation != Dilation::Standard || fem.reduced {
+            return None;
+        }
+        let external = External {
+            adapter: adapter.into(),
+            elements: fem.clone(),
+            settings: BTreeMap::new(),
+            time_limit: TIME_LIMIT,
+            memory_limit: MEMORY_LIMIT,
+        };
+        let name = |own: &str| format!("{own}-{adapter}");
+        let (id, series) = (name(&self.id), name(&self.series));
+        Some(Method { id, series, family: Family::External(external), mass: None })
+    }
+
+    /// Whether it is another one, of whatever size, solved by another solver.
+    pub fn is_twin_of(&self, other: &Method) -> bool {
+        let Family::External(external) = &self.family else { return false };
+        other.solved_by(&external.adapter).is_some_and(|twin| twin.id == self.id)
+    }
+}
+
+/// What is wrong with a name that can be none of an adapter, and where the others are.
+pub(crate) const NO_ADAPTER: &str = "is no name of an adapter";
+pub(crate) const ADAPTERS: &str = "tissuebench adapter list has them";
+
+/// Whether a name can be that of an adapter.
+pub(crate) fn is_adapter(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
 }
 
 /// What a size is.
@@ -128,6 +161,24 @@ support = [{ where = "z == 0 mm", fix = "xyz" }]
 load = [{ on = "z-max", pressure = "1 kPa" }]
 method = [{ id = "other", family = "external", adapter = "dummy", element = "tet10", size = { level = 1 }, MORE }]
 "#;
+
+    #[test]
+    fn plain_elements_have_a_twin_of_another_solver() {
+        let ours = |element: &str| {
+            let keys = format!("family = \"fem\", {element}");
+            let other = "family = \"external\", adapter = \"dummy\", element = \"tet10\"";
+            let scene = SCENE.replace(other, &keys).replace(", MORE", "").replace("\"other\"", "\"own\"");
+            crate::scene::parse(&scene, "block.toml").unwrap().methods.remove(0)
+        };
+        let own = ours("element = \"tet10\"");
+        let twin = own.solved_by("calculix").unwrap();
+        assert_eq!((twin.id.as_str(), twin.series.as_str()), ("own-calculix", "own-calculix"));
+        assert_eq!((twin.size(), twin.family_name()), (own.size(), "external"));
+        assert!(twin.solved_by("felupe").is_none(), "a twin has none");
+        assert!(twin.is_twin_of(&own) && !own.is_twin_of(&twin) && !own.is_twin_of(&own));
+        assert!(ours("element = \"tet10\", dilation = \"mixed\"").solved_by("calculix").is_none());
+        assert!(ours("element = \"hex20\", reduced = true").solved_by("calculix").is_none());
+    }
 
     #[test]
     fn a_method_has_limits_whether_they_are_given_or_not() {

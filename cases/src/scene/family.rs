@@ -141,6 +141,14 @@ impl Method {
         }
     }
 
+    /// How many nodes its mesh is to have, where its size says so.
+    pub fn nodes_of_size(&self) -> Option<usize> {
+        match self.size()? {
+            Size::Nodes(nodes) => Some(*nodes),
+            _ => None,
+        }
+    }
+
     /// The word of its family in files.
     pub fn family_name(&self) -> &'static str {
         match &self.family {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::method::{MeshFile, Size};
+use super::model::Place;
 use crate::exact::SolutionEntry;
 use catalogue::Values;
 use catalogue::metric::Metric;
@@ -12,6 +13,8 @@ use catalogue::metric::Metric;
 pub struct Output {
     /// Points to report, in metres.
     pub probes: Vec<[f64; 3]>,
+    /// Parts of the surface whose mean displacement is reported.
+    pub means: Vec<Place>,
     /// Transfers of the nodal displacements to other points.
     pub transfers: Vec<Transfer>,
     /// Id of a method that every run is compared with at the targets, beside the reference.

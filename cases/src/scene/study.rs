@@ -12,6 +12,7 @@ use super::demands::unheld;
 use catalogue::{Problem, Values};
 
 use super::error::SceneError;
+use super::external::{ADAPTERS, NO_ADAPTER, is_adapter};
 use super::keys::{CheckKeys, EssentialKeys, IntegrationKeys};
 use super::method::{Basis, Cloud, Efg, Essential, Family, Functions, Integration, Method};
 use super::model::Scene;
@@ -42,6 +43,8 @@ pub struct Run {
     pub scene: PathBuf,
     /// Ids of its methods; all of them where empty.
     pub methods: Vec<String>,
+    /// Solvers outside this program that solve each plain finite element method once more, by the names of their adapters.
+    pub adapters: Vec<String>,
     /// Levels in place of the methods' own sizes; their own where empty.
     pub levels: Vec<u32>,
     /// Poisson's ratios in place of the scene's; its own where empty.
@@ -71,6 +74,19 @@ pub struct Run {
     pub checks: Vec<Check>,
 }
 
+impl Run {
+    /// The methods of its scene that it names.
+    pub fn chosen<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Method> {
+        scene.methods.iter().filter(|m| self.methods.is_empty() || self.methods.contains(&m.id))
+    }
+
+    /// These as other solvers solve them.
+    fn twins(&self, scene: &Scene) -> Vec<Method> {
+        let twins = |m| self.adapters.iter().filter_map(move |adapter| Method::solved_by(m, adapter));
+        self.chosen(scene).flat_map(twins).collect()
+    }
+}
+
 /// A study file
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -93,6 +109,10 @@ pub(crate) struct RunKeys {
     /// Ids of methods; all unless given
     #[serde(default)]
     pub methods: Vec<String>,
+    /// Solvers outside this program (`tissuebench adapter list`): each solves every method of plain finite elements too, on the
+    /// same mesh, as the method METHOD-ADAPTER
+    #[serde(default)]
+    pub adapters: Vec<String>,
     /// Levels in place of the methods' own sizes
     #[serde(default)]
     pub levels: Vec<u32>,
@@ -182,6 +202,8 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
             report.add(&format!("{key}.{name}[{i}]"), Problem::new(problem).help(help));
         }
     };
+    let sound = keys.adapters.iter().map(|name| is_adapter(name)).collect();
+    each("adapters", sound, NO_ADAPTER, ADAPTERS);
     let sound = keys.levels.iter().map(|l| (1..=8).contains(l)).collect();
     each("levels", sound, "is no level", "levels are 1 to 8");
     let sound = keys.poisson.iter().map(|nu| *nu > -1.0 && *nu < 0.5).collect();
@@ -192,6 +214,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     each("support_scales", sound, "is no support scale", "1 to 10, as in a method; 1.2 to 3 is usual");
     for (name, once) in [
         ("methods", first_times(&keys.methods)),
+        ("adapters", first_times(&keys.adapters)),
         ("levels", first_times(&keys.levels)),
         ("poisson", first_times(&keys.poisson)),
         ("nodes", first_times(&keys.nodes)),
@@ -209,6 +232,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     Run {
         scene,
         methods: keys.methods,
+        adapters: keys.adapters,
         levels: keys.levels,
         poisson: keys.poisson,
         nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
@@ -240,8 +264,7 @@ fn few_enough(
     key: &str,
     report: &mut Report,
 ) -> (f64, usize) {
-    let methods =
-        scene.methods.iter().filter(|m| run.methods.is_empty() || run.methods.contains(&m.id)).count();
+    let methods = run.chosen(scene).count() + run.twins(scene).len();
     let values = run.axis.as_ref().map_or(0, |axis| axis.values.len());
     let varied = [run.poisson.len(), run.levels.len().max(run.nodes.len()), run.kernels.len()];
     let more = [run.support_scales.len(), run.essentials.len(), run.seeds as usize, values];
@@ -273,9 +296,15 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         let problem = Problem::new("makes no scene of its base").found(axis.name.as_str()).help(first);
         report.add(&format!("{key}.axis"), problem);
     }
+    let twins = run.twins(scene);
+    let help = "it goes with finite elements that have no dilation of their own: name one in methods, or leave it out";
+    let solvable = run.adapters.is_empty() || !twins.is_empty();
+    report.require(solvable, &format!("{key}.adapters"), "have no method to solve", help);
+    let is_run = |id: &String| run.methods.contains(id) || twins.iter().any(|twin| twin.id == *id);
+    let all = Scene { methods: [&scene.methods[..], &twins].concat(), ..scene.clone() };
     for (i, check) in run.checks.iter().enumerate() {
         let key = format!("{key}.check[{i}]");
-        validate::check(check, scene, &key, report);
+        validate::check(check, &all, &key, report);
         if check.metric.needs == Needs::Levels && run.levels.len() < 2 {
             let problem = Problem::new("needs several levels").help("give the run levels = [1, 2, 3]");
             report.add(&format!("{key}.metric"), problem);
@@ -285,15 +314,14 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
             report.add(&format!("{key}.metric"), problem);
         }
         if !run.methods.is_empty() {
-            for id in check.methods.iter().filter(|id| !run.methods.contains(id)) {
+            for id in check.methods.iter().filter(|id| !is_run(id)) {
                 let problem =
                     Problem::new("is not run here").found(id).help("name it in methods, or leave it out");
                 report.add(&format!("{key}.method"), problem);
             }
         }
     }
-    let chosen = |m: &&Method| run.methods.is_empty() || run.methods.contains(&m.id);
-    let efgs: Vec<&Efg> = (scene.methods.iter().filter(chosen))
+    let efgs: Vec<&Efg> = (run.chosen(scene))
         .filter_map(|m| if let Family::Efg(efg) = &m.family { Some(efg) } else { None })
         .collect();
     let clouds = !efgs.is_empty();
@@ -323,7 +351,7 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     let placed = efgs.iter().any(|efg| matches!(efg.cloud, Cloud::Refined { .. }));
     let help = "a cloud that follows an error would be another one: name other methods";
     report.require(run.split.is_none() || !placed, &format!("{key}.split"), "is not of every method", help);
-    let seeded = scene.methods.iter().filter(chosen).all(|m| m.seeded(1).is_some());
+    let seeded = run.chosen(scene).all(|m| m.seeded(1).is_some());
     let help = "a cloud that is uniform, graded or jittered has one: name such methods in methods";
     report.require(run.seeds == 0 || seeded, &format!("{key}.seeds"), "are not of every method", help);
     let elastic = scene.material.constant("poisson").is_some();

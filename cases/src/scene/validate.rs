@@ -193,6 +193,8 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
         {
             "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene"
         }
+        Needs::Support if scene.supports.is_empty() => "needs a [[support]] in the scene",
+        Needs::Mean if scene.output.means.is_empty() => "needs output.means in the scene",
         Needs::Tool if scene.tools.is_empty() => "needs a [[tool]] in the scene",
         Needs::ToolReference if scene.tools.is_empty() || !(solved || presses(scene)) => {
             "needs a [[tool]] and [reference] method or record, or exact = \"hertz\", in the scene"

@@ -14,6 +14,7 @@ pub(super) static SHIPPED: &[Files] = shipped! {
     "calculix": "adapter.toml", "calculix.py";
     "dummy": "adapter.toml";
     "felupe": "adapter.toml", "felupe_adapter.py";
+    "ngsolve": "adapter.toml", "ngsolve_adapter.py";
     "scikit-fem": "adapter.toml", "scikit_fem.py";
     "tissuebench": "adapter.toml";
 };

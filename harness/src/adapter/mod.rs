@@ -3,6 +3,8 @@
 //! An adapter is a folder with `adapter.toml` and any program: a process, files in, files out. What is in the files of a problem is
 //! written where problems are (`procedure::external`); this room knows no scene.
 
+use std::path::Path;
+
 mod answer;
 mod builtin;
 mod checked;
@@ -19,6 +21,17 @@ pub(crate) use find::{All, Found, add_folders, all, find, given_folders};
 pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};
 pub(crate) use work::Folder;
+
+/// Reads what is there of an adapter and its answer in a folder: `adapter.toml`, `result.json` and `displacement.npy`; says of each what is
+/// wrong with it. For whoever tries these readers on files of all kinds.
+pub fn try_readers(folder: &Path, nodes: usize, steps: usize) -> [Result<(), String>; 3] {
+    let file = folder.join("adapter.toml");
+    let text = std::fs::read_to_string(&file).map_err(|bad| bad.to_string());
+    let manifest = text.and_then(|text| manifest::Manifest::parse(&text, &file));
+    let result = answer::Answer::read(folder).unwrap_or_else(|| Err("there is none".into()));
+    let result = result.and_then(|answer| answer.objection("id"));
+    [manifest.map(drop), result.map(drop), answer::displacement(folder, nodes, steps).map(drop)]
+}
 
 /// The environment variable with folders of adapters, as `PATH` has folders of programs.
 pub(crate) const FOLDERS: &str = "TISSUEBENCH_ADAPTERS";

@@ -14,8 +14,7 @@ pub(crate) fn write_floats(
     columns: usize,
     values: impl Iterator<Item = f64>,
 ) -> Result<(), String> {
-    let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-    write(path, "<f8", columns, &bytes)
+    write(path, "<f8", columns, values.map(f64::to_le_bytes))
 }
 
 /// The same of whole numbers.
@@ -24,11 +23,16 @@ pub(crate) fn write_integers(
     columns: usize,
     values: impl Iterator<Item = i64>,
 ) -> Result<(), String> {
-    let bytes: Vec<u8> = values.flat_map(i64::to_le_bytes).collect();
-    write(path, "<i8", columns, &bytes)
+    write(path, "<i8", columns, values.map(i64::to_le_bytes))
 }
 
-fn write(path: &Path, kind: &str, columns: usize, bytes: &[u8]) -> Result<(), String> {
+fn write(
+    path: &Path,
+    kind: &str,
+    columns: usize,
+    numbers: impl Iterator<Item = [u8; 8]>,
+) -> Result<(), String> {
+    let bytes: Vec<u8> = numbers.flatten().collect();
     let rows = bytes.len() / (8 * columns);
     let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
     let head = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
@@ -37,7 +41,7 @@ fn write(path: &Path, kind: &str, columns: usize, bytes: &[u8]) -> Result<(), St
     let mut file = [MAGIC, &[1, 0], &length.to_le_bytes(), head.as_bytes()].concat();
     file.extend(std::iter::repeat_n(b' ', fill));
     file.push(b'\n');
-    file.extend_from_slice(bytes);
+    file.extend_from_slice(&bytes);
     std::fs::write(path, file).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 

@@ -6,7 +6,9 @@ use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 use super::adapter::AdapterAction;
 use super::ci::CiArgs;
+use super::history::HistoryAction;
 use super::init::InitArgs;
+use super::pick::PickArgs;
 use super::solve::SolveArgs;
 use crate::process::LeashArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
@@ -43,6 +45,11 @@ pub enum Command {
     Init(InitArgs),
     /// Run one scene, with some or all of its methods
     Run(RunArgs),
+    /// Find the cheapest method of a scene that is right within an error
+    ///
+    /// Each method runs from coarse to fine until it is within the error, or dearer than one that is. Exit code 0: found; 1: none is
+    /// within the error.
+    Pick(PickArgs),
     /// Run methods of a scene and write the body at every recorded state, as .vtu files and a .pvd series that ParaView opens
     Fields(FieldsArgs),
     /// Print the stages a scene needs, those it does not, and why
@@ -88,6 +95,12 @@ pub enum Command {
     Baseline(BaselineArgs),
     /// Compare two results: numbers by tolerance, times as ratios with their confidence
     Compare(CompareArgs),
+    /// Errors and times of a study over commits: keep results, show what changed outside of noise
+    History {
+        /// What to do with the history
+        #[command(subcommand)]
+        action: HistoryAction,
+    },
     /// Hold published claims against stored results: validated, qualified or refuted
     Claims(ClaimsArgs),
     /// Run every method of a scene and store what they agree on, as a reference for other scenes

@@ -1,9 +1,11 @@
 //! The JSON object of one run, as scripts read it.
 
-use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::outcome::{Counters, LoadStep, Outcome, Plan, Unfinished, Warning};
+use geometry::Vector3;
+use serde::Serialize;
+
+use crate::outcome::{Counters, LoadStep, Metric, Outcome, Plan, Unfinished, Warning};
 
 /// One run as `tissuebench run --format json` prints it.
 #[derive(Serialize)]
@@ -25,6 +27,15 @@ pub struct RunObject<'a> {
     probes: Vec<ProbeObject>,
     /// Rigid tools at the end.
     tools: Vec<ToolObject<'a>>,
+    /// Supports at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    supports: Vec<SupportObject<'a>>,
+    /// Faces whose mean is asked for, at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    means: Vec<MeanObject<'a>>,
+    /// The lowest modes of vibration.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    modes: Vec<BTreeMap<String, Number>>,
     /// Load steps of a static procedure, as far as it came; absent in a linear one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
@@ -63,6 +74,22 @@ struct ToolObject<'a> {
 }
 
 #[derive(Serialize)]
+struct SupportObject<'a> {
+    /// Where it is, in the words of the scene.
+    name: &'a str,
+    /// On the body, N.
+    force: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct MeanObject<'a> {
+    /// Where it is, in the words of the scene.
+    name: &'a str,
+    /// Mean displacement, m.
+    u: [f64; 3],
+}
+
+#[derive(Serialize)]
 struct StepObject<'a> {
     /// Part of the loading, 0 to 1.
     load: f64,
@@ -73,6 +100,12 @@ struct StepObject<'a> {
     tools: Vec<ToolObject<'a>>,
     /// Displacement at the probes, m.
     probes: Vec<[f64; 3]>,
+    /// Force of each support on the body, N.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    supports: Vec<[f64; 3]>,
+    /// Mean displacement of each face whose mean is asked for, m.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    means: Vec<[f64; 3]>,
     /// Time and energies in dynamics.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     metrics: BTreeMap<String, Number>,
@@ -81,6 +114,14 @@ struct StepObject<'a> {
 fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
     let each = names.iter().zip(&step.tools);
     each.map(|(name, t)| ToolObject { name, closure: t.closure, force: t.force.into() }).collect()
+}
+
+fn numbers(metrics: &[Metric]) -> BTreeMap<String, Number> {
+    metrics.iter().map(|m| (m.name(), Number { value: m.value, unit: m.unit() })).collect()
+}
+
+fn arrays(vectors: &[Vector3]) -> Vec<[f64; 3]> {
+    vectors.iter().map(|&v| v.into()).collect()
 }
 
 #[derive(Serialize)]
@@ -96,8 +137,7 @@ struct ProbeObject {
 impl<'a> RunObject<'a> {
     /// A finished run; times are medians over its repeats.
     pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
-        let mut metrics: BTreeMap<String, Number> =
-            outcome.metrics.iter().map(|m| (m.name(), Number { value: m.value, unit: m.unit() })).collect();
+        let mut metrics = numbers(&outcome.metrics);
         metrics.insert("memory".into(), Number { value: outcome.memory as f64, unit: "B" });
         let frames = outcome.latencies.iter().flat_map(|latency| {
             let times = latency.statistics().into_iter().filter(|(_, unit, _)| *unit == "s");
@@ -132,6 +172,11 @@ impl<'a> RunObject<'a> {
                 })
                 .collect(),
             tools: outcome.last.as_ref().map_or_else(Vec::new, |last| tools(&outcome.tools, last)),
+            supports: (outcome.supports.iter())
+                .map(|s| SupportObject { name: &s.name, force: s.force.into() })
+                .collect(),
+            means: outcome.means.iter().map(|m| MeanObject { name: &m.name, u: m.u.into() }).collect(),
+            modes: outcome.modes.iter().map(|mode| numbers(mode)).collect(),
             steps: outcome
                 .steps
                 .iter()
@@ -141,12 +186,10 @@ impl<'a> RunObject<'a> {
                     smallest_j: step.smallest_j,
                     iterations: step.iterations,
                     tools: tools(&outcome.tools, step),
-                    probes: step.probes.iter().map(|&u| u.into()).collect(),
-                    metrics: step
-                        .more
-                        .iter()
-                        .map(|m| (m.name(), Number { value: m.value, unit: m.unit() }))
-                        .collect(),
+                    probes: arrays(&step.probes),
+                    supports: arrays(&step.supports),
+                    means: arrays(&step.means),
+                    metrics: numbers(&step.more),
                 })
                 .collect(),
             warnings: &outcome.warnings,
@@ -173,6 +216,9 @@ impl<'a> RunObject<'a> {
             phases: BTreeMap::new(),
             probes: Vec::new(),
             tools: Vec::new(),
+            supports: Vec::new(),
+            means: Vec::new(),
+            modes: Vec::new(),
             steps: Vec::new(),
             warnings: &[],
             plan: &run.plan,

@@ -10,6 +10,7 @@ mod colour;
 mod compare;
 mod export;
 mod fields;
+mod history;
 mod init;
 mod interrupt;
 mod json;
@@ -18,6 +19,7 @@ mod merge;
 mod mesh_files;
 mod mesh_info;
 mod mesh_make;
+mod pick;
 mod plan;
 mod reference;
 mod run;
@@ -68,6 +70,7 @@ fn act(cli: Cli) -> u8 {
     match cli.command {
         Command::Init(args) => init::init(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Run(args) => run(&args),
+        Command::Pick(args) => pick::pick(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
@@ -94,6 +97,7 @@ fn act(cli: Cli) -> u8 {
         }
         Command::Claims(args) => claims(&args),
         Command::Compare(args) => compare(&args),
+        Command::History { action } => history::act(&action),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "tissuebench", &mut script);

@@ -161,7 +161,7 @@ impl Made<'_> {
     fn conclude(mut self, machine: reports::Machine) -> u8 {
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
             println!("{}", text::outcomes(&self.outcomes));
-            print!("{}", text::warnings(&self.outcomes));
+            print!("{}{}", text::places(&self.outcomes), text::warnings(&self.outcomes));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
             eprintln!("{}", text::painted_verdict(check));

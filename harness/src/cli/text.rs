@@ -71,7 +71,7 @@ fn judged(check: &Check) -> String {
 
 /// A table of finished runs: sizes, errors, displacement, milliseconds per phase.
 pub fn outcomes(outcomes: &[Outcome]) -> String {
-    let columns: [(&str, &str, f64); 17] = [
+    let columns: [(&str, &str, f64); 19] = [
         ("l2", "L2 [%]", 100.0),
         ("energy", "energy [%]", 100.0),
         ("pressure", "pressure [%]", 100.0),
@@ -80,6 +80,8 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         ("max-x", "max x [mm]", 1e3),
         ("max-y", "max y [mm]", 1e3),
         ("max-z", "max z [mm]", 1e3),
+        ("max-over-time", "largest in time [mm]", 1e3),
+        ("time-of-max", "at [s]", 1.0),
         ("tip", "probe/exact", 1.0),
         ("history-error", "history [%]", 100.0),
         ("period", "period [s]", 1.0),
@@ -93,7 +95,12 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
     let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut head: Vec<String> = ["method", "nodes", "dofs"].map(String::from).to_vec();
-    head.extend(shown.iter().map(|c| c.1.to_string()));
+    // Of a motion the largest displacement at the end is not the largest of all.
+    let moves = outcomes.iter().any(|o| o.metric("max-over-time").is_some());
+    let of_end = |title: &str| {
+        if moves && title.starts_with("max") { title.replacen("max", "end", 1) } else { title.into() }
+    };
+    head.extend(shown.iter().map(|c| of_end(c.1)));
     let phases = PHASES.iter().chain(&["total"]).filter(|p| outcomes.iter().any(|o| phase(o, p).is_some()));
     let phases: Vec<_> = phases.copied().collect();
     head.extend(phases.iter().map(|p| format!("{p} [ms]")));
@@ -114,6 +121,60 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         row.extend(phases.iter().map(|p| phase(outcome, p).map_or("-".into(), |s| digits(s * 1e3))));
         rows.push(row);
     }
+    aligned(&rows)
+}
+
+/// What a person looks for besides, below the table of runs: forces of supports, means over faces, frequencies; empty without any.
+pub fn places(outcomes: &[Outcome]) -> String {
+    let mut text = String::new();
+    let row = |method: &str, rest: Vec<String>| [vec![method.to_string()], rest].concat();
+    let forces: Vec<Vec<String>> = (outcomes.iter())
+        .flat_map(|outcome| {
+            let each = outcome.supports.iter().map(|support| {
+                let along = |axis: usize| match support.axes[axis] {
+                    true => digits(support.force[axis]),
+                    false => "free".into(),
+                };
+                row(&outcome.identity.method, vec![support.name.clone(), along(0), along(1), along(2)])
+            });
+            each.collect::<Vec<_>>()
+        })
+        .collect();
+    section(&mut text, &["force of a support on the body [N]", "support", "x", "y", "z"], forces);
+    let means = outcomes.iter().flat_map(|outcome| {
+        outcome.means.iter().map(|face| {
+            let [x, y, z] = [face.u.x, face.u.y, face.u.z].map(|u| digits(1e3 * u));
+            row(&outcome.identity.method, vec![face.name.clone(), x, y, z])
+        })
+    });
+    section(&mut text, &["mean displacement of a face [mm]", "face", "x", "y", "z"], means.collect());
+    let modes = outcomes.iter().flat_map(|outcome| {
+        (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
+            let of = |name: &str| {
+                mode.iter().find(|m| m.entry.name == name).map_or("-".into(), |m| digits(m.value))
+            };
+            row(
+                &outcome.identity.method,
+                vec![number.to_string(), of("frequency"), of("omega"), of("omega-ratio")],
+            )
+        })
+    });
+    section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "of exact"], modes.collect());
+    text
+}
+
+/// A small table after an empty line, if it has rows.
+fn section(text: &mut String, head: &[&str], rows: Vec<Vec<String>>) {
+    if rows.is_empty() {
+        return;
+    }
+    let head = head.iter().map(ToString::to_string).collect();
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
+    writeln!(text, "\n{}", aligned(&rows)).expect("a string");
+}
+
+/// Rows as columns, the first to the left, the others to the right.
+pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
     let lines = rows.iter().map(|row| {

@@ -7,9 +7,8 @@ use reports::Status;
 
 use crate::cli::ci::{self, CiArgs};
 use crate::cli::{affordable, colour, fail, interrupt, refuse, report, take, text, unreported};
-use crate::study::events::{Event, Events};
 use crate::study::folder::{self, Folder};
-use crate::study::{self, Finished, Plan, VerifyArgs};
+use crate::study::{self, Event, Events, Finished, Plan, VerifyArgs};
 
 /// Runs the study, writes its results and the report; returns the exit code.
 pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {

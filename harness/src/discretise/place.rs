@@ -60,6 +60,15 @@ pub fn key(place: &Place, key: &str) -> Key {
     })
 }
 
+/// The place in the words of the scene.
+pub fn words(place: &Place) -> String {
+    match place {
+        Place::On(names) => names.join(", "),
+        Place::Where(region) => region.text.clone(),
+        Place::Everywhere => "everywhere".into(),
+    }
+}
+
 /// What the mesh spans, in the millimetres that scenes mostly give.
 pub fn extent(mesh: &Mesh) -> String {
     let (low, high) = bounds(mesh);

@@ -3,17 +3,21 @@
 mod displacement;
 mod estimate;
 mod exact_fit;
+mod large_strain;
 pub(crate) mod mean_pressure;
 mod modes;
 pub(crate) mod norms;
+mod over_time;
 mod own_stress;
 mod patch;
 mod picture;
+mod places;
 mod probe_history;
 mod probes;
 mod request;
 mod states;
 mod step_history;
+mod surface;
 mod transfer;
 mod warnings;
 
@@ -33,13 +37,16 @@ use norms::{difference, exact_at, norms, relative};
 
 pub(crate) use displacement::displacement;
 pub(crate) use modes::report as report_modes;
+pub(crate) use over_time::over_time;
 pub(crate) use picture::picture;
+pub(crate) use places::places;
 pub(crate) use probe_history::metrics as probe_history;
 pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;
 pub use request::{Reference, Repeats};
 pub(crate) use states::states;
 pub(crate) use step_history::report as report_steps;
+pub(crate) use surface::surface;
 pub(crate) use transfer::transfers;
 pub(crate) use warnings::warnings;
 

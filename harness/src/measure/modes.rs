@@ -71,6 +71,7 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         let mut metrics = Vec::new();
         push(&mut metrics, &metric::MODE, (n + 1) as f64);
         push(&mut metrics, &metric::OMEGA, omega[n]);
+        push(&mut metrics, &metric::FREQUENCY, omega[n] / std::f64::consts::TAU);
         if let Some(exact) = lowest.get(n) {
             push(&mut metrics, &metric::OMEGA_RATIO, omega[n] / exact);
         }

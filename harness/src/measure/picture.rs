@@ -53,6 +53,7 @@ pub(crate) fn picture(
         displacement: used.iter().map(|&n| of_mesh[n as usize].into()).collect(),
         tools,
         section,
+        body: None,
     })
 }
 

@@ -5,7 +5,7 @@ use geometry::{Point3, Vector3};
 use interp::Scheme;
 
 use crate::Failure;
-use crate::outcome::{LoadStep, SchemeSettings};
+use crate::outcome::{LoadStep, SchemeSettings, Watch};
 
 /// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +63,8 @@ pub(crate) struct Request<'a> {
     pub(crate) integrated: Option<&'a Reference>,
     /// The loop of frames after the first solution, if it is to run.
     pub(crate) repeated: Option<&'a Repeated>,
-    /// Called with every converged step of a static path, for those who wait.
-    pub(crate) watch: Option<fn(&LoadStep)>,
+    /// Who waits for it.
+    pub(crate) watch: Option<&'a Watch>,
 }
 
 impl<'a> Request<'a> {

@@ -10,8 +10,9 @@ use crate::discretise::Volume;
 use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
 use crate::scenario::PlacedTool;
 
-/// The recorded states of a procedure in steps, the end of one without, or the modes of vibration.
-pub(crate) fn states(run: &Solved) -> Result<States, Failure> {
+/// The recorded states of a procedure in steps, the end of one without, or the modes of vibration; at most so many of them, evenly, the
+/// last with them.
+pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let Solved { method, setup, prepared, solution } = *run;
     let mesh = method.mesh();
     let to_mesh = match method.interpolates {
@@ -33,13 +34,14 @@ pub(crate) fn states(run: &Solved) -> Result<States, Failure> {
         (Some(history), _) => {
             let last = history.steps.len().saturating_sub(1);
             let each = history.steps.iter().zip(&history.fields).enumerate();
-            each.map(|(k, (step, u))| {
-                let is_end = k == last && history.last.load == step.load;
-                let known = !mixed || is_end;
-                let parameters = known.then_some(&solution.pressure[..]);
-                state(step.time().unwrap_or(step.load), u, parameters, Some(step))
-            })
-            .collect()
+            each.filter(|(k, _)| is_kept(*k, history.steps.len(), most))
+                .map(|(k, (step, u))| {
+                    let is_end = k == last && history.last.load == step.load;
+                    let known = !mixed || is_end;
+                    let parameters = known.then_some(&solution.pressure[..]);
+                    state(step.time().unwrap_or(step.load), u, parameters, Some(step))
+                })
+                .collect()
         }
         (None, Some(vibration)) => {
             let shapes = vibration.modes.shapes.iter().take(vibration.count).enumerate();
@@ -53,7 +55,14 @@ pub(crate) fn states(run: &Solved) -> Result<States, Failure> {
     } else {
         Vec::new()
     };
-    Ok(States { mesh: mesh.clone(), states, tools })
+    let recorded = solution.history.as_ref().map_or(0, |history| history.steps.len());
+    let left_out = recorded.saturating_sub(states.len());
+    Ok(States { mesh: mesh.clone(), states, tools, left_out })
+}
+
+/// Whether the `k`-th of `count` is among the `most` that end equal parts of them.
+fn is_kept(k: usize, count: usize, most: usize) -> bool {
+    count <= most || (k + 1) * most / count > k * most / count
 }
 
 /// A tool where it starts.

@@ -4,7 +4,7 @@ use catalogue::metric;
 
 use super::{Request, Solved};
 use crate::Failure;
-use crate::outcome::{LoadStep, Metric, push, push_tool};
+use crate::outcome::{LoadStep, Metric, push, push_numbered};
 use crate::procedure::StepHistory;
 
 /// Reports the history of a run; returns its steps with their probes and errors.
@@ -21,9 +21,9 @@ pub(crate) fn report(
     push(metrics, &metric::LOAD_STEPS, steps.len() as f64);
     metrics.extend(of_procedure);
     for (index, tool) in last.tools.iter().enumerate() {
-        push_tool(metrics, &metric::CLOSURE, index, tool.closure);
-        push_tool(metrics, &metric::TOOL_FORCE, index, tool.pushed);
-        push_tool(metrics, &metric::CONTACT_POINTS, index, tool.active as f64);
+        push_numbered(metrics, &metric::CLOSURE, index, tool.closure);
+        push_numbered(metrics, &metric::TOOL_FORCE, index, tool.pushed);
+        push_numbered(metrics, &metric::CONTACT_POINTS, index, tool.active as f64);
     }
     if let Some(deepest) = last.tools.iter().map(|t| t.penetration).reduce(f64::max) {
         push(metrics, &metric::PENETRATION, deepest);
@@ -46,7 +46,7 @@ pub(crate) fn report(
         }
     }
     if let (Some(exact), Some(tool), None) = (run.setup.contact, last.tools.first(), failure) {
-        push_tool(metrics, &metric::TOOL_FORCE_ERROR, 0, (tool.pushed / exact.force - 1.0).abs());
+        push_numbered(metrics, &metric::TOOL_FORCE_ERROR, 0, (tool.pushed / exact.force - 1.0).abs());
         // ANCHOR: contact_radius_error
         push(metrics, &metric::CONTACT_RADIUS_ERROR, ((tool.area / exact.area).sqrt() - 1.0).abs());
         // ANCHOR_END: contact_radius_error
@@ -60,7 +60,7 @@ fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
         if other.pushed != 0.0 {
-            push_tool(
+            push_numbered(
                 &mut metrics,
                 &metric::TOOL_FORCE_ERROR,
                 index,

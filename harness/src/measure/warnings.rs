@@ -4,7 +4,7 @@ use catalogue::{metric, warning};
 
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
-use super::{Solved, exact_fit};
+use super::{Solved, exact_fit, large_strain};
 use crate::adapter;
 use crate::discretise::Essential;
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
@@ -57,6 +57,7 @@ pub(crate) fn warnings(
     found.extend(last.into_iter().flat_map(few_carriers));
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
+    found.extend(large_strain(run));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
     found
 }
@@ -229,6 +230,19 @@ fn few_digits(digits: f64) -> Option<Warning> {
         );
         Warning::new(&warning::FEW_DIGITS, digits, "", message)
     })
+}
+
+fn large_strain(run: &Solved) -> Option<Warning> {
+    let found = large_strain::largest(run).filter(|found| found.strain > large_strain::LARGE)?;
+    let [x, y, z] = [found.at.x, found.at.y, found.at.z].map(|x| 1e3 * x);
+    let message = format!(
+        "strains by {:.1} % at ({x:.2}, {y:.2}, {z:.2}) mm, and by more than {:.0} % in {:.2} % of the volume, which a law of small \
+         strain is not for: take one of large strain (law = \"neo-hookean\", kind = \"static\")",
+        100.0 * found.strain,
+        100.0 * large_strain::LARGE,
+        100.0 * found.share
+    );
+    Some(Warning::new(&warning::LARGE_STRAIN, found.strain, "material.law", message))
 }
 
 fn rough_stress(estimate: Option<f64>) -> Option<Warning> {

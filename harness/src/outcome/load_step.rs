@@ -66,6 +66,10 @@ pub struct LoadStep {
     pub load: f64,
     /// One per tool of the scene.
     pub tools: Vec<ToolStep>,
+    /// Force of each support on the body, N; none where it is not known.
+    pub supports: Vec<Vector3>,
+    /// Mean displacement of each face whose mean is asked for, m.
+    pub means: Vec<Vector3>,
     /// Strain energy, J.
     pub strain_energy: Option<f64>,
     /// Smallest volume ratio of all quadrature points.
@@ -91,6 +95,8 @@ impl LoadStep {
         LoadStep {
             load: 0.0,
             tools: vec![ToolStep::UNTOUCHED; tools],
+            supports: Vec::new(),
+            means: Vec::new(),
             strain_energy: Some(0.0),
             smallest_j: 1.0,
             iterations: 0,

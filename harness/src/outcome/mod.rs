@@ -3,12 +3,14 @@
 mod counters;
 mod latency;
 mod load_step;
+mod places;
 mod plan;
 pub mod provenance;
 mod records;
 mod states;
 pub(crate) mod timing;
 mod warning;
+mod watch;
 
 use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};
@@ -19,13 +21,15 @@ pub use counters::Counters;
 pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
+pub use places::{FaceMean, SupportForce};
 pub use plan::{Plan, Stage, StageName};
 pub(crate) use records::run_id;
 pub use states::States;
-pub(crate) use states::{State, Tensors, ToolSkin};
+pub(crate) use states::{State, Tensors, ToolSkin, von_mises};
 pub(crate) use timing::Meters;
 use timing::Timed;
 pub use warning::Warning;
+pub use watch::{Stopped, Watch};
 
 /// Which run: its record without size and number.
 pub type Identity = Record;
@@ -78,24 +82,24 @@ pub struct Size {
 pub struct Metric {
     /// What it is.
     pub entry: &'static metric::Metric,
-    /// Which tool's, where each has one; 0 otherwise.
-    pub tool: usize,
+    /// Which tool's, support's or face's, where each has one; 0 otherwise.
+    pub index: usize,
     /// SI value.
     pub value: f64,
 }
 
 impl Metric {
     pub(crate) fn new(entry: &'static metric::Metric, value: f64) -> Metric {
-        Metric { entry, tool: 0, value }
+        Metric { entry, index: 0, value }
     }
 
-    pub(crate) fn of_tool(entry: &'static metric::Metric, tool: usize, value: f64) -> Metric {
-        Metric { entry, tool, value }
+    pub(crate) fn numbered(entry: &'static metric::Metric, index: usize, value: f64) -> Metric {
+        Metric { entry, index, value }
     }
 
     /// Name as in records and checks.
     pub fn name(&self) -> String {
-        self.entry.of_tool(self.tool)
+        self.entry.numbered(self.index)
     }
 
     /// SI unit; `1` for a bare number.
@@ -110,8 +114,13 @@ pub(crate) fn push(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, va
 }
 
 /// Adds a number of one tool to a list.
-pub(crate) fn push_tool(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, tool: usize, value: f64) {
-    metrics.push(Metric::of_tool(entry, tool, value));
+pub(crate) fn push_numbered(
+    metrics: &mut Vec<Metric>,
+    entry: &'static metric::Metric,
+    tool: usize,
+    value: f64,
+) {
+    metrics.push(Metric::numbered(entry, tool, value));
 }
 
 /// Displacement and stress at a probe.
@@ -171,6 +180,10 @@ pub struct Outcome {
     pub counters: Counters,
     /// Names of the tools.
     pub tools: Vec<String>,
+    /// Forces of the supports at the end.
+    pub supports: Vec<SupportForce>,
+    /// Mean displacement of faces at the end.
+    pub means: Vec<FaceMean>,
     /// The last state reported: converged in a static procedure, recorded in dynamics.
     pub last: Option<LoadStep>,
     /// The load steps of a static procedure or the recorded states of dynamics, as far as it came.
@@ -222,6 +235,8 @@ impl Outcome {
             states: None,
             counters: Counters::default(),
             tools: Vec::new(),
+            supports: Vec::new(),
+            means: Vec::new(),
             last: None,
             steps: Vec::new(),
             modes: Vec::new(),

@@ -38,11 +38,21 @@ pub fn machine() -> Machine {
 
 /// Of a study or a single run, whose file the caller names; `scenes` are (case name, [`Scene::text`](cases::scene::Scene::text)).
 pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
-    let mut hashes: Vec<SceneHash> =
-        scenes.iter().map(|(case, text)| SceneHash { case: case.clone(), blake3: hash(text) }).collect();
+    let of = |(case, text): &(String, String)| SceneHash {
+        case: case.clone(),
+        blake3: hash(text),
+        title: title(text),
+    };
+    let mut hashes: Vec<SceneHash> = scenes.iter().map(of).collect();
     hashes.sort_by(|a, b| a.case.cmp(&b.case));
     hashes.dedup();
     Provenance { source: String::new(), program: program(), machine, scenes: hashes }
+}
+
+/// The title that a scene gives itself.
+fn title(text: &str) -> String {
+    let table: Option<toml::Table> = toml::from_str(text).ok();
+    table.and_then(|t| Some(t.get("title")?.as_str()?.to_string())).unwrap_or_default()
 }
 
 /// Processes that ran or waited to run in the last minute, on average; unknown where the system does not tell.

@@ -4,7 +4,7 @@ use catalogue::metric;
 use reports::{Family, PlanEntry, Record};
 
 use super::timing::{Summary, Timed};
-use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_tool};
+use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_numbered};
 
 impl Outcome {
     /// The run as rows of the long table.
@@ -54,8 +54,8 @@ impl Outcome {
         let start = at(0);
         if !self.steps.is_empty() {
             for index in 0..self.tools.len() {
-                rows.push(number(&start, &Metric::of_tool(&metric::CLOSURE, index, 0.0)));
-                rows.push(number(&start, &Metric::of_tool(&metric::TOOL_FORCE, index, 0.0)));
+                rows.push(number(&start, &Metric::numbered(&metric::CLOSURE, index, 0.0)));
+                rows.push(number(&start, &Metric::numbered(&metric::TOOL_FORCE, index, 0.0)));
             }
         }
         // Dynamics starts from rest and undeformed: no time, no energy.
@@ -69,9 +69,36 @@ impl Outcome {
         }
         for (index, step) in self.steps.iter().enumerate() {
             let here = at(index + 1);
-            rows.extend(of_step(step).iter().map(|m| number(&here, m)));
+            rows.extend(self.of_step(step).iter().map(|m| number(&here, m)));
         }
         rows
+    }
+
+    /// What is recorded of a step.
+    fn of_step(&self, step: &LoadStep) -> Vec<Metric> {
+        let mut all = vec![Metric::new(&metric::LOAD_CARRIED, step.load)];
+        all.extend(step.strain_energy.map(|energy| Metric::new(&metric::STRAIN_ENERGY, energy)));
+        push(&mut all, &metric::SMALLEST_J, step.smallest_j);
+        if step.iterations > 0 {
+            push(&mut all, &metric::NEWTON_ITERATIONS, step.iterations as f64);
+        }
+        for (index, tool) in step.tools.iter().enumerate() {
+            push_numbered(&mut all, &metric::CLOSURE, index, tool.closure);
+            push_numbered(&mut all, &metric::TOOL_FORCE, index, tool.pushed);
+            push_numbered(&mut all, &metric::CONTACT_POINTS, index, tool.active as f64);
+        }
+        for (index, (support, force)) in self.supports.iter().zip(&step.supports).enumerate() {
+            for axis in (0..3).filter(|&axis| support.axes[axis]) {
+                push_numbered(&mut all, metric::REACTION_PARTS[axis], index, force[axis]);
+            }
+        }
+        for (index, u) in step.means.iter().enumerate() {
+            for (axis, entry) in metric::MEAN_PARTS.into_iter().enumerate() {
+                push_numbered(&mut all, entry, index, u[axis]);
+            }
+        }
+        all.extend(step.more.iter().chain(&step.against));
+        all
     }
 
     /// The warnings as rows for the report.
@@ -183,21 +210,4 @@ fn times(row: &Record, timed: &Timed) -> Vec<Record> {
         rows.extend(all.iter().enumerate().map(|(r, &value)| of(quantity, "repeat", Some(r), value)));
     }
     rows
-}
-
-/// What is recorded of a step.
-fn of_step(step: &LoadStep) -> Vec<Metric> {
-    let mut all = vec![Metric::new(&metric::LOAD_CARRIED, step.load)];
-    all.extend(step.strain_energy.map(|energy| Metric::new(&metric::STRAIN_ENERGY, energy)));
-    push(&mut all, &metric::SMALLEST_J, step.smallest_j);
-    if step.iterations > 0 {
-        push(&mut all, &metric::NEWTON_ITERATIONS, step.iterations as f64);
-    }
-    for (index, tool) in step.tools.iter().enumerate() {
-        push_tool(&mut all, &metric::CLOSURE, index, tool.closure);
-        push_tool(&mut all, &metric::TOOL_FORCE, index, tool.pushed);
-        push_tool(&mut all, &metric::CONTACT_POINTS, index, tool.active as f64);
-    }
-    all.extend(step.more.iter().chain(&step.against));
-    all
 }

@@ -13,6 +13,8 @@ pub struct States {
     pub(crate) states: Vec<State>,
     /// The tools, where the procedure has steps.
     pub(crate) tools: Vec<ToolSkin>,
+    /// Number of recorded states that were not asked for.
+    pub(crate) left_out: usize,
 }
 
 /// A state.
@@ -48,6 +50,16 @@ pub(crate) struct ToolSkin {
 }
 
 impl States {
+    /// The undeformed body; of a cloud the mesh that it was drawn from.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Displacement (m) of the points of the mesh at each state, with its time (s), part of the load or number.
+    pub fn displacements(&self) -> impl ExactSizeIterator<Item = (f64, &[Vector3])> {
+        self.states.iter().map(|state| (state.time, &state.displacement[..]))
+    }
+
     /// Files by their names relative to a folder: the series `NAME.pvd` first, then its parts in a folder `NAME`.
     pub fn files<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (String, Vec<u8>)> + 'a {
         let parts = self.states.iter().enumerate().flat_map(move |(k, state)| {
@@ -121,7 +133,7 @@ impl Tensors {
 }
 
 /// `sqrt(3/2 s : s)` with the deviator `s` of a stress.
-fn von_mises(stress: &Matrix3) -> f64 {
+pub(crate) fn von_mises(stress: &Matrix3) -> f64 {
     let deviator = stress - Matrix3::identity() * (stress.trace() / 3.0);
     (1.5 * deviator.norm_squared()).sqrt()
 }

@@ -92,7 +92,7 @@ fn at_points(load: &setup::Load, surface: SurfaceRows) -> Result<(SurfaceRows, V
 }
 
 /// Surface rows over clipped triangles.
-fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
+pub(super) fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
     let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
     let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
     for triangle in cut {

@@ -2,8 +2,10 @@
 
 mod agreement;
 mod loads;
+mod means;
 mod nodal_patch;
 pub(crate) mod reach;
+mod support_forces;
 mod support_gap;
 mod touch;
 
@@ -27,7 +29,11 @@ use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{Setup, Support};
 use loads::Values;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
+use support_forces::Held;
 use touch::Touch;
+
+pub use means::check_means;
+pub use support_forces::ConditionForces;
 
 /// A surface constrained weakly, with its tables owned.
 struct OwnedWeak {
@@ -63,6 +69,8 @@ pub struct Prepared {
     eliminates: bool,
     weak: Vec<OwnedWeak>,
     penalties: Vec<OwnedPenalty>,
+    /// Which of these conditions are whose, by support.
+    held: Vec<Held>,
     /// Where tools may touch; `None` without tools.
     touch: Option<Touch>,
 }
@@ -87,6 +95,7 @@ pub fn prepare(
         eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
         penalties: Vec::new(),
+        held: Vec::new(),
         touch: None,
     };
     for load in &setup.loads {
@@ -192,6 +201,11 @@ impl Prepared {
         !self.constraints.is_empty()
     }
 
+    /// Whether every essential condition is that of a node.
+    pub fn holds_nodes_alone(&self) -> bool {
+        self.constraints.is_empty() && self.weak.is_empty() && self.penalties.is_empty()
+    }
+
     /// A finer quadrature than the method's own, for error norms and consistent masses, with the region of each point where
     /// there are several.
     pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {
@@ -230,6 +244,7 @@ impl Prepared {
     fn constrain(&mut self, method: &Discretisation, supports: &[Support]) -> Result<(), Failure> {
         agreement::check(supports, method.mesh())?;
         for support in supports {
+            let from = self.conditions();
             match &method.essential {
                 Essential::Nodal => self.constrain_nodes(method.mesh(), support, |vertex| vertex)?,
                 Essential::Coupling(coupled) => {
@@ -237,6 +252,7 @@ impl Prepared {
                 }
                 _ => self.constrain_cloud(method, support)?,
             }
+            self.hold(support.axes, from);
         }
         Ok(())
     }

@@ -17,8 +17,8 @@ use statics::nodal_forces;
 use super::{Problem, Solution, Stages, StepHistory};
 use crate::Failure;
 use crate::error::Key;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
-use crate::prepare::Prepared;
+use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, Watch, push};
+use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
 /// Lanczos steps of the critical step, and the factor for what they miss from below.
@@ -76,7 +76,7 @@ impl Loading {
 }
 
 fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Result<Solution, Failure> {
-    let Problem { setup, prepared, .. } = *problem;
+    let Problem { setup, prepared, watch, .. } = *problem;
     let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
     let mass = lumped_mass(rows, &setup.density()?, &volume.region, Lumping::for_table(rows))?;
     let body = ExplicitBody {
@@ -138,7 +138,8 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure @ ExplicitError::StepTooLarge { .. }) => Some(failure),
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
-            let mut run = Run { motion, asked, setup, prepared, states };
+            let led = loading.led.keys().copied().collect();
+            let mut run = Run { motion, asked, setup, prepared, led, states, watch };
             let failure = run.march(&mut load, interval).err();
             made = run.motion.steps() as u64;
             counters.time_steps += made;
@@ -236,7 +237,10 @@ struct Run<'a, 'b> {
     asked: &'b Explicit,
     setup: &'b Setup,
     prepared: &'b Prepared,
+    /// Prescribed degrees of freedom, as the motion has them.
+    led: Vec<(u32, u8)>,
     states: States,
+    watch: Option<&'b Watch>,
 }
 
 impl Run<'_, '_> {
@@ -261,6 +265,9 @@ impl Run<'_, '_> {
                 }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
                 let step = self.reported(&balance, &u, state as f64 * interval);
+                if let Some(watch) = self.watch {
+                    watch.step(&step);
+                }
                 self.states.steps.push(step);
                 self.states.fields.push(u);
             }
@@ -287,6 +294,15 @@ impl Run<'_, '_> {
         Ok(count)
     }
 
+    /// Force (N) of each support on a body of so many nodes, at the last step made.
+    fn supports(&self, nodes: usize) -> Vec<Vector3> {
+        let mut forces = vec![Vector3::zeros(); nodes];
+        for (&(node, axis), force) in self.led.iter().zip(self.motion.reactions()) {
+            forces[node as usize][usize::from(axis)] = *force;
+        }
+        self.prepared.support_forces(&ConditionForces { nodes: &forces, rows: &[], weak: &[] })
+    }
+
     fn reported(&self, balance: &Balance, u: &[Vector3], time: f64) -> LoadStep {
         let states = self.motion.tools().into_iter().flat_map(Tools::motions);
         let tools = states.zip(&self.setup.tools).map(|(motion, set)| ToolStep::of(&motion.state, &set.tool));
@@ -303,6 +319,8 @@ impl Run<'_, '_> {
         LoadStep {
             load: time / self.asked.ramp.duration,
             tools: tools.collect(),
+            supports: self.supports(u.len()),
+            means: Vec::new(),
             strain_energy: Some(balance.strain),
             smallest_j: smallest_j(self.prepared, u),
             iterations: 0,

@@ -12,6 +12,7 @@ use super::statics::{SMALLEST, newton_params, solves, with_static_problem};
 use super::{Problem, Solution, Stages, StepHistory, newton_reason};
 use crate::Failure;
 use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
+use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
 /// What the solver takes. An accuracy asks for steps as short as it takes.
@@ -59,7 +60,7 @@ fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
 }
 
 fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Result<Solution, Failure> {
-    let Problem { method, setup, prepared, .. } = *problem;
+    let Problem { method, setup, prepared, watch, .. } = *problem;
     let contact = prepared.contact();
     // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
     let mass = if asked.inertia {
@@ -70,11 +71,12 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
         None
     };
     let duration = asked.ramp.duration;
-    let (mut steps, mut fields) = (Vec::new(), Vec::new());
+    let (mut steps, mut fields, mut supports) = (Vec::new(), Vec::new(), Vec::new());
+    let ramps = ramps(setup, asked);
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |body| {
         let problem = TimeProblem {
             body,
-            ramps: ramps(setup, asked),
+            ramps,
             inertia: mass.as_ref().map(|mass| Inertia {
                 mass,
                 damping: asked.ramp.damping,
@@ -84,15 +86,24 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
             relaxation: &setup.relaxation,
         };
         solve_in_time(&problem, &params(asked), |done, motion, _| {
+            let part = ramps.supports.value(done.step.time);
+            supports = prepared.support_forces(&ConditionForces {
+                nodes: &motion.reaction,
+                rows: &[],
+                weak: &prepared.penalty_forces(&motion.u, part),
+            });
+            if let Some(watch) = watch {
+                watch.step(&reported(done, setup, duration));
+            }
             if done.step.wanted {
-                steps.push(reported(done, setup, duration));
+                steps.push(LoadStep { supports: supports.clone(), ..reported(done, setup, duration) });
                 fields.push(motion.u.clone());
             }
         })
     })?;
     let iterations = count(&path, counters);
     let last = match (path.steps.last(), path.failure.clone()) {
-        (Some(last), _) => reported(last, setup, duration),
+        (Some(last), _) => LoadStep { supports, ..reported(last, setup, duration) },
         (None, Some(TimeError::Stalled { cause, .. })) => return Err((*cause).into()),
         (None, Some(failure)) => return Err(failure.into()),
         (None, None) => return Err(Failure::Run("the motion has no step".into())),
@@ -173,6 +184,8 @@ fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
     LoadStep {
         load: step.time / duration,
         tools: tools.collect(),
+        supports: Vec::new(),
+        means: Vec::new(),
         strain_energy,
         smallest_j: step.smallest,
         iterations: solves(step),

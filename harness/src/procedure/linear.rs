@@ -8,6 +8,7 @@ use super::{Problem, Solution, Stages};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::outcome::Meters;
+use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
 /// What the linear procedure puts into the plan.
@@ -28,6 +29,11 @@ pub(super) fn solve(
     let assembled = meters.timings.time("assemble", || assemble(&system))?;
     meters.counters.assemblies += 1;
     let solved = solved(problem, assembled, asked, meters)?;
+    let supports = prepared.support_forces(&ConditionForces {
+        nodes: &solved.factored.reactions(&solved.solution, 1.0),
+        rows: &solved.factored.forces_of_rows(&solved.solution),
+        weak: &solved.factored.forces_of_weak(&solved.solution, 1.0),
+    });
     let statics::Solution { u, info, .. } = solved.solution;
     // Untimed, and once for all repeats: diagnoses, not a part of the solution.
     if meters.needed_nitsche_factor.is_none() {
@@ -38,6 +44,7 @@ pub(super) fn solve(
     }
     Ok(Solution {
         u,
+        supports,
         dofs: info.dofs,
         residual: Some(info.residual),
         linear: Some(info),

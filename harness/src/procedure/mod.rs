@@ -18,7 +18,7 @@ use material::Material as _;
 
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::outcome::{LoadStep, Meters, Plan};
+use crate::outcome::{Meters, Plan, Watch};
 use crate::prepare::Prepared;
 use crate::scenario::setup::Setup;
 
@@ -34,8 +34,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) prepared: &'a Prepared,
     pub(crate) plan: &'a Plan,
-    /// Called with every converged step of a static path, for those who wait.
-    pub(crate) watch: Option<fn(&LoadStep)>,
+    /// Who waits for it.
+    pub(crate) watch: Option<&'a Watch>,
     /// Probe positions, m.
     pub(crate) probes: &'a [Point3],
 }

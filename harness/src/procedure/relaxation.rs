@@ -4,7 +4,7 @@ use catalogue::metric;
 use contact::{ContactHistory, Drive};
 use explicit::{
     ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
-    RelaxationParams, lumped_mass, relax_under,
+    RelaxationParams, Rested, lumped_mass, relax_under,
 };
 use geometry::Vector3;
 use lanes::LanePath;
@@ -15,7 +15,7 @@ use super::explicit::{led, smallest_j};
 use crate::Failure;
 use crate::discretise::{Dilation, Discretisation};
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
-use crate::prepare::Prepared;
+use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
 /// Displacements to 1e-6 of the largest: 10 nm of 10 mm. Most steps for one load step: the kidney takes some thousand.
@@ -126,10 +126,10 @@ pub(super) fn continue_from(
         }
         let found =
             relax_under(&mut force, &mass, &fixed, &mut external, pressing.as_mut(), u.clone(), RELAXATION);
-        let info = match found {
-            Ok((rest, info)) => {
-                u = rest;
-                info
+        let Rested { reaction, info, .. } = match found {
+            Ok(rested) => {
+                u.clone_from(&rested.u);
+                rested
             }
             Err(failure) => {
                 if let ExplicitError::NotRelaxed { steps, .. } = failure {
@@ -148,6 +148,8 @@ pub(super) fn continue_from(
                 .zip(&setup.tools)
                 .map(|(state, set)| ToolStep::of(state, &set.tool))
                 .collect(),
+            supports: prepared.support_forces(&ConditionForces { nodes: &reaction, rows: &[], weak: &[] }),
+            means: Vec::new(),
             strain_energy: Some(force.energy(&u).map_err(ExplicitError::from)?),
             smallest_j: smallest_j(prepared, &u),
             iterations: 0,

@@ -16,6 +16,8 @@ pub(crate) struct Solution {
     pub(crate) u: Vec<Vector3>,
     /// Parameters of the method's own pressure field there, Pa, tension positive; empty without one.
     pub(crate) pressure: Vec<f64>,
+    /// Force of each support on the body at the end of a linear procedure, N.
+    pub(crate) supports: Vec<Vector3>,
     /// Unknowns, pressures included.
     pub(crate) dofs: usize,
     /// Relative residual of the last equilibrium of a procedure at rest.
@@ -62,6 +64,11 @@ impl Solution {
         }
         let of_vibration = self.vibration.as_ref().map(|vibration| vibration.modes.solver());
         self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
+    }
+
+    /// Force of each support on the body at the end, N; none where it is not known.
+    pub(crate) fn support_forces(&self) -> &[Vector3] {
+        self.history.as_ref().map_or(&self.supports, |history| &history.last.supports)
     }
 
     /// Whether the whole load was reached; a linear procedure has no less.

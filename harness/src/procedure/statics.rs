@@ -13,8 +13,8 @@ use super::relaxation::{self, Relaxed, Start};
 use super::{Problem, Solution, Stages, StepHistory, newton_reason};
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push, push_tool};
-use crate::prepare::Prepared;
+use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push, push_numbered};
+use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
 /// Part of a load step below which cutting it back is given up: six halvings.
@@ -73,7 +73,7 @@ pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> R
 fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(Solution, Limit), Failure> {
     let Problem { method, setup, prepared, plan, watch, .. } = *problem;
     let contact = prepared.contact();
-    let (mut steps, mut fields) = (Vec::new(), Vec::new());
+    let (mut steps, mut fields, mut supports) = (Vec::new(), Vec::new(), Vec::new());
     let start = Instant::now();
     let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));
     let mut params = static_params(asked);
@@ -82,25 +82,31 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         params.newton.keeps = NewtonParams::KEEPS;
     }
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
-        solve_static(problem, &params, |step, u, _| {
+        solve_static(problem, &params, |step, rest| {
+            supports = prepared.support_forces(&ConditionForces {
+                nodes: rest.reaction,
+                rows: &[],
+                weak: &prepared.penalty_forces(rest.u, step.time),
+            });
+            let reported = |step| LoadStep { supports: supports.clone(), ..reported(step, setup) };
             if let Some(watch) = watch {
-                watch(&reported(step, setup));
+                watch.step(&reported(step));
             }
             if (step.gave_way || !step.stable) && limit.step.is_none() {
                 limit.step = Some(before.clone());
             }
             if limit.step.is_none() {
-                (limit.seconds, before) = (start.elapsed().as_secs_f64(), reported(step, setup));
+                (limit.seconds, before) = (start.elapsed().as_secs_f64(), reported(step));
             }
             if step.wanted {
-                steps.push(reported(step, setup));
-                fields.push(u.to_vec());
+                steps.push(reported(step));
+                fields.push(rest.u.to_vec());
             }
         })
     })?;
     let iterations = count(&path, counters);
     let relaxes = plan.runs(StageName::Relaxation);
-    let last = last(&path, setup, relaxes)?;
+    let last = LoadStep { supports, ..last(&path, setup, relaxes)? };
     let residual = path.steps.last().and_then(|s| s.iterations.last()).map_or(0.0, |i| i.residual);
     let (mut end, mut u, mut relaxed) = (last.clone(), path.u, None);
     if path.failure.is_some() && relaxes {
@@ -176,8 +182,8 @@ fn metrics(
     if let Some(limit) = limit {
         push(&mut metrics, &metric::LIMIT_LOAD, limit.load);
         for (index, tool) in limit.tools.iter().enumerate() {
-            push_tool(&mut metrics, &metric::LIMIT_CLOSURE, index, tool.closure);
-            push_tool(&mut metrics, &metric::LIMIT_TOOL_FORCE, index, tool.pushed);
+            push_numbered(&mut metrics, &metric::LIMIT_CLOSURE, index, tool.closure);
+            push_numbered(&mut metrics, &metric::LIMIT_TOOL_FORCE, index, tool.pushed);
         }
     }
     push(&mut metrics, &metric::NEWTON_ITERATIONS, iterations as f64);
@@ -225,6 +231,8 @@ fn reported(step: &Step, setup: &Setup) -> LoadStep {
     LoadStep {
         load: step.time,
         tools: tools.collect(),
+        supports: Vec::new(),
+        means: Vec::new(),
         strain_energy: Some(step.energy),
         smallest_j: step.smallest,
         iterations: solves(step),

@@ -120,6 +120,8 @@ fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
         let left = limits.time.saturating_sub(began.elapsed());
         if let Ok(at) = end.recv_timeout(pause.min(left)) {
             watched.wall = (at - began).as_secs_f64();
+            // The leash has waited for all below it.
+            watched.running = 0.0;
             return watched;
         }
         watched.wall = began.elapsed().as_secs_f64();

@@ -98,8 +98,11 @@ fn pid(id: u32) -> rustix::process::Pid {
     rustix::process::Pid::from_raw(id.cast_signed()).expect("the number of a process that was started")
 }
 
+/// Ends what is below a process, in whatever group, and its own group.
 #[cfg(unix)]
 pub(super) fn kill(id: u32) {
+    #[cfg(target_os = "linux")]
+    super::members::end_below(id);
     let _ = rustix::process::kill_process_group(pid(id), rustix::process::Signal::KILL);
 }
 

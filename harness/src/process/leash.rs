@@ -1,4 +1,5 @@
-//! The hidden command `leash`: runs another program in its own group, and ends that group when whoever started it is gone.
+//! The hidden command `leash`: runs another program, and ends all that this has started, when it ends and when whoever started the leash
+//! is gone.
 //!
 //! A program that starts others leaves them behind if it is killed. Its leash does not: its stdin is a pipe that the system closes with
 //! the process at the other end, whatever ends that.
@@ -10,6 +11,8 @@ use std::process::{Command, ExitStatus, Stdio};
 use clap::Args;
 
 use super::group;
+#[cfg(target_os = "linux")]
+use super::members;
 
 /// As shells have it: a program that is not there, and one that a signal has ended.
 const NOT_FOUND: u8 = 127;
@@ -28,6 +31,10 @@ pub struct LeashArgs {
 
 /// Runs the program; returns its exit code.
 pub(crate) fn leash(args: &LeashArgs) -> u8 {
+    #[cfg(target_os = "linux")]
+    if let Err(bad) = members::adopt() {
+        eprintln!("tissuebench: what leaves its group is not ended with it: {bad}");
+    }
     std::thread::spawn(|| {
         let mut pipe = [0; 64];
         while let Ok(1..) = std::io::stdin().read(&mut pipe) {}
@@ -37,7 +44,10 @@ pub(crate) fn leash(args: &LeashArgs) -> u8 {
         eprintln!("tissuebench: the memory can't be limited: {bad}");
     }
     let Some((program, rest)) = args.command.split_first() else { return 2 };
-    match Command::new(program).args(rest).stdin(Stdio::null()).status() {
+    let ended = Command::new(program).args(rest).stdin(Stdio::null()).status();
+    #[cfg(target_os = "linux")]
+    members::end_own();
+    match ended {
         Ok(status) => code(status),
         Err(bad) => {
             eprintln!("tissuebench: {} can't be started: {bad}", program.to_string_lossy());

@@ -1,4 +1,4 @@
-//! Processes that are started: each with all that it starts in a group that is limited, measured and ended as a whole.
+//! Processes that are started: each is limited, measured and ended as a whole, with all that it starts.
 
 mod call;
 pub(crate) mod group;

@@ -1,6 +1,8 @@
 //! One scene at one Poisson's ratio: its reference first, then its methods against it.
 
+use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use geometry::{Point3, files};
@@ -12,14 +14,14 @@ use super::{Finished, run};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{self, Repeats, Request};
-use crate::outcome::{Counters, LoadStep, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished};
+use crate::outcome::{Counters, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Watch};
 use crate::prepare::reach;
 use crate::procedure::{Wanted, plan};
 use crate::scenario::{Scenario, point, rule, warnings};
 
 /// What every run of a scene shares.
 pub struct Group<'a> {
-    scene: &'a Scene,
+    scene: Cow<'a, Scene>,
     case: String,
     poisson: Option<f64>,
     probes: Vec<Point3>,
@@ -30,7 +32,7 @@ pub struct Group<'a> {
     reference_counters: Counters,
     reference_stalled: Option<Failure>,
     repeats: Repeats,
-    watch: Option<fn(&LoadStep)>,
+    watch: Option<Arc<Watch>>,
 }
 
 /// What a run does beside its numbers.
@@ -54,34 +56,48 @@ pub fn case_name(scene: &Scene) -> String {
 impl<'a> Group<'a> {
     /// Runs the reference method, if the scene compares with one, and finds the target points.
     pub fn new(scene: &'a Scene, poisson: Option<f64>, repeats: Repeats) -> Result<Group<'a>, Failure> {
-        let mut group = Group::unreferenced(scene, repeats)?;
-        group.poisson = poisson;
-        match &scene.reference {
-            Some(Reference::Method { id, size }) => group.run_reference(id, size.as_ref())?,
+        Group::watched(Cow::Borrowed(scene), poisson, repeats, None)
+    }
+
+    /// The same for a scene that may be the group's own, and for someone who waits for the reference and for every run.
+    pub fn watched(
+        scene: Cow<'a, Scene>,
+        poisson: Option<f64>,
+        repeats: Repeats,
+        watch: Option<Arc<Watch>>,
+    ) -> Result<Group<'a>, Failure> {
+        let mut group = Group::prepared(scene, repeats)?;
+        (group.poisson, group.watch) = (poisson, watch);
+        match group.scene.reference.clone() {
+            Some(Reference::Method { id, size }) => group.run_reference(&id, size.as_ref())?,
             Some(Reference::Record(path)) => {
-                let stored = Stored::load(scene, path)?;
-                let mirror = Mirror::of(&scene.body);
+                let stored = Stored::load(&group.scene, &path)?;
+                let mirror = Mirror::of(&group.scene.body);
                 group.targets = stored.targets(mirror);
                 group.reference = Some(stored.reference(mirror));
             }
             Some(Reference::Exact { .. }) | None => {}
         }
-        if let Some(id) = &scene.output.beside {
-            group.beside = Some(group.compared(id, None)?.0);
+        if let Some(id) = group.scene.output.beside.clone() {
+            group.beside = Some(group.compared(&id, None)?.0);
         }
         Ok(group)
     }
 
     /// The scene without its reference: enough for a plan.
     pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
+        Group::prepared(Cow::Borrowed(scene), repeats)
+    }
+
+    fn prepared(scene: Cow<'a, Scene>, repeats: Repeats) -> Result<Group<'a>, Failure> {
         let probes: Vec<Point3> = scene.output.probes.iter().map(|&x| point(x)).collect();
         Ok(Group {
-            scene,
-            case: case_name(scene),
+            case: case_name(&scene),
             poisson: None,
-            targets: targets(scene, &probes)?,
+            targets: targets(&scene, &probes)?,
             probes,
-            schemes: schemes(scene),
+            schemes: schemes(&scene),
+            scene,
             reference: None,
             beside: None,
             reference_counters: Counters::default(),
@@ -97,10 +113,10 @@ impl<'a> Group<'a> {
         scene: &'a Scene,
         id: &str,
         targets: Vec<Point3>,
-        watch: fn(&LoadStep),
+        watch: Watch,
     ) -> Result<measure::Reference, Failure> {
         let mut group = Group::unreferenced(scene, Repeats::ONCE)?;
-        (group.targets, group.watch) = (targets, Some(watch));
+        (group.targets, group.watch) = (targets, Some(Arc::new(watch)));
         group.run_reference(id, None)?;
         match group.reference_stalled {
             Some(failure) => Err(failure),
@@ -124,7 +140,8 @@ impl<'a> Group<'a> {
         if let Some(size) = size {
             method.resize(size);
         }
-        let mut scenario = self.scenario(method, 0);
+        let scene = self.scene.clone();
+        let mut scenario = self.scenario_of(&scene, method, 0);
         scenario.size_key = size.map(|_| "reference.size".into());
         let discretisation = scenario.discretise()?;
         if self.targets.is_empty() {
@@ -140,7 +157,7 @@ impl<'a> Group<'a> {
     fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Finished, Failure> {
         let setup = scenario.setup()?;
         let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
-        let request = Request { watch: self.watch, ..Request::alone(&self.probes, &self.targets) };
+        let request = Request { watch: self.watch.as_deref(), ..Request::alone(&self.probes, &self.targets) };
         run(scenario.identity(), plan, discretisation, &setup, &request)
             .map_err(|failure| scenario.locate(failure))
     }
@@ -163,15 +180,12 @@ impl<'a> Group<'a> {
     }
 
     /// One of the scene's methods, as a run of this group.
-    pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'a> {
-        Scenario {
-            case: self.case.clone(),
-            scene: self.scene,
-            method,
-            level,
-            poisson: self.poisson,
-            size_key: None,
-        }
+    pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'_> {
+        self.scenario_of(&self.scene, method, level)
+    }
+
+    fn scenario_of<'s>(&self, scene: &'s Scene, method: scene::Method, level: u32) -> Scenario<'s> {
+        Scenario { case: self.case.clone(), scene, method, level, poisson: self.poisson, size_key: None }
     }
 
     /// Probe positions, m.
@@ -209,17 +223,13 @@ impl<'a> Group<'a> {
             None => None,
         };
         let request = Request {
-            probes: &self.probes,
-            targets: &self.targets,
             schemes: self.schemes_for(&discretisation),
             picture: options.picture,
             states: options.states,
             repeats: self.repeats,
-            reference: self.reference.as_ref(),
-            beside: self.beside.as_ref(),
             integrated: integrated.as_ref(),
             repeated: self.scene.output.repeated.as_ref().filter(|_| options.frames),
-            watch: None,
+            ..self.request()
         };
         let mut identity = scenario.identity();
         identity.split = integrated.as_ref().and(options.split).map(rule);
@@ -228,10 +238,21 @@ impl<'a> Group<'a> {
                 let locate = |failure| scenario.locate(failure);
                 solved.outcome.stalled = solved.outcome.stalled.map(locate);
                 solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
-                solved.outcome.warn(warnings(self.scene, discretisation.mesh()));
+                let nodes = solved.outcome.size.nodes as usize;
+                solved.outcome.warn(warnings(&self.scene, &scenario.method, discretisation.mesh(), nodes));
                 Ok(solved.outcome)
             }
             Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan, size }),
+        }
+    }
+
+    /// A solution compared with the references, with nothing else beside it.
+    pub(super) fn request(&self) -> Request<'_> {
+        Request {
+            reference: self.reference.as_ref(),
+            beside: self.beside.as_ref(),
+            watch: self.watch.as_deref(),
+            ..Request::alone(&self.probes, &self.targets)
         }
     }
 

@@ -4,6 +4,7 @@ mod export;
 mod group;
 mod memory;
 pub(crate) mod mirror;
+mod posed;
 mod repeated;
 pub(crate) mod stored;
 
@@ -16,12 +17,13 @@ use reports::{Record, SurfaceField};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
-    self, Field, Reference, Request, check_probes, displacement, measure, of_tables, picture, probe_errors,
-    probe_history, probes, report_modes, report_steps, states, transfers, warnings,
+    self, Field, Reference, Request, check_probes, displacement, measure, of_tables, over_time, picture,
+    places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface, transfers,
+    warnings,
 };
 use crate::outcome::timing::Timed;
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
-use crate::prepare::{Prepared, prepare};
+use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::scenario::setup::Setup;
 use memory::Baseline;
@@ -30,6 +32,7 @@ use repeated::repeated;
 pub use crate::measure::Repeats;
 pub use group::{Group, RunOptions, case_name};
 pub use memory::Baseline as MemoryBaseline;
+pub use posed::{Found, Posed, PosedTool};
 pub use stored::Stored;
 
 /// A finished run with its nodal parameters.
@@ -53,6 +56,7 @@ pub(crate) fn run(
     request: &Request,
 ) -> Result<Finished, Failure> {
     check_probes(method.mesh(), request.probes)?;
+    check_means(method.mesh(), &setup.means)?;
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
 }
 
@@ -73,7 +77,7 @@ fn on_pool(
     outcome.memory = solution.program.as_ref().map_or(memory, |program| program.memory);
     outcome.identity.linear_solver = solution.solver().map(Into::into);
     if request.states {
-        outcome.states = Some(states(&run)?);
+        outcome.states = Some(states(&run, usize::MAX)?);
     }
     if solution.u.is_empty() {
         unloaded(&mut outcome, &run)?;
@@ -173,6 +177,9 @@ fn loaded(
     conclude(&mut outcome.plan, solution, &counters);
     compare(outcome, run, &field, request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
+    places(outcome, run)?;
+    let over_time = over_time(run, &outcome.plan, request, &outcome.steps)?;
+    outcome.metrics.extend(over_time);
     outcome.probes = probes(run, request.probes)?;
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref());
@@ -187,7 +194,9 @@ fn loaded(
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }
     if request.picture {
-        outcome.field = Some(picture(&outcome.identity, run, outcome.last.as_ref())?);
+        let mut field = picture(&outcome.identity, run, outcome.last.as_ref())?;
+        field.body = Some(surface(run)?);
+        outcome.field = Some(field);
     }
     outcome.counters = counters;
     Ok(())

@@ -211,6 +211,8 @@ impl Stored {
             tools: (step.tools.iter())
                 .map(|t| ToolStep { closure: t.closure, pushed: t.force, ..ToolStep::UNTOUCHED })
                 .collect(),
+            supports: Vec::new(),
+            means: Vec::new(),
             strain_energy: None,
             smallest_j: 1.0,
             iterations: 0,
@@ -247,9 +249,9 @@ impl Stored {
                 rows.push(Record { quantity, unit, step, statistic, value, ..own.clone() });
             };
             for (index, tool) in step.tools.iter().enumerate() {
-                push(metric::CLOSURE.of_tool(index), metric::CLOSURE.unit(), "value", tool.closure);
+                push(metric::CLOSURE.numbered(index), metric::CLOSURE.unit(), "value", tool.closure);
                 for (statistic, value) in [("value", tool.force), ("low", tool.low), ("high", tool.high)] {
-                    push(metric::TOOL_FORCE.of_tool(index), metric::TOOL_FORCE.unit(), statistic, value);
+                    push(metric::TOOL_FORCE.numbered(index), metric::TOOL_FORCE.unit(), statistic, value);
                 }
             }
             push(metric::PROBE_BAND.name.into(), metric::PROBE_BAND.unit(), "value", step.probe_band);

@@ -155,8 +155,7 @@ fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) 
         }
         Err(nodes) => {
             few_enough(nodes as f64)?;
-            // Of quadratic cells most nodes are in the middle of edges.
-            Fill::Nodes(if kind == CellKind::Tet10 { (nodes / 8).max(8) } else { nodes })
+            if kind == CellKind::Tet10 { Fill::QuadraticNodes(nodes) } else { Fill::Nodes(nodes) }
         }
     };
     let mesh = from_file.mesh(fill)?;

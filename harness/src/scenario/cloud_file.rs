@@ -7,6 +7,7 @@ use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, files, locate, read_points};
 
 use crate::Failure;
+use crate::adapter::npy;
 use crate::error::Key;
 
 /// A node this far beyond the surface, over the diagonal of the body, is taken to lie on it: what six digits of text leave.
@@ -77,12 +78,14 @@ fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
     if shape.inside(p) { 0.0 } else { (shape.project_to_surface(p) - p).norm() }
 }
 
-/// Reads the nodes of a mesh file or of lines `x, y, z`; `nodes` is how many the scene says there are.
+/// Reads the nodes of a mesh file, of an array in `.npy` or of lines `x, y, z`; `nodes` is how many the scene says there are.
 pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
     let (points, lines, mesh) = if files::is_mesh(&file.path) {
         let mesh = files::read(&file.path, file.unit)
             .map_err(|bad| Failure::input(FILE, format!("can't be read: {bad}"), files::READ))?;
         (mesh.points().to_vec(), Vec::new(), Some(mesh))
+    } else if file.path.extension().is_some_and(|suffix| suffix == "npy") {
+        (array(file)?, Vec::new(), None)
     } else {
         let read = read_points(&file.path, file.unit).map_err(|bad| {
             Failure::input(FILE, format!("can't be read: {bad}"), "give x, y, z per line, between commas")
@@ -109,6 +112,23 @@ pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
             .map_err(|bad| Failure::input(FILE, format!("makes no cloud: {bad}"), ""))?,
     };
     Ok(Read { cloud, ..unspaced })
+}
+
+/// The nodes of an array of NumPy's: a row of x, y, z for each, counted from 0.
+fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
+    let wrong = |bad: String| {
+        let problem = format!("can't be read: {} {bad}", file.path.display());
+        Failure::input(FILE, problem, "give an array of shape (nodes, 3), a row of x, y, z for each node")
+    };
+    let array = npy::read(&file.path).map_err(wrong)?;
+    if !matches!(array.shape[..], [rows, 3] if rows > 0) {
+        return Err(wrong(format!("has an array of shape {:?}", array.shape)));
+    }
+    if let Some(at) = array.values.iter().position(|x| !x.is_finite()) {
+        return Err(wrong(format!("has {} in row {}, column {}", array.values[at], at / 3, at % 3)));
+    }
+    let rows = array.values.chunks_exact(3);
+    Ok(rows.map(|x| Point3::new(x[0], x[1], x[2]) * file.unit).collect())
 }
 
 /// The first node that stands where one before it does.

@@ -61,7 +61,7 @@ impl Scenario<'_> {
         Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
-    /// What the scene asks of a solver, each by its word in an adapter's `can` and for people. Procedures that problems in files
+    /// What the scene asks of a solver: the word that an adapter lists in `can`, and a phrase for messages. Procedures that problems in files
     /// do not have yet are words of no adapter.
     fn asked(&self) -> Vec<(&'static str, String)> {
         let kind = self.scene.procedure.kind();

@@ -7,7 +7,7 @@ use std::time::SystemTime;
 
 use cases::scene::MeshFile;
 use geometry::generate::to_tets;
-use geometry::stuffing::{Stuffing, stuff, stuff_with_nodes};
+use geometry::stuffing::{Stuffing, stuff, stuff_with_nodes, stuff_with_quadratic_nodes};
 use geometry::surface::BoundaryFaces;
 use geometry::{Facet, Mesh, Point3, Surface, Vector3, files, locate};
 
@@ -27,6 +27,8 @@ pub struct FileBody {
 pub enum Fill {
     /// About so many nodes.
     Nodes(usize),
+    /// About so many nodes once the cells are quadratic.
+    QuadraticNodes(usize),
     /// The mean length of edges (m), by its bits.
     Spacing(u64),
 }
@@ -89,6 +91,7 @@ impl FileBody {
         }
         let stuffed = match fill {
             Fill::Nodes(nodes) => stuff_with_nodes(&self.surface, nodes, 0).map(|(stuffed, _)| stuffed),
+            Fill::QuadraticNodes(nodes) => stuff_with_quadratic_nodes(&self.surface, nodes),
             Fill::Spacing(bits) => {
                 stuff(&self.surface, Stuffing { spacing: f64::from_bits(bits), doublings: 0 })
             }

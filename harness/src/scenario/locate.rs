@@ -1,7 +1,7 @@
 //! From what stopped a run to the key of the scene that caused it: file, line and value.
 
 use algebra::AlgebraError;
-use cases::scene::{Cloud, ErrorKind, Family, Functions, Procedure, Scene, SupportRule};
+use cases::scene::{Cloud, ErrorKind, Family, Functions, Method, Procedure, Scene, SupportRule};
 use contact::ContactError;
 use efg::EfgError;
 use explicit::ExplicitError;
@@ -17,7 +17,8 @@ impl Scenario<'_> {
         let finding = match failure {
             Failure::Scene(_) => return failure,
             Failure::Foreign(mut foreign) => {
-                let key = self.key(&Key::Method("adapter"));
+                let named = self.scene.method(&self.method.id).is_some();
+                let key = self.key(&Key::Method(if named { "adapter" } else { "" }));
                 let problem = format!("{}: {}", foreign.status.name(), foreign.reason);
                 foreign.at.get_or_insert_with(|| {
                     Box::new(self.scene.error(ErrorKind::NotRun, &key, &problem, None))
@@ -39,7 +40,8 @@ impl Scenario<'_> {
     }
 
     fn key(&self, key: &Key) -> String {
-        let index = self.scene.methods.iter().position(|m| m.id == self.method.id);
+        let of = |m: &Method| m.id == self.method.id || self.method.is_twin_of(m);
+        let index = self.scene.methods.iter().position(of);
         let method = index.map_or("method".into(), |i| format!("method[{i}]"));
         match key {
             Key::Scene(key) => key.clone(),

@@ -136,6 +136,7 @@ impl Scenario<'_> {
             relaxation: self.relaxation()?,
             supports,
             loads,
+            means: self.scene.output.means.clone(),
             tools: tools(self.scene)?,
             procedure: self.scene.procedure,
             mass: self.method.mass,

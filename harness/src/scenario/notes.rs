@@ -7,8 +7,11 @@ use geometry::Mesh;
 use crate::discretise::place::{self, tolerance};
 use crate::outcome::Warning;
 
-/// Warnings about the scene on this mesh.
-pub(crate) fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<Warning> {
+/// Part by which the nodes of a mesh may differ from those asked for without a word.
+const NEAR: f64 = 0.1;
+
+/// Warnings about the scene on this mesh, and about the size of a method with so many nodes.
+pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes: usize) -> Vec<Warning> {
     let mut found = Vec::new();
     if !scene.is_moved() {
         let message =
@@ -16,7 +19,20 @@ pub(crate) fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<Warning> {
         found.push(Warning::new(&warning::NOTHING_MOVES, 0.0, "", message));
     }
     found.extend(scene.regions.iter().enumerate().filter_map(|(index, region)| cut(index, region, mesh)));
+    found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
     found
+}
+
+/// A mesh of a closed form comes in steps, one inside a surface as its cells fall.
+fn other_size(asked: usize, got: usize) -> Option<Warning> {
+    let ratio = got as f64 / asked.max(1) as f64;
+    ((ratio - 1.0).abs() > NEAR).then(|| {
+        let message = format!(
+            "size = {{ nodes = {asked} }} gives {got} nodes, the nearest that was found: sizes of cells come in steps. Compare by the \
+             nodes there are, or give spacing"
+        );
+        Warning::new(&warning::NODES_DIFFER, ratio, "method.size.nodes", message)
+    })
 }
 
 /// Cells of which some corners lie inside the place of a region and some outside.

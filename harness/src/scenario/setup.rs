@@ -65,6 +65,8 @@ pub struct Setup {
     pub supports: Vec<Support>,
     /// Loads.
     pub loads: Vec<Load>,
+    /// Parts of the surface whose mean displacement is reported.
+    pub means: Vec<Place>,
     /// Rigid tools.
     pub tools: Vec<PlacedTool>,
     /// How it is solved.

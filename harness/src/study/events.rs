@@ -53,7 +53,12 @@ impl Events {
     pub(crate) fn to(path: &Path) -> io::Result<Events> {
         let out: Box<dyn Write + Send> =
             if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(File::create(path)?) };
-        Ok(Events { out: Mutex::new(out), begin: Instant::now() })
+        Ok(Events::new(out))
+    }
+
+    /// To whatever takes lines.
+    pub fn new(out: Box<dyn Write + Send>) -> Events {
+        Events { out: Mutex::new(out), begin: Instant::now() }
     }
 
     /// Writes one line at once. A reader that has gone away, or a full disk, ends no study.

@@ -1,6 +1,7 @@
 //! The runs of a study, one after the other or by several processes together; each is stored as soon as it is finished.
 
 use std::any::Any;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::apart::Apart;
-use super::files::files;
+use super::files::{files, versions};
 use super::progress::{Progress, Running};
 use super::store::{Accept, Store};
 use super::task::{TaskResult, failed, key};
@@ -81,6 +82,9 @@ impl Work<'_> {
         let mut group: Option<Result<Group, Failure>> = None;
         let mut left = Vec::new();
         for (at, &index) in members.iter().enumerate() {
+            if self.plan.is_stopped() {
+                return Vec::new();
+            }
             let key = self.plan.key(index, self.args);
             match self.turn(&key) {
                 Turn::Stored(result) => {
@@ -98,6 +102,10 @@ impl Work<'_> {
                         Some(apart) => apart.run(self.plan, index, &key),
                         None => self.plan.run(index, self.args, &mut group),
                     };
+                    // A run that was ended half-way has no result.
+                    if self.plan.is_stopped() {
+                        return Vec::new();
+                    }
                     if let Err(bad) = self.store.save(&key, &result) {
                         self.progress.warn(format!("warning: a result could not be stored: {bad}"));
                     }
@@ -171,7 +179,9 @@ impl Plan {
         let RunOptions { picture, frames, split, states: _ } = options;
         let case = case_name(scene);
         let what = format!("{case} {method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
-        key(text, &files(scene), &what)
+        let versions = versions(scene, method);
+        let what = if versions.is_empty() { what } else { format!("{what} {versions:?}") };
+        key(text, &files(scene, method), &what)
     }
 
     fn options(&self, task: &Task, args: &VerifyArgs) -> RunOptions {
@@ -193,7 +203,9 @@ impl Plan {
         let repeats = if args.quick { QUICK } else { REPEATS };
         let mut shared = Counters::default();
         let group = group.get_or_insert_with(|| {
-            let group = caught(|| Group::new(scene, task.poisson, repeats)).unwrap_or_else(Err);
+            let group =
+                caught(|| Group::watched(Cow::Borrowed(scene), task.poisson, repeats, self.watch.clone()))
+                    .unwrap_or_else(Err);
             shared = group.as_ref().map_or(shared, Group::reference_counters);
             group
         });

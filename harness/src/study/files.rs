@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{self, Scene};
 
-use crate::adapter;
+use crate::adapter::{self, Found};
 
-/// Files that a scene names, and those of the adapters of its methods: a changed mesh or program is a changed run.
-pub(super) fn files(scene: &Scene) -> Vec<PathBuf> {
+/// Files that a scene names, and those of the adapters of one of its methods and of its reference: a changed mesh or program is a
+/// changed run.
+pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = scene.methods.iter().flat_map(scene::Method::files).collect();
     if let scene::Body::File(file) = &scene.body {
         found.push(file.path.clone());
@@ -23,7 +24,11 @@ pub(super) fn files(scene: &Scene) -> Vec<PathBuf> {
     if let Some(scene::Reference::Record(path)) = &scene.reference {
         found.push(path.clone());
     }
-    found.extend(scene.methods.iter().flat_map(|method| of_adapter(scene, method)));
+    for adapter in adapters(scene, method) {
+        found.extend(adapter.folder.iter().flat_map(|folder| {
+            adapter.files().into_iter().map(|(name, _)| folder.join(name)).collect::<Vec<_>>()
+        }));
+    }
     let included: Vec<PathBuf> = found.iter().flat_map(|file| geometry::files::included(file)).collect();
     found.extend(included);
     found.sort();
@@ -31,10 +36,21 @@ pub(super) fn files(scene: &Scene) -> Vec<PathBuf> {
     found
 }
 
-/// The files of a method's adapter; those of the program are part of the program.
-fn of_adapter(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
-    let scene::Family::External(external) = &method.family else { return Vec::new() };
-    let found = adapter::find(&external.adapter, Some(Path::new(scene.file()))).ok();
-    let folder = found.and_then(|found| Some((found.folder.clone()?, found.files())));
-    folder.map_or(Vec::new(), |(folder, files)| files.iter().map(|(name, _)| folder.join(name)).collect())
+/// What the solvers of a method and of its reference say of their versions: another one is another run.
+pub(super) fn versions(scene: &Scene, method: &scene::Method) -> Vec<Option<String>> {
+    let version = |adapter: &Found| adapter::ready(adapter).ok().and_then(|()| adapter::version(adapter));
+    adapters(scene, method).iter().map(version).collect()
+}
+
+/// The adapters of a method and of its reference. The files of those that this program brings with it are part of the program.
+fn adapters(scene: &Scene, method: &scene::Method) -> Vec<Found> {
+    let reference = match &scene.reference {
+        Some(scene::Reference::Method { id, .. }) => scene.method(id),
+        _ => None,
+    };
+    let of = |method: &scene::Method| {
+        let scene::Family::External(external) = &method.family else { return None };
+        adapter::find(&external.adapter, Some(Path::new(scene.file()))).ok()
+    };
+    [Some(method), reference].into_iter().flatten().filter_map(of).collect()
 }

@@ -4,7 +4,7 @@ use cases::scene::Scene;
 use geometry::Point3;
 
 use crate::Failure;
-use crate::outcome::{LoadStep, ToolStep, provenance};
+use crate::outcome::{LoadStep, ToolStep, Watch, provenance};
 use crate::run::mirror::Mirror;
 use crate::run::stored::{Problem, Source, Stored, StoredStep, StoredTool};
 use crate::run::{Group, case_name};
@@ -37,7 +37,7 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
 fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stored, Failure> {
     let mirror = Mirror::of(&scene.body);
     let images = points.iter().map(|x| mirror.place(x)).collect();
-    let solution = Group::solve_for(scene, method, images, waiting)?;
+    let solution = Group::solve_for(scene, method, images, Watch::new(waiting))?;
     let tool =
         |t: &ToolStep| StoredTool { closure: t.closure, force: t.pushed, low: t.pushed, high: t.pushed };
     let step = |step: &LoadStep| StoredStep {

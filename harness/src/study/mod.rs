@@ -3,7 +3,7 @@
 pub(crate) mod apart;
 mod args;
 pub mod check;
-pub(crate) mod events;
+mod events;
 mod execute;
 mod files;
 mod filters;
@@ -20,22 +20,22 @@ mod summary;
 mod task;
 mod tasks;
 mod trials;
+mod whole;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
+use std::sync::{Arc, Mutex};
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
 use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
 
 use crate::error::ForeignStatus;
-use crate::outcome::{Counters, provenance};
+use crate::outcome::{Counters, Watch, provenance};
 use crate::run::stored::Stored;
 use crate::run::{Repeats, case_name};
 use crate::scenario::{purpose, too_large};
 use apart::Apart;
-use events::Events;
 use execute::Work;
 use progress::Progress;
 use store::{Maker, Store};
@@ -45,11 +45,13 @@ use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
 pub use args::{Loudness, VerifyArgs};
+pub(crate) use events::Event;
+pub use events::Events;
 pub use filters::Filters;
 pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use summary::RunSummary;
-pub(crate) use task::{failed, stalled};
+pub use task::{failed, stalled};
 
 /// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
@@ -67,6 +69,8 @@ pub struct Plan {
     tasks: Vec<Task>,
     /// Values of axes at which there is no scene.
     refused: Vec<RefusedScene>,
+    /// Who waits for the runs.
+    watch: Option<Arc<Watch>>,
 }
 
 /// What a study came to.
@@ -112,6 +116,7 @@ impl Plan {
             cases: BTreeMap::new(),
             tasks: Vec::new(),
             refused: Vec::new(),
+            watch: None,
         };
         let mut errors = Vec::new();
         let mut known = Known::default();

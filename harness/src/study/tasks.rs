@@ -21,7 +21,7 @@ pub(super) struct Task {
 pub(super) type Known = HashMap<(usize, String), Vec<usize>>;
 
 /// Lists the runs of one table: methods, times levels (or node counts), times kernels, times support scales, times essential
-/// conditions, times seeds, times Poisson's ratios.
+/// conditions, times seeds, times solvers, times Poisson's ratios.
 pub(super) fn list(
     tasks: &mut Vec<Task>,
     known: &mut Known,
@@ -43,14 +43,12 @@ pub(super) fn list(
     let own = scene.material.constant("poisson");
     let own_ratio = |poisson: Option<f64>| poisson.or(own);
     for &poisson in &ratios {
-        for method in &scene.methods {
-            if !(run.methods.is_empty() || run.methods.contains(&method.id)) {
-                continue;
-            }
+        for method in run.chosen(scene) {
             for (level, sized) in sizes(run, method) {
                 let shaped = kernels(run, sized).into_iter().flat_map(|method| support_scales(run, method));
                 let held = shaped.flat_map(|method| essentials(run, method));
-                for method in held.flat_map(|method| seeds(run, method)) {
+                let placed = held.flat_map(|method| seeds(run, method));
+                for method in placed.flat_map(|method| solvers(run, method)) {
                     // One run may be in several tables: a level among levels and alone, a cloud among clouds.
                     let places =
                         known.entry((at, format!("{:?} {method:?}", own_ratio(poisson)))).or_default();
@@ -156,4 +154,10 @@ fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
         0 => vec![method],
         count => (1..=count).filter_map(|seed| method.seeded(seed)).collect(),
     }
+}
+
+/// The method, and behind it the same by each solver outside this program that the run table names: both see the machine alike.
+fn solvers(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
+    let others: Vec<_> = run.adapters.iter().filter_map(|adapter| method.solved_by(adapter)).collect();
+    std::iter::once(method).chain(others).collect()
 }

@@ -3,11 +3,12 @@
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
-use super::{Figure, representative};
+use super::{Data, Figure, representative};
 use crate::published::read_as;
 use crate::record::Family;
 use crate::select::{Run, competing, kernels, labels, series};
 use crate::store::slug;
+use crate::table::csv_line;
 use crate::text::significant;
 
 const ROW: f64 = 16.0;
@@ -73,7 +74,17 @@ fn figure(group: &[Run]) -> Option<Figure> {
         title: format!("RMS errors, {} (ν = {})", is.case, is.poisson),
         caption,
         canvas: draw(&format!("{}, ν = {}", is.case, is.poisson), &rows),
+        data: Data::Rows(csv(&rows)),
     })
+}
+
+fn csv(rows: &[Row]) -> String {
+    let mut out = csv_line(&[&["run"], &DIRECTIONS.map(|d| d.1)[..]].concat());
+    for (name, values, _) in rows {
+        let values = values.map(|v| v.map(|v| format!("{v:e}")).unwrap_or_default());
+        out.push_str(&csv_line(&[&[name.as_str()], &values.each_ref().map(String::as_str)[..]].concat()));
+    }
+    out
 }
 
 fn draw(title: &str, rows: &[Row]) -> Canvas {

@@ -72,11 +72,6 @@ impl Canvas {
         canvas
     }
 
-    /// Width on paper, points.
-    pub(crate) fn width(&self) -> f64 {
-        self.width
-    }
-
     pub(crate) fn line(&mut self, points: &[(f64, f64)], colour: Colour, width: f64) {
         self.shapes.push(Shape::Line { points: points.to_vec(), colour, width });
     }

@@ -3,7 +3,8 @@
 use super::axes::Axis;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, continued, paged};
+use super::{Data, Figure, PAGE, continued, paged};
+use crate::plot::{Curve, Plot, Scale};
 use crate::record::Family;
 use crate::select::{Run, by_case};
 
@@ -29,6 +30,7 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
             true,
             "Marker: median over the points; bar: up to the worst point.",
         ),
+        data: Data::Plots(plotted(panels, "condition number [1]", true)),
     };
     panels.chunks(PAGE).enumerate().map(figure).collect()
 }
@@ -49,11 +51,13 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     if lines.is_empty() {
         return Vec::new();
     }
+    let panels = [("Neighbours".to_string(), lines)];
     vec![Figure {
         name: "neighbours".into(),
         title: "Neighbours per integration point".into(),
         caption: "Mean number of nodes whose support covers an integration point; the bar spans the least and the most".into(),
-        canvas: canvas(&[("Neighbours".into(), lines)], "neighbours [1]", false, "Marker: mean over the points; bar: least to most."),
+        canvas: canvas(&panels, "neighbours [1]", false, "Marker: mean over the points; bar: least to most."),
+        data: Data::Plots(plotted(&panels, "neighbours [1]", false)),
     }]
 }
 
@@ -120,9 +124,26 @@ fn panels(
     out
 }
 
+/// The panels as numbers: the title of one that is of a case is its name.
+fn plotted(panels: &[(String, Vec<Line>)], y: &str, log: bool) -> Vec<Plot> {
+    let curve = |(label, at): &Line| Curve {
+        band: at.iter().map(|p| (p.0, p.2, p.3)).collect(),
+        ..Curve::new(label.clone(), Family::Efg, at.iter().map(|p| (p.0, p.1)).collect(), Vec::new())
+    };
+    let plot = |(title, lines): &(String, Vec<Line>)| Plot {
+        case: if log { title.clone() } else { String::new() },
+        title: title.clone(),
+        x: Scale::linear("support radius / node spacing [1]"),
+        y: Scale { label: y.into(), log },
+        curves: lines.iter().map(curve).collect(),
+    };
+    panels.iter().map(plot).collect()
+}
+
 fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> super::canvas::Canvas {
-    let styles =
-        styles(&panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), true))).collect::<Vec<_>>());
+    let styles = styles(
+        &panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), Family::Efg))).collect::<Vec<_>>(),
+    );
     let contents = panels
         .iter()
         .map(|(title, lines)| {
@@ -144,7 +165,7 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
                             (at.0 + aside, at.1)
                         };
                         for p in points {
-                            canvas.line(&[place(p.0, p.2), place(p.0, p.3)], style.colour, 0.8);
+                            canvas.line(&[place(p.0, p.2), place(p.0, p.3)], style.look.colour, 0.8);
                         }
                         let at: Vec<_> = points.iter().map(|p| place(p.0, p.1)).collect();
                         style.curve(canvas, &at);

@@ -4,10 +4,13 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, chosen, continued, paged};
+use super::{Data, Figure, PAGE, chosen, continued, paged};
 use crate::order::ROUNDING;
+use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
 use crate::select::{Run, Series, labels, series};
+
+const SPACING: &str = "node spacing h [mm]";
 
 /// One figure (or more pages) per error: L2, energy, pressure.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
@@ -17,7 +20,7 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
         for (title, group) in chosen(runs) {
             let lines = lines(group, quantity);
             if !lines.is_empty() {
-                panels.push((title, lines));
+                panels.push((title, group[0].is.case.clone(), lines));
             }
         }
         for (page, panels) in panels.chunks(PAGE).enumerate() {
@@ -27,8 +30,8 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     out
 }
 
-/// A series as `(label, meshfree, points, theoretical order)`.
-type Line = (String, bool, Vec<(f64, f64)>, Option<f64>);
+/// A series with the order that theory promises it.
+type Line = (Curve, Option<f64>);
 
 fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
     let all: Vec<Series> = series(runs);
@@ -36,33 +39,39 @@ fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
         .into_iter()
         .zip(&all)
         .map(|(label, s)| {
-            let points: Vec<_> = s.points(quantity).into_iter().filter(|(_, e)| *e > ROUNDING).collect();
-            (label, !s.is().family.is_elements(), points, s.theory(quantity))
+            let usable = |run: &Run| {
+                let (h, e) = (run.is.spacing, run.value(quantity).filter(|e| *e > ROUNDING)?);
+                (h > 0.0).then(|| ((h * 1e3, e), run.is.run.clone()))
+            };
+            let (points, ids) = s.runs.iter().filter_map(usable).unzip();
+            (Curve::new(label, s.is().family, points, ids), s.theory(quantity))
         })
-        .filter(|(_, _, points, _)| points.len() > 1)
+        .filter(|(curve, _)| curve.points.len() > 1)
         .collect()
 }
 
-fn figure(quantity: &str, page: usize, panels: &[(String, Vec<Line>)]) -> Figure {
-    let all: Vec<(String, bool)> =
-        panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), l.1))).collect();
-    let styles = styles(&all);
+/// Title, case and series of one panel.
+type Paned = (String, String, Vec<Line>);
+
+fn figure(quantity: &str, page: usize, panels: &[Paned]) -> Figure {
+    let plots: Vec<Plot> = panels.iter().map(|panel| plotted(panel, quantity)).collect();
+    let styles = styles(&plot::labels(&plots));
     let contents = panels
         .iter()
         .enumerate()
-        .map(|(i, (title, lines))| {
-            let points = || lines.iter().flat_map(|l| l.2.iter());
+        .map(|(i, (title, _, lines))| {
+            let points = || lines.iter().flat_map(|l| l.0.points.iter());
             let y = Axis::log(&label(quantity), points().map(|p| p.1));
             let styles = &styles;
             Content {
                 title: title.clone(),
-                x: Axis::log("node spacing h [mm]", points().map(|p| p.0 * 1e3)),
+                x: Axis::log(SPACING, points().map(|p| p.0)),
                 y: if i % 2 == 0 { y } else { y.without_label() },
                 plot: Box::new(move |canvas, panel| {
                     slopes(canvas, panel, lines);
-                    for (label, _, points, _) in lines {
-                        if let Some(style) = find(styles, label) {
-                            let at: Vec<_> = points.iter().map(|p| panel.at(p.0 * 1e3, p.1)).collect();
+                    for (curve, _) in lines {
+                        if let Some(style) = find(styles, &curve.label) {
+                            let at: Vec<_> = curve.points.iter().map(|p| panel.at(p.0, p.1)).collect();
                             style.curve(canvas, &at);
                         }
                     }
@@ -79,12 +88,23 @@ fn figure(quantity: &str, page: usize, panels: &[(String, Vec<Line>)]) -> Figure
         ),
         caption: "Error against node spacing on logarithmic axes; the grey fan has the slopes theory promises for the methods in the panel".into(),
         canvas: multiples(contents, &styles, note),
+        data: Data::Plots(plots),
+    }
+}
+
+fn plotted((title, case, lines): &Paned, quantity: &str) -> Plot {
+    Plot {
+        case: case.clone(),
+        title: title.clone(),
+        x: Scale::log(SPACING),
+        y: Scale::log(&label(quantity)),
+        curves: lines.iter().map(|l| l.0.clone()).collect(),
     }
 }
 
 /// A fan of theoretical slopes in the lower right corner, which converging data leave free.
 fn slopes(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
-    let mut orders: Vec<f64> = lines.iter().filter_map(|l| l.3).collect();
+    let mut orders: Vec<f64> = lines.iter().filter_map(|l| l.1).collect();
     orders.sort_by(f64::total_cmp);
     orders.dedup();
     let span = (panel.x.high() / panel.x.low()).ln();

@@ -2,79 +2,30 @@
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Canvas, GREY};
-use super::grid::{Content, scattered};
+use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
-use super::{Figure, PAGE, chosen, continued, paged};
-use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, QUESTIONS, Question, pareto, point};
+use super::{Data, Figure, PAGE, continued, paged};
+use crate::asks::{Ask, Line, Timed, asks};
+use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, Question, pareto};
+use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
-use crate::select::{Run, Series, kernels, labels, series};
+use crate::select::Run;
 use crate::text::list;
-
-/// A series as `(label, meshfree, (seconds, error) pairs)`.
-type Cluster = (String, bool, Vec<(f64, f64)>);
-
-/// Ends the title of a panel that compares kernels.
-const KERNELS: &str = ": kernels";
 
 /// The error of the dashed line.
 const PERCENT: f64 = 0.01;
 
-/// What a panel shows.
-struct Paned {
-    title: String,
-    error: &'static str,
-    clusters: Vec<Cluster>,
-    /// The method that the others are compared with: having no error, it has no place on the axes.
-    reference: Option<String>,
-}
-
-/// For each kind of time a figure per question, with a panel per case that answers it. A method looks the same in all of them.
+/// For each kind of time a figure per question, with a panel per case that answers it.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
-    let asked = Clock::ALL.into_iter().flat_map(|clock| QUESTIONS.iter().map(move |q| (clock, q)));
-    let answered: Vec<_> = asked.map(|(clock, q)| (clock, q, panels(runs, q, clock))).collect();
-    let clusters = answered.iter().flat_map(|(_, _, panels)| panels).flat_map(|p| &p.clusters);
-    let styles = styles(&clusters.map(|c| (c.0.clone(), c.1)).collect::<Vec<_>>());
-    let pages = answered.iter().flat_map(|(clock, question, panels)| {
-        let pages = panels.chunks(PAGE).enumerate();
-        pages.map(move |(page, panels)| (*clock, *question, page, panels))
-    });
-    pages.map(|(clock, question, page, panels)| figure(question, clock, page, panels, &styles)).collect()
+    let asks = asks(runs);
+    let same = asks.chunk_by(|a, b| (a.clock, a.question.ending) == (b.clock, b.question.ending));
+    let pages = same.flat_map(|of| of.chunks(PAGE).enumerate());
+    pages.map(|(page, panels)| figure(panels[0].question, panels[0].clock, page, panels)).collect()
 }
 
-/// Where many kernels are compared, a panel of their own, once: for the displacement of a first solve.
-fn panels(runs: &[Run], question: &Question, clock: Clock) -> Vec<Paned> {
-    let (mut panels, mut compared) = (Vec::new(), Vec::new());
-    for (title, group) in chosen(runs) {
-        let Some(error) = question.error(group) else { continue };
-        let (usual, every) = kernels(&series(group));
-        let names = labels(usual.iter().map(|s| s.is()));
-        let reference = group.iter().find(|r| r.is_reference());
-        let reference = reference.map(|r| format!("{} with {} nodes", r.name(), r.is.nodes));
-        let drawn = clusters(&usual, &names, error, clock);
-        panels.push(Paned { title: title.clone(), error, clusters: drawn, reference });
-        if clock == Clock::First && question.ending.is_empty() {
-            let names: Vec<String> = every.iter().map(|s| s.is().variant.clone()).collect();
-            let clusters = clusters(&every, &names, error, clock);
-            compared.push(Paned { title: format!("{title}{KERNELS}"), error, clusters, reference: None });
-        }
-    }
-    panels.extend(compared);
-    // One run alone is neither faster nor better than another.
-    panels.retain(|p| p.clusters.iter().map(|c| c.2.len()).sum::<usize>() > 1);
-    panels
-}
-
-fn clusters(all: &[Series], names: &[String], error: &str, clock: Clock) -> Vec<Cluster> {
-    let cluster = |(label, s): (&String, &Series)| {
-        let points = s.runs.iter().filter_map(|run| point(run, error, clock));
-        (label.clone(), !s.is().family.is_elements(), points.map(|(t, e)| (t, e.max(FLOOR))).collect())
-    };
-    names.iter().zip(all).map(cluster).filter(|c: &Cluster| !c.2.is_empty()).collect()
-}
-
-fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styles: &[Style]) -> Figure {
-    let own = |s: &&Style| panels.iter().any(|p| p.clusters.iter().any(|c| c.0 == s.label));
-    let styles: Vec<Style> = styles.iter().filter(own).cloned().collect();
+fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Figure {
+    let plots: Vec<Plot> = panels.iter().map(plotted).collect();
+    let styles = styles(&plot::labels(&plots));
     let contents = panels.iter().map(|panel| content(panel, clock, &styles)).collect();
     let (name, title, time) = match clock {
         Clock::First => ("efficiency", "Run time against error", "Median run time of all phases"),
@@ -89,16 +40,42 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Paned], styl
         name: paged(&format!("{name}{}", question.ending), page),
         title: continued(&format!("{title}: {}", question.name), page),
         caption: format!(
-            "{time} against the relative error of the {}, a marker for each run; the grey staircase is the Pareto front: no run \
-             drawn is both faster and more accurate",
+            "{time} against the relative error of the {}, a line for each method through its sizes; the grey staircase is the Pareto front: \
+             no run drawn is both faster and more accurate",
             question.name
         ),
-        canvas: scattered(contents, &styles, &note(question, clock, panels)),
+        canvas: multiples(contents, &styles, &note(question, clock, panels)),
+        data: Data::Plots(plots),
     }
 }
 
-fn y_axis(panel: &Paned) -> Axis {
-    let errors = panel.clusters.iter().flat_map(|c| c.2.iter().map(|p| p.1));
+/// A panel as numbers, in seconds.
+fn plotted(ask: &Ask) -> Plot {
+    let curve = |line: &Line| {
+        let points = line.runs.iter().map(|r| (r.seconds, r.error)).collect();
+        let ids = line.runs.iter().map(|r| r.run.clone()).collect();
+        Curve::new(line.label.clone(), line.family, points, ids)
+    };
+    let time = match ask.clock {
+        Clock::First => "run time, median [s]",
+        Clock::Repeated => "repeated solve, 99 % within [s]",
+    };
+    Plot {
+        case: ask.case.clone(),
+        title: format!("{}: {}", ask.title, ask.question.name),
+        x: Scale::log(time),
+        y: Scale::log(&label(ask.error)),
+        curves: ask.lines.iter().map(curve).collect(),
+    }
+}
+
+/// The runs of all lines.
+fn all(lines: &[Line]) -> impl Iterator<Item = &Timed> {
+    lines.iter().flat_map(|line| &line.runs)
+}
+
+fn y_axis(panel: &Ask) -> Axis {
+    let errors = all(&panel.lines).map(|r| r.error);
     Axis::log(&label(panel.error), decade(errors.collect()).into_iter())
 }
 
@@ -107,14 +84,14 @@ fn shows_percent(y: &Axis) -> bool {
     (y.low()..y.high()).contains(&PERCENT)
 }
 
-fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'a> {
-    let Paned { title, clusters, .. } = panel;
-    let points = || clusters.iter().flat_map(|c| c.2.iter().copied());
+fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a> {
+    let Ask { title, lines, .. } = panel;
+    let panel_of_kernels = panel.kernels;
     let (scale, x) = match clock {
-        Clock::First => (1.0, Axis::log("run time, median [s]", points().map(|p| p.0))),
+        Clock::First => (1.0, Axis::log("run time, median [s]", all(lines).map(|r| r.seconds))),
         Clock::Repeated => {
-            let near = near(&panel.clusters).into_iter().map(|d| d.seconds);
-            let times = points().map(|p| 1e3 * p.0).chain(near.map(|t| 1e3 * t));
+            let near = near(&panel.lines).into_iter().map(|d| d.seconds);
+            let times = all(lines).map(|r| 1e3 * r.seconds).chain(near.map(|t| 1e3 * t));
             (1e3, Axis::log("repeated solve, 99 % within [ms]", times))
         }
     };
@@ -123,19 +100,26 @@ fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'
         x,
         y: y_axis(panel),
         plot: Box::new(move |canvas, panel| {
-            let at = |p: &(f64, f64)| panel.at(scale * p.0, p.1);
-            let best = pareto(clusters.iter().flat_map(|c| c.2.iter().copied()), |p| *p);
-            front(canvas, panel, &best.iter().map(at).collect::<Vec<_>>());
+            let at = |r: &Timed| panel.at(scale * r.seconds, r.error);
+            let counted = |r: &Timed| panel.at(scale * r.seconds, r.counts.min(panel.y.high()));
+            let best = pareto(all(lines), |r| (r.seconds, r.counts));
+            front(canvas, panel, &best.iter().map(|r| counted(r)).collect::<Vec<_>>());
             if shows_percent(&panel.y) {
                 let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, PERCENT));
                 canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
             }
             if clock == Clock::Repeated {
-                deadlines(canvas, panel, scale, &near(clusters));
+                deadlines(canvas, panel, scale, &near(lines));
             }
-            for (label, _, points) in clusters {
-                if let Some(style) = find(styles, label) {
-                    points.iter().for_each(|p| style.mark(canvas, at(p)));
+            for line in lines {
+                let Some(style) = find(styles, &line.label) else { continue };
+                for run in line.runs.iter().filter(|r| r.counts > r.error) {
+                    canvas.line(&[at(run), counted(run)], style.look.colour, 0.6);
+                }
+                // Of several rules of integration a kernel has no line.
+                match panel_of_kernels {
+                    true => line.runs.iter().for_each(|r| style.mark(canvas, at(r))),
+                    false => style.curve(canvas, &line.runs.iter().map(at).collect::<Vec<_>>()),
                 }
             }
         }),
@@ -146,23 +130,22 @@ fn content<'a>(panel: &'a Paned, clock: Clock, styles: &'a [Style]) -> Content<'
 const REACH: f64 = 10.0;
 
 /// The least and the largest time of a panel.
-fn range(clusters: &[Cluster]) -> (f64, f64) {
-    let times = clusters.iter().flat_map(|c| c.2.iter().map(|p| p.0));
-    times.fold((f64::INFINITY, 0.0), |(low, high), t| (t.min(low), t.max(high)))
+fn range(lines: &[Line]) -> (f64, f64) {
+    all(lines).map(|r| r.seconds).fold((f64::INFINITY, 0.0), |(low, high), t| (t.min(low), t.max(high)))
 }
 
 /// The deadlines among the runs of a panel or near them.
-fn near(clusters: &[Cluster]) -> Vec<Deadline> {
-    let (low, high) = range(clusters);
+fn near(lines: &[Line]) -> Vec<Deadline> {
+    let (low, high) = range(lines);
     DEADLINES.into_iter().filter(|d| (low / REACH..=high * REACH).contains(&d.seconds)).collect()
 }
 
 /// What is said of the deadlines that are not drawn, with the panels: of all that every run keeps, the hardest; of all that none
 /// keeps, the easiest.
-fn beyond(panels: &[Paned]) -> Vec<String> {
+fn beyond(panels: &[Ask]) -> Vec<String> {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for panel in panels {
-        let (low, high) = range(&panel.clusters);
+        let (low, high) = range(&panel.lines);
         let kept = DEADLINES.iter().find(|d| d.seconds > high * REACH).map(|d| ("faster", d));
         let missed = DEADLINES.iter().rev().find(|d| d.seconds < low / REACH).map(|d| ("slower", d));
         for (word, deadline) in kept.into_iter().chain(missed) {
@@ -191,13 +174,13 @@ fn decade(mut errors: Vec<f64>) -> Vec<f64> {
     errors
 }
 
-fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
+fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
     let mut note = "Grey staircase: Pareto front. Down and to the left is better.".to_string();
     if panels.iter().any(|panel| shows_percent(&y_axis(panel))) {
         note += " Dashed: an error of 1 %.";
     }
     if clock == Clock::Repeated {
-        let drawn = |d: &&Deadline| panels.iter().any(|p| near(&p.clusters).iter().any(|n| n.name == d.name));
+        let drawn = |d: &&Deadline| panels.iter().any(|p| near(&p.lines).iter().any(|n| n.name == d.name));
         let drawn = DEADLINES.iter().filter(drawn).map(|d| format!("{} ({})", d.name, d.what));
         let drawn: Vec<String> = drawn.collect();
         if !drawn.is_empty() {
@@ -209,21 +192,21 @@ fn note(question: &Question, clock: Clock, panels: &[Paned]) -> String {
         }
     }
     if question.scalar {
-        note += " A single number can be right by chance, where its errors cancel.";
+        note += " A single number can be right by chance: a thin line leads to the error as which a run counts, a third of its displacement's.";
     }
     let several = panels.len() > 1;
-    let place = |p: &Paned| if several { format!(" ({})", p.title) } else { String::new() };
+    let place = |p: &Ask| if several { format!(" ({})", p.title) } else { String::new() };
     let references: Vec<String> =
         panels.iter().filter_map(|p| Some(format!("{}{}", p.reference.as_ref()?, place(p)))).collect();
     if !references.is_empty() {
         note += &format!(" The reference has no error and is not drawn: {}.", list(&references));
     }
-    let low = |p: &&Paned| p.clusters.iter().any(|c| c.2.iter().any(|at| at.1 <= FLOOR));
+    let low = |p: &&Ask| all(&p.lines).any(|r| r.error <= FLOOR);
     let floored: Vec<String> = panels.iter().filter(low).map(|p| p.title.clone()).collect();
     if !floored.is_empty() {
         note += &format!(" Errors below 10⁻⁶ are drawn at 10⁻⁶ ({}).", list(&floored));
     }
-    if panels.iter().any(|p| p.title.ends_with(KERNELS)) {
+    if panels.iter().any(|p| p.kernels) {
         note += " Kernels: a marker for each size and rule of integration.";
     }
     note
@@ -255,6 +238,7 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fronts::QUESTIONS;
     use crate::fronts::tests::run;
     use crate::record::Family;
     use crate::select::runs;
@@ -262,15 +246,23 @@ mod tests {
     #[test]
     fn a_line_far_from_all_runs_is_not_drawn_but_said() {
         let panel = |title: &str, times: &[f64]| {
-            let points = times.iter().map(|&t| (t, 0.1)).collect();
-            Paned {
+            let timed =
+                |&t: &f64| Timed { run: String::new(), seconds: t, spread: None, error: 0.1, counts: 0.1 };
+            let runs = times.iter().map(timed).collect();
+            Ask {
+                case: title.into(),
                 title: title.into(),
+                question: &QUESTIONS[0],
+                clock: Clock::First,
                 error: "l2",
-                clusters: vec![("tet4".into(), false, points)],
+                lines: vec![Line { label: "tet4".into(), family: Family::Fem, runs }],
                 reference: None,
+                band: None,
+                kernels: false,
+                rank: (true, true, false, 1),
             }
         };
-        let drawn = |p: &Paned| near(&p.clusters).iter().map(|d| d.name).collect::<Vec<_>>();
+        let drawn = |p: &Ask| near(&p.lines).iter().map(|d| d.name).collect::<Vec<_>>();
         let (quick, mixed) = (panel("quick", &[1e-5, 9e-5]), panel("mixed", &[2e-4, 0.02]));
         let (slow, mean) = (panel("slow", &[0.5, 2.0]), panel("mean", &[0.02, 0.05]));
         assert_eq!(drawn(&quick), [""; 0]);
@@ -292,9 +284,9 @@ mod tests {
         let mut records = [of("tet4", elements, 0.2), of("efg", clouds, 0.1)].concat();
         let noted = |records: &[_]| {
             let runs = runs(records);
-            let panels = panels(&runs, &QUESTIONS[0], Clock::First);
-            assert_eq!(panels[0].clusters.len(), 2);
-            note(&QUESTIONS[0], Clock::First, &panels)
+            let panels = asks(&runs);
+            assert_eq!(panels[0].lines.len(), 2);
+            note(&QUESTIONS[0], Clock::First, &panels[..1])
         };
         assert!(!noted(&records).contains("reference"));
         records.extend(of("tet10", elements, 0.0));

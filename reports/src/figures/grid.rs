@@ -29,15 +29,6 @@ pub(crate) struct Content<'a> {
 
 /// Panels of lines, two to a row, a legend and a note below.
 pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
-    drawn(panels, styles, note, true)
-}
-
-/// The same of markers alone.
-pub(crate) fn scattered(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
-    drawn(panels, styles, note, false)
-}
-
-fn drawn(panels: Vec<Content>, styles: &[Style], note: &str, lines: bool) -> Canvas {
     let columns = panels.len().clamp(1, 2);
     let rows = panels.len().div_ceil(columns);
     let whole = if columns == 1 { COLUMN } else { WIDTH };
@@ -53,7 +44,7 @@ fn drawn(panels: Vec<Content>, styles: &[Style], note: &str, lines: bool) -> Can
         (content.plot)(&mut canvas, &panel);
     }
     let bottom = 12.0 + STEP * rows as f64;
-    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, lines);
+    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, true);
     let foot = bottom + legend_height(styles, whole - 20.0) + 10.0;
     for (i, line) in notes.iter().enumerate() {
         canvas.text((12.0, foot + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);

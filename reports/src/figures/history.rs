@@ -4,9 +4,10 @@
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
 use super::grid::{Content, multiples};
-use super::style::{Style, find, styles};
-use super::{Figure, PAGE, continued, paged};
+use super::style::{find, styles};
+use super::{Data, Figure, PAGE, continued, paged};
 use crate::history::{band, curve};
+use crate::plot::{self, Curve, Plot, Scale};
 use crate::record::Family;
 use crate::select::{Run, by_case, labels, series};
 
@@ -26,9 +27,6 @@ const ENERGIES: [(&str, &str); 9] = [
     ("scheme-dissipation", "lost in the scheme"),
 ];
 
-/// A line as `(label, dashed, points, band)`.
-type Line = (String, bool, Vec<(f64, f64)>, Vec<(f64, f64, f64)>);
-
 /// Names and units of both axes.
 type Axes = (&'static str, &'static str);
 
@@ -44,9 +42,9 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
             let run = s.finest();
             let points = curve(run, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
             let around = band(run, "closure", "tool-force").into_iter().map(|b| (b.0 * 1e3, b.1, b.2));
-            (name, run.is.family == Family::Efg, points.collect(), around.collect())
+            Curve { band: around.collect(), ..line(name, run, points.collect()) }
         });
-        panels.push((case[0].is.case.clone(), lines.filter(drawn).collect::<Vec<Line>>()));
+        panels.push((case[0].is.case.clone(), String::new(), lines.filter(drawn).collect()));
     }
     figures(
         "tool-force",
@@ -66,11 +64,12 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
         for (s, name) in all.iter().zip(names) {
             let lines = ENERGIES.iter().map(|(quantity, label)| {
                 let points = curve(s.finest(), "time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
-                (label.to_string(), false, points.collect(), Vec::new())
+                let ids = vec![s.finest().is.run.clone()];
+                Curve::new(label.to_string(), Family::Reference, points.collect(), ids)
             });
             // What stays nothing has no line: it would only lie on the axis.
-            let lines = lines.filter(drawn).filter(|l: &Line| l.2.iter().any(|p| p.1 != 0.0));
-            panels.push((format!("{}, {name}", s.is().case), lines.collect::<Vec<Line>>()));
+            let lines = lines.filter(drawn).filter(|l| l.points.iter().any(|p| p.1 != 0.0));
+            panels.push((s.is().case.clone(), format!(", {name}"), lines.collect()));
         }
     }
     figures(
@@ -93,9 +92,9 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
             let lines = of_mass.map(|(s, name)| {
                 let name = name.replacen(&format!("-{mass}"), "", 1);
                 let points = curve(s.finest(), "mode", "omega-ratio");
-                (name, s.is().family == Family::Efg, points, Vec::new())
+                line(name, s.finest(), points)
             });
-            panels.push((format!("{}, {mass} mass", case[0].is.case), lines.filter(drawn).collect()));
+            panels.push((case[0].is.case.clone(), format!(", {mass} mass"), lines.filter(drawn).collect()));
         }
     }
     figures(
@@ -108,55 +107,61 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
     )
 }
 
-/// A single step is no history.
-fn drawn(line: &Line) -> bool {
-    line.2.len() > 1
+fn line(name: String, run: &Run, points: Vec<(f64, f64)>) -> Curve {
+    Curve::new(name, run.is.family, points, vec![run.is.run.clone()])
 }
 
-fn figures(
-    name: &str,
-    title: &str,
-    caption: &str,
-    axes: Axes,
-    mut panels: Vec<(String, Vec<Line>)>,
-) -> Vec<Figure> {
-    panels.retain(|p| !p.1.is_empty());
-    let all: Vec<(String, bool)> =
-        panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), l.1))).collect();
-    let styles = styles(&all);
-    let page = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
+/// A single step is no history.
+fn drawn(line: &Curve) -> bool {
+    line.points.len() > 1
+}
+
+/// Case, what follows it in the title, and lines.
+type Paned = (String, String, Vec<Curve>);
+
+fn figures(name: &str, title: &str, caption: &str, axes: Axes, panels: Vec<Paned>) -> Vec<Figure> {
+    let plotted = |(case, of, curves): Paned| Plot {
+        title: format!("{case}{of}"),
+        case,
+        x: Scale::linear(axes.0),
+        y: Scale::linear(axes.1),
+        curves,
+    };
+    let plots: Vec<Plot> = panels.into_iter().filter(|p| !p.2.is_empty()).map(plotted).collect();
+    let page = |(page, plots): (usize, &[Plot])| Figure {
         name: paged(name, page),
         title: continued(title, page),
         caption: caption.into(),
-        canvas: canvas(panels, &styles, axes),
+        canvas: canvas(plots),
+        data: Data::Plots(plots.to_vec()),
     };
-    panels.chunks(PAGE).enumerate().map(page).collect()
+    plots.chunks(PAGE).enumerate().map(page).collect()
 }
 
-fn canvas(panels: &[(String, Vec<Line>)], styles: &[Style], axes: Axes) -> Canvas {
-    let own = |s: &&Style| panels.iter().any(|p| p.1.iter().any(|l| l.0 == s.label));
-    let styles: Vec<Style> = styles.iter().filter(own).cloned().collect();
-    let uncertain = panels.iter().any(|p| p.1.iter().any(|l| l.3.len() > 1));
-    let contents = panels
+fn canvas(plots: &[Plot]) -> Canvas {
+    let styles = styles(&plot::labels(plots));
+    let uncertain = plots.iter().any(|p| p.curves.iter().any(|l| l.band.len() > 1));
+    let contents = plots
         .iter()
-        .map(|(title, lines)| {
-            let points = || lines.iter().flat_map(|l| l.2.iter());
-            let ends = || lines.iter().flat_map(|l| l.3.iter().flat_map(|b| [b.1, b.2]));
+        .map(|plot| {
+            let lines = &plot.curves;
+            let points = || lines.iter().flat_map(|l| l.points.iter());
+            let ends = || lines.iter().flat_map(|l| l.band.iter().flat_map(|b| [b.1, b.2]));
             let styles = &styles;
             Content {
-                title: title.clone(),
-                x: Axis::linear(axes.0, points().map(|p| p.0), true),
-                y: Axis::linear(axes.1, points().map(|p| p.1).chain(ends()), true),
+                title: plot.title.clone(),
+                x: Axis::linear(&plot.x.label, points().map(|p| p.0), true),
+                y: Axis::linear(&plot.y.label, points().map(|p| p.1).chain(ends()), true),
                 plot: Box::new(move |canvas, panel| {
-                    for (_, _, _, around) in lines.iter().filter(|l| l.3.len() > 1) {
+                    for around in lines.iter().map(|l| &l.band).filter(|band| band.len() > 1) {
                         let low = around.iter().map(|b| panel.at(b.0, b.1));
                         let high = around.iter().rev().map(|b| panel.at(b.0, b.2));
                         canvas.fill(&low.chain(high).collect::<Vec<_>>(), UNCERTAIN);
                     }
-                    for (label, _, points, _) in lines {
-                        let Some(style) = find(styles, label) else { continue };
-                        let at: Vec<_> = points.iter().map(|p| panel.at(p.0, p.1)).collect();
-                        canvas.dashed(&at, style.colour, 1.3, style.dash);
+                    for line in lines {
+                        let Some(style) = find(styles, &line.label) else { continue };
+                        let at: Vec<_> = line.points.iter().map(|p| panel.at(p.0, p.1)).collect();
+                        canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
                         for at in at.iter().step_by(at.len().div_ceil(MARKS)) {
                             style.mark(canvas, *at);
                         }

@@ -5,13 +5,15 @@ use super::canvas::GREY;
 
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Figure, PAGE, continued, paged};
+use super::{Data, Figure, PAGE, continued, paged};
 use crate::fronts::FLOOR;
+use crate::plot::{Curve, Plot, Scale};
 use crate::quantity::label;
+use crate::record::Family;
 use crate::select::{Run, competing, labels};
 
-/// A method as `(label, meshfree, runs of one size by rising Poisson's ratio)`.
-pub(crate) type Sweep<'r> = (String, bool, Vec<Run<'r>>);
+/// A method as `(label, family, runs of one size by rising Poisson's ratio)`.
+pub(crate) type Sweep<'r> = (String, Family, Vec<Run<'r>>);
 
 /// Every solver of a case that was run at two or more Poisson's ratios, at its middle size.
 pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
@@ -42,7 +44,7 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
         picked.push(sizes[sizes.len() / 2].clone());
     }
     let labels = labels(picked.iter().map(|s| s[0].is));
-    labels.into_iter().zip(picked).map(|(label, s)| (label, !s[0].is.family.is_elements(), s)).collect()
+    labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family, s)).collect()
 }
 
 /// Displacement error, pressure error and tip deflection of every case with such sweeps.
@@ -74,7 +76,7 @@ fn stiffness(poisson: f64) -> f64 {
 }
 
 fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure {
-    let all: Vec<(String, bool)> =
+    let all: Vec<(String, Family)> =
         panels.iter().flat_map(|p| p.2.iter().map(|s| (s.0.clone(), s.1))).collect();
     let styles = styles(&all);
     let contents = panels
@@ -126,6 +128,28 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
         title: continued("Locking: error against Poisson's ratio", page),
         caption: "Each method at one size while the material becomes incompressible; a method that locks climbs to the right, its tip deflection falls".into(),
         canvas: multiples(contents, &styles, "Errors below 10⁻⁶ are drawn at 10⁻⁶."),
+        data: Data::Plots(panels.iter().map(plotted).collect()),
+    }
+}
+
+/// A panel as numbers, over 1/(1 - 2 nu).
+fn plotted((case, quantity, sweeps): &(String, &'static str, Vec<Sweep>)) -> Plot {
+    let curve = |(name, family, runs): &Sweep| {
+        let own = runs.iter().filter_map(|r| Some((r, usable(r, quantity)?)));
+        let (points, ids) = own.map(|(r, y)| ((stiffness(r.is.poisson), y), r.is.run.clone())).unzip();
+        Curve::new(name.clone(), *family, points, ids)
+    };
+    let (what, y) = match *quantity {
+        "tip" => ("tip deflection", Scale::linear("tip deflection / exact [1]")),
+        "l2" => ("displacement", Scale::log(&label(quantity))),
+        _ => ("pressure", Scale::log(&label(quantity))),
+    };
+    Plot {
+        case: case.clone(),
+        title: format!("{case}: {what} against Poisson's ratio"),
+        x: Scale::log("1/(1 − 2ν) [1], from compressible to incompressible"),
+        y,
+        curves: sweeps.iter().map(curve).collect(),
     }
 }
 

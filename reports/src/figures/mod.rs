@@ -11,6 +11,7 @@ mod efficiency;
 mod grid;
 mod history;
 mod locking;
+mod over_commits;
 mod section;
 mod silhouette;
 mod stability;
@@ -20,7 +21,9 @@ mod transfer;
 
 pub(crate) use canvas::{Canvas, png};
 pub(crate) use locking::sweeps;
+pub(crate) use over_commits::over_commits;
 
+use crate::plot::{Plot, csv};
 use crate::run_set::RunSet;
 use crate::select::{Run, competing, groups, solved};
 use crate::text::ratio;
@@ -34,6 +37,28 @@ pub(crate) struct Figure {
     pub(crate) title: String,
     pub(crate) caption: String,
     pub(crate) canvas: Canvas,
+    pub(crate) data: Data,
+}
+
+/// What a figure shows, to be read and drawn again.
+pub(crate) enum Data {
+    /// Curves over axes.
+    Plots(Vec<Plot>),
+    /// Rows of CSV.
+    Rows(String),
+    /// A picture of the body of a case, whose numbers are in the folder `fields` of the results.
+    Picture(String),
+}
+
+impl Data {
+    /// As CSV.
+    pub(crate) fn csv(&self) -> Option<String> {
+        match self {
+            Data::Plots(plots) => Some(csv(plots)),
+            Data::Rows(rows) => Some(rows.clone()),
+            Data::Picture(_) => None,
+        }
+    }
 }
 
 /// A triangle on paper, and its value.
@@ -45,8 +70,8 @@ struct Pictured {
 /// Every figure that has something to show, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     let solved = solved(runs);
-    let mut figures = stability::maps(&set.axes);
-    figures.extend(efficiency::figures(&solved));
+    let mut figures = efficiency::figures(&solved);
+    figures.extend(stability::maps(&set.axes));
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
     figures.extend(history::forces(&solved));

@@ -1,13 +1,13 @@
 //! A section between the tools, deformed, every cell in the colour of its own pressure: nothing is smoothed, so that the
 //! checkerboards of a locked or unstable method are seen.
 
-use super::Figure;
 use super::axes::TEXT;
 use super::canvas::{Anchor, Canvas, GREY};
 use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::surface::{Chosen, GRASPED, Pose, carried, pictured, titled};
+use super::{Data, Figure};
 use crate::run_set::{Section, SurfaceField};
 use crate::select::Run;
 use crate::store::slug;
@@ -105,6 +105,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
                   (of the projected dilation or the pressure field, where it has one), under one colour scale"
             .into(),
         canvas,
+        data: Data::Picture(case.into()),
     }
 }
 
@@ -125,6 +126,7 @@ mod tests {
             triangles: Vec::new(),
             displacement: Vec::new(),
             tools: Vec::new(),
+            body: None,
             section: Some(Section {
                 right: [0.0, 0.0, 1.0],
                 up: [0.0, 1.0, 0.0],

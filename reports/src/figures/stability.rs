@@ -1,12 +1,13 @@
 //! Stability maps: a row for each method, a column for each value of an axis, a colour for how the method fares there.
 
-use super::Figure;
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::{WIDTH, wrapped};
+use super::{Data, Figure};
 use crate::axis::{Axis, Trial, Verdict};
 use crate::quantity::label;
 use crate::store::slug;
+use crate::table::csv_line;
 use crate::text::{short, significant};
 
 const ROW: f64 = 15.0;
@@ -25,6 +26,7 @@ pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
             significant(100.0 * axis.wrong, 2),
         ),
         canvas: draw(axis),
+        data: Data::Rows(csv(axis)),
     });
     each.collect()
 }
@@ -42,6 +44,22 @@ fn colour(verdict: Verdict) -> Colour {
         Verdict::Refused => [0xd8, 0xd8, 0xd8],
         Verdict::Silent => [0xa5, 0x0f, 0x15],
     }
+}
+
+fn csv(axis: &Axis) -> String {
+    let mut out = csv_line(&["method", &axis.name, &axis.judge, "verdict", "reason"]);
+    for trial in &axis.trials {
+        let error = trial.error.map(|e| format!("{e:e}")).unwrap_or_default();
+        let verdict = axis.verdict(trial).name();
+        out.push_str(&csv_line(&[
+            &trial.method,
+            &format!("{:e}", trial.value),
+            &error,
+            verdict,
+            &trial.reason,
+        ]));
+    }
+    out
 }
 
 fn draw(axis: &Axis) -> Canvas {

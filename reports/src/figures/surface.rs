@@ -5,7 +5,7 @@ use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
 use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
-use super::{Figure, Pictured};
+use super::{Data, Figure, Pictured};
 use crate::record::Family;
 use crate::run_set::SurfaceField;
 use crate::select::Run;
@@ -218,6 +218,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
         title: format!("Surface displacement, {case}"),
         caption: caption(tools, chosen),
         canvas,
+        data: Data::Picture(case.into()),
     }
 }
 
@@ -360,6 +361,7 @@ mod tests {
             displacement: vec![[0.0; 3]; 2],
             tools: Vec::new(),
             section: None,
+            body: None,
         }
     }
 

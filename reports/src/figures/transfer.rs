@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use super::Figure;
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
 use super::grid::WIDTH;
 use super::style::{legend, legend_height, styles};
+use super::{Data, Figure};
 use crate::findings::source;
 use crate::record::Family;
 use crate::select::{Run, by_case};
 use crate::store::slug;
+use crate::table::csv_line;
 use crate::text::tick;
 
 /// Height of a row with several markers.
@@ -40,7 +41,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
         }
     };
     let names: Vec<String> = runs.iter().map(scheme).collect::<BTreeSet<_>>().into_iter().collect();
-    let styles = styles(&runs.iter().map(|r| (source(r), true)).collect::<Vec<_>>());
+    let styles = styles(&runs.iter().map(|r| (source(r), Family::Interp)).collect::<Vec<_>>());
     let raw: Vec<f64> = runs.iter().filter_map(|r| r.value(quantity)).map(|v| v * scale).collect();
     // Schemes that are exact to rounding would squeeze all others into a corner.
     let largest = raw.iter().copied().fold(0.0, f64::max).max(1e-9);
@@ -78,6 +79,12 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
             format!("Errors below {}{unit} are drawn at that value; the table has them all.", tick(floor));
         canvas.text((12.0, bottom + below + 8.0), &note, TEXT, GREY, Anchor::Start);
     }
+    let mut rows = csv_line(&["scheme", "source", label]);
+    for run in runs {
+        if let Some(v) = run.value(quantity) {
+            rows.push_str(&csv_line(&[&scheme(run), &source(run), &format!("{:e}", v * scale)]));
+        }
+    }
     let case = &runs[0].is.case;
     Some(Figure {
         name: format!("transfer-{}", slug(case)),
@@ -87,5 +94,6 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
                   markers of one source in a row are its kernels and numbers of nodes"
             .into(),
         canvas,
+        data: Data::Rows(rows),
     })
 }

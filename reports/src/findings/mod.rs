@@ -1,10 +1,8 @@
 //! What the records say, in sentences. A sentence whose numbers aren't there isn't written.
 
 mod accuracy;
-mod cheapest;
 mod claim;
 mod integration;
-mod outcome;
 mod placement;
 mod published;
 mod stability;
@@ -28,10 +26,7 @@ pub(crate) struct Topic {
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     let solved = solved(runs);
     let topics = [
-        Topic {
-            title: "Cheapest way to an error",
-            sentences: [cheapest::cheapest(&solved), claim::claim(&solved)].concat(),
-        },
+        Topic { title: "A published claim on time", sentences: claim::claim(&solved) },
         Topic { title: "Where methods bend and break", sentences: stability::stability(set) },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },
@@ -41,7 +36,6 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
         Topic { title: "Transfer", sentences: transfer::transfer(runs) },
         Topic { title: "Patch tests", sentences: accuracy::patch(&solved) },
         Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },
-        Topic { title: "Checks", sentences: outcome::checks(set) },
     ];
     topics.into_iter().filter(|t| !t.sentences.is_empty()).collect()
 }

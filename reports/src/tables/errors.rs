@@ -43,12 +43,14 @@ pub(super) fn maxima(runs: &[Run]) -> Table {
         runs,
         "maxima",
         "Largest displacements",
-        "Largest displacement by direction and of the magnitude, and the largest error of the magnitude",
+        "Largest displacement at the end by direction and of the magnitude, the largest of all recorded states of a motion, and the largest \
+         error of the magnitude",
         &[
             ("max x [mm]", "max-x"),
             ("max y [mm]", "max-y"),
             ("max z [mm]", "max-z"),
             ("max |u| [mm]", "max"),
+            ("max over time [mm]", "max-over-time"),
             ("max error [mm]", "max-error"),
         ],
         1e3,

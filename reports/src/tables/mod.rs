@@ -8,7 +8,9 @@ mod errors;
 mod modes;
 mod orders;
 mod outcome;
+mod peers;
 mod placement;
+mod places;
 mod published;
 mod repeated;
 mod solvers;
@@ -33,9 +35,12 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         errors::relative(runs),
         errors::rms(runs),
         errors::maxima(runs),
+        places::supports(runs),
+        places::means(runs),
         orders::observed(runs),
         orders::convergence_index(runs),
         modes::modes(runs),
+        places::frequencies(runs),
         timing::phases(runs),
         repeated::repeated(runs),
         cost::cost(runs),
@@ -47,6 +52,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         published::rms_parts(runs),
         closure::force_closure(runs),
         solvers::solvers(set),
+        peers::peers(runs),
         outcome::checks(set),
         outcome::failures(set),
         outcome::warnings(set),

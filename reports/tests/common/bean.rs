@@ -36,6 +36,7 @@ pub fn bean((method, family): (&str, Family), title: &str, n: u32, amplitude: f6
         displacement,
         tools: Vec::new(),
         section: None,
+        body: None,
     }
 }
 

@@ -363,7 +363,11 @@ pub fn study() -> RunSet {
                 load: Some(0.25),
                 quiet: Some(true),
             },
-            scenes: vec![SceneHash { case: "pure-bending".into(), blake3: "ab".repeat(32) }],
+            scenes: vec![SceneHash {
+                case: "pure-bending".into(),
+                blake3: "ab".repeat(32),
+                title: "A beam | bent <purely>".into(),
+            }],
         },
         ..RunSet::default()
     };

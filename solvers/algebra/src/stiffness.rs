@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use lanes::{LanePath, on_path};
+use lanes::{LanePath, madd, on_path};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
@@ -44,7 +44,6 @@ on_path! {
 /// Each block once, for its row and, transposed, for its column.
 #[inline(always)]
 fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) {
-    let fused = |a: f64, x: f64, sum: f64| if FMA { a.mul_add(x, sum) } else { a * x + sum };
     out.fill(Vector3::zeros());
     for (i, own) in u.iter().enumerate() {
         let (columns, blocks) = stiffness.row(i);
@@ -54,12 +53,13 @@ fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &m
             let (entries, x) = (block.data.0.as_flattened(), &u[j as usize]);
             for (c, (sum, start)) in sums.iter_mut().zip([0, 3, 5]).enumerate() {
                 for (l, sum) in sum.iter_mut().enumerate() {
-                    *sum = fused(entries[start + l], x[c], *sum);
+                    *sum = madd::<FMA>(entries[start + l], x[c], *sum);
                 }
             }
             if j as usize != i {
                 for (out, column) in out[j as usize].iter_mut().zip(entries.chunks_exact(3)) {
-                    *out += fused(column[0], own[0], fused(column[1], own[1], column[2] * own[2]));
+                    *out +=
+                        madd::<FMA>(column[0], own[0], madd::<FMA>(column[1], own[1], column[2] * own[2]));
                 }
             }
         }

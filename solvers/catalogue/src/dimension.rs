@@ -36,6 +36,8 @@ pub enum Dimension {
     Volume,
     /// Radians per second.
     AngularFrequency,
+    /// Cycles per second.
+    Frequency,
     /// A bare number.
     None,
     /// Bytes, as a bare number.
@@ -60,6 +62,7 @@ impl Dimension {
         Dimension::Mass,
         Dimension::Volume,
         Dimension::AngularFrequency,
+        Dimension::Frequency,
         Dimension::None,
         Dimension::Bytes,
     ];
@@ -75,7 +78,7 @@ impl Dimension {
             Dimension::Time => [0, 0, 1, 0],
             Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0],
             Dimension::Curvature => [-1, 0, 0, 0],
-            Dimension::Rate => [0, 0, -1, 0],
+            Dimension::Rate | Dimension::Frequency => [0, 0, -1, 0],
             Dimension::Angle => [0, 0, 0, 1],
             Dimension::Energy => [2, 1, -2, 0],
             Dimension::Mass => [0, 1, 0, 0],
@@ -103,6 +106,7 @@ impl Dimension {
             Dimension::Mass => "mass",
             Dimension::Volume => "volume",
             Dimension::AngularFrequency => "angular frequency",
+            Dimension::Frequency => "frequency",
             Dimension::None => "number",
             Dimension::Bytes => "number of bytes",
         }
@@ -126,6 +130,7 @@ impl Dimension {
             Dimension::Mass => "kg",
             Dimension::Volume => "m^3",
             Dimension::AngularFrequency => "rad/s",
+            Dimension::Frequency => "Hz",
             Dimension::None => "1",
             Dimension::Bytes => "B",
         }
@@ -149,6 +154,7 @@ impl Dimension {
             Dimension::Mass => &["kg", "g", "t"],
             Dimension::Volume => &["mm^3", "m^3", "cm^3"],
             Dimension::AngularFrequency => &["rad/s", "rad/ms"],
+            Dimension::Frequency => &["Hz", "kHz"],
             Dimension::None | Dimension::Bytes => &[],
         }
     }

@@ -63,6 +63,11 @@ warnings! {
         "fewer than three contact points carry the force of a tool, which depends on where they are; how many carry it";
     FOLDED: "folded", None,
         "the body is turned inside out between the integration points; the smallest J at the points of a finer quadrature";
+    LARGE_STRAIN: "large-strain", None,
+        "a law of small strain strains by more than 10 %, where a law of large strain gives other numbers; the largest principal \
+         strain at the integration points";
+    NODES_DIFFER: "nodes-differ", None,
+        "a mesh has more than 10 % more or fewer nodes than the scene asks for, as sizes of cells come in steps; nodes got over asked";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,

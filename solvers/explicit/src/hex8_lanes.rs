@@ -12,9 +12,8 @@ use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, close_group, stress};
 use super::quad::{add, lanes_of_differences, quads_of_lanes};
 use super::trilinear::{slopes, slopes_back, value_at};
-use lanes::{LanePath, on_path};
+use lanes::{LanePath, madd, on_path};
 use material::lane::invariants::{Coefficients, add_cofactor, piola, pressed};
-use material::lane::math::madd;
 use material::lane::{LANES, LaneStrain, Lanes};
 use material::{Law, Volumetric};
 

@@ -54,5 +54,5 @@ pub use force::{ExplicitBody, InternalForce};
 pub use kernel::{Kernel, KernelInfo};
 pub use mass::{Lumping, lumped_mass};
 pub use pressing::{Pressing, PressingTool};
-pub use relaxation::{RelaxationInfo, RelaxationParams, StaticLoad, relax, relax_under};
+pub use relaxation::{RelaxationInfo, RelaxationParams, Rested, StaticLoad, relax, relax_under};
 pub use tools::{MovingTool, ToolEnergies, ToolMotion, Tools};

@@ -1,8 +1,9 @@
 //! What the kernels need of the law of a region.
 
 use super::force::ExplicitBody;
+use lanes::madd;
 use lanes::on_path;
-use material::lane::math::{inverse_cbrt_less_1, ln_1p, madd};
+use material::lane::math::{inverse_cbrt_less_1, ln_1p};
 use material::lane::{LaneStrain, Lanes};
 use material::{Law, Material, Volumetric};
 

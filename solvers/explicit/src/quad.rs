@@ -5,8 +5,7 @@
 //! `WIDE` is true only inside kernels compiled for AVX2 and FMA; elsewhere the same sums run as plain loops.
 
 use super::chunks::Slot;
-use lanes::LANES;
-use material::lane::math::madd;
+use lanes::{LANES, madd};
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;

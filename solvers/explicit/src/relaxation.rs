@@ -38,6 +38,15 @@ pub struct RelaxationInfo {
     pub dt: f64,
 }
 
+/// A body at rest: its displacements (m), and the force of its supports on every node (N), zero in free degrees of freedom.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Rested {
+    pub u: Vec<Vector3>,
+    pub reaction: Vec<Vector3>,
+    pub info: RelaxationInfo,
+}
+
 /// Steps in a row that must pass the stopping rule: a swing about its end stands still at its turning points.
 const CONFIRM: usize = 10;
 
@@ -53,7 +62,7 @@ pub fn relax(
     start: Vec<Vector3>,
     params: RelaxationParams,
 ) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
-    relax_under(force, mass, fixed, load, None, start, params)
+    relax_under(force, mass, fixed, load, None, start, params).map(|rested| (rested.u, rested.info))
 }
 
 /// Static displacements (m) under `load` and tools that press, with `fixed` degrees of freedom, from `start`; `mass` may be any
@@ -72,7 +81,7 @@ pub fn relax_under(
     mut pressing: Option<&mut Pressing>,
     start: Vec<Vector3>,
     params: RelaxationParams,
-) -> Result<(Vec<Vector3>, RelaxationInfo), ExplicitError> {
+) -> Result<Rested, ExplicitError> {
     check(force.node_count(), mass, &start, params)?;
     let springs = pressing.as_ref().and_then(|p| p.springs());
     let mut trajectory = Trajectory::new(force, mass, fixed, start)?;
@@ -97,7 +106,8 @@ pub fn relax_under(
                 let within = pressing.check_sides(&trajectory.u);
                 within.map_err(|(tool, cause)| ExplicitError::ContactAt { step, time, tool, cause })?;
             }
-            return Ok((trajectory.u, trajectory.info));
+            let reaction = trajectory.reaction();
+            return Ok(Rested { u: trajectory.u, reaction, info: trajectory.info });
         }
     }
     let RelaxationInfo { steps, error, .. } = trajectory.info;
@@ -200,6 +210,13 @@ impl<'a, 'b> Trajectory<'a, 'b> {
             self.internal.iter_mut().zip(&self.touch).for_each(|(f, t)| *f -= t);
         }
         Ok(())
+    }
+
+    /// What balances constrained degrees of freedom, N.
+    fn reaction(&self) -> Vec<Vector3> {
+        let lacking = |i: usize, a: usize| self.internal[i][a] - self.external[i][a];
+        let held = |i: usize, a: usize| if self.constrained[3 * i + a] { lacking(i, a) } else { 0.0 };
+        (0..self.u.len()).map(|i| Vector3::from_fn(|a, _| held(i, a))).collect()
     }
 
     /// The lowest frequency that the last step moved in, by its Rayleigh quotient.

@@ -8,10 +8,9 @@ use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, stress};
 use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
 use super::tet4::Chunk;
-use lanes::{LanePath, on_path};
+use lanes::{LanePath, madd, on_path};
 use material::Law;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
-use material::lane::math::madd;
 use material::lane::{LANES, LaneStrain, Lanes};
 
 /// Blocks that go through each pass together; two and eight take as long.

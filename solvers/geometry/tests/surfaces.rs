@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{bumpy, joined, moved, sphere_like, surface, torus};
+use common::{assert_refused, bumpy, joined, moved, sphere_like, surface, torus};
 use geometry::shapes::Shape;
 use geometry::surface::{Soup, SurfaceProblem};
 use geometry::{Point3, Surface, cloud, files};
@@ -114,98 +114,76 @@ fn every_kind_of_surface_file_is_read() {
     assert!((cube.volume() - 1.0).abs() < 1e-15 && (cube.area() - 6.0).abs() < 1e-15);
 }
 
+/// Holds that a text is refused after each of these changes, and with which words.
+fn assert_text_refused<const N: usize>(name: &str, text: &str, changes: [(&str, &str, &str); N]) {
+    let changes = changes.map(|(from, to, says)| (from, to, [says.into()]));
+    assert_refused(text, changes, |text| read(name, text.as_bytes()).err());
+}
+
 #[test]
-fn every_broken_file_is_refused_with_its_place() {
-    let text = stl_text(&FACES);
-    let cut = |bytes: Vec<u8>, at: usize| bytes[..bytes.len() - at].to_vec();
-    let obj = |from: &str, to: &str| obj(OBJ_FACES).replacen(from, to, 1).into_bytes();
-    let ply = |from: &str, to: &str| ply_text(PLY_HEADER, PLY_FACES).replacen(from, to, 1).into_bytes();
+fn every_broken_text_is_refused_with_its_place() {
+    let stl = [
+        ("vertex 0 1 0", "vertex 0 nan 0", "a.stl:2: triangle 1 has a coordinate"),
+        ("vertex 0 1 0", "vertex 0 1", "a.stl:5: expected a coordinate, found 'the end of the line'"),
+        ("vertex 0 1 0", "vertex 0 1 0 0", "a.stl:5: expected vertex and three"),
+        (" endloop\n", "", "a.stl:7: expected endloop"),
+        ("outer loop", "outer", "a.stl:3: expected outer loop"),
+        ("facet normal", "face", "a.stl:2: expected facet or endsolid, found 'face"),
+        ("endsolid tet\n", "", "the file ends where endsolid should come"),
+        ("endsolid tet\n", "endsolid tet\nfacet\n", "a.stl:31: expected solid, found 'facet'"),
+    ];
+    assert_text_refused("a.stl", &stl_text(&FACES), stl);
+    let obj_changes = [
+        ("v 1 0 0", "v 1 0", "a.obj:5: expected a coordinate"),
+        ("v 1 0 0", "v 1 inf 0", "a.obj:5: node 2 has a coordinate that is not finite"),
+        ("f 1 3 2", "f 1 3 9", "a.obj:10: face 1 names corner 9, which the file does not have before it"),
+        ("f 1 3 2", "f 0 3 2", "face 1 names corner 0"),
+        ("-3 -2", "-5 -2", "a.obj:12: face 3 names corner -5"),
+        ("f 1 3 2", "f 1 3", "a.obj:10: expected a face of three corners or more"),
+        ("f 1 3 2", "f 1 x 2", "a.obj:10: expected the number of a corner, found 'x'"),
+        ("s off", "wobble 3", "a.obj:9: expected v, f or another word of the format, found 'wobble 3'"),
+        ("3/1/1\n", "3/1/1 \\\n", "the file ends where the rest of a line should come"),
+    ];
+    assert_text_refused("a.obj", &obj(OBJ_FACES), obj_changes);
+    let ply = [
+        ("end_header\n", "", "a.ply:11: expected a line of a PLY header"),
+        ("format ascii", "format text", "expected format ascii"),
+        ("format ascii 1.0\n", "", "no format section"),
+        ("vertex 4", "vertex 4000000000", "a.ply:4: too many elements for the bytes of the file: 4000000000"),
+        ("vertex 4", "vertex 5", "a.ply:"),
+        ("vertex 4", "vertex 3", "a.ply:"),
+        ("face 4", "face 5", "a.ply:20: the file ends where a value of an element should come"),
+        ("face 4", "face 3", "a.ply:19: expected the end of the file, found '3'"),
+        ("float z", "float w", "no vertex with x, y and z section"),
+        ("int vertex_indices", "int corners", "no face with a list vertex_indices section"),
+        ("float x", "real x", "a.ply:5: expected a type such as float or int"),
+        ("3 0 2 1", "3 0 2 7", "a.ply:15: face 1 names corner 7"),
+        ("3 0 2 1", "3 0 2 1.5", "face 1 names corner 1"),
+        ("3 0 2 1", "2 0 2", "a.ply:15: expected a face of three corners or more, found '2'"),
+        ("3 0 2 1", "-3 0 2 1", "expected the length of a list, found '-3'"),
+        ("1 0 0 7", "1 nan 0 7", "node 1 has a coordinate that is not finite"),
+    ];
+    assert_text_refused("a.ply", &ply_text(PLY_HEADER, PLY_FACES), ply);
+}
+
+#[test]
+fn every_broken_binary_is_refused_with_its_place() {
+    let cut = |bytes: Vec<u8>| bytes[..bytes.len() - 1].to_vec();
     let mut nan = stl_binary(&FACES, b"");
     nan[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
     let mut many = stl_binary(&FACES, b"");
     many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    let stl = cut(stl_binary(&FACES, b""));
+    let longer = [ply_binary(true), vec![1, 2, 3]].concat();
     for (name, bytes, says) in [
-        (
-            "a.stl",
-            text.replacen("vertex 0 1 0", "vertex 0 nan 0", 1).into_bytes(),
-            "a.stl:2: triangle 1 has a coordinate",
-        ),
-        (
-            "a.stl",
-            text.replacen("vertex 0 1 0", "vertex 0 1", 1).into_bytes(),
-            "a.stl:5: expected a coordinate, found 'the end of the line'",
-        ),
-        (
-            "a.stl",
-            text.replacen("vertex 0 1 0", "vertex 0 1 0 0", 1).into_bytes(),
-            "a.stl:5: expected vertex and three",
-        ),
-        ("a.stl", text.replacen(" endloop\n", "", 1).into_bytes(), "a.stl:7: expected endloop"),
-        ("a.stl", text.replacen("outer loop", "outer", 1).into_bytes(), "a.stl:3: expected outer loop"),
-        (
-            "a.stl",
-            text.replacen("facet normal", "face", 1).into_bytes(),
-            "a.stl:2: expected facet or endsolid, found 'face",
-        ),
-        (
-            "a.stl",
-            text.replace("endsolid tet\n", "").into_bytes(),
-            "the file ends where endsolid should come",
-        ),
-        ("a.stl", text.as_bytes()[..150].to_vec(), "a.stl:12: the file ends where vertex"),
-        ("a.stl", (text.clone() + "facet\n").into_bytes(), "a.stl:31: expected solid, found 'facet'"),
-        (
-            "a.stl",
-            cut(stl_binary(&FACES, b""), 1),
-            "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283",
-        ),
+        ("a.stl", stl, "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283"),
         ("a.stl", many, "4294967295 triangles take 214748364834 bytes"),
         ("a.stl", nan, "a.stl: byte 134: triangle 2 has a coordinate that is not finite"),
+        ("a.stl", stl_text(&FACES).as_bytes()[..150].to_vec(), "a.stl:12: the file ends where vertex"),
         ("a.stl", b"nonsense".to_vec(), "a comment of 80 bytes"),
         ("a.stl", b"solid nothing\nendsolid\n".to_vec(), "0 triangles enclose nothing"),
-        ("a.obj", obj("v 1 0 0", "v 1 0"), "a.obj:5: expected a coordinate"),
-        ("a.obj", obj("v 1 0 0", "v 1 inf 0"), "a.obj:5: node 2 has a coordinate that is not finite"),
-        (
-            "a.obj",
-            obj("f 1 3 2", "f 1 3 9"),
-            "a.obj:10: face 1 names corner 9, which the file does not have before it",
-        ),
-        ("a.obj", obj("f 1 3 2", "f 0 3 2"), "face 1 names corner 0"),
-        ("a.obj", obj("-3 -2", "-5 -2"), "a.obj:12: face 3 names corner -5"),
-        ("a.obj", obj("f 1 3 2", "f 1 3"), "a.obj:10: expected a face of three corners or more"),
-        ("a.obj", obj("f 1 3 2", "f 1 x 2"), "a.obj:10: expected the number of a corner, found 'x'"),
-        (
-            "a.obj",
-            obj("s off", "wobble 3"),
-            "a.obj:9: expected v, f or another word of the format, found 'wobble 3'",
-        ),
-        ("a.obj", obj("3/1/1\n", "3/1/1 \\\n"), "the file ends where the rest of a line should come"),
-        ("a.ply", ply("end_header\n", ""), "a.ply:11: expected a line of a PLY header"),
-        ("a.ply", ply("format ascii", "format text"), "expected format ascii"),
-        ("a.ply", ply("format ascii 1.0\n", ""), "no format section"),
-        (
-            "a.ply",
-            ply("vertex 4", "vertex 4000000000"),
-            "a.ply:4: too many elements for the bytes of the file: 4000000000",
-        ),
-        ("a.ply", ply("vertex 4", "vertex 5"), "a.ply:"),
-        ("a.ply", ply("vertex 4", "vertex 3"), "a.ply:"),
-        ("a.ply", ply("face 4", "face 5"), "a.ply:20: the file ends where a value of an element should come"),
-        ("a.ply", ply("face 4", "face 3"), "a.ply:19: expected the end of the file, found '3'"),
-        ("a.ply", ply("float z", "float w"), "no vertex with x, y and z section"),
-        ("a.ply", ply("int vertex_indices", "int corners"), "no face with a list vertex_indices section"),
-        ("a.ply", ply("float x", "real x"), "a.ply:5: expected a type such as float or int"),
-        ("a.ply", ply("3 0 2 1", "3 0 2 7"), "a.ply:15: face 1 names corner 7"),
-        ("a.ply", ply("3 0 2 1", "3 0 2 1.5"), "face 1 names corner 1"),
-        ("a.ply", ply("3 0 2 1", "2 0 2"), "a.ply:15: expected a face of three corners or more, found '2'"),
-        ("a.ply", ply("3 0 2 1", "-3 0 2 1"), "expected the length of a list, found '-3'"),
-        ("a.ply", ply("1 0 0 7", "1 nan 0 7"), "node 1 has a coordinate that is not finite"),
-        ("a.ply", cut(ply_binary(false), 1), "the file ends where a value of an element should come"),
-        (
-            "a.ply",
-            [ply_binary(true), vec![1, 2, 3]].concat(),
-            "expected the end of the file, found '3 bytes more'",
-        ),
+        ("a.ply", cut(ply_binary(false)), "the file ends where a value of an element should come"),
+        ("a.ply", longer, "expected the end of the file, found '3 bytes more'"),
         ("a.off", b"OFF\n4 4 6\n".to_vec(), "'OFF' begins no mesh file"),
     ] {
         let bad = read(name, &bytes).err().unwrap_or_else(|| panic!("read, but {says}"));

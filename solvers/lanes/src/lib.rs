@@ -4,7 +4,7 @@
 //! compiler's own vectorisation, and calls the copy that a [`LanePath`] names.
 //!
 //! ```
-//! use lanes::{LANES, LanePath, on_path};
+//! use lanes::{LANES, LanePath, madd, on_path};
 //!
 //! on_path! {
 //!     /// `y += a x`.
@@ -13,7 +13,7 @@
 //! #[inline(always)]
 //! fn add_lanes<const FMA: bool>(a: f64, x: &[f64; LANES], y: &mut [f64; LANES]) {
 //!     for l in 0..LANES {
-//!         y[l] = if FMA { a.mul_add(x[l], y[l]) } else { a * x[l] + y[l] };
+//!         y[l] = madd::<FMA>(a, x[l], y[l]);
 //!     }
 //! }
 //! let mut y = [1.0; LANES];
@@ -26,6 +26,18 @@ pub const LANES: usize = 8;
 
 /// One number of each lane.
 pub type Lanes = [f64; LANES];
+
+/// `a b + c`, fused where the path has the instruction (elsewhere a fused product is a library call).
+#[inline(always)]
+pub fn madd<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FMA { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// [`madd`] in single precision.
+#[inline(always)]
+pub fn madd_f32<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
+    if FMA { a.mul_add(b, c) } else { a * b + c }
+}
 
 /// Instruction set of the lane kernels. Results have the same bits at any number of threads on one path; another path
 /// changes the last bits (fused multiply-add, width of sums), so a record names its path.

@@ -86,8 +86,8 @@ pub use implicit::{
 pub use load::{Load, nodal_forces};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Solid, StaticError, StaticParams,
-    StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
+    Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Rest, Solid, StaticError,
+    StaticParams, StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

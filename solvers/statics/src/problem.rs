@@ -71,6 +71,16 @@ impl Pointwise {
         }
     }
 
+    /// Resultant of the nodal forces of each weak support at `factor` times its values, N.
+    pub fn resultants(&self, u: &[Vector3], factor: f64) -> Vec<Vector3> {
+        let each = self.weak.iter().map(|(table, of)| {
+            let mut forces = vec![Vector3::zeros(); u.len()];
+            table.subtract_residual(of, u, factor, &mut forces);
+            forces.iter().sum()
+        });
+        each.collect()
+    }
+
     /// Adds Nitsche's consistency terms, `integral of (t_a(u) v_a + u_a t_a(v))`, to the nodal forces.
     pub fn add_consistency(&self, u: &[Vector3], force: &mut [Vector3]) {
         for (table, of) in &self.weak {

@@ -372,6 +372,23 @@ impl<'a> Factored<'a> {
         out
     }
 
+    /// Resultant (N) of the forces that each constraint row exerts on the body: `-lambda_k c_k`, summed along each axis.
+    pub fn forces_of_rows(&self, solution: &Solution) -> Vec<Vector3> {
+        let each = self.problem.rows.iter().zip(&solution.multipliers);
+        each.map(|(row, lambda)| {
+            row.terms.iter().fold(Vector3::zeros(), |mut sum, &(dof, c)| {
+                sum[dof % 3] -= lambda * c;
+                sum
+            })
+        })
+        .collect()
+    }
+
+    /// Resultant (N) of the forces that each weak support exerts on the body.
+    pub fn forces_of_weak(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
+        self.problem.pointwise.as_ref().map_or_else(Vec::new, |forms| forms.resultants(&solution.u, factor))
+    }
+
     /// The stiffness, before elimination.
     pub fn stiffness(&self) -> &Stiffness {
         &self.problem.stiffness

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Names, SizeKeys};
+use crate::scene::region::Region;
 use crate::scene::units::{Length, Q, Time, Unit};
 use crate::scene::vocabulary::{Given, Schemes, Solutions, Word};
 use crate::scene::words::words;
@@ -13,12 +14,25 @@ use crate::scene::words::words;
 pub(crate) struct OutputKeys {
     /// Points to report
     pub probes: Option<Vec<[Q<Length>; 3]>>,
+    /// Faces whose mean displacement is reported, by area: [{ on = "z-max" }, { where = "z == 20 mm and x >= 3 mm" }]
+    pub means: Option<Vec<MeanKeys>>,
     pub transfer: Option<TransfersKeys>,
     /// A method of this scene that every run is compared with at the targets too, beside the reference: a published one whose
     /// own error is part of a published difference
     pub beside: Option<String>,
     /// The loading played again and again after the first solution, as a simulator does, each frame timed
     pub repeated: Option<RepeatedKeys>,
+}
+
+/// A part of the surface
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MeanKeys {
+    /// Names that the shape or the mesh file gives
+    pub on: Option<Names>,
+    /// Comparisons joined by 'and'
+    #[serde(rename = "where")]
+    pub place: Option<Region>,
 }
 
 /// A simulator's loop: the loading goes up and down, a frame at a time, prepared once

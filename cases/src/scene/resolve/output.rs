@@ -9,17 +9,26 @@ use catalogue::Problem;
 use catalogue::metric;
 use catalogue::suggest;
 
+use super::condition::place;
 use super::method::size;
 use super::{MILLIMETRE, mesh_file, names, positive, raw};
 
 pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     let Some(keys) = keys else {
-        return Output { probes: Vec::new(), transfers: Vec::new(), beside: None, repeated: None };
+        let (probes, means, transfers) = (Vec::new(), Vec::new(), Vec::new());
+        return Output { probes, means, transfers, beside: None, repeated: None };
     };
     if let Some(probes) = &keys.probes {
         let help = "name a point, or leave the key out";
         report.require(!probes.is_empty(), "output.probes", "is empty", help);
     }
+    if let Some(means) = &keys.means {
+        let help = "name a face, such as { on = \"z-max\" }, or leave the key out";
+        report.require(!means.is_empty(), "output.means", "is empty", help);
+    }
+    let means = keys.means.unwrap_or_default().into_iter().enumerate();
+    let means =
+        means.map(|(i, of)| place(of.on, of.place, &format!("output.means[{i}]"), report, true)).collect();
     let transfers = match keys.transfer {
         None => Vec::new(),
         Some(TransfersKeys::One(one)) => transfer(one, "output.transfer", report).into_iter().collect(),
@@ -30,7 +39,7 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     };
     let probes = keys.probes.unwrap_or_default().into_iter().map(raw).collect();
     let repeated = keys.repeated.map(|keys| repeated(keys, report));
-    Output { transfers, probes, beside: keys.beside, repeated }
+    Output { transfers, probes, means, beside: keys.beside, repeated }
 }
 
 /// Frames of nine hours at 30 Hz; the time of each is kept.

@@ -129,7 +129,14 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
 }
 
 fn leave_a_child() -> Result<(), String> {
-    Command::new("sleep").arg(CHILD).spawn().map(drop).map_err(|bad| format!("sleep can't be started: {bad}"))
+    let sleep = |command: &mut Command| {
+        let started = command.arg(CHILD).spawn().map(drop);
+        started.map_err(|bad| format!("sleep can't be started: {bad}"))
+    };
+    sleep(&mut Command::new("sleep"))?;
+    #[cfg(unix)]
+    sleep(std::os::unix::process::CommandExt::process_group(&mut Command::new("sleep"), 0))?;
+    Ok(())
 }
 
 /// Takes memory until there is no more.

@@ -75,7 +75,7 @@ pub(super) fn solve(folder: &Path, text: &Text) -> Result<Solved, String> {
         let newton = NewtonParams { tolerance, iterations, chords: true, keeps: f64::INFINITY };
         let steps = text.procedure.steps;
         let params = StaticParams { steps, smallest: SMALLEST, newton, augmentations: 0, limit_within: None };
-        let path = statics::solve_static(&problem, &params, |_, _, _| {}).map_err(|bad| bad.to_string())?;
+        let path = statics::solve_static(&problem, &params, |_, _| {}).map_err(|bad| bad.to_string())?;
         if let Some(failure) = path.failure {
             return Err(failure.to_string());
         }

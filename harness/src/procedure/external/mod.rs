@@ -13,7 +13,8 @@ use super::{Problem, Solution, Stages, StepHistory};
 use crate::Failure;
 use crate::adapter::{self, Answered, Folder, Outside, Question};
 use crate::error::{Foreign, ForeignStatus};
-use crate::outcome::{LoadStep, Meters, Metric, push};
+use crate::outcome::{LoadStep, Meters, Metric};
+use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
 /// What is known of the program that solved.
@@ -84,16 +85,41 @@ pub(super) fn solve(problem: &Problem, outside: &Outside, meters: &mut Meters) -
     let said = Some(answer.version.clone()).filter(|version| !version.is_empty());
     let version = said.or(known_version);
     let program = OfProgram { memory: call.memory, version };
-    let history = (steps > 0).then(|| history(problem, &answered));
+    let end = answer.load.filter(|_| answered.stalled.is_some()).unwrap_or(1.0);
+    let iterations = answer.counts.get("iterations").copied().filter(|n| *n >= 0.0 && *n < 1e9);
+    let stalled = answered.stalled.clone().map(Failure::from);
+    let solution = taken(problem, answered.fields, end)?;
+    let history = solution.history.map(|history| {
+        let metrics = iterations.map(|count| Metric::new(&metric::NEWTON_ITERATIONS, count));
+        StepHistory { metrics: metrics.into_iter().collect(), failure: stalled, ..history }
+    });
+    Ok(Solution { program: Some(program), history, ..solution })
+}
+
+/// What a displacement (m) makes of a solution, given at the end of each of equal steps up to the part `end` of the load, or at the end alone: its
+/// energies, volume ratios, forces of supports and forces out of balance are those of our own elements.
+pub(crate) fn taken(problem: &Problem, fields: Vec<Vec<Vector3>>, end: f64) -> Result<Solution, Failure> {
+    let outer = statics::nodal_forces(&problem.prepared.volume.rows, &problem.prepared.loads())?;
+    let history = (steps(problem.setup) > 0).then(|| history(problem, &outer, &fields, end));
     let load = history.as_ref().map_or(1.0, |history| history.last.load);
-    let u = answered.fields.into_iter().next_back().unwrap_or_default();
-    let residual = Some(residual(problem, &u, load)?);
-    let dofs = problem.free_dofs();
-    Ok(Solution { u, dofs, residual, program: Some(program), history, ..Solution::default() })
+    let u = fields.into_iter().next_back().unwrap_or_default();
+    let residual = is_of_nodes(problem).then(|| residual(problem, &outer, &u, load));
+    let supports = supports(problem, &outer, &u, load);
+    Ok(Solution { u, supports, dofs: problem.free_dofs(), residual, history, ..Solution::default() })
+}
+
+/// Whether every point has its own dilation. With a projection, what the points have by themselves is neither in balance nor the energy.
+fn is_plain(problem: &Problem) -> bool {
+    problem.prepared.volume.groups.is_none() && problem.prepared.volume.pressure.is_none()
+}
+
+/// Whether inner forces, loads and forces of supports at nodes are all that acts: no tool touches, and supports hold nodes.
+fn is_of_nodes(problem: &Problem) -> bool {
+    is_plain(problem) && problem.prepared.holds_nodes_alone() && problem.prepared.contact().is_none()
 }
 
 /// Load steps of a procedure that has some.
-pub(super) fn steps(setup: &Setup) -> usize {
+pub(crate) fn steps(setup: &Setup) -> usize {
     match &setup.procedure {
         Procedure::Static(asked) => asked.steps,
         _ => 0,
@@ -101,38 +127,60 @@ pub(super) fn steps(setup: &Setup) -> usize {
 }
 
 /// The steps of an answer, or its end alone, with energies and volume ratios of our own elements.
-fn history(problem: &Problem, answered: &Answered) -> StepHistory {
-    let end = answered.answer.load.filter(|_| answered.stalled.is_some()).unwrap_or(1.0);
-    let count = answered.fields.len() as f64;
-    let iterations = answered.answer.counts.get("iterations").copied().filter(|n| *n >= 0.0 && *n < 1e9);
+fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f64) -> StepHistory {
+    let count = fields.len() as f64;
+    let plain = is_plain(problem);
     let steps: Vec<LoadStep> = (1..)
-        .zip(&answered.fields)
+        .zip(fields)
         .map(|(step, u)| {
             let (energy, smallest_j) = energy(problem, u);
             LoadStep {
                 load: end * f64::from(step) / count,
-                strain_energy: Some(energy).filter(|energy| energy.is_finite()),
+                strain_energy: Some(energy).filter(|energy| plain && energy.is_finite()),
                 smallest_j,
+                supports: supports(problem, outer, u, end * f64::from(step) / count),
                 ..LoadStep::at_start(0)
             }
         })
         .collect();
-    let mut metrics: Vec<Metric> = Vec::new();
-    iterations.into_iter().for_each(|count| push(&mut metrics, &metric::NEWTON_ITERATIONS, count));
     StepHistory {
         last: steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(0)),
         steps,
-        fields: answered.fields.clone(),
-        metrics,
-        failure: answered.stalled.clone().map(Failure::from),
+        fields: fields.to_vec(),
+        metrics: Vec::new(),
+        failure: None,
     }
 }
 
 /// Forces that our elements leave unbalanced at free nodes, over the larger of inner forces and loads.
-fn residual(problem: &Problem, u: &[Vector3], load: f64) -> Result<f64, Failure> {
+fn residual(problem: &Problem, outer: &[Vector3], u: &[Vector3], load: f64) -> f64 {
+    let inner = inner_forces(problem, u);
+    let size = |forces: &[Vector3]| forces.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+    let largest = size(&inner).max(load * size(outer));
+    let mut left: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| outer * load - inner).collect();
+    for fixed in problem.prepared.fixed() {
+        left[fixed.node as usize][usize::from(fixed.axis)] = 0.0;
+    }
+    if largest > 0.0 { size(&left) / largest } else { 0.0 }
+}
+
+/// Force (N) of each support on the body, by our elements, at this part of the load; none where more than nodes acts and where a
+/// field is none of theirs.
+fn supports(problem: &Problem, outer: &[Vector3], u: &[Vector3], load: f64) -> Vec<Vector3> {
+    if !is_of_nodes(problem) {
+        return Vec::new();
+    }
+    let inner = inner_forces(problem, u);
+    let nodes: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| inner - outer * load).collect();
+    let forces = ConditionForces { nodes: &nodes, rows: &[], weak: &[] };
+    let found = problem.prepared.support_forces(&forces);
+    if found.iter().all(|force| force.iter().all(|f| f.is_finite())) { found } else { Vec::new() }
+}
+
+/// Internal nodal forces of our elements, N.
+fn inner_forces(problem: &Problem, u: &[Vector3]) -> Vec<Vector3> {
     let volume = &problem.prepared.volume;
-    let outer = statics::nodal_forces(&volume.rows, &problem.prepared.loads())?;
-    let mut inner = vec![Vector3::zeros(); outer.len()];
+    let mut inner = vec![Vector3::zeros(); u.len()];
     for (q, (h, w)) in
         volume.rows.at().displacement_gradients(u).iter().zip(volume.rows.weights()).enumerate()
     {
@@ -140,14 +188,7 @@ fn residual(problem: &Problem, u: &[Vector3], load: f64) -> Result<f64, Failure>
         let (nodes, gradients) = volume.rows.row(q);
         nodes.iter().zip(gradients).for_each(|(&node, g)| inner[node as usize] += stress * g);
     }
-    let size = |forces: &[Vector3]| forces.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
-    let largest = size(&inner).max(load * size(&outer));
-    let mut left: Vec<Vector3> =
-        inner.iter().zip(&outer).map(|(inner, outer)| outer * load - inner).collect();
-    for fixed in problem.prepared.fixed() {
-        left[fixed.node as usize][usize::from(fixed.axis)] = 0.0;
-    }
-    Ok(if largest > 0.0 { size(&left) / largest } else { 0.0 })
+    inner
 }
 
 /// The law of a quadrature point.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lanes::{LanePath, on_path};
+use lanes::{LanePath, madd_f32, on_path};
 use rayon::prelude::*;
 
 use super::operator::{Entry, Operator, Part};
@@ -169,24 +169,24 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
             // Four lanes at once, of which three count: those of the last column are the upper ones.
             let entries = block.as_flattened();
             for l in 0..4 {
-                first[l] = fused::<FMA>(entries[l], x[0], first[l]);
+                first[l] = madd_f32::<FMA>(entries[l], x[0], first[l]);
             }
             for l in 0..4 {
-                second[l] = fused::<FMA>(entries[3 + l], x[1], second[l]);
+                second[l] = madd_f32::<FMA>(entries[3 + l], x[1], second[l]);
             }
             for l in 0..4 {
-                third[l] = fused::<FMA>(entries[5 + l], x[2], third[l]);
+                third[l] = madd_f32::<FMA>(entries[5 + l], x[2], third[l]);
             }
         } else {
             for (columns, x) in block.chunks_exact(3).zip(x.chunks_exact(3)) {
                 for l in 0..B {
-                    first[l] = fused::<FMA>(columns[0][l], x[0], first[l]);
+                    first[l] = madd_f32::<FMA>(columns[0][l], x[0], first[l]);
                 }
                 for l in 0..B {
-                    second[l] = fused::<FMA>(columns[1][l], x[1], second[l]);
+                    second[l] = madd_f32::<FMA>(columns[1][l], x[1], second[l]);
                 }
                 for l in 0..B {
-                    third[l] = fused::<FMA>(columns[2][l], x[2], third[l]);
+                    third[l] = madd_f32::<FMA>(columns[2][l], x[2], third[l]);
                 }
             }
         }
@@ -211,10 +211,4 @@ pub(super) fn times<const B: usize>(block: &[[f32; B]; B], x: &Entry<B>) -> Entr
         }
     }
     sum
-}
-
-/// `a x + sum`.
-#[inline(always)]
-fn fused<const FMA: bool>(a: f32, x: f32, sum: f32) -> f32 {
-    if FMA { a.mul_add(x, sum) } else { a * x + sum }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lanes::{LanePath, on_path};
+use lanes::{LanePath, madd, madd_f32, on_path};
 use rayon::prelude::*;
 use shape::Coarser;
 
@@ -31,7 +31,7 @@ impl<const B: usize> Weight<B, MODES> for Dense<B> {
     fn add<const FMA: bool>(&self, coarse: &Entry<MODES>, x: &mut Entry<B>) {
         // A sum of its own for each weight: the next does not have to wait for it.
         for (x, row) in x.iter_mut().zip(&self.0) {
-            *x += row.iter().zip(coarse).fold(0.0, |sum, (weight, c)| single::<FMA>(*weight, *c, sum));
+            *x += row.iter().zip(coarse).fold(0.0, |sum, (weight, c)| madd_f32::<FMA>(*weight, *c, sum));
         }
     }
 
@@ -39,7 +39,7 @@ impl<const B: usize> Weight<B, MODES> for Dense<B> {
     fn add_transposed<const FMA: bool>(&self, rest: &Entry<B>, sum: &mut Entry<MODES>) {
         for a in 0..B {
             for m in 0..MODES {
-                sum[m] = single::<FMA>(self.0[a][m], rest[a], sum[m]);
+                sum[m] = madd_f32::<FMA>(self.0[a][m], rest[a], sum[m]);
             }
         }
     }
@@ -50,7 +50,7 @@ impl<const B: usize> Weight<B, MODES> for Dense<B> {
             let weights = self.0[b].map(f64::from);
             for a in 0..B {
                 for m in 0..MODES {
-                    rows[a][m] = fused::<FMA>(block[b][a], weights[m], rows[a][m]);
+                    rows[a][m] = madd::<FMA>(block[b][a], weights[m], rows[a][m]);
                 }
             }
         }
@@ -66,7 +66,7 @@ impl<const B: usize> Weight<B, MODES> for Dense<B> {
             for m in 0..MODES {
                 let weight = f64::from(self.0[a][m]);
                 for n in 0..MODES {
-                    sum[m][n] = fused::<FMA>(weight, rows[a][n], sum[m][n]);
+                    sum[m][n] = madd::<FMA>(weight, rows[a][n], sum[m][n]);
                 }
             }
         }
@@ -80,7 +80,7 @@ pub(super) struct Diagonal(pub [f32; 3]);
 impl Weight<3, 3> for Diagonal {
     #[inline(always)]
     fn add<const FMA: bool>(&self, coarse: &Entry<3>, x: &mut Entry<3>) {
-        (0..3).for_each(|a| x[a] = single::<FMA>(self.0[a], coarse[a], x[a]));
+        (0..3).for_each(|a| x[a] = madd_f32::<FMA>(self.0[a], coarse[a], x[a]));
     }
 
     #[inline(always)]
@@ -92,7 +92,7 @@ impl Weight<3, 3> for Diagonal {
     fn multiply<const FMA: bool>(&self, block: &[[f64; 3]; 3], rows: &mut [[f64; 3]; 3]) {
         for b in 0..3 {
             for a in 0..3 {
-                rows[a][b] = fused::<FMA>(block[b][a], f64::from(self.0[b]), rows[a][b]);
+                rows[a][b] = madd::<FMA>(block[b][a], f64::from(self.0[b]), rows[a][b]);
             }
         }
     }
@@ -101,22 +101,10 @@ impl Weight<3, 3> for Diagonal {
     fn multiply_transposed<const FMA: bool>(&self, rows: &[[f64; 3]; 3], sum: &mut [[f64; 3]; 3]) {
         for a in 0..3 {
             for b in 0..3 {
-                sum[a][b] = fused::<FMA>(f64::from(self.0[a]), rows[a][b], sum[a][b]);
+                sum[a][b] = madd::<FMA>(f64::from(self.0[a]), rows[a][b], sum[a][b]);
             }
         }
     }
-}
-
-/// `a x + sum`.
-#[inline(always)]
-fn fused<const FMA: bool>(a: f64, x: f64, sum: f64) -> f64 {
-    if FMA { a.mul_add(x, sum) } else { a * x + sum }
-}
-
-/// `a x + sum` in single precision.
-#[inline(always)]
-fn single<const FMA: bool>(a: f32, x: f32, sum: f32) -> f32 {
-    if FMA { a.mul_add(x, sum) } else { a * x + sum }
 }
 
 /// A prolongation.

@@ -133,6 +133,8 @@ metrics! {
         "number of a mode, from 1, slowest first";
     OMEGA: "omega", "angular frequency", AngularFrequency, Value, Modes,
         "angular frequency of a mode";
+    FREQUENCY: "frequency", "frequency", Frequency, Value, Modes,
+        "frequency of a mode, its angular frequency over 2 pi";
     OMEGA_RATIO: "omega-ratio", "computed over exact angular frequency", None, Value, ModesReference,
         "angular frequency of a mode over the exact one of the same number";
     // Tools and contact.
@@ -154,6 +156,19 @@ metrics! {
         "displacement of the tool at the last stable step before the body first lost stability";
     LIMIT_TOOL_FORCE: "limit-tool-force", "tool force at the limit", Force, Tool, Tool,
         "force of the tool at the last stable step before the body first lost stability";
+    // Supports and faces.
+    REACTION_X: "reaction-x", "support force along x", Force, Place, Support,
+        "force along x with which a support holds the body, at the end: with the loads, the tools and the other supports it is in balance";
+    REACTION_Y: "reaction-y", "support force along y", Force, Place, Support,
+        "force along y with which a support holds the body, at the end";
+    REACTION_Z: "reaction-z", "support force along z", Force, Place, Support,
+        "force along z with which a support holds the body, at the end";
+    MEAN_X: "mean-x", "mean displacement along x", Length, Place, Mean,
+        "mean displacement along x of a face that output.means names, by its area, at the end";
+    MEAN_Y: "mean-y", "mean displacement along y", Length, Place, Mean,
+        "mean displacement along y of a face that output.means names, by its area, at the end";
+    MEAN_Z: "mean-z", "mean displacement along z", Length, Place, Mean,
+        "mean displacement along z of a face that output.means names, by its area, at the end";
     // Load steps, Newton's method, relaxation.
     LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
         "part of the loading that was reached, 0 to 1";
@@ -194,6 +209,10 @@ metrics! {
         "largest estimated error of the displacement in one implicit time step";
     ENERGY_DRIFT: "energy-drift", "relative energy drift", None, Error, Dynamics,
         "largest error of the energy balance over its largest term; with implicit steps what the scheme dissipates";
+    MAX_OVER_TIME: "max-over-time", "largest displacement over time", Length, Value, Dynamics,
+        "largest displacement in all recorded states, where the largest at the end is looked for";
+    TIME_OF_MAX: "time-of-max", "time of the largest displacement", Time, Value, Dynamics,
+        "time of the recorded state with the largest displacement";
     PERIOD: "period", "period", Time, Value, Motion,
         "mean period of the first probe: between its passages upwards through the middle of its recorded displacement";
     MASS: "mass", "mass", Mass, Value, Dynamics,
@@ -218,13 +237,13 @@ metrics! {
         "energy dissipated by the implicit time-stepping scheme";
     // Any run.
     MAX_X: "max-x", "largest displacement along x", Length, Value, Run,
-        "largest displacement along x, either way";
+        "largest displacement along x, either way, at the end";
     MAX_Y: "max-y", "largest displacement along y", Length, Value, Run,
-        "largest displacement along y, either way";
+        "largest displacement along y, either way, at the end";
     MAX_Z: "max-z", "largest displacement along z", Length, Value, Run,
-        "largest displacement along z, either way";
+        "largest displacement along z, either way, at the end";
     MAX: "max", "largest displacement", Length, Value, Run,
-        "largest displacement";
+        "largest displacement at the end";
     STRAIN_ENERGY: "strain-energy", "strain energy", Energy, Value, Run,
         "strain energy";
     LOAD_X: "load-x", "load along x", Force, Value, Run,
@@ -312,6 +331,12 @@ pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
 /// [`DISCRETISATION_RMS`] along x, y and z, and of the magnitude.
 pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
     [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
+
+/// The force of a support along x, y and z.
+pub static REACTION_PARTS: [&Metric; 3] = [&REACTION_X, &REACTION_Y, &REACTION_Z];
+
+/// The mean displacement of a face along x, y and z.
+pub static MEAN_PARTS: [&Metric; 3] = [&MEAN_X, &MEAN_Y, &MEAN_Z];
 
 /// [`BESIDE_RMS`] along x, y and z, and of the magnitude.
 pub static BESIDE_RMS_PARTS: [&Metric; 4] = [&BESIDE_RMS_X, &BESIDE_RMS_Y, &BESIDE_RMS_Z, &BESIDE_RMS];

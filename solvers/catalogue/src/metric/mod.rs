@@ -40,6 +40,8 @@ pub enum Kind {
     Count,
     /// One per tool: the first tool's has the bare name, others have `-2`, `-3` and so on appended.
     Tool,
+    /// One per support, or per face whose mean is asked for, numbered as those of tools are.
+    Place,
 }
 
 /// What a metric needs to be computed.
@@ -81,6 +83,10 @@ pub enum Needs {
     ProbesReference,
     /// A static procedure or dynamics, and a method as `[reference]`.
     StepsReference,
+    /// A support.
+    Support,
+    /// A face whose mean is asked for.
+    Mean,
     /// Dynamics with probes.
     Motion,
     /// Dynamics with probes, and an exact solution that moves.
@@ -98,8 +104,8 @@ impl Metric {
         matches!(self.kind, Kind::Error | Kind::Cost)
     }
 
-    /// The name of the metric of one tool, counted from 0.
-    pub fn of_tool(&self, index: usize) -> String {
+    /// The name of the metric of one tool, support or face, counted from 0.
+    pub fn numbered(&self, index: usize) -> String {
         if index == 0 { self.name.into() } else { format!("{}-{}", self.name, index + 1) }
     }
 }
@@ -110,7 +116,7 @@ pub fn find(name: &str) -> Option<&'static Metric> {
     named(name).or_else(|| {
         let (bare, number) = name.rsplit_once('-')?;
         let numbered = number.parse::<usize>().is_ok_and(|n| n >= 2) && !number.starts_with(['0', '+']);
-        named(bare).filter(|metric| numbered && metric.kind == Kind::Tool)
+        named(bare).filter(|metric| numbered && matches!(metric.kind, Kind::Tool | Kind::Place))
     })
 }
 
@@ -139,8 +145,8 @@ mod tests {
 
     #[test]
     fn tools_are_numbered_from_two() {
-        assert_eq!(TOOL_FORCE.of_tool(0), "tool-force");
-        assert_eq!(find(&TOOL_FORCE.of_tool(1)), Some(&TOOL_FORCE));
+        assert_eq!(TOOL_FORCE.numbered(0), "tool-force");
+        assert_eq!(find(&TOOL_FORCE.numbered(1)), Some(&TOOL_FORCE));
         for none in ["tool-force-1", "tool-force-02", "rms-2", "force"] {
             assert_eq!(find(none), None, "{none}");
         }

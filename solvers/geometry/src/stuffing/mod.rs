@@ -132,13 +132,47 @@ pub fn stuff_with_nodes(
     nodes: usize,
     doublings: u32,
 ) -> Result<(Stuffed, f64), StuffingError> {
+    nearest(surface, nodes, nodes, doublings, |mesh| mesh.points().len())
+}
+
+/// The same, for so many nodes of quadratic tetrahedra: corners and the middles of edges.
+///
+/// # Errors
+/// As [`stuff`].
+pub fn stuff_with_quadratic_nodes(surface: &Surface, nodes: usize) -> Result<Stuffed, StuffingError> {
+    let count = |mesh: &Mesh| mesh.points().len() + edge_count(mesh);
+    // Of large meshes an eighth of the nodes are corners; of small ones, whose cells are mostly at the surface, more.
+    nearest(surface, nodes, nodes / 8, 0, count).map(|(stuffed, _)| stuffed)
+}
+
+/// Edges of tetrahedra.
+fn edge_count(mesh: &Mesh) -> usize {
+    let of_cell = |cell: usize| {
+        let nodes = mesh.cell(cell);
+        [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+            .map(|[a, b]| (nodes[a].min(nodes[b]), nodes[a].max(nodes[b])))
+    };
+    let mut edges: Vec<(u32, u32)> = (0..mesh.cell_count()).flat_map(of_cell).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges.len()
+}
+
+/// The mesh whose nodes, as `count` has them, are nearest to those wanted, of some spacings from that of so many corners on.
+fn nearest(
+    surface: &Surface,
+    nodes: usize,
+    corners: usize,
+    doublings: u32,
+    count: impl Fn(&Mesh) -> usize,
+) -> Result<(Stuffed, f64), StuffingError> {
     let wanted = nodes.max(1) as f64;
-    let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / wanted).cbrt();
+    let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / corners.max(1) as f64).cbrt();
     let mut best: Option<(f64, Stuffed, f64)> = None;
     for _ in 0..TRIES {
         let found = match stuff(surface, Stuffing { spacing, doublings }) {
             Ok(stuffed) => {
-                let found = stuffed.mesh.points().len() as f64;
+                let found = count(&stuffed.mesh) as f64;
                 let off = (found / wanted).ln().abs();
                 if best.as_ref().is_none_or(|(least, ..)| off < *least) {
                     best = Some((off, stuffed, spacing));

@@ -1,4 +1,4 @@
-//! Closed surfaces in closed form, for tests.
+//! Closed surfaces in closed form, and files that are broken one change at a time, for tests.
 #![allow(dead_code)] // each test takes some
 
 use geometry::surface::Soup;
@@ -113,4 +113,22 @@ pub fn turned(along: u32, around: u32, radius: impl Fn(f64) -> f64) -> Soup {
     }
     soup.faces = (1..=soup.triangles.len() as u32).collect();
     soup
+}
+
+/// Holds that a text in which any one change is made, `from` to `to`, is refused by a message with all these words. `refusal` reads a text
+/// and gives the message. All changes that are not refused so are named at once.
+pub fn assert_refused<'a, const N: usize>(
+    text: &str,
+    changes: impl IntoIterator<Item = (&'a str, &'a str, [String; N])>,
+    refusal: impl Fn(&str) -> Option<String>,
+) {
+    let mut wrong = Vec::new();
+    for (from, to, says) in changes {
+        assert!(text.contains(from), "{from}");
+        let said = refusal(&text.replacen(from, to, 1)).unwrap_or("nothing".into());
+        for words in says.iter().filter(|words| !said.contains(words.as_str())) {
+            wrong.push(format!("{from} -> {to}: {said}\n  has no: {words}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

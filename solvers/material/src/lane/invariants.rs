@@ -1,7 +1,9 @@
 //! Stresses of the form `a H + b (cof H - H^T) + c I` as straight-line scalar code, which a loop over lanes turns into
 //! vector instructions. Every difference that vanishes at `H = 0` is formed without cancellation.
 
-use super::math::{inverse_cbrt_less_1, ln_1p, madd};
+use lanes::madd;
+
+use super::math::{inverse_cbrt_less_1, ln_1p};
 
 /// What a law needs of `H` beside `H` itself.
 #[derive(Clone, Copy)]

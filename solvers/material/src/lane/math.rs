@@ -1,11 +1,7 @@
 //! Elementary functions that vectorise: straight-line arithmetic on one number, so that a loop over lanes becomes
 //! vector instructions. `f64::ln` and `cbrt` are calls and would cost 20 ns per number.
 
-/// `a b + c`, fused where the path has the instruction (elsewhere a fused product is a library call).
-#[inline(always)]
-pub fn madd<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FMA { a.mul_add(b, c) } else { a * b + c }
-}
+use lanes::madd;
 
 /// `ln(1 + j)` for `1 + j` positive and normal, to 2e-16 absolute and 4e-16 relative.
 ///

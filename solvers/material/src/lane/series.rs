@@ -6,7 +6,8 @@
 
 use std::sync::LazyLock;
 
-use super::math::madd;
+use lanes::madd;
+
 use super::{LANES, Lanes};
 
 /// Bounds of the eigenvalues of `X` for which there is a series, each of another length.

@@ -3,7 +3,8 @@
 //! Each law goes over the lanes once with a long straight-line body. In many short loops over lanes the compiler takes the
 //! vectors apart and puts them together again between one and the next (Ogden's law: 1.4 times the time).
 
-use super::math::madd;
+use lanes::madd;
+
 use super::series::horner;
 use super::{LANES, LaneStrain, Lanes};
 

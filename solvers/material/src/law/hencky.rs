@@ -1,12 +1,13 @@
 //! Hencky's law: Hooke's law between logarithmic strain and Kirchhoff stress.
 
 use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
-use crate::lane::math::{ln_1p, madd};
+use crate::lane::math::ln_1p;
 use crate::lane::series::{self, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs};
 use crate::lane::{LANES, LaneStrain, Lanes, of_lane, one_by_one};
 use crate::principal::{Principal, Slopes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
+use lanes::madd;
 use shape::Matrix3;
 use std::slice::{from_mut, from_ref};
 

@@ -3,10 +3,11 @@
 use super::{BULK, Dimension, Entry, LawEntry, LinearElastic, POISSON, Parameter, Problem, Range, YOUNG};
 use crate::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrange, tangent_of};
 use crate::lane::invariants::piola;
-use crate::lane::math::{inverse_cbrt_less_1, madd};
+use crate::lane::math::inverse_cbrt_less_1;
 use crate::lane::{LANES, LaneStrain, Lanes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use catalogue::Values;
+use lanes::madd;
 use shape::Matrix3;
 
 /// `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1`, `2 (C10 + C01) = mu`, `D1 = 2 / kappa`; in Pa.

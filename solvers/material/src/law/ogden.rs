@@ -2,13 +2,13 @@
 
 use super::{BULK, Dimension, Entry, Kind, LawEntry, Parameter, Problem};
 use crate::kinematics::exp_m1_less;
-use crate::lane::math::madd;
 use crate::lane::series::{self, BOUNDS, Power, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs, squared};
 use crate::lane::{LANES, LaneStrain, Lanes, one_by_one};
 use crate::principal::{Principal, Slopes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use catalogue::Values;
+use lanes::madd;
 use shape::Matrix3;
 use std::slice::{from_mut, from_ref};
 

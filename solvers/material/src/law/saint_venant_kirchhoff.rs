@@ -1,10 +1,11 @@
 //! St. Venant-Kirchhoff: Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
+use lanes::madd;
 use shape::Matrix3;
 
 use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
 use crate::kinematics::{add_left, add_right, green_lagrange, tangent_of};
-use crate::lane::{LANES, LaneStrain, Lanes, math::madd};
+use crate::lane::{LANES, LaneStrain, Lanes};
 use crate::{Material, MaterialError, Tangent};
 
 /// `W = lambda/2 (tr E)^2 + mu E : E`, `E = (H + H^T + H^T H) / 2`; moduli in Pa.

@@ -25,4 +25,6 @@ pub use error::{Inverted, StaticError, Worst};
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
 pub use solid::{Dilation, Solid};
-pub use statics::{PenaltySurface, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static};
+pub use statics::{
+    PenaltySurface, Rest, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static,
+};

@@ -125,13 +125,23 @@ impl StaticPath {
     }
 }
 
-/// Solves; `observe` is called after every converged step with the step, the nodal parameters and the pressures.
+/// A body at rest at the end of a step: nodal parameters (m), parameters of a pressure field (Pa), and the force of the nodal supports
+/// on every node (N), zero in free degrees of freedom.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs)]
+pub struct Rest<'a> {
+    pub u: &'a [Vector3],
+    pub pressure: &'a [f64],
+    pub reaction: &'a [Vector3],
+}
+
+/// Solves; `observe` is called after every converged step with the step and the body at its end.
 /// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
 /// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,
-    mut observe: impl FnMut(&Step, &[Vector3], &[f64]),
+    mut observe: impl FnMut(&Step, Rest),
 ) -> Result<StaticPath, StaticError> {
     let count = params.steps.max(1);
     let longest = 1.0 / count as f64;
@@ -187,7 +197,8 @@ pub fn solve_static(
                     within = None;
                 }
                 let quick = done.iterations.len() <= 6;
-                observe(&done, &reached.u, &reached.pressure);
+                let State { u, pressure, .. } = &reached;
+                observe(&done, Rest { u, pressure, reaction: newton.reaction() });
                 path.steps.push(done);
                 before = Some(std::mem::replace(&mut state, reached));
                 if reaches {

@@ -67,6 +67,12 @@ impl Newton<'_> {
         residual
     }
 
+    /// What balances `out` in constrained degrees of freedom, N.
+    pub(super) fn held_back(&self, out: &[Vector3]) -> Vec<Vector3> {
+        let held = |i: usize, a: usize| self.prescribed[3 * i + a].is_some();
+        (0..out.len()).map(|i| Vector3::from_fn(|a, _| if held(i, a) { -out[i][a] } else { 0.0 })).collect()
+    }
+
     pub(super) fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
         let force = |i: usize| {
             (0..3)

@@ -7,7 +7,7 @@ use algebra::{
 };
 
 use super::tangent::{Direction, Factored};
-use super::{Descent, Newton};
+use super::{Descent, Newton, NewtonParams};
 use crate::SolveError;
 use crate::nonlinear::StaticError;
 
@@ -31,6 +31,11 @@ impl Newton<'_> {
     /// Multiplications of a factorisation over those of a solution; 0 where the factor is dense, and so small.
     fn solutions(&self) -> f64 {
         self.symbolic.as_ref().and_then(Option::as_ref).map_or(0.0, |symbolic| symbolic.solutions())
+    }
+
+    /// Whether a factor costs so much that tries which are likely to fail are worth leaving out.
+    fn dear(&self) -> bool {
+        self.solutions() > NewtonParams::KEEPS
     }
 
     /// Whether factors are large enough to be kept, and to be made in single precision. With a pressure field the regularisation
@@ -128,7 +133,7 @@ impl Newton<'_> {
     fn as_it_is(&mut self, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let at_once =
-            kind == Kind::Definite && self.doubtful && self.keeps() && self.descent != Descent::Smooth;
+            kind == Kind::Definite && self.doubtful && self.dear() && self.descent != Descent::Smooth;
         if !at_once {
             match self.numbers(matrix, kind) {
                 Ok(factor) => {

@@ -108,6 +108,8 @@ pub(crate) struct Newton<'a> {
     volume: f64,
     terms: Option<TimeTerms>,
     ended: Option<Ended>,
+    /// Force of the nodal supports at the end of the last step, N.
+    reaction: Vec<Vector3>,
     /// Largest forces so far in real time and in loops, N: what swings passes through states without any.
     peak: f64,
     /// Forces at the end of the last step, N.
@@ -233,6 +235,7 @@ impl<'a> Newton<'a> {
             volume,
             terms: None,
             ended: None,
+            reaction: Vec::new(),
             peak: 0.0,
             reached: 0.0,
             descent: Descent::Nearest,
@@ -273,6 +276,12 @@ impl<'a> Newton<'a> {
         let ended = self.ended.take().expect("a step in real time has ended");
         self.peak = self.peak.max(ended.size());
         ended
+    }
+
+    /// Force (N) of the nodal supports on every node at the end of the last step: what statics leaves unbalanced there; zero in free
+    /// degrees of freedom.
+    pub fn reaction(&self) -> &[Vector3] {
+        &self.reaction
     }
 
     /// Residuals are relative to no less than the forces at the end of the last step from now on.
@@ -368,6 +377,7 @@ impl<'a> Newton<'a> {
             }
         }
         self.reached = balance.scale;
+        self.reaction = self.held_back(&balance.out);
         self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))
             .map(|(contacts, &closure)| ToolState::new(closure, contacts.as_ref()))

@@ -1,0 +1,23 @@
+//! What people and other programs write around solvers outside this program: `adapter.toml`, `result.json`, `.npy`, and claims.
+
+use harness::try_readers;
+use reports::read_claims;
+
+/// Nodes and load steps of the question that is answered.
+const NODES: usize = 4;
+const STEPS: usize = 3;
+
+pub(crate) fn run(data: &[u8]) {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    for name in ["adapter.toml", "result.json", "displacement.npy", "claims.toml"] {
+        std::fs::write(folder.path().join(name), data).expect("a temporary file can be written");
+    }
+    for read in try_readers(folder.path(), NODES, STEPS) {
+        assert!(read.err().is_none_or(|reason| !reason.is_empty()));
+    }
+    if let Ok(claims) = read_claims(&folder.path().join("claims.toml")) {
+        for claim in claims {
+            let _ = claim.judge(&reports::RunSet::default());
+        }
+    }
+}

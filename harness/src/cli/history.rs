@@ -1,0 +1,139 @@
+//! `tissuebench history`: a study over commits.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use reports::ReportError;
+use reports::commits::{ErrorStep, Point, Step, Trend, add, svg, trends};
+
+use super::args::Format;
+use super::colour::{self, BAD, DOUBTFUL, GOOD};
+use super::unreported;
+
+/// What is done with a history.
+#[derive(Subcommand)]
+pub enum HistoryAction {
+    /// Keep the errors and times of results in a history: one small file, to be committed
+    Add {
+        /// A folder of results
+        results: PathBuf,
+        /// The folder of the history
+        #[arg(long, value_name = "DIR", default_value = "history")]
+        to: PathBuf,
+    },
+    /// Show accuracy and time from commit to commit, and the steps that are outside of noise
+    Show(ShowArgs),
+}
+
+/// Arguments of `history show`.
+#[derive(Args)]
+pub struct ShowArgs {
+    /// The folder of the history
+    #[arg(default_value = "history")]
+    pub history: PathBuf,
+    /// What to print on stdout: a table, or one JSON object
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+    /// A figure to write, as SVG
+    #[arg(long, value_name = "FILE")]
+    pub figure: Option<PathBuf>,
+}
+
+/// Lines of a step before the rest is only counted.
+const SHOWN: usize = 5;
+
+pub(super) fn act(action: &HistoryAction) -> u8 {
+    let done = match action {
+        HistoryAction::Add { results, to } => {
+            reports::read_run(results).and_then(|set| add(to, &set)).map(|path| {
+                println!("{}", path.display());
+                0
+            })
+        }
+        HistoryAction::Show(args) => show(args),
+    };
+    done.unwrap_or_else(|bad| unreported(&bad))
+}
+
+fn show(args: &ShowArgs) -> Result<u8, ReportError> {
+    let found = trends(&args.history)?;
+    if found.is_empty() {
+        let history = args.history.display();
+        eprintln!(
+            "tissuebench: {history} holds no history; tissuebench history add RESULTS --to {history} begins one"
+        );
+        return Ok(2);
+    }
+    match args.format {
+        Format::Table => found.iter().for_each(print),
+        Format::Json => {
+            println!("{}", serde_json::to_string_pretty(&found).expect("finite numbers and text"))
+        }
+    }
+    if let Some(path) = &args.figure {
+        reports::write_text(path, svg(&found)?)?;
+    }
+    Ok(0)
+}
+
+fn print(trend: &Trend) {
+    println!("{} on {}", trend.source, trend.machine);
+    println!(
+        "{:>6}  {:14}{:>6}{:>8}{:>7}{:>11}{:>9}{:>9}  ",
+        "number", "commit", "runs", "failed", "quiet", "CPU [s]", "CPU", "errors"
+    );
+    for point in &trend.points {
+        println!("{}", row(point));
+        point.step.iter().for_each(step);
+    }
+}
+
+/// Ratios are to the first commit.
+fn row(point: &Point) -> String {
+    let ratio = |ratio: Option<f64>| ratio.map_or("-".into(), |ratio| format!("{ratio:.3}"));
+    let quiet = match point.quiet {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "-",
+    };
+    let commit: String =
+        point.commit.chars().take(12).chain(point.commit.chars().filter(|c| *c == '+')).collect();
+    format!(
+        "{:>6}  {commit:14}{:>6}{:>8}{quiet:>7}{:>11.3}{:>9}{:>9}",
+        point.number,
+        point.runs,
+        point.checks_failed,
+        point.seconds,
+        ratio(point.seconds_ratio),
+        ratio(point.error_ratio),
+    )
+}
+
+/// What is outside of noise since the commit before.
+fn step(step: &Step) {
+    let Step { worse, better, lost, new, called, .. } = step;
+    if lost + new > 0 {
+        println!("        {}  {lost} runs are no more, {new} are new", colour::out(DOUBTFUL, "runs  "));
+    }
+    for (list, style, word) in [(worse, BAD, "worse "), (better, GOOD, "better")] {
+        let line = |e: &ErrorStep| format!("{}: {} {:.4e} -> {:.4e}", e.run, e.quantity, e.before, e.after);
+        some(list, |e| println!("        {}  {}", colour::out(style, word), line(e)));
+    }
+    some(called, |ratio| {
+        let (style, word) = if ratio.ratio > 1.0 { (BAD, "slower") } else { (GOOD, "faster") };
+        println!(
+            "        {}  {}: {:.3}, noise to {:.3}",
+            colour::out(style, word),
+            ratio.name,
+            ratio.ratio,
+            ratio.limit
+        );
+    });
+}
+
+fn some<T>(list: &[T], print: impl Fn(&T)) {
+    list.iter().take(SHOWN).for_each(print);
+    if list.len() > SHOWN {
+        println!("                ... and {} more", list.len() - SHOWN);
+    }
+}

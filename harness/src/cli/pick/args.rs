@@ -1,0 +1,79 @@
+//! The options of `pick`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::args::Format;
+
+/// Arguments of `pick`.
+#[derive(Args)]
+pub struct PickArgs {
+    /// The scene file, with a reference
+    pub scene: PathBuf,
+    /// Largest error that will do, such as 3%
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub error: f64,
+    /// What is to be right: displacement, force, pressure, stress, energy, peak, probes, frequency, or a metric that is a relative error
+    #[arg(long, value_name = "QUANTITY", default_value = "displacement")]
+    pub quantity: String,
+    /// Another quantity that has to be right too, such as force=5% (may be given several times). A single number such as a force can be
+    /// right by chance: unless this says otherwise, three times the error is allowed of the displacement then
+    #[arg(long, value_name = "QUANTITY=PERCENT", value_parser = companion)]
+    pub also: Vec<(String, f64)>,
+    /// Only this method (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Besides the methods of the scene the usual ones that fit it: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg. A scene without methods
+    /// has these
+    #[arg(long)]
+    pub usual: bool,
+    /// Longest time of one run, as it is foreseen: finer sizes are not tried
+    #[arg(long, value_name = "TIME", default_value = "60 s", value_parser = time)]
+    pub at_most: f64,
+    /// What to print on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+    /// Also write records, tables and figures of all runs to this folder, in place of earlier results of the scene
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// A percentage, as a part of one.
+fn percent(text: &str) -> Result<f64, String> {
+    let wrong = || "is no percentage: write 3%".to_string();
+    let number = text.trim().strip_suffix('%').ok_or_else(wrong)?.trim();
+    let value: f64 = number.parse().map_err(|_| wrong())?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value / 100.0)
+    } else {
+        Err("has to be above 0 %, as an error of nothing is never reached".into())
+    }
+}
+
+/// `QUANTITY=PERCENT`.
+fn companion(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("is not QUANTITY=PERCENT, such as force=5%")?;
+    Ok((name.trim().to_string(), percent(value)?))
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let seconds = catalogue::Dimension::Time.read(text).map_err(|bad| bad.to_string())?;
+    if seconds > 0.0 { Ok(seconds) } else { Err("a time above zero".into()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_a_percentage_above_zero() {
+        assert_eq!((percent("3%"), percent(" 0.5 % ")), (Ok(0.03), Ok(0.005)));
+        for bad in ["3", "0.03", "%", "three%", "0%", "-1%", "nan%", "inf%"] {
+            assert!(percent(bad).is_err(), "{bad}");
+        }
+        assert_eq!(companion("force=5%"), Ok(("force".into(), 0.05)));
+        assert!(companion("force").is_err() && companion("force=5").is_err());
+        assert!(time("2 min") == Ok(120.0) && time("2").is_err() && time("0 s").is_err());
+    }
+}

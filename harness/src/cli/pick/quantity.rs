@@ -1,0 +1,80 @@
+//! What is to be right, and by which metric a run answers.
+
+use catalogue::metric::{self, Kind, METRICS, Metric};
+use catalogue::{Dimension, nearest};
+
+use crate::outcome::Outcome;
+
+/// Words for what people want right, the best metric of each first, and whether it is a single number, which can be right by chance.
+const WORDS: [(&str, &[&Metric], bool); 8] = [
+    ("displacement", &[&metric::L2, &metric::RELATIVE_RMS], false),
+    ("force", &[&metric::TOOL_FORCE_ERROR], true),
+    ("pressure", &[&metric::PRESSURE], false),
+    ("stress", &[&metric::STRESS], false),
+    ("energy", &[&metric::ENERGY, &metric::STRAIN_ENERGY_ERROR], true),
+    ("peak", &[&metric::PEAK_ERROR], true),
+    ("probes", &[&metric::PROBE_ERROR], false),
+    ("frequency", &[&metric::FREQUENCY_ERROR], true),
+];
+
+/// A quantity with the errors that measure it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Quantity {
+    pub name: String,
+    metrics: Vec<&'static Metric>,
+    pub scalar: bool,
+}
+
+impl Quantity {
+    /// By its word, or the name of a metric that is a relative error.
+    pub fn named(name: &str) -> Result<Quantity, String> {
+        if let Some((word, metrics, scalar)) = WORDS.iter().find(|(word, ..)| *word == name) {
+            return Ok(Quantity { name: (*word).into(), metrics: metrics.to_vec(), scalar: *scalar });
+        }
+        let relative = |m: &&&Metric| {
+            m.dimension == Dimension::None && (m.kind == Kind::Error || ***m == metric::TOOL_FORCE_ERROR)
+        };
+        if let Some(found) = METRICS.iter().filter(relative).find(|m| m.name == name) {
+            // Errors over the whole field are no single numbers; of others nobody knows.
+            let field = [&metric::L2, &metric::RELATIVE_RMS, &metric::RELATIVE_MAX, &metric::STRESS];
+            let scalar = !field.contains(found) && **found != metric::PRESSURE;
+            return Ok(Quantity { name: name.into(), metrics: vec![found], scalar });
+        }
+        let words = WORDS.map(|(word, ..)| word);
+        let near =
+            nearest(name, words.iter().copied().chain(METRICS.iter().filter(relative).map(|m| m.name)));
+        let near = near.map_or(String::new(), |near| format!(" did you mean '{near}'?"));
+        Err(format!("'{name}' is no quantity with a relative error:{near} give {}", words.join(", ")))
+    }
+
+    /// The relative error of a run, of several tools the largest; `None` where it has none.
+    pub fn error(&self, outcome: &Outcome) -> Option<f64> {
+        self.metrics.iter().find_map(|metric| {
+            let each = outcome.metrics.iter().filter(|m| m.entry == *metric).map(|m| m.value);
+            each.reduce(f64::max)
+        })
+    }
+
+    /// The quantities that are shown beside the one that is asked for, where runs have them.
+    pub fn shown() -> impl Iterator<Item = Quantity> {
+        ["displacement", "force", "pressure", "peak"].into_iter().map(|word| {
+            let (_, metrics, scalar) = WORDS.iter().find(|(name, ..)| *name == word).expect("a word");
+            Quantity { name: word.into(), metrics: metrics.to_vec(), scalar: *scalar }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_metrics_are_quantities_and_lengths_are_not() {
+        assert!(Quantity::named("force").unwrap().scalar && !Quantity::named("l2").unwrap().scalar);
+        assert!(Quantity::named("tool-force-error").unwrap().scalar);
+        for bad in ["rms", "max", "tool-force", "displacment"] {
+            assert!(Quantity::named(bad).is_err(), "{bad}");
+        }
+        assert!(Quantity::named("displacment").unwrap_err().contains("did you mean 'displacement'?"));
+    }
+}

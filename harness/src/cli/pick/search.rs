@@ -1,0 +1,218 @@
+//! The search: every approach from coarse to fine, the cheapest next size first, until each is right or dearer than one that is.
+
+use cases::scene::{Method, Scene};
+use reports::RunSet;
+use serde::Serialize;
+
+use super::ladder::Ladder;
+use super::quantity::Quantity;
+use crate::Failure;
+use crate::outcome::Outcome;
+use crate::run::{Group, RunOptions};
+use crate::study::{failed, stalled};
+
+/// What an answer has to keep.
+pub(super) struct Demand {
+    pub quantity: Quantity,
+    pub error: f64,
+    /// Further quantities with their largest errors.
+    pub also: Vec<(Quantity, f64)>,
+    /// Longest time of a run that is foreseen, s.
+    pub at_most: f64,
+}
+
+/// One run.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Tried {
+    pub method: String,
+    pub nodes: u64,
+    pub dofs: u64,
+    /// Of the quantity; absent where the run ended early or has none.
+    pub error: Option<f64>,
+    /// Errors of the others by their names.
+    pub errors: Vec<(String, f64)>,
+    pub seconds: f64,
+    pub status: &'static str,
+    /// Whether all that is demanded holds.
+    pub within: bool,
+    /// Whether no other run is as quick and as right.
+    pub front: bool,
+}
+
+/// What was found.
+#[derive(Default)]
+pub(super) struct Found {
+    pub tried: Vec<Tried>,
+    pub set: RunSet,
+    /// Approaches whose next size was foreseen to take too long: a name and the seconds.
+    pub too_long: Vec<(String, f64)>,
+    /// Exit code of what failed.
+    pub code: u8,
+}
+
+impl Found {
+    /// The quickest run that keeps all.
+    pub fn cheapest(&self) -> Option<&Tried> {
+        self.tried.iter().filter(|run| run.within).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+}
+
+/// Runs the ladders.
+///
+/// # Errors
+/// What is wrong with the demand, once the first run shows it: a quantity that no run of this scene has.
+pub(super) fn search(
+    scene: &Scene,
+    group: &Group,
+    mut ladders: Vec<Ladder>,
+    demand: &Demand,
+    options: RunOptions,
+) -> Result<Found, String> {
+    let mut found = Found::default();
+    loop {
+        let foreseen = ladders.iter().enumerate().filter_map(|(at, l)| Some((at, l.foreseen(scene)?)));
+        let Some((at, seconds)) = foreseen.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        let ladder = &mut ladders[at];
+        let Some(method) = ladder.next() else { break };
+        if seconds > demand.at_most {
+            found.too_long.push((method.id.clone(), seconds));
+            ladders.remove(at);
+            continue;
+        }
+        let scenario = group.scenario(method.clone(), 0);
+        // Sizes of ours may give the mesh of the one before again, and the usual methods need not fit a body.
+        if ladder.ours {
+            match group.plan(&scenario) {
+                Ok((_, size)) if ladder.last.is_none_or(|(nodes, _)| nodes < size.nodes) => {}
+                Ok(_) => continue,
+                Err(failure) => {
+                    found.fail(scene, &method, &failure);
+                    ladders.remove(at);
+                    continue;
+                }
+            }
+        }
+        match group.run(&scenario, options) {
+            Ok(outcome) => {
+                let tried = tried(&outcome, demand);
+                if tried.error.is_none() && outcome.status == "ok" {
+                    return Err(format!(
+                        "no error of the {} is known of a run of this scene; `tissuebench list metrics` says what each needs",
+                        demand.quantity.name
+                    ));
+                }
+                ladder.last = Some((tried.nodes, tried.seconds));
+                let least = found.cheapest().map(|run| run.seconds);
+                let done = tried.within || least.is_some_and(|least| tried.seconds >= least);
+                found.keep(outcome, tried);
+                if done {
+                    ladders.remove(at);
+                }
+            }
+            Err(unfinished) => {
+                found.fail(scene, &method, &unfinished.failure);
+                if ladder.ours {
+                    ladders.remove(at);
+                }
+            }
+        }
+    }
+    mark_front(&mut found.tried);
+    Ok(found)
+}
+
+impl Found {
+    fn fail(&mut self, scene: &Scene, method: &Method, failure: &Failure) {
+        eprintln!("{failure} (method '{}')", method.id);
+        self.set.failures.push(failed(&crate::run::case_name(scene), method, failure));
+        self.code = self.code.max(failure.exit_code());
+    }
+
+    fn keep(&mut self, outcome: Outcome, tried: Tried) {
+        if let Some(failure) = &outcome.stalled {
+            eprintln!("{}: {failure} (method '{}', {} nodes)", outcome.status, tried.method, tried.nodes);
+            self.set.failures.push(stalled(&outcome, failure));
+        }
+        self.set.records.extend(outcome.records());
+        self.set.plans.extend(outcome.plan_entries());
+        self.set.warnings.extend(outcome.warning_rows());
+        self.set.fields.extend(outcome.field.clone());
+        self.tried.push(tried);
+    }
+}
+
+/// What a run came to. One that ended early, and the reference itself, which differs from itself by nothing, answer nothing.
+fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
+    let whole = outcome.stalled.is_none();
+    let is_reference = outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none();
+    let of = |quantity: &Quantity| quantity.error(outcome).filter(|_| whole);
+    let error = of(&demand.quantity);
+    let others = demand.also.iter().map(|(quantity, _)| quantity.clone()).chain(Quantity::shown());
+    let mut errors: Vec<(String, f64)> = Vec::new();
+    for quantity in others.filter(|quantity| quantity.name != demand.quantity.name) {
+        if let Some(error) = of(&quantity)
+            && errors.iter().all(|(name, _)| *name != quantity.name)
+        {
+            errors.push((quantity.name, error));
+        }
+    }
+    let keeps = |quantity: &Quantity, most: f64| of(quantity).is_some_and(|error| error <= most);
+    let within = keeps(&demand.quantity, demand.error)
+        && demand.also.iter().all(|(quantity, most)| keeps(quantity, *most))
+        && !is_reference;
+    let total = outcome.phases.iter().find(|timed| timed.phase == "total");
+    Tried {
+        method: outcome.identity.method.clone(),
+        nodes: outcome.size.nodes,
+        dofs: outcome.size.dofs,
+        error,
+        errors,
+        seconds: total.map_or(0.0, |timed| timed.summary().median),
+        status: if is_reference { "reference" } else { outcome.status },
+        within,
+        front: false,
+    }
+}
+
+/// Marks the runs that no other beats in time and error, and sorts all by time.
+fn mark_front(tried: &mut [Tried]) {
+    tried.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let mut least = f64::INFINITY;
+    for run in tried.iter_mut().filter(|run| run.status != "reference") {
+        if let Some(error) = run.error.filter(|error| *error < least) {
+            (run.front, least) = (true, error);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_falls_in_error_as_it_rises_in_time() {
+        let run = |seconds: f64, error: Option<f64>, status: &'static str| Tried {
+            method: "m".into(),
+            nodes: 8,
+            dofs: 24,
+            error,
+            errors: Vec::new(),
+            seconds,
+            status,
+            within: false,
+            front: false,
+        };
+        let mut all = [
+            run(3.0, Some(0.1), "ok"),
+            run(1.0, Some(0.5), "ok"),
+            run(2.0, Some(0.6), "ok"),
+            run(0.5, Some(0.0), "reference"),
+            run(0.1, None, "stalled"),
+        ];
+        mark_front(&mut all);
+        assert_eq!(
+            all.each_ref().map(|r| (r.seconds, r.front)),
+            [(0.1, false), (0.5, false), (1.0, true), (2.0, false), (3.0, true)]
+        );
+    }
+}

@@ -1,0 +1,53 @@
+//! The usual methods, of which a scene gets those that fit its body, law, procedure and contact.
+
+use std::path::Path;
+
+use cases::scene::{self, Scene, SceneError};
+
+/// Tables of TOML by id. Their size is the start of a ladder.
+const USUAL: [(&str, &str); 6] = [
+    ("tet4", "family = \"fem\"\nelement = \"tet4\"\nsize = { nodes = 100 }"),
+    ("tet4-nodal", "family = \"fem\"\nelement = \"tet4\"\ndilation = \"nodal-mean\"\nsize = { nodes = 100 }"),
+    ("tet10", "family = \"fem\"\nelement = \"tet10\"\nsize = { nodes = 100 }"),
+    (
+        "hex8-mean",
+        "family = \"fem\"\nelement = \"hex8\"\ndilation = \"element-mean\"\nsize = { nodes = 100 }",
+    ),
+    ("hex20", "family = \"fem\"\nelement = \"hex20\"\nsize = { nodes = 100 }"),
+    (
+        "efg",
+        "family = \"efg\"\nnodes = 100\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\nbasis = \"linear\"\n\
+         integration = { rule = \"cell-smoothed\", points = 1 }\nessential = \"penalty\"",
+    ),
+];
+
+/// The scene with the usual methods that it can have beside its own, and how many methods are its own. A scene that is wrong for
+/// another reason than that it has no methods is refused as it is.
+pub(super) fn with_usual(path: &Path, always: bool) -> Result<(Scene, usize), Vec<SceneError>> {
+    let own = scene::load(path);
+    let bare = own.as_ref().err().is_some_and(|errors| errors.iter().all(|error| error.key == "method"));
+    let (text, mut count) = match &own {
+        Ok(scene) if always => (scene.text().to_string(), scene.methods.len()),
+        Err(_) if bare => (std::fs::read_to_string(path).unwrap_or_default(), 0),
+        _ => return own.map(|scene| (scene.methods.len(), scene)).map(|(count, scene)| (scene, count)),
+    };
+    let Ok(mut table) = text.parse::<toml::Table>() else { return own.map(|scene| (scene, count)) };
+    let mut best = own;
+    for (id, keys) in USUAL {
+        let mut with = table.clone();
+        let method: toml::Table = format!("id = \"{id}\"\n{keys}").parse().expect("a table of ours");
+        match with.entry("method").or_insert_with(|| toml::Value::Array(Vec::new())) {
+            toml::Value::Array(methods) => methods.push(method.into()),
+            _ => return best.map(|scene| (scene, count)),
+        }
+        let Ok(text) = toml::to_string(&with) else { continue };
+        // One that the scene has, or cannot have, is left out.
+        if let Ok(scene) = scene::parse(&text, &path.display().to_string())
+            && scene.unavailable().is_empty()
+        {
+            (table, best) = (with, Ok(scene));
+        }
+    }
+    count = count.min(best.as_ref().map_or(0, |scene| scene.methods.len()));
+    best.map(|scene| (scene, count))
+}

@@ -1,0 +1,41 @@
+//! The force of every support and the mean displacement of every face that is asked for, at the end and in every recorded state.
+
+use catalogue::metric;
+use geometry::Vector3;
+
+use super::Solved;
+use crate::Failure;
+use crate::discretise::place;
+use crate::outcome::{FaceMean, Outcome, SupportForce, push_numbered};
+
+/// Adds them to the metrics, to what is printed, and to the steps.
+pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure> {
+    let Solved { setup, prepared, solution, .. } = *run;
+    let held = setup.supports.iter().zip(prepared.support_axes()).zip(solution.support_forces());
+    outcome.supports = held
+        .map(|((support, axes), &force)| SupportForce { name: place::words(&support.place), axes, force })
+        .collect();
+    let rows = prepared.means(&setup.means)?;
+    let means = |u: &[Vector3]| -> Vec<Vector3> {
+        rows.iter().map(|row| row.iter().map(|&(node, weight)| u[node as usize] * weight).sum()).collect()
+    };
+    outcome.means = (setup.means.iter().zip(means(&solution.u)))
+        .map(|(face, u)| FaceMean { name: place::words(face), u })
+        .collect();
+    if let Some(history) = &solution.history {
+        for (step, u) in outcome.steps.iter_mut().zip(&history.fields) {
+            step.means = means(u);
+        }
+    }
+    for (index, support) in outcome.supports.iter().enumerate() {
+        for axis in (0..3).filter(|&axis| support.axes[axis]) {
+            push_numbered(&mut outcome.metrics, metric::REACTION_PARTS[axis], index, support.force[axis]);
+        }
+    }
+    for (index, face) in outcome.means.iter().enumerate() {
+        for (axis, entry) in metric::MEAN_PARTS.into_iter().enumerate() {
+            push_numbered(&mut outcome.metrics, entry, index, face.u[axis]);
+        }
+    }
+    Ok(())
+}

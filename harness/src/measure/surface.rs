@@ -1,0 +1,66 @@
+//! What a run leaves for a view in three dimensions: its surface as the elements have it, at some of its states.
+
+use geometry::{Facet, Vector3};
+use reports::{Body, BodyState, Faces, Skin, pack};
+
+use super::{Solved, states};
+use crate::Failure;
+use crate::outcome::{State, ToolSkin, von_mises};
+
+/// States kept of a run: as many as tell a way. A body of 1000 surface nodes has 20 kB in each.
+const KEPT: usize = 6;
+
+/// Surface, tools and states.
+pub(crate) fn surface(run: &Solved) -> Result<Body, Failure> {
+    let all = states(run, KEPT)?;
+    let mesh = &all.mesh;
+    let mut facets = mesh.boundary();
+    let nodes = |facet: &Facet| mesh.facet_nodes(*facet).len();
+    facets.sort_by_key(nodes);
+    let mut used: Vec<u32> = facets.iter().flat_map(|f| mesh.facet_nodes(*f)).collect();
+    used.sort_unstable();
+    used.dedup();
+    let faces = facets.chunk_by(|a, b| nodes(a) == nodes(b)).map(|alike| {
+        let own = alike.iter().flat_map(|f| mesh.facet_nodes(*f));
+        let place = |node: u32| used.binary_search(&node).expect("listed above") as u32;
+        Faces { nodes: nodes(&alike[0]), indices: pack(own.map(place)) }
+    });
+    let behind: Vec<usize> = facets.iter().map(|f| f.cell as usize).collect();
+    Ok(Body {
+        points: vectors(used.iter().map(|&n| mesh.points()[n as usize].coords)),
+        faces: faces.collect(),
+        tools: all.tools.iter().map(skin).collect(),
+        states: all.states.iter().map(|s| state(s, &used, &behind)).collect(),
+        left_out: all.left_out,
+    })
+}
+
+fn state(state: &State, used: &[u32], behind: &[usize]) -> BodyState {
+    let values = state.tensors.as_ref().map(|cells| {
+        let each = |value: &dyn Fn(usize) -> f64| pack(behind.iter().map(|&cell| value(cell) as f32));
+        let stress = |cell: usize| &cells.stress[cell];
+        [
+            each(&|cell| -stress(cell).trace() / 3.0),
+            each(&|cell| von_mises(stress(cell))),
+            each(&|cell| cells.det_f[cell]),
+        ]
+    });
+    BodyState {
+        time: state.time,
+        u: vectors(used.iter().map(|&n| state.displacement[n as usize])),
+        closures: state.closures.clone(),
+        values,
+    }
+}
+
+fn skin(tool: &ToolSkin) -> Skin {
+    Skin {
+        points: vectors(tool.points.iter().map(|p| p.coords)),
+        quads: pack(tool.quads.iter().flatten().copied()),
+        along: tool.along.into(),
+    }
+}
+
+fn vectors(all: impl Iterator<Item = Vector3>) -> String {
+    pack(all.flat_map(|v| v.data.0[0].map(|x| x as f32)))
+}

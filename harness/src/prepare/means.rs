@@ -1,0 +1,55 @@
+//! Means over parts of the surface.
+
+use geometry::Mesh;
+use shape::SurfaceRows;
+
+use super::Prepared;
+use super::loads::cut_surface;
+use crate::Failure;
+use crate::discretise::place::{self, Place};
+
+/// The key of a face whose mean is asked for.
+fn key(index: usize) -> String {
+    format!("output.means[{index}]")
+}
+
+/// Refuses faces that the mesh does not have, before anything is solved.
+pub fn check_means(mesh: &Mesh, places: &[Place]) -> Result<(), Failure> {
+    for (index, place) in places.iter().enumerate() {
+        let patch = place::patch(&key(index), place, mesh)?;
+        if patch.whole.is_empty() && patch.cut.is_empty() {
+            return Err(place::empty(&key(index), place, mesh));
+        }
+    }
+    Ok(())
+}
+
+impl Prepared {
+    /// Weights of the nodal parameters in the mean displacement over each face, by its area: the shape functions integrated over
+    /// it. Faces that a comparison cuts count with the part inside.
+    pub fn means(&self, places: &[Place]) -> Result<Vec<Vec<(u32, f64)>>, Failure> {
+        let each = places.iter().enumerate().map(|(index, place)| {
+            let patch = place::patch(&key(index), place, self.source.mesh())?;
+            let mut weights = vec![0.0; self.volume.rows.rows().node_count()];
+            let mut area = 0.0;
+            if !patch.whole.is_empty() {
+                area += add(&self.source.field_surface(&patch.whole)?, &mut weights);
+            }
+            if !patch.cut.is_empty() {
+                area += add(&cut_surface(&*self.source, &patch.cut)?, &mut weights);
+            }
+            let used = (0u32..).zip(weights).filter(|(_, weight)| *weight != 0.0);
+            Ok(used.map(|(node, weight)| (node, weight / area)).collect())
+        });
+        each.collect()
+    }
+}
+
+/// Adds the integrals of the shape functions over a surface; returns its area, m^2.
+fn add(surface: &SurfaceRows, weights: &mut [f64]) -> f64 {
+    for (q, w) in surface.weights().iter().enumerate() {
+        let (nodes, values) = surface.rows().row(q);
+        nodes.iter().zip(values).for_each(|(&node, value)| weights[node as usize] += w * value);
+    }
+    surface.weights().iter().sum()
+}

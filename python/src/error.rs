@@ -1,0 +1,56 @@
+//! What goes wrong, as exceptions with the place in the file.
+
+use cases::scene::{ErrorKind, SceneError};
+use harness::Failure;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
+
+/// An exception of a class of `tissuebench._errors`, with what is known of its place.
+fn exception(py: Python<'_>, class: &str, message: String, error: Option<&SceneError>) -> PyErr {
+    static INPUT: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    static RUN: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let cell = if class == "SceneError" { &INPUT } else { &RUN };
+    let made = || -> PyResult<Bound<'_, PyAny>> {
+        let about = PyDict::new(py);
+        if let Some(error) = error {
+            let number = |n: usize| (n > 0).then_some(n);
+            about.set_item("file", &error.file)?;
+            about.set_item("line", number(error.line))?;
+            about.set_item("column", number(error.column))?;
+            about.set_item("key", (!error.key.is_empty()).then_some(&error.key))?;
+            about.set_item("found", &error.found)?;
+            about.set_item("problem", &error.problem)?;
+            about.set_item("help", &error.help)?;
+        }
+        cell.import(py, "tissuebench._errors", class)?.call((message,), Some(&about))
+    };
+    made().map_or_else(|bad| bad, PyErr::from_value)
+}
+
+/// Input that makes no sense.
+pub(crate) fn input(py: Python<'_>, problem: &str) -> PyErr {
+    exception(py, "SceneError", problem.into(), None)
+}
+
+/// What could not be run, read or written.
+pub(crate) fn not_run(py: Python<'_>, problem: impl ToString) -> PyErr {
+    exception(py, "RunError", problem.to_string(), None)
+}
+
+/// All that is wrong with a file: the exception is of the first, with the text of all.
+pub(crate) fn of_scene(py: Python<'_>, errors: &[SceneError]) -> PyErr {
+    let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    let invalid = errors.iter().any(|error| error.kind == ErrorKind::Invalid);
+    exception(py, if invalid { "SceneError" } else { "RunError" }, text, errors.first())
+}
+
+/// What stopped a run.
+pub(crate) fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
+    let class = if failure.exit_code() == 2 { "SceneError" } else { "RunError" };
+    let error = match failure {
+        Failure::Scene(error) => Some(&**error),
+        _ => None,
+    };
+    exception(py, class, failure.to_string(), error)
+}

@@ -1,0 +1,102 @@
+//! Meshes in and out of numpy, and in and out of files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use geometry::{CellKind, files};
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Floats2, matrix, points, rows_of};
+use crate::error::input;
+
+/// Tetrahedra or hexahedra. Positions in metres, nodes of a cell in VTK's order.
+#[pyclass(frozen, module = "tissuebench")]
+pub(crate) struct Mesh {
+    pub(crate) mesh: Arc<geometry::Mesh>,
+}
+
+/// The length of a unit, m.
+fn metres(py: Python<'_>, unit: &str) -> PyResult<f64> {
+    let known = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)];
+    let found = known.into_iter().find(|(name, _)| *name == unit);
+    found.map(|(_, metres)| metres).ok_or_else(|| input(py, &format!("unit: '{unit}'; give m, cm, mm or um")))
+}
+
+/// Cells of one kind as an array of their nodes.
+pub(crate) fn cells_of<'py>(py: Python<'py>, mesh: &geometry::Mesh) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    let kind = mesh.uniform_kind().ok_or_else(|| input(py, "cells: are of several kinds"))?;
+    let all = (0..mesh.cell_count()).flat_map(|cell| mesh.cell(cell)).copied().collect();
+    matrix(py, all, kind.node_count())
+}
+
+#[pymethods]
+impl Mesh {
+    /// From positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
+    #[new]
+    fn new(
+        py: Python<'_>,
+        points: Floats2<'_>,
+        cells: PyArrayLike2<'_, i64, AllowTypeChange>,
+    ) -> PyResult<Mesh> {
+        let (positions, cells) = (self::points(py, "points", points.as_array())?, cells.as_array());
+        let kind = CellKind::ALL.into_iter().find(|kind| kind.node_count() == cells.ncols());
+        let wrong = || input(py, &format!("cells: have {} nodes each; give 4, 10, 8 or 20", cells.ncols()));
+        let kind = kind.ok_or_else(wrong)?;
+        let node = |&node: &i64| {
+            u32::try_from(node)
+                .map_err(|_| input(py, &format!("cells: name node {node}; give 0 to {}", positions.len())))
+        };
+        let nodes = cells.iter().map(node).collect::<PyResult<Vec<u32>>>()?;
+        let mesh = geometry::Mesh::from_flat(positions, vec![kind; cells.nrows()], nodes);
+        Ok(Mesh { mesh: Arc::new(mesh.map_err(|bad| input(py, &bad.to_string()))?) })
+    }
+
+    /// From a file; `unit` is that of its numbers.
+    #[staticmethod]
+    #[pyo3(signature = (path, unit = "mm"))]
+    fn read(py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<Mesh> {
+        let unit = metres(py, unit)?;
+        let read = py.detach(|| files::read(&path, unit));
+        let mesh = read.map_err(|bad| input(py, &format!("{}: {bad}", path.display())))?;
+        Ok(Mesh { mesh: Arc::new(mesh) })
+    }
+
+    /// To a file: .msh, .inp or .vtu by its name.
+    #[pyo3(signature = (path, unit = "mm"))]
+    fn write(&self, py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<()> {
+        let unit = metres(py, unit)?;
+        let written = py.detach(|| files::write(&self.mesh, &path, unit));
+        written.map_err(|bad| input(py, &format!("{}: {bad}", path.display())))
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        rows_of(py, self.mesh.points().iter().map(|x| x.coords.into()))
+    }
+
+    #[getter]
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        cells_of(py, &self.mesh)
+    }
+
+    #[getter]
+    fn element(&self) -> Option<&'static str> {
+        self.mesh.uniform_kind().map(CellKind::name)
+    }
+
+    #[getter]
+    fn regions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u16>> {
+        PyArray1::from_iter(py, (0..self.mesh.cell_count()).map(|cell| self.mesh.region(cell)))
+    }
+
+    #[getter]
+    fn region_names(&self) -> Vec<String> {
+        self.mesh.region_names().to_vec()
+    }
+
+    fn __repr__(&self) -> String {
+        let (points, cells) = (self.mesh.points().len(), self.mesh.cell_count());
+        format!("<tissuebench.Mesh: {points} points, {cells} cells>")
+    }
+}

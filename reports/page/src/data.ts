@@ -1,0 +1,64 @@
+// What the report left in the page: see `reports/src/page`.
+
+export interface Look { colour: string; marker: string; dash: number[]; open: boolean; family: string }
+
+export interface Line {
+  label: number; run: (number | null)[]; seconds: number[]; spread: (number | null)[]; error: number[]; counts: number[];
+}
+
+export interface Ask {
+  case: string; title: string; what: string; repeated: boolean; error: string; scalar: boolean; kernels: boolean;
+  reference: string | null; band: number | null; rank: [boolean, boolean, boolean, number]; lines: Line[];
+}
+
+export interface Axis { label: string; log: boolean }
+
+export interface Curve { label: number; xy: number[]; band?: [number, number, number][]; runs?: number[] }
+
+export interface PlotData { figure: string; case: string; title: string; x: Axis; y: Axis; curves: Curve[] }
+
+export interface Column { head: string; number: boolean; words: string[]; rows: number[]; values?: (number | null)[] }
+
+export interface Table { name: string; title: string; caption: string; note: string; columns: Column[] }
+
+export interface StabilityMap {
+  case: string; name: string; unit: string; judge: string; base: string; wrong: number; values: string[]; methods: string[];
+  cells: [number, number, string, number | null, string][];
+}
+
+export interface Picture { name: string; case: string; title: string; caption: string; svg: string }
+
+export interface Runs {
+  id: string[]; case: string[]; method: string[]; label: number[]; poisson: number[]; nodes: number[]; elements: number[];
+  dofs: number[]; settings: string[]; solver: string[]; seconds: (number | null)[]; memory: (number | null)[];
+  errors: Record<string, (number | null)[]>;
+}
+
+export interface Page {
+  source: string;
+  program: { version: string; commit: string; dirty: boolean; rustc: string; target: string; features: string; profile: string };
+  machine: { cpu: string; instructions: string; threads: number; load: number | null; quiet: boolean | null };
+  scenes: { case: string; blake3: string; title: string }[];
+  records: string;
+  counts: {
+    runs: number; numbers: number; failures: number; partial: number; warnings: number;
+    pass: number; fail: number; known: number; not_run: number;
+  };
+  cases: { name: string; title: string; purpose: string }[];
+  looks: Record<string, Look>;
+  labels: string[];
+  runs: Runs;
+  deadlines: [string, string, number][];
+  asks: Ask[];
+  plots: PlotData[];
+  pictures: Picture[];
+  figures: [string, string, boolean][];
+  maps: StabilityMap[];
+  tables: Table[];
+  findings: [string, string[]][];
+}
+
+export const page: Page = JSON.parse(document.getElementById("data")!.textContent!);
+
+export const name = (label: number): string => page.labels[label];
+export const look = (label: number): Look => page.looks[page.labels[label]];

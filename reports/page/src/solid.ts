@@ -1,0 +1,307 @@
+// Bodies in three dimensions: turned, zoomed, cut, two of them under one camera. Evaluated when a reader first asks for one.
+
+import {
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh,
+  MeshLambertMaterial, PerspectiveCamera, Plane, Scene, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { h, select } from "./dom";
+import { digits } from "./text";
+
+/** A body's surface at the states kept of a run; arrays are base64 of little-endian numbers. */
+export interface Body {
+  method: string; title: string; points: string; faces: { nodes: number; indices: string }[];
+  tools: { points: string; quads: string; along: [number, number, number] }[];
+  states: { time: number; u: string; closures: number[]; values: [string, string, string] | null }[];
+  left_out: number;
+}
+
+const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+const floats = (text: string) => new Float32Array(bytes(text));
+const whole = (text: string) => new Uint32Array(bytes(text));
+
+/** Points of a face to a side: a curved one is drawn in so many straight pieces. */
+const PIECES = 5;
+
+/** Shape functions of a face by its number of nodes, at a place of the unit triangle or square. */
+function shapes(nodes: number, a: number, b: number): number[] {
+  if (nodes === 3) return [1 - a - b, a, b];
+  if (nodes === 4) return [(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b];
+  if (nodes === 6) {
+    const l = [1 - a - b, a, b];
+    return [...l.map((x) => x * (2 * x - 1)), 4 * l[0] * l[1], 4 * l[1] * l[2], 4 * l[2] * l[0]];
+  }
+  const [x, y] = [2 * a - 1, 2 * b - 1];
+  const corner = (p: number, q: number) => ((1 + x * p) * (1 + y * q) * (x * p + y * q - 1)) / 4;
+  return [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1),
+    ((1 - x * x) * (1 - y)) / 2, ((1 + x) * (1 - y * y)) / 2, ((1 - x * x) * (1 + y)) / 2, ((1 - x) * (1 - y * y)) / 2];
+}
+
+/** A face cut into triangles: where its points are, which make a triangle, and which lie along its edges. */
+interface Pattern { weights: number[][]; triangles: number[]; edges: number[] }
+
+function pattern(nodes: number): Pattern {
+  const n = nodes > 4 ? PIECES : 1;
+  const isTriangle = nodes % 3 === 0;
+  const at = new Map<string, number>();
+  const out: Pattern = { weights: [], triangles: [], edges: [] };
+  for (let j = 0; j <= n; j++)
+    for (let i = 0; i <= (isTriangle ? n - j : n); i++) {
+      at.set(`${i},${j}`, out.weights.length);
+      out.weights.push(shapes(nodes, i / n, j / n));
+    }
+  const p = (i: number, j: number) => at.get(`${i},${j}`)!;
+  for (let j = 0; j < n; j++)
+    for (let i = 0; i < (isTriangle ? n - j : n); i++) {
+      out.triangles.push(p(i, j), p(i + 1, j), p(i, j + 1));
+      if (at.has(`${i + 1},${j + 1}`)) out.triangles.push(p(i + 1, j), p(i + 1, j + 1), p(i, j + 1));
+    }
+  for (let k = 0; k < n; k++) {
+    out.edges.push(p(k, 0), p(k + 1, 0), p(0, k), p(0, k + 1));
+    if (isTriangle) out.edges.push(p(n - k, k), p(n - k - 1, k + 1));
+    else out.edges.push(p(k, n), p(k + 1, n), p(n, k), p(n, k + 1));
+  }
+  return out;
+}
+
+const FIELDS: [string, string, string, number][] = [
+  ["u", "displacement", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
+];
+
+// Viridis (van der Walt and Smith, 2015), and blue over white to red (ColorBrewer).
+const RISING = ["#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725"];
+const SIGNED = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
+
+/** One method's body in a scene of its own. */
+class Solid {
+  readonly scene = new Scene();
+  readonly reference: Float32Array;
+  private readonly faces: { indices: Uint32Array; nodes: number; pattern: Pattern }[];
+  private readonly surface = new BufferGeometry();
+  private readonly lines = new BufferGeometry();
+  private readonly edges: LineSegments;
+  private readonly tools = new Group();
+  readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
+  readonly wire = new LineBasicMaterial({ color: 0x101010, transparent: true, opacity: 0.3 });
+
+  constructor(readonly body: Body) {
+    this.reference = floats(body.points);
+    this.faces = body.faces.map((f) => ({ indices: whole(f.indices), nodes: f.nodes, pattern: pattern(f.nodes) }));
+    const triangles: number[] = [];
+    const edges: number[] = [];
+    let first = 0;
+    for (const { indices, nodes, pattern } of this.faces)
+      for (let face = 0; face < indices.length / nodes; face++) {
+        for (const k of pattern.triangles) triangles.push(first + k);
+        for (const k of pattern.edges) edges.push(first + k);
+        first += pattern.weights.length;
+      }
+    const places = new BufferAttribute(new Float32Array(3 * first), 3);
+    this.surface.setAttribute("position", places).setAttribute("color", new BufferAttribute(new Float32Array(3 * first), 3)).setIndex(triangles);
+    this.lines.setAttribute("position", places).setIndex(edges);
+    this.edges = new LineSegments(this.lines, this.wire);
+    const light = new DirectionalLight(0xffffff, 1.7);
+    light.position.set(1, 1.5, 2);
+    const back = new DirectionalLight(0xffffff, 0.7);
+    back.position.set(-2, -1, -1.5);
+    this.scene.add(new AmbientLight(0xffffff, 1.6), light, back, new Mesh(this.surface, this.material), this.edges, this.tools);
+    for (const tool of body.tools) {
+      const shape = new BufferGeometry();
+      shape.setAttribute("position", new BufferAttribute(floats(tool.points), 3));
+      const quads = whole(tool.quads);
+      const index: number[] = [];
+      for (let q = 0; q < quads.length; q += 4) index.push(quads[q], quads[q + 1], quads[q + 2], quads[q], quads[q + 2], quads[q + 3]);
+      shape.setIndex(index);
+      shape.computeVertexNormals();
+      this.tools.add(new Mesh(shape, new MeshLambertMaterial({ color: 0x9aa0a6, transparent: true, opacity: 0.45, side: DoubleSide })));
+    }
+  }
+
+  get triangles(): number {
+    return this.surface.index!.count / 3;
+  }
+
+  /** Values of a field at a state: of each node, or of each face. */
+  values(field: string, state: number): { each: Float32Array; ofNodes: boolean } | null {
+    const at = this.body.states[state];
+    if (field === "u") {
+      const u = floats(at.u);
+      const size = new Float32Array(u.length / 3);
+      for (let k = 0; k < size.length; k++) size[k] = Math.hypot(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
+      return { each: size, ofNodes: true };
+    }
+    return at.values && { each: floats(at.values["pmj".indexOf(field)]), ofNodes: false };
+  }
+
+  /** Moves the body to a state, in colours of a field. */
+  show(field: string, state: number, colour: (value: number) => Color, mesh: boolean) {
+    const u = floats(this.body.states[state].u);
+    const values = this.values(field, state);
+    const places = this.surface.getAttribute("position").array as Float32Array;
+    const colours = this.surface.getAttribute("color").array as Float32Array;
+    let [at, face] = [0, 0];
+    const grey = new Color(0xb0b0b0);
+    for (const { indices, nodes, pattern } of this.faces)
+      for (let start = 0; start < indices.length; start += nodes, face++)
+        for (const weights of pattern.weights) {
+          let value = 0;
+          const place = [0, 0, 0];
+          for (let k = 0; k < nodes; k++) {
+            const node = indices[start + k];
+            for (let axis = 0; axis < 3; axis++) place[axis] += weights[k] * (this.reference[3 * node + axis] + u[3 * node + axis]);
+            if (values?.ofNodes) value += weights[k] * values.each[node];
+          }
+          if (values && !values.ofNodes) value = values.each[face];
+          const c = values ? colour(value) : grey;
+          places.set(place, at);
+          colours.set([c.r, c.g, c.b], at);
+          at += 3;
+        }
+    this.surface.getAttribute("position").needsUpdate = this.surface.getAttribute("color").needsUpdate = true;
+    this.surface.computeVertexNormals();
+    this.edges.visible = mesh;
+    this.tools.children.forEach((tool, k) => {
+      const [x, y, z] = this.body.tools[k].along.map((a) => a * (this.body.states[state].closures[k] ?? 0));
+      tool.position.set(x, y, z);
+    });
+  }
+}
+
+/** Puts the bodies of a case into a place. */
+export function show(place: HTMLElement, bodies: Body[]) {
+  const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+  renderer.setScissorTest(true);
+  renderer.localClippingEnabled = true;
+  const canvas = renderer.domElement;
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", "The deformed body: drag or use the arrow keys to turn it");
+  const camera = new PerspectiveCamera(28, 1, 1e-4, 100);
+  const controls = new OrbitControls(camera, canvas);
+  const plane = new Plane(new Vector3(-1, 0, 0), 0);
+  const made = new Map<string, Solid>();
+  const solid = (method: string) => {
+    if (!made.has(method)) made.set(method, new Solid(bodies.find((b) => b.method === method)!));
+    return made.get(method)!;
+  };
+  // Curved faces first: they show what this view is for.
+  const best = [...bodies].sort((a, b) => Math.max(...b.faces.map((f) => f.nodes)) - Math.max(...a.faces.map((f) => f.nodes)));
+  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true };
+  const shown = () => [view.left, view.right].filter(Boolean).map(solid);
+  const stateOf = (s: Solid) => Math.round(view.part * (s.body.states.length - 1));
+
+  const bar = h("div", { class: "scale" });
+  const said = h("p", { class: "soft small" });
+  const label = h("span", { class: "small" });
+
+  function range(): [number, number] {
+    let [low, high] = [Infinity, -Infinity];
+    for (const s of shown()) {
+      const values = s.values(view.field, stateOf(s));
+      if (!values) continue;
+      // What lies beyond 1 and 99 per cent has the colour of the end.
+      const sorted = values.each.slice().sort();
+      const edge = values.ofNodes ? 0 : Math.floor(0.01 * sorted.length);
+      [low, high] = [Math.min(low, sorted[edge]), Math.max(high, sorted[sorted.length - 1 - edge])];
+    }
+    if (!(high >= low)) return [0, 1];
+    if (view.field === "p") return [-Math.max(-low, high), Math.max(-low, high)];
+    if (view.field === "j") { const off = Math.max(Math.abs(low - 1), Math.abs(high - 1), 1e-6); return [1 - off, 1 + off]; }
+    return [0, high || 1];
+  }
+
+  function update() {
+    const [low, high] = range();
+    const table = (view.field === "p" || view.field === "j" ? SIGNED : RISING).map((c) => new Color(c));
+    const mixed = new Color();
+    const colour = (value: number) => {
+      const at = Math.min(0.9999, Math.max(0, (value - low) / (high - low || 1))) * (table.length - 1);
+      return mixed.copy(table[Math.floor(at)]).lerp(table[Math.floor(at) + 1], at % 1);
+    };
+    for (const s of shown()) {
+      s.show(view.field, stateOf(s), colour, view.mesh);
+      s.material.clippingPlanes = s.wire.clippingPlanes = view.axis ? [plane] : [];
+    }
+    const [, name, unit, scale] = FIELDS.find((f) => f[0] === view.field)!;
+    const css = (view.field === "p" || view.field === "j" ? SIGNED : RISING).join(",");
+    const gradient = h("span", { class: "ramp" });
+    gradient.style.background = `linear-gradient(to right,${css})`;
+    bar.replaceChildren(h("span", {}, `${name}: ${digits(low * scale, 3)}`), gradient, h("span", {}, `${digits(high * scale, 3)} ${unit}`));
+    const first = solid(view.left);
+    const state = first.body.states[stateOf(first)];
+    label.textContent = first.body.states.length > 1 ? `state ${stateOf(first) + 1} of ${first.body.states.length}, at ${digits(state.time, 3)}` : "";
+    const kept = bodies.find((b) => b.left_out > 0);
+    said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
+      + (shown().some((s) => !s.values(view.field, stateOf(s))) ? "Grey: the field is not known at this state. " : "")
+      + (kept ? `Left out to keep the page small: ${kept.left_out} of ${kept.left_out + kept.states.length} states.` : "");
+    canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
+    draw();
+  }
+
+  function draw() {
+    const [width, height] = [place.clientWidth, Math.max(260, Math.min(520, place.clientWidth * 0.62))];
+    if (canvas.clientWidth !== width || canvas.clientHeight !== height) renderer.setSize(width, height);
+    const sides = shown();
+    sides.forEach((s, k) => {
+      const part = width / sides.length;
+      camera.aspect = part / height;
+      camera.updateProjectionMatrix();
+      renderer.setViewport(k * part, 0, part, height);
+      renderer.setScissor(k * part, 0, part, height);
+      renderer.render(s.scene, camera);
+    });
+  }
+
+  const box = { low: new Vector3(Infinity, Infinity, Infinity), high: new Vector3(-Infinity, -Infinity, -Infinity) };
+  const points = solid(view.left).reference;
+  for (let k = 0; k < points.length; k += 3) {
+    const p = new Vector3(points[k], points[k + 1], points[k + 2]);
+    box.low.min(p);
+    box.high.max(p);
+  }
+  const middle = box.low.clone().add(box.high).multiplyScalar(0.5);
+  const size = box.high.clone().sub(box.low).length();
+  function home() {
+    controls.target.copy(middle);
+    // Tools, where there are any, are seen from the side.
+    const tool = bodies[0].tools[0];
+    const along = tool ? new Vector3(...tool.along) : new Vector3(0, 0, 1);
+    const up = new Vector3(0, Math.abs(along.y) > 0.9 ? 0 : 1, Math.abs(along.y) > 0.9 ? 1 : 0);
+    const side = tool ? along.clone().cross(up).normalize() : new Vector3(0.5, 0.2, 1).normalize();
+    camera.up.copy(up);
+    camera.position.copy(middle).addScaledVector(side, 2 * size).addScaledVector(up, 0.4 * size).addScaledVector(along, 0.4 * size);
+    camera.near = 0.01 * size;
+    camera.far = 20 * size;
+    controls.update();
+  }
+  function cut() {
+    const k = "xyz".indexOf(view.axis);
+    if (k < 0) return;
+    const normal = new Vector3().setComponent(k, -1);
+    plane.set(normal, box.low.getComponent(k) + view.cut * (box.high.getComponent(k) - box.low.getComponent(k)));
+  }
+
+  const methods: [string, string][] = bodies.map((b) => [b.method, b.title]);
+  const slider = (name: string, value: number, input: (value: number) => void) =>
+    h("input", { type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name, input: (e) => input(Number((e.target as HTMLInputElement).value)) });
+  const check = h("input", { type: "checkbox", checked: true, change: () => { view.mesh = check.checked; update(); } });
+  place.replaceChildren(
+    h("div", { class: "toolbar" },
+      select("body", methods, view.left, (to) => { view.left = to; update(); }),
+      select("second body", [["", "alone"], ...methods], "", (to) => { view.right = to; update(); }),
+      select("field", FIELDS.filter((f) => f[0] === "u" || bodies.some((b) => b.states.some((s) => s.values))).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
+      ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small" }, "load ", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
+      select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; cut(); update(); }),
+      slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); }),
+      h("label", { class: "small" }, check, " mesh"),
+      h("button", { type: "button", class: "quiet", click: () => { home(); draw(); } }, "reset view")),
+    canvas, bar, said);
+  controls.listenToKeyEvents(canvas);
+  controls.addEventListener("change", draw);
+  new ResizeObserver(draw).observe(place);
+  home();
+  update();
+}
+
+Object.assign(window, { showBodies: show });

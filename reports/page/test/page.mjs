@@ -1,0 +1,247 @@
+// The page in a browser: `node test/page.mjs REPORT.html`; the CI has it of the quick verification.
+//
+// Skipped, and says so, where no Chromium is installed.
+import assert from "node:assert/strict";
+import { resolve } from "node:path";
+import { launch } from "./browser.mjs";
+
+const file = process.argv[2];
+if (!file) {
+  console.error("usage: node test/page.mjs REPORT.html");
+  process.exit(2);
+}
+const url = `file://${resolve(file)}`;
+const browser = await launch();
+if (!browser) {
+  console.log("skipped: no Chromium here (set CHROMIUM to one)");
+  process.exit(0);
+}
+
+const tests = [];
+const test = (name, run) => tests.push([name, run]);
+const text = (selector) => `(document.querySelector(${JSON.stringify(selector)})?.innerText ?? "")`;
+const all = (selector) => `[...document.querySelectorAll(${JSON.stringify(selector)})]`;
+const onFirstScreen = (selector) => `(() => { const r = document.querySelector(${JSON.stringify(selector)})?.getBoundingClientRect(); return !!r && r.top >= 0 && r.top < innerHeight && r.width > 0; })()`;
+const click = (selector) => `(() => { const e = document.querySelector(${JSON.stringify(selector)}); if (!e) throw new Error("nothing is " + ${JSON.stringify(selector)}); e.click(); return true; })()`;
+const choose = (label, value) => `(() => { const e = document.querySelector('select[aria-label="${label}"]'); e.value = ${JSON.stringify(value)}; e.dispatchEvent(new Event("change")); return e.value; })()`;
+const data = 'JSON.parse(document.getElementById("data").textContent)';
+
+test("the first screen asks, answers and draws", async (open) => {
+  const page = await open();
+  assert.ok(page.seconds < 3, `interactive after ${page.seconds} s`);
+  for (const selector of ["h1.question", "#answer", "#front svg"]) assert.ok(await page.eval(onFirstScreen(selector)), selector);
+  assert.ok(await page.eval(`${all("#front svg [aria-label=dot] *")}.length > 1`), "no marker is drawn");
+  assert.ok(await page.eval(`${all("#front svg .front path, #front svg path.front")}.length > 0`), "no front is drawn");
+  assert.match(await page.eval(text("#answer")), /%.*(s|h)[.;, ]/);
+  // An address of the page's own is no request.
+  assert.deepEqual(page.requests.filter((r) => !r.startsWith("file:") && !r.startsWith("data:")), []);
+});
+
+test("every question is answered by the fastest run that counts", async (open) => {
+  const page = await open();
+  const asks = await page.eval(`${data}.asks.filter((a) => !a.kernels)`);
+  const labels = await page.eval(`${data}.labels`);
+  for (const ask of asks.slice(0, 12)) {
+    await page.eval(`location.hash = ${JSON.stringify(new URLSearchParams({ case: ask.case, what: ask.what, clock: ask.repeated ? "loop" : "once", within: "0.1" }).toString())}`);
+    await page.until(`${text("#answer")}.includes(${JSON.stringify(ask.what)}) && ${text("#answer")}.includes(${JSON.stringify(ask.case)})`);
+    const first = asks.find((a) => a.case === ask.case && a.what === ask.what && a.repeated === ask.repeated);
+    const runs = first.lines.flatMap((l) => l.seconds.map((s, i) => ({ label: labels[l.label], s, counts: l.counts[i] })));
+    const best = runs.filter((r) => r.counts <= 0.1).sort((a, b) => a.s - b.s)[0];
+    const said = await page.eval(text("#answer"));
+    assert.ok(best ? said.includes(`: ${best.label}, `) : said.includes("no run reaches it"), `${said} / ${JSON.stringify(best)}`);
+  }
+});
+
+test("a number right by chance is no answer", async (open) => {
+  const page = await open();
+  const asks = await page.eval(`${data}.asks.filter((a) => a.scalar && !a.repeated)`);
+  const labels = await page.eval(`${data}.labels`);
+  let seen = 0;
+  for (const ask of asks)
+    for (const within of [0.1, 0.03, 0.01]) {
+      const runs = ask.lines.flatMap((l) => l.error.map((e, i) => ({ label: labels[l.label], s: l.seconds[i], e, counts: l.counts[i] })));
+      const first = runs.filter((r) => r.e <= within).sort((a, b) => a.s - b.s)[0];
+      if (!first || first.counts <= within || runs.some((r) => r.label === first.label && r.counts <= within)) continue;
+      seen += 1;
+      await page.eval(`location.hash = ${JSON.stringify(new URLSearchParams({ case: ask.case, what: ask.what, within: String(within) }).toString())}`);
+      await page.until(`${text("#answer")}.startsWith("${100 * within} % of ${ask.what} on ${ask.case}")`);
+      const said = await page.eval(text("#answer"));
+      assert.ok(!said.includes(`: ${first.label},`), said);
+      const chance = (await page.eval(text("#question"))).split("Right by chance, not counted")[1] ?? "";
+      assert.ok(chance.includes(first.label), `${first.label}: ${chance}`);
+    }
+  console.log(`        ${seen} runs are right by chance`);
+});
+
+test("methods are switched off and on, and the answer follows", async (open) => {
+  const page = await open();
+  const before = await page.eval(text("#answer"));
+  const best = (before.match(/Nearest is ([^,]+),/) ?? before.match(/: ([^,]+), /))[1];
+  const chip = `.legend button[data-label="${best}"]`;
+  const lines = `${all('#front svg [aria-label=line] path')}.length`;
+  const drawn = await page.eval(lines);
+  await page.eval(click(chip));
+  assert.equal(await page.eval(`document.querySelector('${chip}').getAttribute("aria-pressed")`), "false");
+  assert.notEqual(await page.eval(text("#answer")), before);
+  assert.ok(await page.eval(`${lines} <= ${drawn}`));
+  assert.match(await page.eval("location.hash"), /off=/);
+  await page.eval(click(chip));
+  assert.equal(await page.eval(text("#answer")), before);
+});
+
+test("hovering tells of a run, with its record", async (open) => {
+  const page = await open();
+  const at = await page.eval(`(() => { const r = ${all("#front svg [aria-label=dot] *")}[0].getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
+  await page.move(at[0] - 30, at[1]);
+  await page.move(at[0], at[1]);
+  await page.until(`${text("#front .card")}.includes("nodes")`);
+  assert.match(await page.eval(text("#front .card")), /run [0-9a-zA-Z(].* in records\.csv/);
+});
+
+test("filters hold for the whole page and live in the address", async (open) => {
+  const first = await open();
+  const [name, method] = await first.eval(`(() => { const d = ${data}; const a = d.asks[0]; return [a.case, d.labels[a.lines[0].label]]; })()`);
+  const page = await open(`#only=${encodeURIComponent(name)}&method=${encodeURIComponent(method)}`);
+  assert.deepEqual(await page.eval(`${all("#cases > details")}.filter((d) => !d.hidden).map((d) => d.querySelector("b").innerText)`), [name]);
+  assert.equal(await page.eval('document.getElementById("filter-method").value'), method);
+  await page.eval(`document.querySelector("#tables details:not([hidden])").open = true`);
+  await page.until(`${all("#tables tbody tr")}.length`);
+  const rows = await page.eval(`(() => { const t = document.querySelector("#tables .sheet table"); const k = [...t.querySelectorAll("th")].findIndex((h) => h.innerText.trim() === "case"); return [...t.querySelectorAll("tbody tr")].map((r) => r.cells[k]?.innerText); })()`);
+  assert.ok(rows.length && rows.every((r) => r === undefined || r === name), JSON.stringify(rows));
+  // And back.
+  await page.eval(`location.hash = ""`);
+  await page.until(`${all("#cases > details")}.filter((d) => !d.hidden).length > 1 || ${data}.cases.length === 1`);
+});
+
+test("a table sorts both ways and is copied", async (open) => {
+  const page = await open("#at=table-timing");
+  const column = `(() => { const t = document.querySelector("#table-timing table"); const h = [...t.querySelectorAll("th")]; const k = h.findIndex((x) => x.classList.contains("n")); return [k, [...t.querySelectorAll("tbody tr")].map((r) => parseFloat(r.cells[k].innerText))]; })()`;
+  await page.until(`${all("#table-timing tbody tr")}.length > 1`);
+  const sorted = (v, down) => v.every((x, i) => !i || Number.isNaN(x) || Number.isNaN(v[i - 1]) || (down ? v[i - 1] >= x : v[i - 1] <= x));
+  const [k] = await page.eval(column);
+  const head = `#table-timing th:nth-child(${k + 1}) button`;
+  await page.eval(click(head));
+  assert.ok(sorted((await page.eval(column))[1], false));
+  await page.eval(click(head));
+  const [, down] = await page.eval(column);
+  assert.ok(sorted(down, true) && down[0] >= down[down.length - 1]);
+  assert.equal(await page.eval(`document.querySelector("#table-timing th:nth-child(${k + 1})").getAttribute("aria-sort")`), "descending");
+  await page.eval(`navigator.clipboard.writeText = async (t) => { window.copied = t; }`);
+  for (const [k, start] of [[1, /^case,/], [2, /^\| case \|/], [3, /^% needs/]]) {
+    await page.eval(`${all("#table-timing .tools button")}[${k - 1}].click()`);
+    await page.until("window.copied");
+    assert.match(await page.eval("window.copied"), start);
+    await page.eval("window.copied = ''");
+  }
+});
+
+test("two clicks reach what locks, what fails, and where methods break", async (open) => {
+  const page = await open();
+  const links = await page.eval(`${all("nav a")}.map((a) => a.innerText)`);
+  for (const [word, id] of [["locks", "locking"], ["failed", "solvers"]]) {
+    const k = links.findIndex((l) => l.includes(word));
+    if (k < 0) continue;
+    await page.eval(`${all("nav a")}[${k}].click()`);
+    await page.until(`document.getElementById("${id}").getBoundingClientRect().top < innerHeight / 2`);
+    assert.ok((await page.eval(`document.getElementById("${id}").innerText.length`)) > 60, id);
+  }
+  const counts = await page.eval(`${data}.counts`);
+  const header = await page.eval(text("header"));
+  assert.match(header, counts.failures ? /without a result/ : counts.partial ? /part of the load/ : /no run failed/);
+});
+
+test("keys reach the question, the methods, the plot and every section", async (open) => {
+  const page = await open();
+  const reached = new Set();
+  for (let k = 0; k < 60; k++) {
+    await page.press("Tab");
+    reached.add(await page.eval(`(() => { const e = document.activeElement; return e.tagName + (e.className.baseVal ?? e.className) + (e.getAttribute("aria-label") ?? ""); })()`));
+  }
+  const has = (word) => assert.ok([...reached].some((r) => r.includes(word)), `${word} is not reached: ${[...reached].join("; ")}`);
+  ["SELECTquantity", "BUTTONchip", "DIVchart", "Methods shown", "SUMMARY"].forEach(has);
+  await page.eval(`document.querySelector("#front .chart").focus()`);
+  await page.press("ArrowRight");
+  await page.until(`${text("#front .card")}.includes("nodes") && document.querySelector("#front .reached")`);
+  await page.eval(`document.querySelector("#cases summary").focus()`);
+  await page.press("Enter");
+  await page.until(`document.querySelector("#cases details").open`);
+});
+
+test("bodies are drawn in three dimensions, moved, cut and compared", async (open) => {
+  const probe = await open();
+  const found = await probe.eval(`${all("script[id^=bodies-]")}.map((e) => e.id.slice(7))`);
+  if (!found.length) return console.log("        this report has no bodies");
+  // The one with the most curved faces, if there is any.
+  const curved = await probe.eval(`${all("script[id^=bodies-]")}.find((e) => JSON.parse(e.textContent).some((b) => b.faces.some((f) => f.nodes > 4)))?.id.slice(7)`);
+  const name = curved ?? found[0];
+  const page = await open(`#at=case-${name.toLowerCase().replace(/[^a-z0-9]+/g, "-")}`);
+  assert.equal(await page.eval("typeof window.showBodies"), "undefined", "it is evaluated when asked for");
+  await page.eval(`${all("details[open] button")}.find((b) => b.innerText.includes("three dimensions")).click()`);
+  await page.until("document.querySelector('.solid canvas')");
+  // A picture as its colours, coarsely: how many, and a sum that changes with it.
+  const seen = `(() => { const c = document.querySelector(".solid canvas"); const d = document.createElement("canvas"); d.width = 200; d.height = 120; const g = d.getContext("2d"); g.drawImage(c, 0, 0, 200, 120); const p = g.getImageData(0, 0, 200, 120).data; const n = new Set(); let sum = 0; for (let k = 0; k < p.length; k += 4) { if (p[k + 3] > 0) { n.add(p[k] >> 4 << 8 | p[k + 1] >> 4 << 4 | p[k + 2] >> 4); sum = (sum * 31 + p[k] + 7 * p[k + 1] + k) % 1e9; } } return [n.size, sum]; })()`;
+  const [colours, before] = await page.eval(seen);
+  assert.ok(colours > 15, `${colours} colours: it is blank`);
+  const pick = (label, value) => page.eval(`(() => { const e = document.querySelector('.solid select[aria-label="${label}"]'); e.value = ${value}; e.dispatchEvent(new Event("change")); })()`);
+  const changed = async (what, was) => { const [, now] = await page.eval(seen); assert.notEqual(now, was, `${what} changes nothing`); return now; };
+  const body = await page.eval(`JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent)[0]`);
+  let was = before;
+  if (body.states.some((s) => s.values)) { await pick("field", "'p'"); was = await changed("the field", was); }
+  await pick("cut", "'y'"); was = await changed("the cut", was);
+  await pick("cut", "''"); was = await changed("the whole", was);
+  if (body.states.length > 1) {
+    await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); e.value = 0; e.dispatchEvent(new Event("input")); })()`);
+    was = await changed("the load step", was);
+  }
+  const triangles = Number(await page.eval("document.querySelector('.solid canvas').dataset.triangles"));
+  await pick("second body", "e.options[e.options.length - 1].value");
+  was = await changed("the second body", was);
+  assert.ok(Number(await page.eval("document.querySelector('.solid canvas').dataset.triangles")) > triangles);
+  if (curved) {
+    // A curved face is drawn in many pieces: triangles of 5 x 5, or more.
+    const faces = await page.eval(`(() => { const m = document.querySelector('.solid select[aria-label="body"]').value; const b = JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.method === m); return b.faces.reduce((n, f) => n + atob(f.indices).length / 4 / f.nodes, 0); })()`);
+    assert.ok(triangles >= 25 * faces * 0.9, `${triangles} triangles of ${faces} faces`);
+  }
+});
+
+test("a phone's width needs no scrolling sideways", async (open) => {
+  const page = await open("", { width: 390, height: 844 });
+  await page.eval(`${all("details")}.slice(0, 8).forEach((d) => { d.open = true; })`);
+  await new Promise((done) => setTimeout(done, 600));
+  const wide = await page.eval(`[document.documentElement.scrollWidth, innerWidth]`);
+  assert.ok(wide[0] <= 390, `${wide}`);
+  for (const selector of ["h1.question", "#answer", "#front svg"]) assert.ok(await page.eval(onFirstScreen(selector)), selector);
+});
+
+test("dark mode is dark, and print keeps the front", async (open) => {
+  const page = await open("", { dark: true });
+  const brightness = `(() => { const c = getComputedStyle(document.body).backgroundColor.match(/[\\d.]+/g).map(Number); return c[0] + c[1] + c[2]; })()`;
+  assert.ok((await page.eval(brightness)) < 150);
+  await page.send("Emulation.setEmulatedMedia", { media: "print", features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  assert.ok((await page.eval(brightness)) > 600, "a dark page is printed light");
+  assert.ok(await page.eval(`document.querySelector("#front svg").getBoundingClientRect().height > 100`));
+  const { data: pdf } = await page.send("Page.printToPDF", {});
+  assert.ok(pdf.length > 10000);
+});
+
+let failed = 0;
+for (const [name, run] of tests) {
+  const opened = [];
+  const open = async (hash = "", options = {}) => {
+    const page = await browser.open(url + hash, options);
+    opened.push(page);
+    return page;
+  };
+  try {
+    await run(open);
+    for (const page of opened) assert.deepEqual(page.errors, [], "errors on the console");
+    console.log(`ok      ${name}`);
+  } catch (bad) {
+    failed += 1;
+    console.log(`FAILED  ${name}\n        ${bad.message.slice(0, 1500)}`);
+  }
+  for (const page of opened) await page.close();
+}
+await browser.close();
+console.log(failed ? `${failed} of ${tests.length} failed` : `${tests.length} passed`);
+process.exit(failed ? 1 : 0);

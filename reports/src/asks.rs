@@ -1,0 +1,134 @@
+//! Every question asked of every case, by each kind of time: the runs that answer, over time and error.
+
+use crate::figures::chosen;
+use crate::fronts::{Clock, FLOOR, QUESTIONS, Question, counts, point};
+use crate::history::{band, curve, reference};
+use crate::record::{Family, Purpose};
+use crate::select::{Run, Series, kernels, labels, series};
+
+/// One run that answers.
+#[derive(Clone, Debug)]
+pub(crate) struct Timed {
+    pub(crate) run: String,
+    pub(crate) seconds: f64,
+    /// Half the range in which the middle half of the repeats lies, seconds.
+    pub(crate) spread: Option<f64>,
+    /// Relative; not below the least that is drawn.
+    pub(crate) error: f64,
+    /// The error as which it counts: [`counts`].
+    pub(crate) counts: f64,
+}
+
+/// One approximation at its sizes.
+#[derive(Clone, Debug)]
+pub(crate) struct Line {
+    pub(crate) label: String,
+    pub(crate) family: Family,
+    pub(crate) runs: Vec<Timed>,
+}
+
+/// One question to one case.
+pub(crate) struct Ask {
+    pub(crate) case: String,
+    pub(crate) title: String,
+    pub(crate) question: &'static Question,
+    pub(crate) clock: Clock,
+    /// The quantity that measures it.
+    pub(crate) error: &'static str,
+    pub(crate) lines: Vec<Line>,
+    /// The method that the others are compared with: having no error, it has no place on the axes.
+    pub(crate) reference: Option<String>,
+    /// Relative half width of the reference's own uncertainty, where it is known.
+    pub(crate) band: Option<f64>,
+    /// Whether it compares kernels alone.
+    pub(crate) kernels: bool,
+    pub(crate) rank: Rank,
+}
+
+/// A page and its figures begin with the case that many methods compete in, most of all one for what a tool feels that tests what a
+/// publication claims; a reading of a publication is compared with its numbers, not judged.
+pub(crate) type Rank = (bool, bool, bool, usize);
+
+/// All that at least two runs answer. Where many kernels are compared, a further one for them, once: for the displacement of a first
+/// solve.
+pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
+    let mut out = Vec::new();
+    for clock in Clock::ALL {
+        for question in &QUESTIONS {
+            let (mut asked, mut compared) = (Vec::new(), Vec::new());
+            for (title, group) in chosen(runs) {
+                let Some(error) = question.error(group) else { continue };
+                let (usual, every) = kernels(&series(group));
+                let ask = |title: String, lines: Vec<Line>, kernels: bool| Ask {
+                    case: group[0].is.case.clone(),
+                    title,
+                    question,
+                    clock,
+                    error,
+                    reference: reference_of(group).filter(|_| !kernels),
+                    band: uncertainty(group, error),
+                    kernels,
+                    rank: rank(&group[0], question, clock, runs_of(&lines)),
+                    lines,
+                };
+                let displacement = QUESTIONS[0].error(group);
+                let lines = |all: &[Series], names: Vec<String>| -> Vec<Line> {
+                    let each = names.into_iter().zip(all);
+                    let line = each.map(|(label, s)| line(label, s, (question, error), displacement, clock));
+                    line.filter(|l| !l.runs.is_empty()).collect()
+                };
+                if clock == Clock::First && question.ending.is_empty() {
+                    let names = every.iter().map(|s| s.is().variant.clone()).collect();
+                    compared.push(ask(format!("{title}: kernels"), lines(&every, names), true));
+                }
+                let names = labels(usual.iter().map(|s| s.is()));
+                asked.push(ask(title, lines(&usual, names), false));
+            }
+            asked.sort_by_key(|a| std::cmp::Reverse(a.rank));
+            out.extend(asked.into_iter().chain(compared));
+        }
+    }
+    // One run alone is neither faster nor better than another.
+    out.retain(|a| runs_of(&a.lines) > 1);
+    out
+}
+
+fn runs_of(lines: &[Line]) -> usize {
+    lines.iter().map(|l| l.runs.len()).sum()
+}
+
+fn rank(run: &Run, question: &Question, clock: Clock, runs: usize) -> Rank {
+    let first = clock == Clock::First;
+    let claimed = question.errors_are("tool-force-error") && !run.is.published.is_empty();
+    (first, run.is.purpose != Purpose::Published, first && claimed, runs)
+}
+
+fn line(
+    label: String,
+    series: &Series,
+    (question, error): (&Question, &str),
+    displacement: Option<&str>,
+    clock: Clock,
+) -> Line {
+    let timed = |run: &Run| {
+        let (seconds, off) = point(run, error, clock)?;
+        let spread =
+            run.time("total", "spread").filter(|s| clock == Clock::First && *s > 0.0).map(|s| 0.5 * s);
+        let counts = counts(run, question, displacement, off).max(FLOOR);
+        Some(Timed { run: run.is.run.clone(), seconds, spread, error: off.max(FLOOR), counts })
+    };
+    Line { label, family: series.is().family, runs: series.runs.iter().filter_map(timed).collect() }
+}
+
+fn reference_of(group: &[Run]) -> Option<String> {
+    let reference = group.iter().find(|r| r.is_reference())?;
+    Some(format!("{} with {} nodes", reference.name(), reference.is.nodes))
+}
+
+/// How well a recorded reference knows the last force itself.
+fn uncertainty(group: &[Run], error: &str) -> Option<f64> {
+    let run = reference(group).filter(|_| error == "tool-force-error")?;
+    let (_, force) = curve(run, "closure", "tool-force").pop()?;
+    let (_, low, high) = band(run, "closure", "tool-force").pop()?;
+    Some(0.5 * (high - low) / force.abs()).filter(|b| b.is_finite() && *b > 0.0)
+}

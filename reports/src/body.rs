@@ -1,0 +1,98 @@
+//! A body's surface at recorded states, for a view in three dimensions: single precision, packed as text.
+
+use serde::{Deserialize, Serialize};
+
+/// The surface of a body, as its elements have it: faces of quadratic ones are curved.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Coordinates of its points in the reference configuration, metres: [`pack`]ed.
+    pub points: String,
+    /// Faces by their number of nodes.
+    pub faces: Vec<Faces>,
+    /// The tools where they start.
+    pub tools: Vec<Skin>,
+    /// States kept of the run, in order; the last is its end.
+    pub states: Vec<BodyState>,
+    /// Number of states that were left out, evenly.
+    pub left_out: usize,
+}
+
+/// Faces of one kind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Faces {
+    /// Nodes of each: 3, 4, 6 or 8, corners first, then the middles of edges.
+    pub nodes: usize,
+    /// Their points, packed.
+    pub indices: String,
+}
+
+/// A tool's surface.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Skin {
+    /// Metres, packed.
+    pub points: String,
+    /// Four corners each, packed.
+    pub quads: String,
+    /// Unit direction of its way.
+    pub along: [f64; 3],
+}
+
+/// A state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BodyState {
+    /// Time (s) in dynamics, part of the load in statics.
+    pub time: f64,
+    /// Displacement of each point, metres, packed.
+    pub u: String,
+    /// Way of each tool from its start, metres.
+    pub closures: Vec<f64>,
+    /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation gradient of the cell behind
+    /// each face, packed, where they are known.
+    pub values: Option<[String; 3]>,
+}
+
+/// Numbers as base64 of their four bytes each, the lowest first.
+pub fn pack<T: Word>(numbers: impl IntoIterator<Item = T>) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let bytes: Vec<u8> = numbers.into_iter().flat_map(Word::bytes).collect();
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let word = three.iter().fold(0, |word, byte| word << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
+        for k in 0..4 {
+            let digit = char::from(DIGITS[(word >> (18 - 6 * k) & 63) as usize]);
+            text.push(if k <= three.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+/// What is packed.
+pub trait Word {
+    /// The four bytes, the lowest first.
+    fn bytes(self) -> [u8; 4];
+}
+
+impl Word for f32 {
+    fn bytes(self) -> [u8; 4] {
+        self.to_le_bytes()
+    }
+}
+
+impl Word for u32 {
+    fn bytes(self) -> [u8; 4] {
+        self.to_le_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_packed_as_base64_has_them() {
+        // RFC 4648, section 10: "foob" is Zm9vYg==.
+        assert_eq!(pack([u32::from_le_bytes(*b"foob")]), "Zm9vYg==");
+        assert_eq!(pack([1.0f32, -2.5]), "AACAPwAAIMA=");
+        assert_eq!(pack(Vec::<u32>::new()), "");
+    }
+}

@@ -1,0 +1,224 @@
+//! What is kept of results: small enough for a repository, enough for noise to be told from a step.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use catalogue::metric;
+use serde::{Deserialize, Serialize};
+
+use crate::baseline::run_name;
+use crate::error::ReportError;
+use crate::provenance::{Machine, Program};
+use crate::record::Record;
+use crate::run_set::{RunSet, Status};
+use crate::store::write_text;
+
+/// Results in short.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Summary {
+    /// Name of the study's or scene's file.
+    pub source: String,
+    /// Checks that did not hold.
+    pub checks_failed: usize,
+    /// The program.
+    pub program: Program,
+    /// The machine.
+    pub machine: Machine,
+    /// The runs by case, method, settings and size.
+    pub runs: BTreeMap<String, RunNumbers>,
+}
+
+/// One run in short.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunNumbers {
+    /// Case name.
+    pub case: String,
+    /// Method id.
+    pub method: String,
+    /// Nodes.
+    pub nodes: u64,
+    /// Refinement level.
+    pub level: u32,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Errors at the end, SI, by quantity.
+    #[serde(default)]
+    pub errors: BTreeMap<String, f64>,
+    /// Seconds of each repeat by phase: of the processors where they are known, by the clock otherwise.
+    #[serde(default)]
+    pub seconds: BTreeMap<String, Vec<f64>>,
+}
+
+/// Digits that are kept of an error, and of a time.
+const ERROR_DIGITS: usize = 9;
+const TIME_DIGITS: usize = 4;
+
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+impl Summary {
+    /// Of results.
+    pub fn of(set: &RunSet) -> Summary {
+        let mut runs: BTreeMap<String, RunNumbers> = BTreeMap::new();
+        let mut wall: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
+        let at_end = |r: &&Record| r.step.is_none() && r.mode.is_none();
+        for record in set.records.iter().filter(at_end) {
+            let name = run_name(record);
+            let run = runs.entry(name.clone()).or_insert_with(|| RunNumbers {
+                case: record.case.clone(),
+                method: record.method.clone(),
+                nodes: record.nodes,
+                level: record.level,
+                poisson: record.poisson,
+                ..RunNumbers::default()
+            });
+            match (record.quantity.as_str(), record.statistic.as_str()) {
+                ("cpu-time", "repeat") => {
+                    let time = rounded(record.value, TIME_DIGITS);
+                    run.seconds.entry(record.phase.clone()).or_default().push(time);
+                }
+                ("time", "repeat") => {
+                    let time = rounded(record.value, TIME_DIGITS);
+                    wall.entry((name, record.phase.clone())).or_default().push(time);
+                }
+                (quantity, "value") if is_error(quantity) => {
+                    run.errors.insert(quantity.into(), rounded(record.value, ERROR_DIGITS));
+                }
+                _ => {}
+            }
+        }
+        for ((name, phase), times) in wall {
+            if let Some(run) = runs.get_mut(&name) {
+                run.seconds.entry(phase).or_insert(times);
+            }
+        }
+        runs.retain(|_, run| !run.errors.is_empty() || !run.seconds.is_empty());
+        Summary {
+            source: set.provenance.source.clone(),
+            checks_failed: set
+                .checks
+                .iter()
+                .filter(|c| matches!(c.status, Status::Fail | Status::NotRun))
+                .count(),
+            program: set.provenance.program.clone(),
+            machine: set.provenance.machine.clone(),
+            runs,
+        }
+    }
+
+    pub(super) fn load(path: &Path) -> Result<Summary, ReportError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+        let content = |reason| ReportError::Content { path: path.into(), reason };
+        let read: Summary = toml::from_str(&text).map_err(|bad| content(bad.to_string()))?;
+        let numbers = |run: &RunNumbers| {
+            let all = run.errors.values().chain(run.seconds.values().flatten());
+            all.chain([&run.poisson]).all(|number| number.is_finite())
+        };
+        match read.runs.iter().find(|(_, run)| !numbers(run)) {
+            Some((name, _)) => Err(content(format!("run '{name}' has a number that is not finite"))),
+            None => Ok(read),
+        }
+    }
+
+    pub(super) fn save(&self, path: &Path) -> Result<(), ReportError> {
+        let text = toml::to_string(self)
+            .map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })?;
+        write_text(path, text)
+    }
+
+    /// Its times as the records of a run set: what two results are compared by.
+    pub(super) fn times(&self) -> RunSet {
+        let records = self.runs.iter().flat_map(|(name, run)| {
+            let own = Record {
+                run: name.clone(),
+                case: run.case.clone(),
+                method: run.method.clone(),
+                nodes: run.nodes,
+                level: run.level,
+                poisson: run.poisson,
+                quantity: "cpu-time".into(),
+                unit: "s".into(),
+                statistic: "repeat".into(),
+                ..Record::default()
+            };
+            run.seconds.iter().flat_map(move |(phase, times)| {
+                let phase = Record { phase: phase.clone(), ..own.clone() };
+                let of = move |(repeat, &value): (u64, &f64)| Record {
+                    repeat: Some(repeat),
+                    value,
+                    ..phase.clone()
+                };
+                (1..).zip(times).map(of)
+            })
+        });
+        RunSet { records: records.collect(), ..RunSet::default() }
+    }
+
+    /// Seconds of a run: the shortest of its repeats.
+    pub(super) fn total(&self, run: &str) -> Option<f64> {
+        let times = self.runs.get(run)?.seconds.get("total")?;
+        times.iter().copied().reduce(f64::min)
+    }
+}
+
+/// Whether it is a distance from what is right.
+fn is_error(quantity: &str) -> bool {
+    metric::find(quantity).is_some_and(|metric| metric.lower_is_better() && metric.kind != metric::Kind::Cost)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(quantity: &str, statistic: &str, phase: &str, repeat: Option<u64>, value: f64) -> Record {
+        let (quantity, statistic, phase) = (quantity.into(), statistic.into(), phase.into());
+        Record {
+            case: "block".into(),
+            method: "tet4".into(),
+            quantity,
+            statistic,
+            phase,
+            repeat,
+            value,
+            ..Record::default()
+        }
+    }
+
+    #[test]
+    fn errors_and_repeats_of_processor_times_are_kept_and_read_again() {
+        let set = RunSet {
+            records: vec![
+                record("rms", "value", "", None, 0.123_456_789_012),
+                record("max-z", "value", "", None, 3.0),
+                record("time", "repeat", "total", Some(1), 9.0),
+                record("cpu-time", "repeat", "total", Some(1), 2.0),
+                record("cpu-time", "repeat", "total", Some(2), 1.000_04),
+                record("time", "repeat", "solve", Some(1), 0.5),
+                record("cpu-time", "median", "total", None, 1.5),
+            ],
+            ..RunSet::default()
+        };
+        let made = Summary::of(&set);
+        let run = made.runs.values().next().unwrap();
+        assert_eq!(run.errors, BTreeMap::from([("rms".to_string(), 0.123_456_789)]));
+        assert_eq!(run.seconds["total"], [2.0, 1.0]);
+        assert_eq!(run.seconds["solve"], [0.5]);
+        assert_eq!(made.total(made.runs.keys().next().unwrap()), Some(1.0));
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("0001-a.toml");
+        made.save(&path).unwrap();
+        assert_eq!(Summary::load(&path).unwrap(), made);
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (bad, says) in
+            [(text.replace("0.123456789", "nan"), "not finite"), ("source = 3".into(), "0001-a.toml")]
+        {
+            std::fs::write(&path, bad).unwrap();
+            let error = Summary::load(&path).unwrap_err().to_string();
+            assert!(error.contains(says), "{error}");
+        }
+    }
+}

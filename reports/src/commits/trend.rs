@@ -1,0 +1,264 @@
+//! Accuracy and time from commit to commit, and the steps that are no noise.
+
+use serde::Serialize;
+
+use super::Summary;
+use crate::compare::{Comparison, Ratio};
+
+/// Relative change from which on an error has changed: below it are the last bits of another compiler.
+const TOLERANCE: f64 = 1e-6;
+/// Of the case's scale, dimensionless or in metres: an error below is zero but for rounding, whatever it changes to.
+const ROUNDING: f64 = 1e-10;
+
+/// A study on one machine over commits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Trend {
+    /// Name of the study's or scene's file.
+    pub source: String,
+    /// Processor and threads.
+    pub machine: String,
+    /// The commits, oldest first.
+    pub points: Vec<Point>,
+}
+
+/// The results of one commit; those that were added one after the other count together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Number of the first file.
+    pub number: u32,
+    /// The commit, with `+` where the source was changed since.
+    pub commit: String,
+    /// Results added.
+    pub results: usize,
+    /// Whether the machine was quiet at the start of each; `None` where that is not known.
+    pub quiet: Option<bool>,
+    /// Runs.
+    pub runs: usize,
+    /// Checks that did not hold.
+    pub checks_failed: usize,
+    /// Processor seconds of one pass over all runs, each at its shortest.
+    pub seconds: f64,
+    /// The same over those of the first commit, of the runs that both have.
+    pub seconds_ratio: Option<f64>,
+    /// Geometric mean of all errors over those of the first commit, where both have them.
+    pub error_ratio: Option<f64>,
+    /// What changed since the commit before; `None` of the first.
+    pub step: Option<Step>,
+}
+
+/// What changed from one commit to the next.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Step {
+    /// Errors that have grown, the most first.
+    pub worse: Vec<ErrorStep>,
+    /// Errors that have shrunk, the most first.
+    pub better: Vec<ErrorStep>,
+    /// Runs that are no more, and those that are new.
+    pub lost: usize,
+    /// See there.
+    pub new: usize,
+    /// All times after over before, with the limit of noise; `None` of too few runs.
+    pub times: Option<Ratio>,
+    /// Every time that is outside of noise: of all, of phases, cases, methods and runs.
+    pub called: Vec<Ratio>,
+}
+
+/// An error that has changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ErrorStep {
+    /// The run.
+    pub run: String,
+    /// Which error.
+    pub quantity: String,
+    /// Before, SI.
+    pub before: f64,
+    /// After, SI.
+    pub after: f64,
+}
+
+impl Step {
+    /// Whether anything is outside of noise.
+    pub fn is_marked(&self) -> bool {
+        !self.worse.is_empty() || !self.better.is_empty() || !self.called.is_empty()
+    }
+
+    fn between(before: &[Summary], after: &[Summary]) -> Step {
+        let mut step = Step::default();
+        let (Some(old), Some(new)) = (before.last(), after.last()) else { return step };
+        step.lost = old.runs.keys().filter(|run| !new.runs.contains_key(*run)).count();
+        step.new = new.runs.keys().filter(|run| !old.runs.contains_key(*run)).count();
+        for change in errors(old, new) {
+            let (a, b) = (change.before, change.after);
+            if (a - b).abs() > TOLERANCE * a.abs().max(b.abs()) && a.max(b) > ROUNDING {
+                if b > a { &mut step.worse } else { &mut step.better }.push(change);
+            }
+        }
+        let size =
+            |e: &ErrorStep| (e.after.max(f64::MIN_POSITIVE) / e.before.max(f64::MIN_POSITIVE)).ln().abs();
+        for list in [&mut step.worse, &mut step.better] {
+            list.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        }
+        let pairs: Vec<_> = before.iter().zip(after).map(|(a, b)| (a.times(), b.times())).collect();
+        if let Some(times) = Comparison::of(&pairs, TOLERANCE, true).times {
+            (step.times, step.called) = (times.whole, times.called);
+        }
+        step
+    }
+}
+
+/// The errors that two results have in common.
+fn errors<'a>(old: &'a Summary, new: &'a Summary) -> impl Iterator<Item = ErrorStep> + 'a {
+    old.runs.iter().flat_map(|(name, run)| {
+        let other = new.runs.get(name);
+        run.errors.iter().filter_map(move |(quantity, &before)| {
+            let after = *other?.errors.get(quantity)?;
+            Some(ErrorStep { run: name.clone(), quantity: quantity.clone(), before, after })
+        })
+    })
+}
+
+/// The trends of results in the order they were added.
+pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
+    let mut found: Vec<(String, String, Vec<Added>)> = Vec::new();
+    for (number, summary) in all {
+        let (source, machine) = (summary.source.clone(), machine(&summary));
+        let at = found.iter().position(|(s, m, _)| *s == source && *m == machine).unwrap_or_else(|| {
+            found.push((source, machine, Vec::new()));
+            found.len() - 1
+        });
+        let commits = &mut found[at].2;
+        match commits.last_mut() {
+            // Of a changed source nobody knows whether it is the same.
+            Some(last) if !summary.program.dirty && last.commit == summary.program.revision() => {
+                last.results.push(summary);
+            }
+            _ => commits.push(Added { number, commit: summary.program.revision(), results: vec![summary] }),
+        }
+    }
+    found
+        .into_iter()
+        .map(|(source, machine, commits)| Trend { source, machine, points: points(&commits) })
+        .collect()
+}
+
+/// The results of one commit, added one after the other.
+struct Added {
+    number: u32,
+    commit: String,
+    results: Vec<Summary>,
+}
+
+fn machine(summary: &Summary) -> String {
+    let machine = &summary.machine;
+    format!("{}, {}, {} threads", machine.cpu, machine.instructions, machine.threads)
+}
+
+fn points(commits: &[Added]) -> Vec<Point> {
+    let point = |(at, added): (usize, &Added)| {
+        let (first, newest) = (&commits[0], added.results.last()?);
+        let known: Option<Vec<bool>> = added.results.iter().map(|result| result.machine.quiet).collect();
+        let seconds = newest.runs.keys().filter_map(|run| shortest(added, run)).sum();
+        let both = newest.runs.keys().filter_map(|run| Some((shortest(first, run)?, shortest(added, run)?)));
+        let (old, new) = both.fold((0.0, 0.0), |(old, new), (a, b)| (old + a, new + b));
+        Some(Point {
+            number: added.number,
+            commit: added.commit.clone(),
+            results: added.results.len(),
+            quiet: known.map(|quiet| quiet.into_iter().all(|quiet| quiet)),
+            runs: newest.runs.len(),
+            checks_failed: newest.checks_failed,
+            seconds,
+            seconds_ratio: (old > 0.0).then_some(new / old),
+            error_ratio: error_ratio(first.results.last()?, newest),
+            step: (at > 0).then(|| Step::between(&commits[at - 1].results, &added.results)),
+        })
+    };
+    commits.iter().enumerate().filter_map(point).collect()
+}
+
+/// Seconds of a run, the shortest of all results of a commit.
+fn shortest(added: &Added, run: &str) -> Option<f64> {
+    added.results.iter().filter_map(|result| result.total(run)).reduce(f64::min)
+}
+
+fn error_ratio(first: &Summary, now: &Summary) -> Option<f64> {
+    let logs: Vec<f64> = errors(first, now)
+        .filter(|e| e.before > ROUNDING && e.after > ROUNDING)
+        .map(|e| (e.after / e.before).ln())
+        .collect();
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::commits::RunNumbers;
+    use crate::provenance::{Machine, Program};
+
+    /// Results of so many runs, each of `seconds` scattered a little, with an error.
+    fn results(commit: &str, count: usize, seconds: f64, error: f64) -> Summary {
+        let run = |k: usize| {
+            let time = |repeat: usize| seconds * (1.0 + 0.01 * ((7 * k + 3 * repeat) % 5) as f64);
+            let numbers = RunNumbers {
+                case: "block".into(),
+                method: format!("m{k}"),
+                errors: BTreeMap::from([("rms".into(), error)]),
+                seconds: BTreeMap::from([("total".into(), vec![time(0), time(1), time(2)])]),
+                ..RunNumbers::default()
+            };
+            (format!("block m{k}"), numbers)
+        };
+        Summary {
+            source: "verify.toml".into(),
+            program: Program { commit: commit.into(), ..Program::default() },
+            machine: Machine { cpu: "a".into(), quiet: Some(true), ..Machine::default() },
+            runs: (0..count).map(run).collect(),
+            ..Summary::default()
+        }
+    }
+
+    #[test]
+    fn a_slow_down_and_a_worse_error_are_marked_and_noise_is_not() {
+        let all = [
+            results("a", 12, 0.1, 1e-3),
+            results("b", 12, 0.101, 1e-3),
+            results("c", 12, 0.15, 1e-3),
+            results("d", 12, 0.15, 2e-3),
+        ];
+        let found = trends((1..).zip(all).collect());
+        assert_eq!(found.len(), 1);
+        let steps: Vec<&Step> = found[0].points.iter().filter_map(|point| point.step.as_ref()).collect();
+        assert_eq!(steps.len(), 3);
+        assert!(!steps[0].is_marked(), "{:?}", steps[0]);
+        assert!(steps[1].times.as_ref().unwrap().called && steps[1].worse.is_empty());
+        assert_eq!((steps[2].worse.len(), steps[2].called.len()), (12, 0));
+        let last = found[0].points.last().unwrap();
+        assert!((last.error_ratio.unwrap() - 2.0).abs() < 1e-12, "{last:?}");
+        assert!((last.seconds_ratio.unwrap() - 1.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn results_of_a_commit_count_together_and_another_machine_is_another_trend() {
+        let mut elsewhere = results("b", 12, 0.1, 1e-3);
+        elsewhere.machine.threads = 8;
+        let mut busy = results("a", 12, 0.2, 1e-3);
+        busy.machine.quiet = Some(false);
+        let all = [results("a", 12, 0.1, 1e-3), busy, elsewhere];
+        let found = trends((1..).zip(all).collect());
+        assert_eq!(found.len(), 2);
+        let point = &found[0].points[0];
+        assert_eq!((found[0].points.len(), point.results, point.quiet), (1, 2, Some(false)));
+        assert!((point.seconds - 12.0 * 0.1).abs() < 0.05);
+        assert_eq!(trends(Vec::new()), []);
+    }
+
+    #[test]
+    fn runs_that_come_and_go_are_counted() {
+        let found = trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect());
+        let step = found[0].points[1].step.as_ref().unwrap();
+        assert_eq!((step.lost, step.new), (0, 2));
+        assert!((found[0].points[1].seconds_ratio.unwrap() - 1.0).abs() < 1e-9);
+    }
+}

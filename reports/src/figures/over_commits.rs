@@ -1,0 +1,65 @@
+//! Errors and processor seconds of a study from commit to commit.
+
+use super::axes::Axis;
+use super::canvas::Canvas;
+use super::grid::{Content, multiples};
+use super::style::{Style, find, styles};
+use crate::commits::{Point, Trend};
+use crate::record::Family;
+
+/// Commits named below an axis.
+const NAMED: usize = 6;
+
+/// Two panels over the commits of each trend, both as ratios to the first: errors, and processor seconds. A step outside of noise has
+/// its marker, others have none.
+pub(crate) fn over_commits(trends: &[Trend]) -> Canvas {
+    let label = |trend: &Trend| format!("{}, {}", trend.source, trend.machine);
+    let labels: Vec<(String, Family)> = trends.iter().map(|trend| (label(trend), Family::Fem)).collect();
+    let styles = styles(&labels);
+    let errors = |point: &Point| point.error_ratio;
+    let seconds = |point: &Point| point.seconds_ratio;
+    let moved =
+        |point: &Point| point.step.as_ref().is_some_and(|s| !s.worse.is_empty() || !s.better.is_empty());
+    let called = |point: &Point| point.step.as_ref().is_some_and(|s| !s.called.is_empty());
+    let panels = vec![
+        panel("Errors", "mean error over the first [1]", trends, &styles, errors, moved),
+        panel("Times", "processor seconds over the first [1]", trends, &styles, seconds, called),
+    ];
+    multiples(panels, &styles, "Marked: steps outside of noise.")
+}
+
+fn panel<'a>(
+    title: &str,
+    y: &str,
+    trends: &'a [Trend],
+    styles: &'a [Style],
+    value: impl Fn(&Point) -> Option<f64> + Copy + 'a,
+    marked: impl Fn(&Point) -> bool + Copy + 'a,
+) -> Content<'a> {
+    let points = move |trend: &'a Trend| {
+        let each = trend.points.iter().enumerate();
+        each.filter_map(move |(at, point)| Some((at as f64, value(point)?, marked(point))))
+    };
+    let longest = trends.iter().max_by_key(|trend| trend.points.len());
+    let names: Vec<(f64, String)> = longest.map_or(Vec::new(), |trend| {
+        let every = trend.points.len().div_ceil(NAMED).max(1);
+        let name = |point: &Point| point.commit.chars().take(7).collect();
+        trend.points.iter().enumerate().step_by(every).map(|(at, point)| (at as f64, name(point))).collect()
+    });
+    let last = longest.map_or(0, |trend| trend.points.len().saturating_sub(1)) as f64;
+    Content {
+        title: title.into(),
+        x: Axis::linear("commit", [0.0, last].into_iter(), true).with_ticks(names),
+        y: Axis::linear(y, trends.iter().flat_map(points).map(|p| p.1).chain([1.0]), false),
+        plot: Box::new(move |canvas, panel| {
+            for trend in trends {
+                let Some(style) = find(styles, &format!("{}, {}", trend.source, trend.machine)) else {
+                    continue;
+                };
+                let at: Vec<_> = points(trend).map(|p| panel.at(p.0, p.1)).collect();
+                canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
+                points(trend).filter(|p| p.2).for_each(|p| style.mark(canvas, panel.at(p.0, p.1)));
+            }
+        }),
+    }
+}

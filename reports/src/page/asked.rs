@@ -1,0 +1,66 @@
+//! A question to a case, in columns.
+
+use serde::Serialize;
+
+use super::methods::Methods;
+use crate::asks::{Ask, Line, Rank, Timed};
+use crate::fronts::Clock;
+use crate::quantity::label;
+
+#[derive(Serialize)]
+pub(super) struct AskView {
+    case: String,
+    title: String,
+    /// What is asked for, such as `tool force`.
+    what: &'static str,
+    /// Whether the time is that of one solve in a loop prepared before.
+    repeated: bool,
+    /// The error's axis.
+    error: String,
+    scalar: bool,
+    kernels: bool,
+    reference: Option<String>,
+    band: Option<f64>,
+    /// The page begins with the question that has most of it.
+    rank: Rank,
+    lines: Vec<LineView>,
+}
+
+#[derive(Serialize)]
+struct LineView {
+    label: usize,
+    run: Vec<Option<usize>>,
+    seconds: Vec<f32>,
+    spread: Vec<Option<f32>>,
+    error: Vec<f32>,
+    counts: Vec<f32>,
+}
+
+impl AskView {
+    pub(super) fn new(ask: &Ask, methods: &mut Methods) -> AskView {
+        let mut line = |line: &Line| {
+            let each = |f: fn(&Timed) -> f64| line.runs.iter().map(|r| f(r) as f32).collect();
+            LineView {
+                label: methods.label(&line.label, line.family),
+                run: line.runs.iter().map(|r| methods.run(&r.run)).collect(),
+                seconds: each(|r| r.seconds),
+                spread: line.runs.iter().map(|r| r.spread.map(|s| s as f32)).collect(),
+                error: each(|r| r.error),
+                counts: each(|r| r.counts),
+            }
+        };
+        AskView {
+            case: ask.case.clone(),
+            title: ask.title.clone(),
+            what: ask.question.name,
+            repeated: ask.clock == Clock::Repeated,
+            error: label(ask.error),
+            scalar: ask.question.scalar,
+            kernels: ask.kernels,
+            reference: ask.reference.clone(),
+            band: ask.band,
+            rank: ask.rank,
+            lines: ask.lines.iter().map(&mut line).collect(),
+        }
+    }
+}

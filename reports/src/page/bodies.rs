@@ -1,0 +1,105 @@
+//! Bodies in three dimensions: an element of the page for each case, read when one is asked for.
+
+use serde::Serialize;
+
+use crate::body::Body;
+use crate::error::ReportError;
+use crate::run_set::SurfaceField;
+use crate::select::Run;
+
+/// Draws them, and is evaluated when the first one is asked for.
+const SCRIPT: &str = include_str!("../../page/built/solid.js");
+
+/// Bytes for all bodies of a page: with these, the page of the whole verification stays below 8 MB.
+const ROOM: usize = 4 << 20;
+
+#[derive(Clone, Serialize)]
+struct BodyView<'a> {
+    case: &'a str,
+    method: &'a str,
+    title: &'a str,
+    #[serde(flatten)]
+    body: Body,
+}
+
+impl BodyView<'_> {
+    fn size(&self) -> usize {
+        let Body { points, faces, tools, states, .. } = &self.body;
+        let fixed = points.len() + faces.iter().map(|f| f.indices.len()).sum::<usize>();
+        let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
+        let of_state = |values: &[String; 3]| values.iter().map(String::len).sum();
+        let moving = states.iter().map(|s| s.u.len() + s.values.as_ref().map_or(0, of_state));
+        fixed + tools + moving.sum::<usize>()
+    }
+}
+
+/// The elements; nothing for results without bodies.
+pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, ReportError> {
+    let view = |f: &'_ SurfaceField| f.body.clone().filter(|b| !b.states.is_empty());
+    let mut bodies: Vec<BodyView> = fields
+        .iter()
+        .filter_map(|f| Some(BodyView { case: &f.case, method: &f.method, title: &f.title, body: view(f)? }))
+        .collect();
+    bodies.sort_by_key(|b| runs.iter().position(|r| r.is.case == b.case && r.is.method == b.method));
+    fit(&mut bodies, ROOM);
+    bodies.sort_by_key(|b| b.case);
+    let mut out = String::new();
+    for case in bodies.chunk_by(|a, b| a.case == b.case) {
+        let json = serde_json::to_string(case).map_err(ReportError::Page)?.replace('<', "\\u003c");
+        let name = case[0].case.replace('&', "&amp;").replace('"', "&quot;");
+        out += &format!("<script type=\"application/json\" id=\"bodies-{name}\">{json}</script>\n");
+    }
+    if !out.is_empty() {
+        out += &format!("<script type=\"text/plain\" id=\"solid\">{SCRIPT}</script>\n");
+    }
+    Ok(out)
+}
+
+/// Takes states from the largest bodies, all but the last, until all have room; then the largest bodies.
+fn fit(bodies: &mut Vec<BodyView>, room: usize) {
+    while bodies.iter().map(BodyView::size).sum::<usize>() > room {
+        let largest = |least: usize| {
+            let several = bodies.iter().enumerate().filter(move |(_, b)| b.body.states.len() > least);
+            several.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
+        };
+        match (largest(1), largest(0)) {
+            (Some(k), _) => {
+                let body = &mut bodies[k].body;
+                let gone = body.states.len() - 1;
+                body.states.drain(..gone);
+                body.left_out += gone;
+            }
+            (None, Some(k)) => drop(bodies.remove(k)),
+            (None, None) => break,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{BodyState, pack};
+
+    #[test]
+    fn what_has_no_room_is_left_out_and_counted() {
+        let view = |method: &'static str, points: usize| {
+            let state = || BodyState { u: pack(vec![0f32; 3 * points]), ..BodyState::default() };
+            let body = Body {
+                points: pack(vec![0f32; 3 * points]),
+                states: vec![state(), state(), state()],
+                ..Body::default()
+            };
+            BodyView { case: "a", method, title: "", body }
+        };
+        let fitted = |room: usize| -> Vec<(&str, usize, usize)> {
+            let mut all = vec![view("small", 10), view("large", 100)];
+            fit(&mut all, room);
+            all.iter().map(|b| (b.method, b.body.states.len(), b.body.left_out)).collect()
+        };
+        // Points and states take 160 and 1600 bytes each.
+        assert_eq!(fitted(7040), [("small", 3, 0), ("large", 3, 0)]);
+        assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
+        assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
+        assert_eq!(fitted(3000), [("small", 1, 2)]);
+    }
+}

@@ -1,0 +1,116 @@
+//! The methods and runs that the page names, each once.
+
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Serialize;
+
+use crate::look::{Look, MARKERS};
+use crate::record::Family;
+use crate::select::{Run, by_material, labels};
+
+/// How a label looks.
+#[derive(Serialize)]
+pub(super) struct LookView {
+    colour: String,
+    marker: &'static str,
+    dash: &'static [f64],
+    open: bool,
+    family: Family,
+}
+
+/// What is known of each run, a column for each.
+#[derive(Default, Serialize)]
+pub(super) struct RunColumns {
+    id: Vec<String>,
+    case: Vec<String>,
+    method: Vec<String>,
+    label: Vec<usize>,
+    poisson: Vec<f64>,
+    nodes: Vec<u64>,
+    elements: Vec<u64>,
+    dofs: Vec<u64>,
+    settings: Vec<String>,
+    solver: Vec<String>,
+    seconds: Vec<Option<f32>>,
+    memory: Vec<Option<f64>>,
+    errors: BTreeMap<&'static str, Vec<Option<f32>>>,
+}
+
+/// Errors that a run is described by.
+const ERRORS: [&str; 7] =
+    ["l2", "relative-rms", "energy", "pressure", "tool-force-error", "peak-error", "penetration"];
+
+/// Gathers what is named.
+pub(super) struct Methods {
+    looks: BTreeMap<String, LookView>,
+    labels: Vec<String>,
+    runs: RunColumns,
+    index: HashMap<String, usize>,
+}
+
+impl Methods {
+    /// With the runs that may be named.
+    pub(super) fn new(runs: &[Run]) -> Methods {
+        let (looks, names) = (BTreeMap::new(), Vec::new());
+        let mut all = Methods { looks, labels: names, runs: RunColumns::default(), index: HashMap::new() };
+        for group in by_material(runs) {
+            for (run, label) in group.iter().zip(labels(group.iter().map(|r| r.is))) {
+                all.push(run, &label);
+            }
+        }
+        all.runs.errors.retain(|_, values| values.iter().any(Option::is_some));
+        all
+    }
+
+    fn push(&mut self, run: &Run, label: &str) {
+        let (is, at) = (run.is, self.runs.id.len());
+        self.index.insert(is.run.clone(), at);
+        let label = self.label(label, is.family);
+        let settings: Vec<String> =
+            is.settings().into_iter().map(|(name, value)| format!("{name} {value}")).collect();
+        let runs = &mut self.runs;
+        runs.id.push(is.run.clone());
+        runs.case.push(is.case.clone());
+        runs.method.push(is.method.clone());
+        runs.label.push(label);
+        runs.poisson.push(is.poisson);
+        runs.nodes.push(is.nodes);
+        runs.elements.push(is.elements);
+        runs.dofs.push(is.dofs);
+        runs.settings.push(settings.join(", "));
+        runs.solver.push(is.linear_solver.clone().unwrap_or_default());
+        runs.seconds.push(run.total().map(|t| t as f32));
+        runs.memory.push(run.memory());
+        for error in ERRORS {
+            runs.errors.entry(error).or_default().push(run.value(error).map(|v| v as f32));
+        }
+    }
+
+    /// The number of a label; its look is kept with it.
+    pub(super) fn label(&mut self, label: &str, family: Family) -> usize {
+        self.looks.entry(label.into()).or_insert_with(|| {
+            let look = Look::of(label, family);
+            let [red, green, blue] = look.colour;
+            LookView {
+                colour: format!("#{red:02x}{green:02x}{blue:02x}"),
+                marker: MARKERS[look.marker],
+                dash: look.dash,
+                open: look.open,
+                family,
+            }
+        });
+        self.labels.iter().position(|l| l == label).unwrap_or_else(|| {
+            self.labels.push(label.into());
+            self.labels.len() - 1
+        })
+    }
+
+    /// The number of a run.
+    pub(super) fn run(&self, id: &str) -> Option<usize> {
+        self.index.get(id).copied()
+    }
+
+    pub(super) fn into_parts(self) -> (BTreeMap<String, LookView>, Vec<String>, RunColumns) {
+        (self.looks, self.labels, self.runs)
+    }
+}

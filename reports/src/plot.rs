@@ -1,0 +1,91 @@
+//! What a figure shows, as numbers: drawn on paper, written beside it as CSV, and drawn again by the page.
+
+use serde::Serialize;
+
+use crate::record::Family;
+use crate::table::csv_line;
+
+/// One pair of axes and the curves in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Plot {
+    /// The case it is of; empty where it is of several.
+    pub(crate) case: String,
+    pub(crate) title: String,
+    pub(crate) x: Scale,
+    pub(crate) y: Scale,
+    pub(crate) curves: Vec<Curve>,
+}
+
+/// An axis by name.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Scale {
+    /// With its unit.
+    pub(crate) label: String,
+    pub(crate) log: bool,
+}
+
+impl Scale {
+    pub(crate) fn log(label: &str) -> Scale {
+        Scale { label: label.into(), log: true }
+    }
+
+    pub(crate) fn linear(label: &str) -> Scale {
+        Scale { label: label.into(), log: false }
+    }
+}
+
+/// One method.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    pub(crate) label: String,
+    pub(crate) family: Family,
+    pub(crate) points: Vec<(f64, f64)>,
+    /// `(x, low, high)` of an uncertainty or a range.
+    pub(crate) band: Vec<(f64, f64, f64)>,
+    /// Ids of the runs that it is of: of each point, or one for all.
+    pub(crate) runs: Vec<String>,
+}
+
+impl Curve {
+    pub(crate) fn new(label: String, family: Family, points: Vec<(f64, f64)>, runs: Vec<String>) -> Curve {
+        Curve { label, family, points, band: Vec::new(), runs }
+    }
+}
+
+/// Labels with their families, as looks go by.
+pub(crate) fn labels(plots: &[Plot]) -> Vec<(String, Family)> {
+    plots.iter().flat_map(|p| p.curves.iter().map(|c| (c.label.clone(), c.family))).collect()
+}
+
+/// A row for each point, and for each end of a band.
+pub(crate) fn csv(plots: &[Plot]) -> String {
+    let mut out = csv_line(&["case", "panel", "series", "what", "x", "y", "x axis", "y axis", "run"]);
+    for plot in plots {
+        let mut row = |curve: &Curve, what: &str, at: (f64, f64), run: &str| {
+            let (x, y) = (format!("{:e}", at.0), format!("{:e}", at.1));
+            let axes = (&plot.x.label, &plot.y.label);
+            out.push_str(&csv_line(&[
+                &plot.case,
+                &plot.title,
+                &curve.label,
+                what,
+                &x,
+                &y,
+                axes.0,
+                axes.1,
+                run,
+            ]));
+        };
+        for curve in &plot.curves {
+            for (k, at) in curve.points.iter().enumerate() {
+                let run = if curve.runs.len() == 1 { curve.runs.first() } else { curve.runs.get(k) };
+                row(curve, "value", *at, run.map_or("", String::as_str));
+            }
+            for (x, low, high) in &curve.band {
+                row(curve, "low", (*x, *low), "");
+                row(curve, "high", (*x, *high), "");
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,136 @@
+//! What people look for besides errors: forces of supports, mean displacements of faces, frequencies.
+
+use crate::history::curve;
+use crate::record::Purpose;
+use crate::select::{Run, Series, by_material, labels, series};
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+
+/// The finest run of every method of a case that is more than a test of exactness, with the label of its series.
+fn finest<'a>(runs: &[Run<'a>]) -> Vec<(Run<'a>, String)> {
+    let mut out = Vec::new();
+    for case in by_material(runs).filter(|case| case[0].is.purpose != Purpose::Patch) {
+        let all: Vec<Series> = series(case);
+        let names = labels(all.iter().map(|s| s.is()));
+        out.extend(all.iter().map(|s| s.finest().clone()).zip(names));
+    }
+    out
+}
+
+/// A vector of the quantities `NAME-x`, `NAME-y` and `NAME-z`, of the place of this number, from 1; `None` without any of them.
+fn vector(run: &Run, name: &str, place: usize) -> Option<[Option<f64>; 3]> {
+    let ending = if place == 1 { String::new() } else { format!("-{place}") };
+    let found = ["x", "y", "z"].map(|axis| run.value(&format!("{name}-{axis}{ending}")));
+    found.iter().any(Option::is_some).then_some(found)
+}
+
+/// One row for every place of every run; places are numbered in the order of the scene.
+fn of_places(mut table: Table, runs: &[Run], name: &str, scale: f64) -> Table {
+    for (run, label) in finest(runs) {
+        for (place, found) in (1..).map_while(|place| Some((place, vector(&run, name, place)?))) {
+            let [x, y, z] = found.map(|value| Cell::Digits(value.map(|v| v * scale), 4));
+            let (case, nodes) = (Cell::Text(&run.is.case), Cell::Count(run.is.nodes));
+            table.row(&[case, Cell::Text(&label), nodes, Cell::Count(place as u64), x, y, z]);
+        }
+    }
+    table
+}
+
+/// The force of every support.
+pub(super) fn supports(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("support", Number),
+        ("x [N]", Number),
+        ("y [N]", Number),
+        ("z [N]", Number),
+    ];
+    let caption = "Force with which each support holds the body at the end, along the axes that it holds, of the finest run of each method; \
+                   supports are numbered as in the scene";
+    of_places(Table::new("support-forces", "Forces of supports", caption, &header), runs, "reaction", 1.0)
+}
+
+/// The mean displacement of every face that is asked for.
+pub(super) fn means(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("face", Number),
+        ("x [mm]", Number),
+        ("y [mm]", Number),
+        ("z [mm]", Number),
+    ];
+    let caption = "Mean displacement, by area, of the faces that output.means names, at the end, of the finest run of each method; faces are \
+                   numbered as in the scene";
+    of_places(Table::new("face-means", "Mean displacement of faces", caption, &header), runs, "mean", 1e3)
+}
+
+/// The frequency of every mode.
+pub(super) fn frequencies(runs: &[Run]) -> Table {
+    let mut table = Table::new(
+        "frequencies",
+        "Frequencies",
+        "Frequencies of the lowest modes of vibration, of the finest run of each method, and over the exact ones where these are known",
+        &[
+            ("case", Words),
+            ("method", Words),
+            ("nodes", Number),
+            ("mode", Number),
+            ("frequency [Hz]", Number),
+            ("of exact [1]", Number),
+        ],
+    );
+    for (run, label) in finest(runs) {
+        let ratios = curve(&run, "mode", "omega-ratio");
+        for (mode, frequency) in curve(&run, "mode", "frequency") {
+            let ratio = ratios.iter().find(|(other, _)| *other == mode).map(|(_, ratio)| *ratio);
+            table.row(&[
+                Cell::Text(&run.is.case),
+                Cell::Text(&label),
+                Cell::Count(run.is.nodes),
+                Cell::Count(mode as u64),
+                Cell::Digits(Some(frequency), 4),
+                Cell::Digits(ratio, 4),
+            ]);
+        }
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::record;
+    use crate::record::Family;
+    use crate::select::runs;
+
+    #[test]
+    fn places_are_numbered_and_the_finest_run_stands_for_its_method() {
+        let of = |nodes: u64, quantity: &str, value: f64| {
+            record(("block", "tet4", Family::Fem), nodes, (quantity, ""), value)
+        };
+        let records = [
+            of(100, "reaction-z", 1.0),
+            of(800, "reaction-z", 1.5),
+            of(800, "reaction-x-2", -0.25),
+            of(800, "mean-x", 1e-3),
+            of(800, "mean-y", 0.0),
+            of(800, "mean-z", -2e-3),
+        ];
+        let rows = |table: Table| -> Vec<String> { table.shown().iter().map(|row| row.join(" ")).collect() };
+        assert_eq!(
+            rows(supports(&runs(&records))),
+            ["block tet4 800 1 — — 1.500", "block tet4 800 2 -0.2500 — —"]
+        );
+        assert_eq!(rows(means(&runs(&records))), ["block tet4 800 1 1.000 0 -2.000"]);
+        let modes: Vec<_> = [("mode", 1.0), ("frequency", 12.5), ("omega-ratio", 1.01)]
+            .into_iter()
+            .map(|(quantity, value)| crate::record::Record { mode: Some(1), ..of(100, quantity, value) })
+            .collect();
+        assert_eq!(rows(frequencies(&runs(&modes))), ["block tet4 100 1 12.50 1.010"]);
+        assert!(supports(&runs(&modes)).is_empty());
+    }
+}

@@ -1,0 +1,73 @@
+//! The Python module: its wheel is built, put into a fresh virtual environment and tested there, where its tools are installed.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+
+/// What the test needs to be importable; nothing is downloaded.
+const NEEDED: [&str; 3] = ["maturin", "numpy", "pytest"];
+
+/// Builds, installs and tests; 0 where the tools are not there, which is said.
+pub(crate) fn python(root: &Path) -> Result<u8> {
+    let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+    let missing = |name: &&str| {
+        let found = Command::new(&python).args(["-c", &format!("import {name}")]).output();
+        !found.is_ok_and(|done| done.status.success())
+    };
+    let missing: Vec<&str> = NEEDED.into_iter().filter(missing).collect();
+    if !missing.is_empty() {
+        eprintln!(
+            "xtask: the Python module is not tested, as {} can't import {}; PYTHON names another interpreter",
+            python.display(),
+            missing.join(", ")
+        );
+        return Ok(0);
+    }
+    let manifest = ["--manifest-path", "python/Cargo.toml"];
+    let code = crate::cargo(&[&["fmt", "--check"], &manifest[..]].concat(), &[])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    eprintln!("xtask: building the wheel; as long as tissuebench itself the first time");
+    let work = root.join("target/python");
+    let wheels = work.join("wheels");
+    if wheels.exists() {
+        std::fs::remove_dir_all(&wheels)?;
+    }
+    let mut build = Command::new(&python);
+    build.args(["-m", "maturin", "build", "--release", "--locked"]).args(manifest).arg("--out").arg(&wheels);
+    let code = crate::code_of(build.current_dir(root).status()?);
+    if code != 0 {
+        return Ok(code);
+    }
+    // What the command says is compared with what the module does.
+    let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
+    let code = crate::cargo(&build, &[])?;
+    if code != 0 {
+        return Ok(code);
+    }
+    let fresh = environment(&python, &work.join("venv"))?;
+    let wheel = std::fs::read_dir(&wheels)?.next().context("maturin wrote no wheel")??.path();
+    let install = ["-m", "pip", "install", "--quiet", "--no-index", "--no-deps"];
+    let status = Command::new(&fresh).args(install).arg(wheel).status()?;
+    ensure!(status.success(), "the wheel can't be installed");
+    let tests = Command::new(&fresh).args(["-m", "pytest", "-q", "python/tests"]).current_dir(root).status();
+    Ok(crate::code_of(tests.context("could not start pytest")?))
+}
+
+/// A fresh virtual environment that finds the packages of the interpreter it is made by, without any network; returns its
+/// interpreter.
+fn environment(python: &std::ffi::OsStr, folder: &Path) -> Result<PathBuf> {
+    let made = Command::new(python).args(["-m", "venv", "--clear"]).arg(folder).status()?;
+    ensure!(made.success(), "no virtual environment can be made in {}", folder.display());
+    let fresh = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let packages = |of: &std::ffi::OsStr| -> Result<PathBuf> {
+        let print = "import sysconfig; print(sysconfig.get_path('purelib'))";
+        let output = Command::new(of).args(["-c", print]).output()?;
+        Ok(String::from_utf8_lossy(&output.stdout).trim().into())
+    };
+    let theirs = packages(python)?;
+    std::fs::write(packages(fresh.as_os_str())?.join("theirs.pth"), theirs.to_string_lossy().as_bytes())?;
+    Ok(fresh)
+}
