@@ -28,7 +28,6 @@ pub struct RunObject<'a> {
     /// Rigid tools at the end.
     tools: Vec<ToolObject<'a>>,
     /// Supports at the end.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     supports: Vec<SupportObject<'a>>,
     /// Faces whose mean is asked for, at the end.
     #[serde(skip_serializing_if = "Vec::is_empty")]
