@@ -388,7 +388,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let listed = tissuebench(&dir, &["adapter", "list"]);
     assert_eq!(listed.code, 0);
-    for name in ["calculix", "dummy", "felupe", "ngsolve", "scikit-fem", "tissuebench"] {
+    for name in ["calculix", "dolfinx", "dummy", "felupe", "ngsolve", "scikit-fem", "tissuebench"] {
         assert!(
             listed.stdout.contains(&format!("{name}: ")) && listed.stdout.contains("(shipped)"),
             "{name}"
@@ -406,7 +406,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
 #[test]
 fn installed_solvers_pass_their_check() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    for name in ["calculix", "scikit-fem", "felupe", "ngsolve"] {
+    for name in ["calculix", "dolfinx", "felupe", "ngsolve", "scikit-fem"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
         let output = command.args(["adapter", "check", name]).current_dir(root).output().unwrap();
         let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());

@@ -65,8 +65,15 @@ const KNOWN: [(&str, u32, usize); 44] = [
 ];
 
 /// Solvers outside this program, by their place among [`COLOURS`]: a colour for each, the marker that of the element.
-const SOLVERS: [(&str, usize); 6] =
-    [("calculix", 4), ("scikit-fem", 1), ("felupe", 7), ("ngsolve", 10), ("tissuebench", 6), ("dummy", 11)];
+const SOLVERS: [(&str, usize); 7] = [
+    ("calculix", 4),
+    ("dolfinx", 0),
+    ("scikit-fem", 1),
+    ("felupe", 7),
+    ("ngsolve", 10),
+    ("tissuebench", 6),
+    ("dummy", 11),
+];
 
 /// Colour, marker, dash and filling of one label.
 #[derive(Clone, Copy, Debug, PartialEq)]

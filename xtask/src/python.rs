@@ -71,3 +71,35 @@ fn environment(python: &std::ffi::OsStr, folder: &Path) -> Result<PathBuf> {
     std::fs::write(packages(fresh.as_os_str())?.join("theirs.pth"), theirs.to_string_lossy().as_bytes())?;
     Ok(fresh)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// Our packages with what they depend on, tests included.
+    fn ours(lock: &str) -> BTreeMap<String, Vec<String>> {
+        let text = std::fs::read_to_string(crate::root().join(lock)).unwrap();
+        let read: toml::Value = toml::from_str(&text).unwrap();
+        let name = |package: &toml::Value| package["name"].as_str().unwrap().to_string();
+        let of = |package: &toml::Value| -> Vec<String> {
+            let all = package.get("dependencies").and_then(toml::Value::as_array).into_iter().flatten();
+            all.map(|entry| entry.as_str().unwrap().split(' ').next().unwrap().into()).collect()
+        };
+        let packages = read["package"].as_array().unwrap().iter();
+        packages.filter(|p| name(p).starts_with("tissuebench-")).map(|p| (name(p), of(p))).collect()
+    }
+
+    /// Both have a lock file: where a dependency goes from one, the wheel could no longer be built as it is locked.
+    #[test]
+    fn the_lock_file_of_the_module_has_no_dependency_that_is_gone() {
+        let (workspace, module) = (ours("Cargo.lock"), ours("python/Cargo.lock"));
+        assert!(module.len() > 10, "{module:?}");
+        for (package, depends) in module.iter().filter(|(package, _)| *package != "tissuebench-python") {
+            for one in depends {
+                assert!(workspace[package].contains(one), "{package} no longer needs {one}");
+            }
+        }
+    }
+}

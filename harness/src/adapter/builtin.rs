@@ -12,6 +12,7 @@ macro_rules! shipped {
 /// All, `adapter.toml` first.
 pub(super) static SHIPPED: &[Files] = shipped! {
     "calculix": "adapter.toml", "calculix.py";
+    "dolfinx": "adapter.toml", "dolfinx_adapter.py";
     "dummy": "adapter.toml";
     "felupe": "adapter.toml", "felupe_adapter.py";
     "ngsolve": "adapter.toml", "ngsolve_adapter.py";

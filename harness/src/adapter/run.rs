@@ -184,7 +184,12 @@ pub(crate) fn ready(adapter: &Found) -> Result<(), String> {
         }
         let what = if packages.is_empty() { "Python".into() } else { packages.join(", ") };
         let name = &manifest.name;
-        Err(format!("{name} needs {what}, which is not installed: tissuebench adapter install {name}"))
+        // What is said is of the programs where there are some, and otherwise of packages that pip does not bring.
+        let say = match manifest.install.programs.is_empty() && !say.is_empty() {
+            true => say,
+            false => format!(": tissuebench adapter install {name}"),
+        };
+        Err(format!("{name} needs {what}, which is not installed{say}"))
     })
 }
 

@@ -306,16 +306,23 @@ pub enum MeshAction {
     /// are rounded off at the size of a cell. A surface that is open, crosses itself or is inside out is refused with the place.
     Make(MakeArgs),
     /// Read one mesh file, write it as another kind of cells
-    Convert {
-        /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
-        from: PathBuf,
-        /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
-        /// .stl; another one than FROM
-        to: PathBuf,
-        /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
-        #[arg(long)]
-        element: Option<String>,
-    },
+    Convert(ConvertArgs),
+}
+
+/// Arguments of `mesh convert`.
+#[derive(Args)]
+pub struct ConvertArgs {
+    /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
+    pub from: PathBuf,
+    /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
+    /// .stl; another one than FROM
+    pub to: PathBuf,
+    /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
+    #[arg(long)]
+    pub element: Option<String>,
+    /// Leave nodes out that no element and no set names, which are refused otherwise
+    #[arg(long)]
+    pub drop_unused: bool,
 }
 
 /// Arguments of `mesh make`.

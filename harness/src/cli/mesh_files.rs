@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use geometry::generate::{raise_order, to_tets};
-use geometry::{CellKind, Mesh, files};
+use geometry::{CellKind, Mesh, files, quality};
 
 use super::mesh_info::info;
 use crate::Failure;
-use crate::cli::args::MeshAction;
+use crate::cli::args::{ConvertArgs, MeshAction};
 
 /// Millimetre files are read and written in their own unit.
 const MILLIMETRE: f64 = 1e-3;
@@ -21,17 +21,20 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
             each.fold(Ok(()), Result::and)
         }
         MeshAction::Make(args) => super::mesh_make::make(args),
-        MeshAction::Convert { from, to, element } => convert(from, to, element.as_deref()),
+        MeshAction::Convert(args) => convert(args),
     }
 }
 
-fn convert(from: &Path, to: &Path, element: Option<&str>) -> Result<(), Failure> {
-    let mesh = files::read(from, MILLIMETRE).map_err(input)?;
+fn convert(ConvertArgs { from, to, element, drop_unused }: &ConvertArgs) -> Result<(), Failure> {
+    let read = if *drop_unused { files::read_without_unused } else { files::read };
+    let mesh = read(from, MILLIMETRE).map_err(input)?;
+    quality::check(&mesh)
+        .map_err(|bad| input(format!("{}: {}", from.display(), files::inverted(from, &bad))))?;
     let real = |path: &Path| path.canonicalize().ok();
     if real(from) == real(to) {
         return Err(input(format!("{}: is the file that is read; give another name", to.display())));
     }
-    let mesh = match element {
+    let mesh = match element.as_deref() {
         None => mesh,
         Some(name) => into(&mesh, name)?,
     };

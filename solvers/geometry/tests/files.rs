@@ -250,6 +250,54 @@ fn broken_decks_name_the_line() {
     assert_refused(DECK, cases.map(at_line), |text| deck(text).err());
 }
 
+/// A node that nothing names is left from an element that the file has lost; points of bodies that are no mesh are named.
+#[test]
+fn nodes_without_elements_are_refused_or_left_out() {
+    let with = |more: &str| {
+        DECK.replace(", NSET=\"All Nodes\"", "").replace("5, 1., 1., 1.", &format!("5, 1., 1., 1.\n{more}"))
+    };
+    let lone = with("77, 2, 2, 2\n78, 3, 2, 2");
+    let bad = deck(&lone).unwrap_err();
+    assert!(bad.starts_with("deck.inp:10: no element names node 77 (and 1 others)"), "{bad}");
+    for named in [
+        "*NSET, NSET=reference\n77, 78",
+        "*ELEMENT, TYPE=T3D2\n99, 77, 78",
+        "*RIGID BODY, REF NODE=77\n*MPC\nBEAM, 78, 1",
+    ] {
+        let mesh = deck(&lone.replace("*MATERIAL", &format!("{named}\n*MATERIAL"))).unwrap();
+        assert_eq!(mesh.points().len(), 5, "{named}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("deck.inp");
+    std::fs::write(&file, &lone).unwrap();
+    assert_eq!(files::read_without_unused(&file, 1.0).unwrap().points().len(), 5);
+}
+
+/// What blocks hold is what their section says.
+#[test]
+fn counts_of_blocks_are_those_of_their_section() {
+    let file = made(CellKind::Tet4).into_iter().find(|f| f.ends_with("tet4-4.1-text.msh")).unwrap();
+    let text = std::fs::read_to_string(&file).unwrap();
+    let refused = |section: &str| {
+        let head = text.split(&format!("{section}\n")).nth(1).unwrap().lines().next().unwrap();
+        let words: Vec<&str> = head.split(' ').collect();
+        let other =
+            format!("{} {} {} {}", words[0], words[1].parse::<u64>().unwrap() + 1, words[2], words[3]);
+        let spoiled = text.replacen(&format!("{section}\n{head}"), &format!("{section}\n{other}"), 1);
+        files::read_bytes(spoiled.as_bytes(), &file, 1.0).unwrap_err().to_string()
+    };
+    for (section, what) in [("$Nodes", "nodes"), ("$Elements", "elements")] {
+        let bad = refused(section);
+        assert!(bad.contains("the section says that it has") && bad.contains(what), "{bad}");
+    }
+}
+
+/// Editors of some systems mark the encoding in front of a text.
+#[test]
+fn a_mark_of_the_encoding_is_no_part_of_a_file() {
+    assert!(deck(&format!("\u{feff}{DECK}")).unwrap() == deck(DECK).unwrap());
+}
+
 #[test]
 fn files_that_decks_include_are_read_and_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -329,10 +377,19 @@ fn broken_grids_name_the_place() {
         ("NumberOfCells=\"24\"", "NumberOfCells=\"4000000000\"", "an array of 24 where 4000000000 should be"),
         ("Name=\"types\"", "Name=\"kinds\"", "the file has no types section"),
         ("<Cells>", "<Cell>", "expected 'Cell' tag"),
+        (
+            "NumberOfComponents=\"3\"",
+            "NumberOfComponents=\"2\"",
+            "expected points of 3 coordinates, found '2'",
+        ),
+        ("type=\"UInt8\" Name=\"types\"", "type=\"Bit\" Name=\"types\"", "expected a type of numbers"),
     ];
     assert_refused(&text, cases.map(|(from, to, says)| (from, to, [says.into()])), |text| {
         files::read_bytes(text.as_bytes(), Path::new("grid.vtu"), 1.0).err().map(|bad| bad.to_string())
     });
+    let other = b"<febio_spec version=\"4.0\"></febio_spec>";
+    let bad = files::read_bytes(other, Path::new("a.feb"), 1.0).unwrap_err().to_string();
+    assert!(bad.starts_with("a.feb:1: '<febio_spec>' begins no mesh file that is read: Gmsh .msh"), "{bad}");
     let packed = |from: &str, to: &str| {
         let file = made(CellKind::Hex8).into_iter().find(|f| f.ends_with("hex8-vtk-raw-zlib.vtu")).unwrap();
         let bytes = std::fs::read(&file).unwrap();

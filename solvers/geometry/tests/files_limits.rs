@@ -26,7 +26,7 @@ fn sets_of_sets_do_not_double_without_end() {
 fn instances_do_not_multiply_a_small_part() {
     let placed = |count: usize| {
         let nodes: String = (1..=1000).map(|k| format!("{k},{k},{},{}\n", k % 7, k % 5)).collect();
-        let part = format!("*PART,NAME=p\n*NODE\n{nodes}*ELEMENT,TYPE=C3D4\n1,1,2,3,8\n*END PART\n");
+        let part = format!("*PART,NAME=p\n*NODE,NSET=all\n{nodes}*ELEMENT,TYPE=C3D4\n1,1,2,3,8\n*END PART\n");
         let each: String =
             (0..count).map(|k| format!("*INSTANCE,NAME=i{k},PART=p\n{k}.,0.,0.\n*END INSTANCE\n")).collect();
         refusal(&format!("{part}*ASSEMBLY,NAME=a\n{each}*END ASSEMBLY\n"))

@@ -88,6 +88,7 @@ fn binary_grids_are_read() {
 #[test]
 fn broken_grids_are_refused_with_their_place() {
     let changes = [
+        ("Version 2.0", "Version 9.9", "m:1: expected a version up to 5.1"),
         ("Version 2.0", "Version 2.0\nmore", "m:3: expected ASCII or BINARY, found 'two'"),
         ("ASCII", "TEXT", "m:3: expected ASCII or BINARY, found 'TEXT'"),
         (

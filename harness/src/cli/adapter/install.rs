@@ -12,6 +12,8 @@ pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {
     let needs = &manifest.install;
     if !needs.programs.is_empty() {
         println!("{} needs {}: {}", manifest.name, needs.programs.join(", "), needs.say);
+    } else if !needs.say.is_empty() {
+        println!("{}: {}", manifest.name, needs.say);
     }
     if needs.python.is_empty() {
         return Ok(match adapter::ready(adapter) {

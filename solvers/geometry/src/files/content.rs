@@ -13,6 +13,8 @@ use crate::{CellKind, Facet, Mesh, Point3};
 pub(super) struct Content {
     node_numbers: Numbers,
     points: Vec<Point3>,
+    /// For each node its row, and whether anything but a cell uses it.
+    node_rows: Vec<(Row, bool)>,
     element_numbers: Numbers,
     /// For each numbered element its cell; `u32::MAX` of others.
     cell_of_element: Vec<u32>,
@@ -25,6 +27,13 @@ pub(super) struct Content {
     group_names: Names,
     facets: Vec<(usize, Facet)>,
     node_sets: Vec<(String, Vec<u32>)>,
+}
+
+/// What becomes of nodes that neither elements nor sets name.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unused {
+    Refused,
+    LeftOut,
 }
 
 /// The region of a cell that has none yet.
@@ -51,6 +60,7 @@ impl Content {
             return Err((place, Problem::Duplicate { what: "node", number }));
         }
         self.points.push(at);
+        self.node_rows.push((Row { place, tag: number }, false));
         Ok(())
     }
 
@@ -76,8 +86,23 @@ impl Content {
     }
 
     /// Notes an element that becomes no cell.
-    pub(super) fn element(&mut self, place: Place, number: u64) -> Parsed<()> {
-        self.numbered(place, number, u32::MAX)
+    pub(super) fn element(&mut self, row: Row, list: &[u64]) -> Parsed<()> {
+        self.numbered(row.place, row.tag, u32::MAX)?;
+        for &node in list {
+            if !self.touch(node) {
+                return Err((row.place, Problem::UnknownNode { element: row.tag, node }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes that a node is wanted, whether a cell has it or not; `false` if there is none of this number.
+    pub(super) fn touch(&mut self, number: u64) -> bool {
+        let node = self.node_numbers.get(number);
+        if let Some(node) = node {
+            self.node_rows[node as usize].1 = true;
+        }
+        node.is_some()
     }
 
     fn numbered(&mut self, place: Place, number: u64, cell: u32) -> Parsed<()> {
@@ -148,10 +173,10 @@ impl Content {
         self.group_names.place(name)
     }
 
-    /// Adds a surface element of some groups by the numbers of its corners; its cell may come later.
-    pub(super) fn face(&mut self, row: Row, groups: &[usize], corners: &[u64]) -> Parsed<()> {
-        self.element(row.place, row.tag)?;
-        let corners = self.corners(row, corners)?;
+    /// Adds a surface element of some groups by the numbers of its nodes, the corners first; its cell may come later.
+    pub(super) fn face(&mut self, row: Row, groups: &[usize], list: &[u64], corners: usize) -> Parsed<()> {
+        self.element(row, list)?;
+        let corners = self.corners(row, &list[..corners])?;
         let face = |&group: &usize| Face { place: row.place, element: row.tag, corners, group, loose: false };
         self.faces.extend(groups.iter().map(face));
         Ok(())
@@ -226,6 +251,7 @@ impl Content {
         let first_cell =
             index(place, "elements", self.kinds.len() + other.kinds.len())? - other.kinds.len() as u32;
         self.points.extend(other.points.iter().map(moved));
+        self.node_rows.extend_from_slice(&other.node_rows);
         self.kinds.extend_from_slice(&other.kinds);
         self.nodes.extend(other.nodes.iter().map(|node| node + first_node));
         self.rows.extend_from_slice(&other.rows);
@@ -249,7 +275,13 @@ impl Content {
     }
 
     /// The mesh, with lengths times `unit`, and the row of each cell.
-    pub(super) fn into_mesh(mut self, unit: f64, file: &Path) -> Result<(Mesh, Vec<Row>), FileError> {
+    /// Nodes that nothing names are refused unless they are to be left out.
+    pub(super) fn into_mesh(
+        mut self,
+        unit: f64,
+        file: &Path,
+        unused: Unused,
+    ) -> Result<(Mesh, Vec<Row>), FileError> {
         let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
         self.refuse_twins().map_err(at)?;
         self.attach().map_err(at)?;
@@ -257,6 +289,9 @@ impl Content {
         let mut used = vec![u32::MAX; self.points.len()];
         for &node in &self.nodes {
             used[node as usize] = 0;
+        }
+        if unused == Unused::Refused {
+            self.refuse_unused(&used).map_err(at)?;
         }
         let mut points = Vec::new();
         for (slot, p) in used.iter_mut().zip(&self.points).filter(|(slot, _)| **slot == 0) {
@@ -284,6 +319,17 @@ impl Content {
             mesh = mesh.with_group(&name, facets).map_err(wrong)?;
         }
         Ok((mesh, self.rows))
+    }
+
+    /// Refuses nodes that nothing names: they are left from elements that the file has lost.
+    fn refuse_unused(&self, used: &[u32]) -> Parsed<()> {
+        let mut named: Vec<bool> = self.node_rows.iter().map(|(_, touched)| *touched).collect();
+        self.node_sets.iter().flat_map(|(_, nodes)| nodes).for_each(|&node| named[node as usize] = true);
+        let unused = |node: &usize| used[*node] == u32::MAX && !named[*node];
+        let mut all = (0..used.len()).filter(unused);
+        let Some(first) = all.next() else { return Ok(()) };
+        let Row { place, tag: number } = self.node_rows[first].0;
+        Err((place, Problem::UnusedNode { number, others: all.count() }))
     }
 
     /// Refuses cells of the same corners: their volume would count twice.

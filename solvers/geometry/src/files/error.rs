@@ -189,6 +189,16 @@ pub enum Problem {
         /// Bytes there are.
         found: usize,
     },
+    /// Parts that have not as many together as the file says.
+    #[error("the section says that it has {claimed} {what}, but its blocks have {found}")]
+    Count {
+        /// Nodes or elements.
+        what: &'static str,
+        /// How many the file says there are.
+        claimed: u64,
+        /// How many there are.
+        found: usize,
+    },
     /// An element whose node isn't in the file.
     #[error("element {element} names node {node}, which the file does not have")]
     UnknownNode {
@@ -196,6 +206,19 @@ pub enum Problem {
         element: u64,
         /// Node number in the file.
         node: u64,
+    },
+    /// A node of no element.
+    #[error(
+        "no element names node {number}{}; leave such nodes out: tissuebench mesh convert --drop-unused", match others {
+            0 => String::new(),
+            others => format!(" (and {others} others)"),
+        }
+    )]
+    UnusedNode {
+        /// Node number in the file.
+        number: u64,
+        /// How many more there are.
+        others: usize,
     },
     /// An element that names one node twice.
     #[error("element {element} names node {node} twice")]

@@ -19,7 +19,7 @@ mod vtu;
 use std::path::{Path, PathBuf};
 
 use crate::Mesh;
-use content::Content;
+use content::{Content, Unused};
 use error::Parsed;
 
 pub use error::{FileError, Place, Problem};
@@ -49,8 +49,8 @@ pub fn included(file: &Path) -> Vec<PathBuf> {
 
 /// Reads a mesh file by what it holds, whatever its name; `unit` is the length of the file's unit in metres (0.001 for millimetres).
 ///
-/// Points, lines and parts of a file that are no mesh are read over, and so are nodes that no solid uses. Nodes and cells keep the
-/// order of the file.
+/// Points, lines and parts of a file that are no mesh are read over, and so are nodes that only these or sets name. Nodes and cells keep
+/// the order of the file.
 ///
 /// # Errors
 /// A file that is none of the formats, broken, or no valid mesh: with the line or the byte, and the file's own number of the node or
@@ -64,7 +64,15 @@ pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
     let content = parse(bytes, file).map_err(at)?;
-    content.into_mesh(unit, file)
+    content.into_mesh(unit, file, Unused::Refused)
+}
+
+/// As [`read`], but nodes that nothing names are left out.
+pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
+    check_unit(file, unit)?;
+    let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+    let content = parse(&bytes(file)?, file).map_err(at)?;
+    Ok(content.into_mesh(unit, file, Unused::LeftOut)?.0)
 }
 
 /// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary as `.stl`. Numbers of the first
@@ -96,9 +104,11 @@ fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
 
 /// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
+    // Some editors put a mark of the encoding in front.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
-        [b'$', ..] => gmsh::parse(bytes),
+        [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] => vtu::parse(bytes),
         rest if rest.starts_with(b"# vtk") => vtk::parse(bytes),

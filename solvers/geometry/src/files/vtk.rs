@@ -5,6 +5,9 @@ use super::error::{Parsed, Place, Problem};
 use super::vtk_cells::{Cells, REGIONS};
 use crate::Point3;
 
+/// The newest version that there is.
+const NEWEST: f64 = 5.1;
+
 /// Words one after another, and numbers as text or bytes.
 struct Scanner<'a> {
     bytes: &'a [u8],
@@ -39,6 +42,10 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     if !version.starts_with("# vtk DataFile Version") {
         let expected = "# vtk DataFile Version";
         return Err((Place::Line(1), Problem::Expected { expected, found: version }));
+    }
+    let newest = version.rsplit(' ').next().and_then(|number| number.parse::<f64>().ok());
+    if newest.is_none_or(|number| number > NEWEST) {
+        return Err((Place::Line(1), Problem::Expected { expected: "a version up to 5.1", found: version }));
     }
     scanner.rest_of_line();
     let coding = scanner.word().unwrap_or_default();

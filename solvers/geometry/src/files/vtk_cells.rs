@@ -76,12 +76,12 @@ impl Cells {
                     match of_face.filter(|&v| v >= 0) {
                         Some(v) => {
                             let group = content.group(&name_of(surface_names, v, "surface"));
-                            content.face(row, &[group], &nodes[..corners])?;
+                            content.face(row, &[group], &nodes, corners)?;
                         }
-                        None => content.element(row.place, row.tag)?,
+                        None => content.element(row, &nodes)?,
                     }
                 }
-                None if THIN.contains(&kind) => content.element(row.place, row.tag)?,
+                None if THIN.contains(&kind) => content.element(row, &nodes)?,
                 None => {
                     let kind = kind.to_string();
                     return Err((row.place, Problem::UnknownType { element: row.tag, kind, known: KNOWN }));

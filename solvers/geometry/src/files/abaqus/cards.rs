@@ -92,6 +92,11 @@ impl Card<'_> {
         self.parameters.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
 
+    /// The values of all parameters.
+    pub(super) fn values(&self) -> Vec<String> {
+        self.parameters.iter().map(|(_, value)| value.clone()).collect()
+    }
+
     /// The value of a parameter that has to be there.
     pub(super) fn need(&self, key: &'static str) -> Parsed<&str> {
         match self.get(key).filter(|value| !value.is_empty()) {

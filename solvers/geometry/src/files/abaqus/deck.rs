@@ -55,9 +55,10 @@ impl Deck {
     pub(super) fn read(&mut self, text: &str, depth: usize) -> Parsed<()> {
         for card in cards(text)? {
             if self.ended {
-                break;
+                self.flat.read_over(&card);
+            } else {
+                self.card(&card, depth)?;
             }
-            self.card(&card, depth)?;
         }
         Ok(())
     }
@@ -92,7 +93,10 @@ impl Deck {
                 let help = "write the deck with all nodes and elements in it, in one system of coordinates";
                 Err((card.place, Problem::Unread { what: format!("*{}", card.keyword), help }))
             }
-            _ => Ok(()),
+            _ => {
+                scope.read_over(card);
+                Ok(())
+            }
         }
     }
 

@@ -97,7 +97,9 @@ impl Scope {
             words.retain(|word| !word.is_empty());
             numbers.push(number);
             let Some(nodes) = wanted else {
-                self.content.element(place, number)?;
+                // Their numbers are nodes, and may be more: properties, other elements.
+                self.content.element(Row { place, tag: number }, &[])?;
+                self.touch(&words[1..]);
                 continue;
             };
             if words.len() != nodes + 1 {
@@ -108,7 +110,7 @@ impl Scope {
             let list: Vec<u64> =
                 words[1..].iter().map(|word| whole(place, word, "a node number")).collect::<Parsed<_>>()?;
             let Type::Cell(kind) = of_type else {
-                self.content.element(place, number)?;
+                self.content.element(Row { place, tag: number }, &list)?;
                 let corners = if let Type::Face(corners, _) = of_type { corners } else { 0 };
                 self.shells.insert(number, (place, list[..corners].to_vec()));
                 continue;
@@ -121,6 +123,19 @@ impl Scope {
             self.elsets.of(&set).extend(numbers);
         }
         Ok(())
+    }
+
+    /// Notes that nodes are wanted whose numbers are among these words.
+    fn touch(&mut self, words: &[String]) {
+        for number in words.iter().filter_map(|word| word.parse().ok()) {
+            self.content.touch(number);
+        }
+    }
+
+    /// A card that is read over: reference points of rigid bodies, couplings and the like are named there alone.
+    pub(super) fn read_over(&mut self, card: &Card) {
+        self.touch(&card.values());
+        card.data.iter().for_each(|(_, line)| self.touch(&split(line)));
     }
 
     /// `*ELSET` and `*NSET`.

@@ -168,9 +168,7 @@ impl Reader<'_> {
         let wide = self.version == Version::FourOne;
         let blocks = self.scanner.size("the number of blocks of nodes")?;
         let blocks = self.scanner.counted(blocks, 20, "blocks of nodes")?;
-        for _ in 0..if wide { 3 } else { 1 } {
-            self.scanner.size("the number of nodes")?;
-        }
+        let claimed = self.totals("the number of nodes")?;
         for _ in 0..blocks {
             // Dimension and tag of the entity, in an order that the versions differ in.
             let [first, second, parametric] = self.ints("the head of a block of nodes")?;
@@ -192,7 +190,27 @@ impl Reader<'_> {
                 self.parameters(parametric, dimension)?;
             }
         }
+        self.whole("nodes", claimed, self.content.node_count())?;
         self.scanner.exactly("$EndNodes")
+    }
+
+    /// How many there are in all blocks; version 4.1 adds the least and the largest number.
+    fn totals(&mut self, expected: &'static str) -> Parsed<u64> {
+        let claimed = self.scanner.size(expected)?;
+        if self.version == Version::FourOne {
+            self.scanner.size(expected)?;
+            self.scanner.size(expected)?;
+        }
+        Ok(claimed)
+    }
+
+    /// Refuses blocks that have more or fewer together than the section says.
+    fn whole(&self, what: &'static str, claimed: u64, found: usize) -> Parsed<()> {
+        if claimed == found as u64 {
+            Ok(())
+        } else {
+            self.scanner.fail(Problem::Count { what, claimed, found })
+        }
     }
 
     /// A number and where the node is.
@@ -244,9 +262,7 @@ impl Reader<'_> {
         let wide = self.version == Version::FourOne;
         let blocks = self.scanner.size("the number of blocks of elements")?;
         let blocks = self.scanner.counted(blocks, 20, "blocks of elements")?;
-        for _ in 0..if wide { 3 } else { 1 } {
-            self.scanner.size("the number of elements")?;
-        }
+        let claimed = self.totals("the number of elements")?;
         for _ in 0..blocks {
             let [first, second, kind] = self.ints("the head of a block of elements")?;
             let (dimension, tag) = if wide { (first, second) } else { (second, first) };
@@ -258,6 +274,7 @@ impl Reader<'_> {
                 self.element(number, kind, &groups, wide)?;
             }
         }
+        self.whole("elements", claimed, self.content.element_count())?;
         self.scanner.exactly("$EndElements")
     }
 

@@ -139,8 +139,8 @@ pub(super) fn add(
         Element::Face { corners, .. } if groups.iter().any(|&group| group != 0) => {
             let named = groups.iter().filter(|&&group| group != 0);
             let groups: Vec<usize> = named.map(|&group| names.group(content, group)).collect();
-            content.face(row, &groups, &list[..corners])
+            content.face(row, &groups, list, corners)
         }
-        Element::Face { .. } | Element::Ignored { .. } => content.element(row.place, row.tag),
+        Element::Face { .. } | Element::Ignored { .. } => content.element(row, list),
     }
 }

@@ -49,15 +49,6 @@ pub(super) fn read(
     coding: Coding,
     place: Place,
 ) -> Parsed<Numbers> {
-    let whole = !kind.starts_with("Float");
-    if let Source::Text(text) = source {
-        let mut words = text.split_ascii_whitespace();
-        return if whole {
-            of_text(&mut words, count, place).map(Numbers::Whole)
-        } else {
-            of_text(&mut words, count, place).map(Numbers::Real)
-        };
-    }
     let size = match kind {
         "Int8" | "UInt8" => 1,
         "Int16" | "UInt16" => 2,
@@ -68,6 +59,15 @@ pub(super) fn read(
             return Err((place, Problem::Expected { expected, found: kind.into() }));
         }
     };
+    let whole = !kind.starts_with("Float");
+    if let Source::Text(text) = source {
+        let mut words = text.split_ascii_whitespace();
+        return if whole {
+            of_text(&mut words, count, place).map(Numbers::Whole)
+        } else {
+            of_text(&mut words, count, place).map(Numbers::Real)
+        };
+    }
     let wanted = count.checked_mul(size).ok_or((place, Problem::TooMany { what: "numbers", count }))?;
     let packed = match source {
         Source::Raw(bytes) => bytes.len(),

@@ -32,10 +32,13 @@ pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
     }
     let closed = if cut.is_some() { format!("{text}</VTKFile>") } else { text.to_string() };
     let document = Document::parse(&closed)
-        .map_err(|bad| (Place::Line(bad.pos().row as usize), Problem::Xml { problem: bad.to_string() }))?;
+        .map_err(|bad| (Place::Line(line_of_fault(&bad, text)), Problem::Xml { problem: bad.to_string() }))?;
     let root = document.root_element();
     let here = Place::Line(1);
-    if !root.has_tag_name("VTKFile") || root.attribute("type") != Some("UnstructuredGrid") {
+    if !root.has_tag_name("VTKFile") {
+        return Err((here, Problem::Format { found: format!("<{}>", root.tag_name().name()) }));
+    }
+    if root.attribute("type") != Some("UnstructuredGrid") {
         let found = root.attribute("type").unwrap_or(root.tag_name().name()).to_string();
         return Err((here, Problem::Expected { expected: "<VTKFile type=\"UnstructuredGrid\">", found }));
     }
@@ -52,6 +55,15 @@ pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
     let coding = Coding { big_endian: root.attribute("byte_order") == Some("BigEndian"), head, compressor };
     let appended = cut.map(|cut| appended(bytes, cut)).transpose()?;
     File { bytes, document: &document, coding, appended }.content()
+}
+
+/// The line of what is wrong with XML; of what is missing, the last.
+fn line_of_fault(bad: &roxmltree::Error, text: &str) -> usize {
+    use roxmltree::Error::{NoRootNode, UnclosedRootNode, UnexpectedEndOfStream};
+    match bad {
+        NoRootNode | UnclosedRootNode | UnexpectedEndOfStream => text.lines().count(),
+        _ => bad.pos().row as usize,
+    }
 }
 
 /// Bytes of a tag with its attributes: each of these is compared with all others.
@@ -133,6 +145,11 @@ impl<'a> File<'a> {
         };
         let coordinates = section("Points")?.children().find(|node| node.has_tag_name("DataArray"));
         let coordinates = coordinates.ok_or((self.place(piece), Problem::Missing { section: "Points" }))?;
+        let dimension = coordinates.attribute("NumberOfComponents").unwrap_or("3");
+        if dimension.trim() != "3" {
+            let (expected, found) = ("points of 3 coordinates", dimension.to_string());
+            return Err((self.place(coordinates), Problem::Expected { expected, found }));
+        }
         let three = points
             .checked_mul(3)
             .ok_or((self.place(piece), Problem::TooMany { what: "nodes", count: points }))?;
