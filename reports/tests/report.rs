@@ -209,7 +209,11 @@ fn every_table_and_figure_appears_and_is_linked() {
     }
     assert!(!page.to_string().contains("NaN"));
     // The script of the page knows what is not a number.
-    for file in rendered.files.iter().filter(|f| f.extension().is_some_and(|e| e != "png" && e != "html")) {
+    for file in rendered
+        .files
+        .iter()
+        .filter(|f| f.extension().is_some_and(|e| e != "png" && e != "pdf" && e != "html"))
+    {
         assert!(!text(file).contains("NaN") && !text(file).contains("inf,"), "{}", file.display());
     }
 }
@@ -298,9 +302,11 @@ fn histories_become_figures_and_nothing_else() {
             "force-closure.tex",
             "tool-force.svg",
             "tool-force.png",
+            "tool-force.pdf",
             "tool-force.csv",
             "energy-time.svg",
             "energy-time.png",
+            "energy-time.pdf",
             "energy-time.csv",
             "report.html"
         ]
