@@ -43,6 +43,11 @@ fn results_of_commits_are_kept_and_a_worse_error_is_marked() {
     let points = trends[0]["points"].as_array().unwrap();
     assert_eq!((points.len(), points[1]["runs"].as_u64()), (2, Some(1)));
     assert!(points[1]["step"]["worse"][0]["quantity"].is_string() && points[0]["step"].is_null());
+    let done = tissuebench(&["report", &results, "--history", &history]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let table = Path::new(&results).join("report/tables/over-commits.csv");
+    assert!(std::fs::read_to_string(table).unwrap().contains("worse"));
     std::fs::write(&second, "source = 1").unwrap();
+    assert_fails(&tissuebench(&["report", &results, "--history", &history]), 2, "0002-");
     assert_fails(&tissuebench(&["history", "show", &history]), 2, "0002-");
 }

@@ -1,7 +1,7 @@
 //! Every question asked of every case, by each kind of time: the runs that answer, over time and error.
 
 use crate::figures::chosen;
-use crate::fronts::{Clock, FLOOR, QUESTIONS, Question, counts, point};
+use crate::fronts::{Clock, FLOOR, QUESTIONS, Question, WANTED, counts, point};
 use crate::history::{band, curve, reference};
 use crate::record::{Family, Purpose};
 use crate::select::{Run, Series, kernels, labels, series};
@@ -46,8 +46,8 @@ pub(crate) struct Ask {
 }
 
 /// A page and its figures begin with the case that many methods compete in, most of all one for what a tool feels that tests what a
-/// publication claims; a reading of a publication is compared with its numbers, not judged.
-pub(crate) type Rank = (bool, bool, bool, usize);
+/// publication claims, and that some run answers within [`WANTED`]; a reading of a publication is compared with its numbers, not judged.
+pub(crate) type Rank = (bool, bool, bool, bool, usize);
 
 /// All that at least two runs answer. Where many kernels are compared, a further one for them, once: for the displacement of a first
 /// solve.
@@ -68,7 +68,7 @@ pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
                     reference: reference_of(group).filter(|_| !kernels),
                     band: uncertainty(group, error),
                     kernels,
-                    rank: rank(&group[0], question, clock, runs_of(&lines)),
+                    rank: rank(&group[0], question, clock, &lines),
                     lines,
                 };
                 let displacement = QUESTIONS[0].error(group);
@@ -97,10 +97,11 @@ fn runs_of(lines: &[Line]) -> usize {
     lines.iter().map(|l| l.runs.len()).sum()
 }
 
-fn rank(run: &Run, question: &Question, clock: Clock, runs: usize) -> Rank {
+fn rank(run: &Run, question: &Question, clock: Clock, lines: &[Line]) -> Rank {
     let first = clock == Clock::First;
     let claimed = question.errors_are("tool-force-error") && !run.is.published.is_empty();
-    (first, run.is.purpose != Purpose::Published, first && claimed, runs)
+    let answered = lines.iter().flat_map(|line| &line.runs).any(|run| run.counts <= WANTED);
+    (first, run.is.purpose != Purpose::Published, first && claimed, answered, runs_of(lines))
 }
 
 fn line(
@@ -131,4 +132,39 @@ fn uncertainty(group: &[Run], error: &str) -> Option<f64> {
     let (_, force) = curve(run, "closure", "tool-force").pop()?;
     let (_, low, high) = band(run, "closure", "tool-force").pop()?;
     Some(0.5 * (high - low) / force.abs()).filter(|b| b.is_finite() && *b > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fronts::tests::record;
+    use crate::record::Record;
+    use crate::select::runs;
+
+    #[test]
+    fn a_page_begins_with_the_claimed_force_that_is_answered_within_what_is_wanted() {
+        let case = |case: &'static str, errors: &[f64], rms: f64| -> Vec<Record> {
+            let run = |(k, &error): (usize, &f64)| {
+                let of = (case, ["tet4", "hex8", "hex20", "tet10"][k], Family::Fem);
+                let each = [
+                    (("time", "total:median"), 1.0),
+                    (("tool-force-error", ""), error),
+                    (("relative-rms", ""), rms),
+                ];
+                each.map(|(what, value)| record(of, 100 + k as u64, what, value))
+            };
+            errors.iter().enumerate().flat_map(run).collect()
+        };
+        // More runs answer the other case, none of them within one per cent; by chance does not count.
+        let begins = |records: &[Record]| {
+            let runs = runs(records);
+            let first = asks(&runs).into_iter().max_by_key(|ask| ask.rank).unwrap();
+            (first.case.clone(), first.question.name)
+        };
+        let many = case("clouds", &[0.2, 0.1, 0.05, 0.04], 0.02);
+        let lucky = case("lucky", &[0.2, 0.1, 0.001, 0.001], 0.6);
+        let fair = case("fair", &[0.2, 0.004], 0.02);
+        assert_eq!(begins(&[many.clone(), lucky.clone(), fair].concat()), ("fair".into(), "tool force"));
+        assert_eq!(begins(&[many, lucky].concat()).1, "tool force");
+    }
 }

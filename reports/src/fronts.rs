@@ -145,6 +145,9 @@ pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64
 /// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
 const CHANCE: f64 = 3.0;
 
+/// The error that a page asks for at first.
+pub(crate) const WANTED: f64 = 0.01;
+
 /// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger.
 /// Within what is asked for, a run answers if this is.
 pub(crate) fn counts(run: &Run, question: &Question, displacement: Option<&str>, error: f64) -> f64 {

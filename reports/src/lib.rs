@@ -1,7 +1,7 @@
 //! From records to tables, figures and one page.
 //!
 //! The harness hands over a [`RunSet`]; [`write_run`] puts it into a folder, [`render`] turns the folder into CSV, Markdown and
-//! LaTeX tables, SVG and PNG figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
+//! LaTeX tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
 //!
 //! ```
 //! use reports::{Family, Record, RunSet, read_run, render, write_run};
@@ -58,7 +58,7 @@ pub use order::{Order, observed as observed_order};
 pub use provenance::{Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
 pub use record::{Family, Purpose, Record};
-pub use render::{Rendered, render};
+pub use render::{Rendered, render, render_over_commits};
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
 };

@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use crate::clouds;
+use crate::commits;
 use crate::error::ReportError;
-use crate::figures;
+use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
 use crate::record::Record;
 use crate::select;
@@ -20,11 +23,24 @@ pub struct Rendered {
     pub files: Vec<PathBuf>,
 }
 
-/// Reads a run's folder and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,csv}` and `report.html` to another (or the same).
+/// Reads a run's folder and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,pdf,csv}` and `report.html` to another (or the same).
 ///
 /// The same records give the same bytes. Nothing is solved or timed again.
 pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
+    render_over_commits(results, out, None)
+}
+
+/// The same, with a history of studies ([`commits`](crate::commits)) drawn over commits where one is given.
+pub fn render_over_commits(
+    results: &Path,
+    out: &Path,
+    history: Option<&Path>,
+) -> Result<Rendered, ReportError> {
     let set = read_run(results)?;
+    let trends = match history {
+        Some(history) => commits::shown(history, &set.provenance.source)?,
+        None => Vec::new(),
+    };
     // Along an axis a scene is another one from value to value: it has maps of its own.
     let as_they_are: Vec<Record> = set.records.iter().filter(|r| r.at.is_none()).cloned().collect();
     let (runs, clouds) = clouds::part(&select::runs(&as_they_are));
@@ -37,33 +53,47 @@ pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
         files.push(path);
         Ok(())
     };
-    let tables = tables::all(&set, &runs, &clouds);
+    let tables = tables::all(&set, &runs, &clouds, &trends);
     for table in &tables {
         for (ending, text) in [("csv", table.csv()), ("md", table.markdown()), ("tex", table.latex())] {
             write(table_dir.join(format!("{}.{ending}", table.name)), text.as_bytes())?;
         }
     }
-    let mut drawn = Vec::new();
-    for figure in figures::all(&set, &runs) {
-        let svg = figure.canvas.svg(&figure.name, &figure.title)?;
+    let drawn: Vec<_> = figures::all(&set, &runs, &trends).into_par_iter().map(draw).collect();
+    let drawn: Vec<Painted> = drawn.into_iter().collect::<Result<_, ReportError>>()?;
+    for Painted { drawn: Drawn { figure, svg }, png, pdf } in &drawn {
         let path = |ending: &str| figure_dir.join(format!("{}.{ending}", figure.name));
         write(path("svg"), svg.as_bytes())?;
-        write(path("png"), &figures::png(&figure.name, &svg)?)?;
+        write(path("png"), png)?;
+        write(path("pdf"), pdf)?;
         if let Some(csv) = figure.data.csv() {
             write(path("csv"), csv.as_bytes())?;
         }
-        drawn.push(Drawn { figure, svg });
     }
+    let drawn: Vec<Drawn> = drawn.into_iter().map(|painted| painted.drawn).collect();
     let page = out.join("report.html");
     // Beside a page of ours what has our endings in the two folders is ours, and what is not written again is old.
     let ours = std::fs::read_to_string(&page).is_ok_and(|old| old.contains(page::TITLE));
-    let html = page::html(&set, (&runs, &clouds), &tables, &drawn, records_from(results, out))?;
+    let html = page::html(&set, (&runs, &clouds), &trends, &tables, &drawn, records_from(results, out))?;
     write(page.clone(), html.as_bytes())?;
     if ours {
         remove_files(&table_dir, &["csv", "md", "tex"], &files)?;
-        remove_files(&figure_dir, &["svg", "png", "csv"], &files)?;
+        remove_files(&figure_dir, &["svg", "png", "pdf", "csv"], &files)?;
     }
     Ok(Rendered { page, files })
+}
+
+/// A figure in all its forms.
+struct Painted {
+    drawn: Drawn,
+    png: Vec<u8>,
+    pdf: Vec<u8>,
+}
+
+fn draw(figure: Figure) -> Result<Painted, ReportError> {
+    let svg = figure.canvas.svg(&figure.name, &figure.title)?;
+    let (png, pdf) = figures::png_and_pdf(&figure.name, &figure.title, &svg)?;
+    Ok(Painted { drawn: Drawn { figure, svg }, png, pdf })
 }
 
 /// Where the page finds the records: only a folder that is moved with it is named.

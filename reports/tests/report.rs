@@ -5,7 +5,8 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use reports::{Record, RunSet, read_run, render, write_run};
+use reports::commits::add;
+use reports::{Record, ReportError, RunSet, read_run, render, render_over_commits, write_run};
 use serde_json::Value;
 
 fn text(path: &Path) -> String {
@@ -208,7 +209,11 @@ fn every_table_and_figure_appears_and_is_linked() {
     }
     assert!(!page.to_string().contains("NaN"));
     // The script of the page knows what is not a number.
-    for file in rendered.files.iter().filter(|f| f.extension().is_some_and(|e| e != "png" && e != "html")) {
+    for file in rendered
+        .files
+        .iter()
+        .filter(|f| f.extension().is_some_and(|e| e != "png" && e != "pdf" && e != "html"))
+    {
         assert!(!text(file).contains("NaN") && !text(file).contains("inf,"), "{}", file.display());
     }
 }
@@ -297,9 +302,11 @@ fn histories_become_figures_and_nothing_else() {
             "force-closure.tex",
             "tool-force.svg",
             "tool-force.png",
+            "tool-force.pdf",
             "tool-force.csv",
             "energy-time.svg",
             "energy-time.png",
+            "energy-time.pdf",
             "energy-time.csv",
             "report.html"
         ]
@@ -464,4 +471,50 @@ fn a_folder_that_is_no_run_is_named() {
     fs::write(dir.path().join("checks.json"), "[{").unwrap();
     let message = read_run(dir.path()).unwrap_err().to_string();
     assert!(message.contains("checks.json"), "{message}");
+}
+
+#[test]
+fn a_history_is_drawn_over_commits_with_what_moved() {
+    let dir = tempfile::tempdir().unwrap();
+    let (results, history) = (dir.path().join("results"), dir.path().join("history"));
+    let mut study = common::study();
+    write_run(&results, &study).unwrap();
+    let page = |history: Option<&Path>| {
+        let rendered = render_over_commits(&results, &results.join("report"), history)?;
+        Ok::<_, ReportError>((inside(&rendered.page), rendered.files))
+    };
+    let error = page(Some(&history)).unwrap_err().to_string();
+    assert!(error.contains("holds no history"), "{error}");
+    for (commit, times) in [("a1b2c3d4e5f6a7", 1.0), ("fedcba98765432", 2.0)] {
+        study.provenance.program.commit = commit.into();
+        study.records.iter_mut().filter(|r| r.quantity == "l2").for_each(|r| r.value *= times);
+        add(&history, &study).unwrap();
+    }
+    let (shown, files) = page(Some(&history)).unwrap();
+    let commits = shown["trends"][0]["commits"].as_array().unwrap();
+    assert_eq!(commits.len(), 2);
+    assert_eq!(commits[0]["moved"], "");
+    assert!(commits[1]["moved"].as_str().unwrap().ends_with("errors worse"), "{}", commits[1]);
+    assert_eq!((&commits[1]["errors_moved"], &commits[1]["times_moved"]), (&true.into(), &false.into()));
+    assert!(commits[1]["changes"][0].as_str().unwrap().contains("l2"), "{}", commits[1]);
+    for file in ["figures/over-commits.pdf", "figures/over-commits.csv", "tables/over-commits.md"] {
+        assert!(files.iter().any(|f| f.ends_with(file)), "{file}");
+    }
+    let (without, _) = page(None).unwrap();
+    assert_eq!(without["trends"], Value::Array(Vec::new()));
+    assert!(!results.join("report/figures/over-commits.svg").exists());
+}
+
+#[test]
+fn every_figure_is_written_for_print() {
+    let dir = tempfile::tempdir().unwrap();
+    write_run(dir.path(), &common::study()).unwrap();
+    let files = render(dir.path(), dir.path()).unwrap().files;
+    let drawn: Vec<_> = files.iter().filter(|f| f.extension().is_some_and(|e| e == "svg")).collect();
+    assert!(drawn.len() > 10);
+    for svg in drawn {
+        for (ending, begins) in [("png", &b"\x89PNG"[..]), ("pdf", b"%PDF-")] {
+            assert!(fs::read(svg.with_extension(ending)).unwrap().starts_with(begins), "{svg:?} as {ending}");
+        }
+    }
 }

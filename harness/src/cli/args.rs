@@ -90,6 +90,9 @@ pub enum Command {
         /// Where to put the report (default: RESULTS/report)
         #[arg(long)]
         out: Option<PathBuf>,
+        /// Also draw the errors and times over commits of this folder, which `history add` fills
+        #[arg(long, value_name = "DIR")]
+        history: Option<PathBuf>,
     },
     /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
     Baseline(BaselineArgs),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use reports::ReportError;
-use reports::commits::{ErrorStep, Point, Step, Trend, add, svg, trends};
+use reports::commits::{Point, Step, Trend, add, svg, trends};
 
 use super::args::Format;
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
@@ -96,8 +96,7 @@ fn row(point: &Point) -> String {
         Some(false) => "no",
         None => "-",
     };
-    let commit: String =
-        point.commit.chars().take(12).chain(point.commit.chars().filter(|c| *c == '+')).collect();
+    let commit = point.name();
     format!(
         "{:>6}  {commit:14}{:>6}{:>8}{quiet:>7}{:>11.3}{:>9}{:>9}",
         point.number,
@@ -116,18 +115,11 @@ fn step(step: &Step) {
         println!("        {}  {lost} runs are no more, {new} are new", colour::out(DOUBTFUL, "runs  "));
     }
     for (list, style, word) in [(worse, BAD, "worse "), (better, GOOD, "better")] {
-        let line = |e: &ErrorStep| format!("{}: {} {:.4e} -> {:.4e}", e.run, e.quantity, e.before, e.after);
-        some(list, |e| println!("        {}  {}", colour::out(style, word), line(e)));
+        some(list, |e| println!("        {}  {e}", colour::out(style, word)));
     }
     some(called, |ratio| {
         let (style, word) = if ratio.ratio > 1.0 { (BAD, "slower") } else { (GOOD, "faster") };
-        println!(
-            "        {}  {}: {:.3}, noise to {:.3}",
-            colour::out(style, word),
-            ratio.name,
-            ratio.ratio,
-            ratio.limit
-        );
+        println!("        {}  {ratio}", colour::out(style, word));
     });
 }
 

@@ -78,9 +78,9 @@ fn act(cli: Cli) -> u8 {
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
-        Command::Report { results, out } => {
+        Command::Report { results, out, history } => {
             let out = out.unwrap_or_else(|| results.join("report"));
-            report(&results, &out)
+            report(&results, &out, history.as_deref())
         }
         Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| unreported(&bad)),
         Command::Reference(args) => match reference(&args) {
@@ -206,8 +206,8 @@ fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<()
     affordable(&chosen.iter().filter_map(of).collect::<Vec<_>>(), force)
 }
 
-fn report(results: &Path, out: &Path) -> u8 {
-    match reports::render(results, out) {
+fn report(results: &Path, out: &Path, history: Option<&Path>) -> u8 {
+    match reports::render_over_commits(results, out, history) {
         Ok(rendered) => {
             eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
             0

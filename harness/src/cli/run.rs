@@ -173,7 +173,7 @@ impl Made<'_> {
         self.set.provenance = provenance::provenance(machine, &[(self.case, text)]);
         self.set.provenance.source = folder::source(&self.args.scene);
         match reports::write_run(out, &self.set) {
-            Ok(()) => self.code.max(report(out, &out.join("report"))),
+            Ok(()) => self.code.max(report(out, &out.join("report"), None)),
             Err(bad) => unreported(&bad),
         }
     }

@@ -108,7 +108,7 @@ pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path, quiet: boo
     let rendered = match written {
         true => 0,
         false => match reports::write_run(out, set) {
-            Ok(()) => report(out, &out.join("report")),
+            Ok(()) => report(out, &out.join("report"), None),
             Err(bad) => return unreported(&bad),
         },
     };

@@ -12,6 +12,8 @@ export interface Point {
   spread?: number | null;
   /** Where a thin line upward ends. */
   counts?: number;
+  /** What it says of itself, in place of its run and numbers. */
+  about?: string;
 }
 
 export interface Chart {
@@ -25,6 +27,8 @@ export interface Chart {
   /** Values that must be in sight. */
   see?: { x?: number[]; y?: number[] };
   joined?: boolean;
+  /** Words in place of numbers along x. */
+  named?: string[];
   height?: number;
 }
 
@@ -65,6 +69,7 @@ function value(axis: Axis, v: number): string {
 
 /** What a point says of itself, in lines. */
 function said(point: Point, chart: Chart): string {
+  if (point.about) return `${name(point.label)}\n${point.about}`;
   const run = point.run;
   const nodes = run === null ? "" : `\n${whole(page.runs.nodes[run])} nodes`;
   const around = point.spread ? ` ± ${duration(point.spread, 2)}` : "";
@@ -76,7 +81,7 @@ function said(point: Point, chart: Chart): string {
 function card(point: Point): (Node | string)[] {
   const r = page.runs;
   const at = point.run;
-  if (at === null) return [h("b", {}, name(point.label))];
+  if (at === null) return [h("b", {}, name(point.label)), point.about ? `: ${point.about.replaceAll("\n", ", ")}` : ""];
   const errors = Object.entries(r.errors)
     .filter(([, values]) => values[at] !== null)
     .map(([quantity, values]) => `${quantity} ${quantity === "penetration" ? `${digits(1e3 * values[at]!, 2)} mm` : percent(values[at]!, 3)}`);
@@ -122,7 +127,10 @@ function drawn(chart: Chart, width: number): SVGSVGElement | HTMLElement {
   const y = range([...points.map((p) => p.y), ...ends.flatMap((b) => [b[1], b[2]]), ...(chart.see?.y ?? [])], chart.y);
   const height = chart.height ?? 340;
   const axis = (a: Axis, ends: [number, number]) => ({ type: (a.log ? "log" : "linear") as "log" | "linear", domain: ends, axis: null });
-  const [across, up] = [ticks(chart.x, x, width / 95), ticks(chart.y, y, height / 60)];
+  const named = chart.named;
+  const every = named ? Math.ceil(named.length / Math.max(1, Math.floor(width / 95))) : 1;
+  const across = named ? named.flatMap((_, at) => (at % every ? [] : [at])) : ticks(chart.x, x, width / 95);
+  const up = ticks(chart.y, y, height / 60);
   const near = { x: "x", y: "y", maxRadius: 40 } as const;
   return Plot.plot({
     width, height, marginLeft: 62, marginBottom: 42, marginTop: 26, marginRight: 18, ariaLabel: chart.title, className: "plot",
@@ -130,7 +138,7 @@ function drawn(chart: Chart, width: number): SVGSVGElement | HTMLElement {
     x: axis(chart.x, x), y: axis(chart.y, y),
     marks: [
       Plot.gridX(across, { strokeOpacity: 0.09 }), Plot.gridY(up, { strokeOpacity: 0.09 }),
-      Plot.axisX(across, { text: tickText(chart.x), tickSize: 3, label: null }), Plot.axisY(up, { text: tickText(chart.y), tickSize: 3, label: null }),
+      Plot.axisX(across, { text: named ? (at: number) => named[at] : tickText(chart.x), tickSize: 3, label: null }), Plot.axisY(up, { text: tickText(chart.y), tickSize: 3, label: null }),
       Plot.text([axisName(chart.y)], { frameAnchor: "top-left", dx: -58, dy: -22, textAnchor: "start", fill: "var(--soft)" }),
       Plot.text([axisName(chart.x)], { frameAnchor: "bottom-right", dy: 36, fill: "var(--soft)" }),
       ...(chart.under?.(x, y) ?? []), ...marks(chart, x, y), ...(chart.over?.(x, y) ?? []),

@@ -8,7 +8,7 @@ export interface Line {
 
 export interface Ask {
   case: string; title: string; what: string; repeated: boolean; error: string; scalar: boolean; kernels: boolean;
-  reference: string | null; band: number | null; rank: [boolean, boolean, boolean, number]; lines: Line[];
+  reference: string | null; band: number | null; rank: (boolean | number)[]; lines: Line[];
 }
 
 export interface Axis { label: string; log: boolean }
@@ -34,6 +34,13 @@ export interface Runs {
   errors: Record<string, (number | null)[]>;
 }
 
+export interface Commit {
+  name: string; quiet: boolean | null; runs: number; seconds: number; time: number | null; error: number | null;
+  errors_moved: boolean; times_moved: boolean; moved: string; changes: string[];
+}
+
+export interface Trend { label: number; commits: Commit[] }
+
 export interface Page {
   source: string;
   program: { version: string; commit: string; dirty: boolean; rustc: string; target: string; features: string; profile: string };
@@ -49,11 +56,13 @@ export interface Page {
   labels: string[];
   runs: Runs;
   deadlines: [string, string, number][];
+  wanted: number;
   asks: Ask[];
   plots: PlotData[];
   pictures: Picture[];
   figures: [string, string, boolean][];
   maps: StabilityMap[];
+  trends: Trend[];
   tables: Table[];
   findings: [string, string[]][];
 }

@@ -4,6 +4,7 @@ import { colours } from "./look";
 import { legend, put, type Chart, type Point } from "./chart";
 import { name, page, type Ask, type PlotData, type Table } from "./data";
 import { folded, h, select } from "./dom";
+import { MEASURES, over, steps } from "./commits";
 import { answer, chart, lines, question } from "./front";
 import { map, mapKey, tally } from "./map";
 import type { Body } from "./solid";
@@ -121,7 +122,7 @@ function files(figureName: string): HTMLElement | null {
   const known = page.figures.find((f) => f[0] === figureName);
   if (!known) return null;
   const one = (ending: string) => h("a", { href: `figures/${figureName}.${ending}` }, ending.toUpperCase());
-  return h("figcaption", { class: "soft small" }, `${known[1]}: `, one("svg"), " ", one("png"), " ", known[2] ? one("csv") : null);
+  return h("figcaption", { class: "soft small" }, `${known[1]}: `, one("svg"), " ", one("png"), " ", one("pdf"), " ", known[2] ? one("csv") : null);
 }
 
 const efficiency: Record<string, string> = { displacement: "", pressure: "-pressure", "tool force": "-force", "peak displacement": "-peak" };
@@ -172,7 +173,7 @@ function caseSection(it: (typeof page.cases)[number]): HTMLElement {
         const sheet = h("div", { class: "picture", tabindex: 0, role: "img", "aria-label": p.title });
         sheet.innerHTML = p.svg;
         return h("figure", {}, h("h4", {}, p.title), p.name.startsWith("surface-") ? turned(it.name) : null, sheet, h("figcaption", { class: "soft small" }, `${p.caption}. `,
-          h("a", { href: `figures/${p.name}.svg` }, "SVG"), " ", h("a", { href: `figures/${p.name}.png` }, "PNG")));
+          h("a", { href: `figures/${p.name}.svg` }, "SVG"), " ", h("a", { href: `figures/${p.name}.png` }, "PNG"), " ", h("a", { href: `figures/${p.name}.pdf` }, "PDF")));
       }),
       h("div", { class: "figures" }, ...asks.map(front), ...locking.concat(plots).map(plotted)),
       ...maps.map((m) => link(`map-${slug(`${m.case} ${m.name}`)}`, `Where methods bend and break: ${m.name}`, "block")),
@@ -227,6 +228,16 @@ function solvers(): HTMLElement {
     ...found.map((t) => tableSection(t, t.name === "solvers" || t.name === "failed-runs")));
 }
 
+function commits(): HTMLElement | null {
+  if (!page.trends.length) return null;
+  const rows = table("over-commits");
+  const labels = page.trends.map((t) => t.label);
+  return section("commits", "Over commits",
+    h("p", { class: "soft" }, "As ratios to the first commit, of the runs that both have. A ring marks a step outside of noise."), steps(),
+    h("div", { class: "figures" }, ...MEASURES.map((m) => figure(m.title, labels, () => over(m), "over-commits"))),
+    rows ? tableSection(rows) : null);
+}
+
 function provenance(): HTMLElement {
   const { program: p, machine: m } = page;
   const facts: [string, string][] = [
@@ -238,7 +249,7 @@ function provenance(): HTMLElement {
   return section("provenance", "Provenance", terms(facts),
     page.scenes.length ? folded([`Content of the ${page.scenes.length} scene files (BLAKE3)`], "", false, (body) => body.append(terms(page.scenes.map((s) => [s.case, s.blake3])))) : null,
     folded([`${page.figures.length} figures as files, for print`], "", false, (body) => body.append(h("ul", {}, ...page.figures.map(([name, title, csv]) =>
-      h("li", {}, `${title}: `, ...["svg", "png", ...(csv ? ["csv"] : [])].flatMap((e) => [h("a", { href: `figures/${name}.${e}` }, e.toUpperCase()), " "])))))));
+      h("li", {}, `${title}: `, ...["svg", "png", "pdf", ...(csv ? ["csv"] : [])].flatMap((e) => [h("a", { href: `figures/${name}.${e}` }, e.toUpperCase()), " "])))))));
 }
 
 function build() {
@@ -247,7 +258,7 @@ function build() {
   const topics = page.findings.filter(([title]) => title !== "Locking");
   const claims = topics.filter(([title]) => /claim|Published/.test(title));
   const others = topics.filter((t) => !claims.includes(t));
-  const rest = page.tables.filter((t) => !["solvers", "failed-runs", "checks", "warnings"].includes(t.name));
+  const rest = page.tables.filter((t) => !["solvers", "failed-runs", "checks", "warnings", "over-commits"].includes(t.name));
   const parts: (HTMLElement | null)[] = [
     section("cases", "Cases", ...page.cases.map(caseSection)),
     locks(),
@@ -258,6 +269,7 @@ function build() {
     solvers(),
     claims.length ? section("claims", "Published claims", ...claims.map(([, all]) => bullets(all))) : null,
     page.tables.length ? section("tables", "Tables", ...rest.map((t) => tableSection(t))) : null,
+    commits(),
     others.length ? section("findings", "Further findings", ...others.map(([title, all]) => folded([`${title} `, h("span", { class: "soft small" }, String(all.length))], "", false, (body) => body.append(bullets(all))))) : null,
     provenance(),
   ];

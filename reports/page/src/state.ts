@@ -21,7 +21,7 @@ function compare(a: (boolean | number)[], b: (boolean | number)[]): number {
 }
 
 const usual: State = {
-  case: first?.case ?? "", what: first?.what ?? "", within: "0.01", clock: "once", only: "", method: "", find: "", off: "", at: "",
+  case: first?.case ?? "", what: first?.what ?? "", within: String(page.wanted), clock: "once", only: "", method: "", find: "", off: "", at: "",
 };
 
 export const state: State = { ...usual };

@@ -150,6 +150,49 @@ test("two clicks reach what locks, what fails, and where methods break", async (
   assert.match(header, counts.failures ? /without a result/ : counts.partial ? /part of the load/ : /no run failed/);
 });
 
+test("the first screen and two clicks answer a stranger", async (open) => {
+  const page = await open();
+  // Which method: the sentence names it with its size and its time, or says that none is right.
+  const said = await page.eval(text("#answer"));
+  assert.match(said, /^1 % of .+: ([^,]+, [\d,]+ nodes, [\d.]+ (ns|µs|ms|s|h)[;.]|no run reaches it)/);
+  // The flagship, where its front is in the results: the force of the jaws on the fair kidney.
+  const flagship = await page.eval(`${data}.asks.some((a) => /^kidney-fair/.test(a.case) && a.what === "tool force" && !a.repeated)`);
+  if (flagship) assert.match(said, /^1 % of tool force on kidney-fair/);
+  else console.log("        no front of the fair kidney in these results");
+  // Is any solver failing: the header says it, one click tells why.
+  const counts = await page.eval(`${data}.counts`);
+  const failing = counts.failures + counts.partial;
+  const link = await page.eval(`${all("header a")}.find((a) => /without a result|part of the load|no run failed/.test(a.innerText))?.innerText`);
+  assert.equal(link, failing ? (counts.failures ? `${counts.failures} run${counts.failures === 1 ? "" : "s"} without a result` : `${counts.partial} run${counts.partial === 1 ? "" : "s"} of a part of the load`) : "no run failed");
+  await page.eval(`${all("header a")}.find((a) => a.innerText === ${JSON.stringify(link)}).click()`);
+  await page.until(`document.getElementById("solvers").getBoundingClientRect().top < innerHeight / 2`);
+  if (failing) {
+    const reasons = await page.eval(`(() => { const t = ${data}.tables.find((t) => t.name === "failed-runs"); return t.columns.find((c) => /why|reason/.test(c.head)).words; })()`);
+    const shown = await page.eval(text("#solvers"));
+    assert.ok(reasons.some((r) => r && shown.includes(r.trim())), "no reason in sight");
+  } else assert.match(await page.eval(text("#solvers")), /Every run gave all of its numbers/);
+  // What locks and where it shows: one click, methods by name with their errors.
+  const locking = await page.eval(`${data}.findings.find(([t]) => t === "Locking")?.[1].find((s) => s.includes("more than doubles")) ?? ""`);
+  if (!locking) return console.log("        nothing locks in these results");
+  await page.eval(`${all("nav a")}.find((a) => a.innerText.includes("locks")).click()`);
+  await page.until(`document.getElementById("locking").getBoundingClientRect().top < innerHeight / 2`);
+  const shown = await page.eval(text("#locking"));
+  const method = locking.match(/more than doubles with ([^ ]+) \(/)[1];
+  assert.ok(shown.includes(method) && /ν = 0\.3 to 0\.49/.test(shown), shown.slice(0, 300));
+});
+
+test("a study over commits has its steps ringed and told", async (open) => {
+  const page = await open("#at=commits");
+  const trends = await page.eval(`${data}.trends`);
+  if (!trends.length) return console.log("        this report has no history");
+  await page.until(`${all("#commits svg.plot, #commits .plot svg")}.length === 2`);
+  const moved = trends.flatMap((t) => t.commits).filter((c) => c.moved);
+  const told = await page.eval(text("#commits"));
+  assert.ok(moved.length ? moved.every((c) => told.includes(c.name) && told.includes(c.moved)) : told.includes("No step is outside of noise"), told.slice(0, 400));
+  const rings = await page.eval(`${all("#commits [aria-label=dot][stroke='var(--accent)'] *")}.length`);
+  assert.equal(rings, moved.reduce((n, c) => n + c.errors_moved + c.times_moved, 0));
+});
+
 test("keys reach the question, the methods, the plot and every section", async (open) => {
   const page = await open();
   const reached = new Set();

@@ -12,7 +12,7 @@ pub use summary::{RunNumbers, Summary};
 pub use trend::{ErrorStep, Point, Step, Trend};
 
 use crate::error::ReportError;
-use crate::figures::over_commits;
+use crate::figures::{OVER_COMMITS as TITLE, over_commits};
 use crate::run_set::RunSet;
 
 /// Adds results to a history; returns the file.
@@ -38,12 +38,23 @@ pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
     Ok(trend::trends(read.collect::<Result<_, ReportError>>()?))
 }
 
+/// The trends of a history that a report shows, those of its own study first.
+pub(crate) fn shown(history: &Path, source: &str) -> Result<Vec<Trend>, ReportError> {
+    let mut found = trends(history)?;
+    if found.is_empty() {
+        let reason = "it holds no history; `tissuebench history add` begins one".into();
+        return Err(ReportError::Content { path: history.into(), reason });
+    }
+    found.sort_by_key(|trend| trend.source != source);
+    Ok(found)
+}
+
 /// Errors and times of trends over commits, as SVG.
 ///
 /// # Errors
 /// A drawing that can't be made.
 pub fn svg(trends: &[Trend]) -> Result<String, ReportError> {
-    over_commits(trends).svg("history", "Errors and processor seconds over commits")
+    over_commits(trends).svg("history", TITLE)
 }
 
 /// The files of a history by their numbers; none of a folder that is not there yet.

@@ -1,5 +1,7 @@
 //! Accuracy and time from commit to commit, and the steps that are no noise.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::Summary;
@@ -46,6 +48,47 @@ pub struct Point {
     pub step: Option<Step>,
 }
 
+impl Trend {
+    /// Its name in a legend.
+    pub fn label(&self) -> String {
+        format!("{}, {}", self.source, self.machine)
+    }
+}
+
+impl Point {
+    /// The commit in twelve digits, with its `+`.
+    pub fn name(&self) -> String {
+        self.commit.chars().take(12).chain(self.commit.chars().skip(12).filter(|c| *c == '+')).collect()
+    }
+
+    /// Whether an error is outside of noise since the commit before.
+    pub fn errors_moved(&self) -> bool {
+        self.step.as_ref().is_some_and(|step| !step.worse.is_empty() || !step.better.is_empty())
+    }
+
+    /// Whether a time is.
+    pub fn times_moved(&self) -> bool {
+        self.step.as_ref().is_some_and(|step| !step.called.is_empty())
+    }
+
+    /// How many errors and times are outside of noise, such as `2 errors worse, 1 time faster`; empty where none is.
+    pub fn moved(&self) -> String {
+        let Some(step) = &self.step else { return String::new() };
+        let slower = step.called.iter().filter(|ratio| ratio.ratio > 1.0).count();
+        let counts = [
+            (step.worse.len(), "error", "worse"),
+            (step.better.len(), "error", "better"),
+            (slower, "time", "slower"),
+            (step.called.len() - slower, "time", "faster"),
+        ];
+        let counted = counts.into_iter().filter(|(count, ..)| *count > 0).map(|(count, what, how)| {
+            let plural = if count == 1 { "" } else { "s" };
+            format!("{count} {what}{plural} {how}")
+        });
+        counted.collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// What changed from one commit to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Step {
@@ -74,6 +117,12 @@ pub struct ErrorStep {
     pub before: f64,
     /// After, SI.
     pub after: f64,
+}
+
+impl fmt::Display for ErrorStep {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        write!(out, "{}: {} {:.4e} -> {:.4e}", self.run, self.quantity, self.before, self.after)
+    }
 }
 
 impl Step {

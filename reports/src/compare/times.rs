@@ -94,6 +94,12 @@ impl Ratio {
     }
 }
 
+impl std::fmt::Display for Ratio {
+    fn fmt(&self, out: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(out, "{}: {:.3}, noise to {:.3}", self.name, self.ratio, self.limit)
+    }
+}
+
 /// One phase of one run in all pairs.
 struct Cell {
     run: String,

@@ -1,6 +1,6 @@
-//! A drawing in points (1/72 inch), drawn by plotters as SVG and by resvg as PNG. The only file that names both.
+//! A drawing in points (1/72 inch), drawn by plotters as SVG and by resvg as PNG.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use plotters::prelude::*;
 use plotters::style::register_font;
@@ -8,6 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
 
 use super::backend::{Facet, LINE_HEIGHT, Paths, escaped};
+use super::pdf::pdf;
 use crate::error::ReportError;
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
@@ -221,16 +222,21 @@ fn fonts() -> Result<(), &'static str> {
     if *done { Ok(()) } else { Err("the built-in fonts can't be read") }
 }
 
-/// The picture in pixels, twice the size a screen shows it.
-pub(crate) fn png(name: &str, svg: &str) -> Result<Vec<u8>, ReportError> {
+/// The picture in pixels, twice the size a screen shows it, and as PDF.
+pub(crate) fn png_and_pdf(name: &str, title: &str, svg: &str) -> Result<(Vec<u8>, Vec<u8>), ReportError> {
+    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
-    let mut options = usvg::Options::default();
-    options.fontdb_mut().load_font_data(REGULAR.to_vec());
-    options.fontdb_mut().load_font_data(BOLD.to_vec());
+    let fontdb = FONTS.get_or_init(|| {
+        let mut fonts = usvg::fontdb::Database::new();
+        [REGULAR, BOLD].into_iter().for_each(|font| fonts.load_font_data(font.to_vec()));
+        Arc::new(fonts)
+    });
+    let options = usvg::Options { fontdb: fontdb.clone(), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|e| wrong(e.to_string()))?;
     let size = tree.size().to_int_size().scale_by(2.0).ok_or_else(|| wrong("it is too large".into()))?;
     let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
         .ok_or_else(|| wrong(format!("{} x {} pixels can't be held", size.width(), size.height())))?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|e| wrong(e.to_string()))
+    let png = pixels.encode_png().map_err(|e| wrong(e.to_string()))?;
+    Ok((png, pdf(&tree, title)))
 }

@@ -259,7 +259,7 @@ mod tests {
                 reference: None,
                 band: None,
                 kernels: false,
-                rank: (true, true, false, 1),
+                rank: (true, true, false, false, 1),
             }
         };
         let drawn = |p: &Ask| near(&p.lines).iter().map(|d| d.name).collect::<Vec<_>>();

@@ -12,6 +12,7 @@ mod grid;
 mod history;
 mod locking;
 mod over_commits;
+mod pdf;
 mod section;
 mod silhouette;
 mod stability;
@@ -19,10 +20,11 @@ mod style;
 mod surface;
 mod transfer;
 
-pub(crate) use canvas::{Canvas, png};
+pub(crate) use canvas::{Canvas, png_and_pdf};
 pub(crate) use locking::sweeps;
-pub(crate) use over_commits::over_commits;
+pub(crate) use over_commits::{TITLE as OVER_COMMITS, over_commits};
 
+use crate::commits::Trend;
 use crate::plot::{Plot, csv};
 use crate::run_set::RunSet;
 use crate::select::{Run, competing, groups, solved};
@@ -68,7 +70,7 @@ struct Pictured {
 }
 
 /// Every figure that has something to show, in the order of the report.
-pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
+pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
     let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
     figures.extend(stability::maps(&set.axes));
@@ -83,6 +85,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run]) -> Vec<Figure> {
     figures.extend(transfer::figures(runs));
     figures.extend(cloud::conditioning(runs));
     figures.extend(cloud::neighbours(runs));
+    figures.extend(over_commits::figure(trends));
     figures
 }
 

@@ -4,8 +4,46 @@ use super::axes::Axis;
 use super::canvas::Canvas;
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
+use super::{Data, Figure};
 use crate::commits::{Point, Trend};
 use crate::record::Family;
+use crate::table::csv_line;
+
+/// Title of the figure.
+pub(crate) const TITLE: &str = "Errors and processor seconds over commits";
+
+/// The figure of a report; none without a history.
+pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
+    (!trends.is_empty()).then(|| Figure {
+        name: "over-commits".into(),
+        title: TITLE.into(),
+        caption: "As ratios to the first commit: the geometric mean of all errors, and the processor seconds of one pass over all runs, each at its \
+                  shortest. Marked are steps outside of noise"
+            .into(),
+        canvas: over_commits(trends),
+        data: Data::Rows(csv(trends)),
+    })
+}
+
+fn csv(trends: &[Trend]) -> String {
+    let head = [
+        "trend",
+        "number",
+        "commit",
+        "errors over the first",
+        "processor seconds over the first",
+        "outside of noise",
+    ];
+    let mut out = csv_line(&head);
+    for (trend, point) in trends.iter().flat_map(|trend| trend.points.iter().map(move |point| (trend, point)))
+    {
+        let ratio = |ratio: Option<f64>| ratio.map(|ratio| format!("{ratio:e}")).unwrap_or_default();
+        let (number, moved) = (point.number.to_string(), point.moved());
+        let (errors, times) = (ratio(point.error_ratio), ratio(point.seconds_ratio));
+        out.push_str(&csv_line(&[&trend.label(), &number, &point.commit, &errors, &times, &moved]));
+    }
+    out
+}
 
 /// Commits named below an axis.
 const NAMED: usize = 6;
@@ -13,17 +51,13 @@ const NAMED: usize = 6;
 /// Two panels over the commits of each trend, both as ratios to the first: errors, and processor seconds. A step outside of noise has
 /// its marker, others have none.
 pub(crate) fn over_commits(trends: &[Trend]) -> Canvas {
-    let label = |trend: &Trend| format!("{}, {}", trend.source, trend.machine);
-    let labels: Vec<(String, Family)> = trends.iter().map(|trend| (label(trend), Family::Fem)).collect();
+    let labels: Vec<(String, Family)> = trends.iter().map(|trend| (trend.label(), Family::Fem)).collect();
     let styles = styles(&labels);
     let errors = |point: &Point| point.error_ratio;
     let seconds = |point: &Point| point.seconds_ratio;
-    let moved =
-        |point: &Point| point.step.as_ref().is_some_and(|s| !s.worse.is_empty() || !s.better.is_empty());
-    let called = |point: &Point| point.step.as_ref().is_some_and(|s| !s.called.is_empty());
     let panels = vec![
-        panel("Errors", "mean error over the first [1]", trends, &styles, errors, moved),
-        panel("Times", "processor seconds over the first [1]", trends, &styles, seconds, called),
+        panel("Errors", "mean error over the first [1]", trends, &styles, errors, Point::errors_moved),
+        panel("Times", "processor seconds over the first [1]", trends, &styles, seconds, Point::times_moved),
     ];
     multiples(panels, &styles, "Marked: steps outside of noise.")
 }
@@ -53,7 +87,7 @@ fn panel<'a>(
         y: Axis::linear(y, trends.iter().flat_map(points).map(|p| p.1).chain([1.0]), false),
         plot: Box::new(move |canvas, panel| {
             for trend in trends {
-                let Some(style) = find(styles, &format!("{}, {}", trend.source, trend.machine)) else {
+                let Some(style) = find(styles, &trend.label()) else {
                     continue;
                 };
                 let at: Vec<_> = points(trend).map(|p| panel.at(p.0, p.1)).collect();

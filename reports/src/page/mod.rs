@@ -2,6 +2,7 @@
 
 mod asked;
 mod bodies;
+mod commits;
 mod methods;
 mod tabled;
 
@@ -11,10 +12,11 @@ use serde::Serialize;
 
 use crate::asks::asks;
 use crate::clouds::Clouds;
+use crate::commits::Trend;
 use crate::error::ReportError;
 use crate::figures::{Data, Figure};
 use crate::findings;
-use crate::fronts::DEADLINES;
+use crate::fronts::{DEADLINES, WANTED};
 use crate::plot::{Plot, Scale};
 use crate::provenance::{Machine, Program, SceneHash};
 use crate::record::Purpose;
@@ -23,6 +25,7 @@ use crate::select::{Run, solved};
 use crate::table::Table;
 
 use asked::AskView;
+use commits::TrendView;
 use methods::{LookView, Methods, RunColumns};
 use tabled::{MapView, TableView};
 
@@ -54,11 +57,14 @@ struct PageData<'a> {
     labels: Vec<String>,
     runs: RunColumns,
     deadlines: Vec<(&'static str, &'static str, f64)>,
+    /// The error that is asked for at first.
+    wanted: f64,
     asks: Vec<AskView>,
     plots: Vec<PlotView>,
     pictures: Vec<PictureView<'a>>,
     figures: Vec<(&'a str, &'a str, bool)>,
     maps: Vec<MapView<'a>>,
+    trends: Vec<TrendView>,
     tables: Vec<TableView<'a>>,
     findings: Vec<(&'static str, Vec<String>)>,
 }
@@ -118,6 +124,7 @@ struct PictureView<'a> {
 pub(crate) fn html(
     set: &RunSet,
     (runs, clouds): (&[Run], &[Clouds]),
+    trends: &[Trend],
     tables: &[Table],
     figures: &[Drawn],
     records: &str,
@@ -126,6 +133,7 @@ pub(crate) fn html(
     let mut methods = Methods::new(&solved);
     let asks = asks(&solved).iter().map(|ask| AskView::new(ask, &mut methods)).collect();
     let (plots, pictures) = views(figures, &mut methods);
+    let trends = trends.iter().map(|trend| TrendView::new(trend, &mut methods)).collect();
     let maps: Vec<MapView> = set.axes.iter().map(MapView::new).collect();
     let runs_made = runs.len() + clouds.iter().map(|group| group.len() - 1).sum::<usize>();
     let (looks, labels, runs_shown) = methods.into_parts();
@@ -141,6 +149,7 @@ pub(crate) fn html(
         labels,
         runs: runs_shown,
         deadlines: DEADLINES.iter().map(|d| (d.name, d.what, d.seconds)).collect(),
+        wanted: WANTED,
         asks,
         plots,
         pictures,
@@ -149,6 +158,7 @@ pub(crate) fn html(
             .map(|d| (&*d.figure.name, &*d.figure.title, d.figure.data.csv().is_some()))
             .collect(),
         maps,
+        trends,
         tables: tables.iter().map(TableView::new).collect(),
         findings: findings::all(set, runs, clouds).into_iter().map(|t| (t.title, t.sentences)).collect(),
     };

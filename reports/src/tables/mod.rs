@@ -8,6 +8,7 @@ mod errors;
 mod modes;
 mod orders;
 mod outcome;
+mod over_commits;
 mod peers;
 mod placement;
 mod places;
@@ -24,12 +25,13 @@ pub(crate) use published::{
 };
 
 use crate::clouds::Clouds;
+use crate::commits::Trend;
 use crate::run_set::RunSet;
 use crate::select::{Run, by_material, labels};
 use crate::table::Table;
 
 /// Every table with at least one row, in the order of the report.
-pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
+pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend]) -> Vec<Table> {
     let tables = [
         stability::stability(set),
         errors::relative(runs),
@@ -57,6 +59,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Table> {
         outcome::failures(set),
         outcome::warnings(set),
         outcome::plan(set),
+        over_commits::over_commits(trends),
     ];
     tables.into_iter().filter(|t| !t.is_empty()).collect()
 }

@@ -250,7 +250,7 @@ fn write(args: &PickArgs, scene: &Scene, mut found: Found, machine: reports::Mac
     found.set.provenance = provenance::provenance(machine, &[of_scene]);
     found.set.provenance.source = folder::source(&args.scene);
     match reports::write_run(out, &found.set) {
-        Ok(()) => report(out, &out.join("report")),
+        Ok(()) => report(out, &out.join("report"), None),
         Err(bad) => unreported(&bad),
     }
 }

@@ -1,0 +1,142 @@
+//! A drawing as PDF: one page, its letters as outlines, so that no font need be there or be embedded.
+
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use pdf_writer::{Content, Filter, Finish, Pdf, Rect, Ref, TextStr};
+use resvg::tiny_skia::{Point, Transform};
+use resvg::{tiny_skia, usvg};
+
+/// Points of paper in a pixel of a tree, of which there are 96 in an inch.
+const PAPER: f32 = 0.75;
+
+pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Vec<u8> {
+    let (width, height) = (PAPER * tree.size().width(), PAPER * tree.size().height());
+    let mut content = Content::new();
+    // Round: at a sharp corner a mitre would stand out.
+    content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
+    // On paper the second coordinate goes up.
+    group(&mut content, tree.root(), Transform::from_row(PAPER, 0.0, 0.0, -PAPER, 0.0, height));
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+    packed.write_all(&content.finish()).expect("memory takes all");
+    let packed = packed.finish().expect("memory takes all");
+
+    let [catalog, pages, page, drawing, info] = [1, 2, 3, 4, 5].map(Ref::new);
+    let mut pdf = Pdf::new();
+    pdf.catalog(catalog).pages(pages);
+    pdf.pages(pages).kids([page]).count(1);
+    let mut sheet = pdf.page(page);
+    sheet.media_box(Rect::new(0.0, 0.0, width, height)).parent(pages).contents(drawing);
+    sheet.resources();
+    sheet.finish();
+    pdf.stream(drawing, &packed).filter(Filter::FlateDecode);
+    pdf.document_info(info).title(TextStr(title));
+    pdf.finish()
+}
+
+fn group(content: &mut Content, of: &usvg::Group, paper: Transform) {
+    for node in of.children() {
+        match node {
+            usvg::Node::Group(inner) => group(content, inner, paper),
+            usvg::Node::Path(shape) => path(content, shape, paper),
+            usvg::Node::Text(text) => group(content, text.flattened(), paper),
+            // No figure has one.
+            usvg::Node::Image(_) => {}
+        }
+    }
+}
+
+fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) {
+    let to_paper = shape.abs_transform().post_concat(paper);
+    let fill = shape.fill().and_then(|fill| rgb(fill.paint()));
+    let stroke = shape.stroke().and_then(|stroke| Some((rgb(stroke.paint())?, stroke.width().get())));
+    if let Some([red, green, blue]) = fill {
+        content.set_fill_rgb(red, green, blue);
+    }
+    if let Some(([red, green, blue], width)) = stroke {
+        content.set_stroke_rgb(red, green, blue).set_line_width(rounded(width * to_paper.get_scale().0));
+    }
+    let at = |mut point: Point| {
+        to_paper.map_point(&mut point);
+        (rounded(point.x), rounded(point.y))
+    };
+    let mut last = Point::zero();
+    for segment in shape.data().segments() {
+        use tiny_skia::PathSegment::{Close, CubicTo, LineTo, MoveTo, QuadTo};
+        match segment {
+            MoveTo(to) => {
+                let (x, y) = at(to);
+                content.move_to(x, y);
+                last = to;
+            }
+            LineTo(to) => {
+                let (x, y) = at(to);
+                content.line_to(x, y);
+                last = to;
+            }
+            // PDF has cubic curves alone.
+            QuadTo(control, to) => {
+                let part = |end: f32, control: f32| end + (control - end) * 2.0 / 3.0;
+                let towards = |end: Point| Point::from_xy(part(end.x, control.x), part(end.y, control.y));
+                cubic(content, [towards(last), towards(to), to].map(at));
+                last = to;
+            }
+            CubicTo(one, two, to) => {
+                cubic(content, [one, two, to].map(at));
+                last = to;
+            }
+            Close => {
+                content.close_path();
+            }
+        }
+    }
+    match (fill, stroke) {
+        (Some(_), Some(_)) => content.fill_nonzero_and_stroke(),
+        (Some(_), None) => content.fill_nonzero(),
+        (None, Some(_)) => content.stroke(),
+        (None, None) => content.end_path(),
+    };
+}
+
+fn cubic(content: &mut Content, [one, two, to]: [(f32, f32); 3]) {
+    content.cubic_to(one.0, one.1, two.0, two.1, to.0, to.1);
+}
+
+/// Figures are drawn in plain colours.
+fn rgb(paint: &usvg::Paint) -> Option<[f32; 3]> {
+    match paint {
+        usvg::Paint::Color(c) => Some([c.red, c.green, c.blue].map(|part| rounded(f32::from(part) / 255.0))),
+        _ => None,
+    }
+}
+
+/// Three decimals: a thousandth of a point can't be seen.
+fn rounded(value: f32) -> f32 {
+    (value * 1e3).round() / 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read as _;
+
+    use super::*;
+
+    #[test]
+    fn a_page_has_the_size_the_lines_and_the_outlines_of_the_drawing() {
+        let svg = "<svg width=\"72pt\" height=\"36pt\" viewBox=\"0 0 720 360\" xmlns=\"http://www.w3.org/2000/svg\">\
+                   <path fill=\"none\" stroke=\"#FF0000\" stroke-width=\"20\" d=\"M0 0l360 180\"/>\
+                   <path fill=\"#0000FF\" d=\"M100 100q100 0 100 100z\"/></svg>";
+        let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap();
+        let made = pdf(&tree, "a title");
+        let text = String::from_utf8_lossy(&made);
+        assert!(text.starts_with("%PDF-") && text.contains("/MediaBox [0 0 72 36]"), "{text}");
+        assert!(text.contains("(a title)"), "{text}");
+        let begin = made.windows(7).position(|w| w == b"stream\n").unwrap() + 7;
+        let mut drawn = String::new();
+        flate2::read::ZlibDecoder::new(&made[begin..]).read_to_string(&mut drawn).unwrap();
+        // From the top left corner to the middle, two points wide; the curve by its cubic form.
+        assert!(drawn.contains("1 0 0 RG\n2 w\n0 36 m\n36 18 l\nS"), "{drawn}");
+        assert!(drawn.contains("0 0 1 rg\n10 26 m\n16.667 26 20 22.667 20 16 c\nh\nf"), "{drawn}");
+    }
+}
