@@ -91,14 +91,30 @@ mod tests {
         packages.filter(|p| name(p).starts_with("tissuebench-")).map(|p| (name(p), of(p))).collect()
     }
 
-    /// Both have a lock file: where a dependency goes from one, the wheel could no longer be built as it is locked.
+    /// Dependencies outside the workspace that a package is built with, by its manifest.
+    fn needed(folder: &Path) -> (String, Vec<String>) {
+        let read: toml::Value =
+            toml::from_str(&std::fs::read_to_string(folder.join("Cargo.toml")).unwrap()).unwrap();
+        let depends = read.get("dependencies").and_then(toml::Value::as_table).into_iter().flatten();
+        let name = read["package"]["name"].as_str().unwrap().into();
+        (name, depends.map(|(key, _)| key.clone()).collect())
+    }
+
+    /// Both have a lock file: where a dependency comes or goes in one alone, the wheel can no longer be built as it is locked.
     #[test]
-    fn the_lock_file_of_the_module_has_no_dependency_that_is_gone() {
+    fn the_lock_file_of_the_module_has_the_dependencies_of_the_workspace() {
         let (workspace, module) = (ours("Cargo.lock"), ours("python/Cargo.lock"));
         assert!(module.len() > 10, "{module:?}");
         for (package, depends) in module.iter().filter(|(package, _)| *package != "tissuebench-python") {
             for one in depends {
                 assert!(workspace[package].contains(one), "{package} no longer needs {one}");
+            }
+        }
+        let solvers = std::fs::read_dir(crate::root().join("solvers")).unwrap().map(|e| e.unwrap().path());
+        let rest = ["cases", "harness", "reports"].map(|folder| crate::root().join(folder));
+        for (package, depends) in solvers.chain(rest).map(|folder| needed(&folder)) {
+            for one in depends.iter().filter(|one| !module.contains_key(&format!("tissuebench-{one}"))) {
+                assert!(module[&package].contains(one), "{package} needs {one}, which the module has not locked");
             }
         }
     }
