@@ -114,7 +114,10 @@ mod tests {
         let rest = ["cases", "harness", "reports"].map(|folder| crate::root().join(folder));
         for (package, depends) in solvers.chain(rest).map(|folder| needed(&folder)) {
             for one in depends.iter().filter(|one| !module.contains_key(&format!("tissuebench-{one}"))) {
-                assert!(module[&package].contains(one), "{package} needs {one}, which the module has not locked");
+                assert!(
+                    module[&package].contains(one),
+                    "{package} needs {one}, which the module has not locked"
+                );
             }
         }
     }
