@@ -1,4 +1,4 @@
-//! A run written, read back and rendered.
+//! A run rendered: its page, tables and figures.
 
 mod common;
 
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use reports::commits::add;
-use reports::{Record, ReportError, RunSet, read_run, render, render_over_commits, write_run};
+use reports::{ReportError, RunSet, render, render_over_commits, write_run};
 use serde_json::Value;
 
 fn text(path: &Path) -> String {
@@ -23,47 +23,6 @@ fn inside(page: &Path) -> Value {
 /// The names of what a list of a page holds.
 fn names<'a>(data: &'a Value, list: &str, key: impl serde_json::value::Index + Copy) -> Vec<&'a str> {
     data[list].as_array().unwrap().iter().map(|it| it[key].as_str().unwrap()).collect()
-}
-
-#[test]
-fn a_run_survives_its_folder() {
-    let dir = tempfile::tempdir().unwrap();
-    let mut set = common::study();
-    write_run(dir.path(), &set).unwrap();
-    let back = read_run(dir.path()).unwrap();
-    set.records.sort_by(|a, b| a.order(b));
-    assert_eq!(back, set);
-    // A second run in the same folder leaves nothing of the first.
-    set.fields.truncate(1);
-    write_run(dir.path(), &set).unwrap();
-    assert_eq!(read_run(dir.path()).unwrap(), set);
-}
-
-#[test]
-fn values_carry_no_thread_count_but_times_do() {
-    let dir = tempfile::tempdir().unwrap();
-    let mut set = common::study();
-    let table = |set: &RunSet, name: &str| -> Vec<String> {
-        write_run(&dir.path().join(name), set).unwrap();
-        text(&dir.path().join(name).join("records.csv")).lines().map(str::to_string).collect()
-    };
-    let two = table(&set, "two");
-    set.provenance.machine.threads = 1;
-    let one = table(&set, "one");
-    assert!(
-        two[0].starts_with("run,case,purpose,published,method,series,family,variant,basis,support_scale"),
-        "{}",
-        two[0]
-    );
-    assert!(two[0].ends_with("commit,rustc,profile,cpu,instructions,threads"), "{}", two[0]);
-    let (mut same, mut other) = (0, 0);
-    for (a, b) in one.iter().zip(&two) {
-        // The time of a step is the model's own.
-        let measured = a.contains(",time,") && !a.contains("grasp") || a.contains(",memory,");
-        assert_eq!(a != b, measured, "{a}\n{b}");
-        if measured { other += 1 } else { same += 1 }
-    }
-    assert!(same > 1000 && other > 1000);
 }
 
 #[test]
@@ -335,27 +294,6 @@ fn histories_become_figures_and_nothing_else() {
     assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 1);
 }
 
-#[test]
-fn no_number_is_recorded_twice() {
-    let dir = tempfile::tempdir().unwrap();
-    let mut set = common::study();
-    let again = set.records[7].clone();
-    set.records.push(Record { value: 1.5 * again.value, ..again.clone() });
-    let message = write_run(dir.path(), &set).unwrap_err().to_string();
-    assert!(message.contains("was recorded twice") && message.contains(&again.quantity), "{message}");
-    // Of another run, step or repeat it is another number.
-    let last = set.records.len() - 1;
-    for other in [
-        Record { run: "another".into(), ..again.clone() },
-        Record { step: Some(1), ..again.clone() },
-        Record { mode: Some(1), ..again.clone() },
-        Record { statistic: "repeat".into(), repeat: Some(1), ..again.clone() },
-    ] {
-        set.records[last] = other;
-        write_run(dir.path(), &set).unwrap();
-    }
-}
-
 /// A report as text: its files with their contents, of figures the words and the number of shapes. `name` is left out of both.
 fn contents(set: &RunSet, name: &str) -> Vec<(String, String)> {
     let dir = tempfile::tempdir().unwrap();
@@ -430,47 +368,6 @@ fn a_study_at_other_sizes_keeps_one_name() {
     let table = text(&dir.path().join("tables/rms.md"));
     assert!(!table.contains("efg-wendland-c2-83"), "{table}");
     assert_eq!(table.matches("| efg-wendland-c2 |").count(), 5, "{table}");
-}
-
-#[test]
-fn numbers_that_are_none_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    for bad in [f64::NAN, f64::INFINITY] {
-        let mut set = common::study();
-        set.records[7].value = bad;
-        let message = write_run(dir.path(), &set).unwrap_err().to_string();
-        assert!(
-            message.contains("isn't a finite number") && message.contains(&set.records[7].quantity),
-            "{message}"
-        );
-        let mut set = common::study();
-        set.checks[0].value = Some(bad);
-        assert!(write_run(dir.path(), &set).is_err());
-    }
-    let mut set = common::study();
-    set.fields[0].triangles[0][0] = 1_000_000;
-    assert!(write_run(dir.path(), &set).unwrap_err().to_string().contains("names point 1000000"));
-    let mut set = common::study();
-    set.fields[0].displacement.pop();
-    assert!(write_run(dir.path(), &set).is_err());
-    let mut set = common::study();
-    set.fields[1].method = set.fields[0].method.to_uppercase();
-    assert!(write_run(dir.path(), &set).unwrap_err().to_string().contains("already has the file name"));
-}
-
-#[test]
-fn a_folder_that_is_no_run_is_named() {
-    let dir = tempfile::tempdir().unwrap();
-    let message = read_run(dir.path()).unwrap_err().to_string();
-    assert!(message.contains("provenance.json"), "{message}");
-    write_run(dir.path(), &common::study()).unwrap();
-    fs::write(dir.path().join("records.csv"), "not a table").unwrap();
-    let message = read_run(dir.path()).unwrap_err().to_string();
-    assert!(message.contains("records.csv"), "{message}");
-    write_run(dir.path(), &common::study()).unwrap();
-    fs::write(dir.path().join("checks.json"), "[{").unwrap();
-    let message = read_run(dir.path()).unwrap_err().to_string();
-    assert!(message.contains("checks.json"), "{message}");
 }
 
 #[test]
