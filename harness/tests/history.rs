@@ -47,6 +47,14 @@ fn results_of_commits_are_kept_and_a_worse_error_is_marked() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let table = Path::new(&results).join("report/tables/over-commits.csv");
     assert!(std::fs::read_to_string(table).unwrap().contains("worse"));
+    // A study draws it too, and says before its runs that a history can't be read.
+    let study = write(&dir, "study.toml", "title = \"one block\"\nscenes = [\"block.toml\"]\n");
+    let verified = inside(&dir, "verified");
+    let verify = |history: &str| tissuebench(&["verify", &study, "--out", &verified, "--history", history]);
+    assert_fails(&verify(&inside(&dir, "none")), 2, "holds no history");
+    assert!(!Path::new(&verified).exists());
+    assert_eq!(verify(&history).code, 0);
+    assert!(Path::new(&verified).join("report/tables/over-commits.csv").is_file());
     std::fs::write(&second, "source = 1").unwrap();
     assert_fails(&tissuebench(&["report", &results, "--history", &history]), 2, "0002-");
     assert_fails(&tissuebench(&["history", "show", &history]), 2, "0002-");

@@ -39,7 +39,7 @@ pub(super) fn merge(args: &MergeArgs) -> u8 {
         return 5;
     }
     merged.finished.set.provenance.source = folder::source(&study);
-    let code = write(&merged.finished, &folder, &args.out, false);
+    let code = write(&merged.finished, &folder, &verify);
     folder.close(|| ());
     code
 }

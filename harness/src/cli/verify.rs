@@ -44,6 +44,10 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
+    // Told before hours of runs, not after them.
+    if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
+        return unreported(&bad);
+    }
     let events = match ci.events.as_deref().map(Events::to).transpose() {
         Ok(events) => events,
         Err(bad) => {
@@ -68,7 +72,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if finished.stored > 0 && !args.quiet {
         eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
     }
-    let code = write(&finished, &folder, &args.out, args.quiet);
+    let code = write(&finished, &folder, args);
     let code = ci::write(ci, &path, &finished.runs).map_or_else(
         |bad| {
             eprintln!("tissuebench: {bad}");
@@ -101,14 +105,15 @@ fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
 }
 
 /// Writes the results and the report, and says what held, of what did not hold alone if it is to be `quiet`; the exit code.
-pub(super) fn write(finished: &Finished, folder: &Folder, out: &Path, quiet: bool) -> u8 {
+pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> u8 {
+    let VerifyArgs { out, history, quiet, .. } = args;
     let set = &finished.set;
     // Of several processes that work on a study one writes what all of them have.
     let (lock, written) = folder.writing();
     let rendered = match written {
         true => 0,
         false => match reports::write_run(out, set) {
-            Ok(()) => report(out, &out.join("report"), None),
+            Ok(()) => report(out, &out.join("report"), history.as_deref()),
             Err(bad) => return unreported(&bad),
         },
     };

@@ -49,6 +49,9 @@ pub struct VerifyArgs {
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+    /// Also draw the errors and times over commits of this folder, which `history add` fills
+    #[arg(long, value_name = "DIR")]
+    pub history: Option<PathBuf>,
 }
 
 impl VerifyArgs {
@@ -73,6 +76,7 @@ impl VerifyArgs {
             apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
             force: true,
             out: PathBuf::new(),
+            history: None,
         }
     }
 

@@ -38,13 +38,22 @@ pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
     Ok(trend::trends(read.collect::<Result<_, ReportError>>()?))
 }
 
+/// Refuses a folder that holds no history, or none that can be read.
+///
+/// # Errors
+/// That one.
+pub fn check(history: &Path) -> Result<(), ReportError> {
+    if !trends(history)?.is_empty() {
+        return Ok(());
+    }
+    let reason = "it holds no history; `tissuebench history add` begins one".into();
+    Err(ReportError::Content { path: history.into(), reason })
+}
+
 /// The trends of a history that a report shows, those of its own study first.
 pub(crate) fn shown(history: &Path, source: &str) -> Result<Vec<Trend>, ReportError> {
+    check(history)?;
     let mut found = trends(history)?;
-    if found.is_empty() {
-        let reason = "it holds no history; `tissuebench history add` begins one".into();
-        return Err(ReportError::Content { path: history.into(), reason });
-    }
     found.sort_by_key(|trend| trend.source != source);
     Ok(found)
 }
