@@ -1,4 +1,4 @@
-"""FElupe: linear and neo-Hookean solids of one material, Newton's method with SciPy's sparse LU."""
+"""FElupe: linear and neo-Hookean solids of one material, Newton's method with PARDISO, or SciPy's sparse LU."""
 import json
 import sys
 import time
@@ -6,7 +6,15 @@ from pathlib import Path
 
 import felupe
 import numpy as np
-from scipy.sparse.linalg import spsolve
+
+try:
+    from pypardiso import spsolve
+
+    SOLVER = "PARDISO"
+except ImportError:
+    from scipy.sparse.linalg import spsolve
+
+    SOLVER = "SciPy"
 
 problem, answer = map(Path, sys.argv[1:3])
 KINDS = {
@@ -61,7 +69,7 @@ def solve(text, load):
 
 start = time.perf_counter()
 text = json.loads((problem / "problem.json").read_text())
-result = {"status": "ok", "problem": text["id"]}
+result = {"status": "ok", "problem": text["id"], "version": f"FElupe {felupe.__version__}, {SOLVER}"}
 if len(text["materials"]) > 1:
     result |= {"status": "refused", "message": "this adapter gives FElupe one material only"}
 else:

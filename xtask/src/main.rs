@@ -4,6 +4,7 @@
 
 mod instructions;
 mod mutants;
+mod newcomer;
 mod python;
 
 use std::path::{Path, PathBuf};
@@ -74,6 +75,9 @@ enum Task {
     /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
     /// run twice or changed
     Survive,
+    /// Follow the guide's first page in a fresh clone of the last commit, from the install to the picture of an organ: more than ten
+    /// minutes fail
+    Newcomer,
     /// Build the wheel of the Python module and test it in a fresh virtual environment, where maturin, numpy and pytest are installed
     Python,
     /// What continuous integration runs: format, lints, docs, tests, quick verification
@@ -116,6 +120,7 @@ fn run(task: Task) -> Result<u8> {
                 ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
             cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
         }
+        Task::Newcomer => newcomer::newcomer(&root()),
         Task::Python => python::python(&root()),
         Task::Ci => ci(),
     }

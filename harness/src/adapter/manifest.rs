@@ -60,6 +60,9 @@ pub(crate) struct Install {
     /// Python packages, for a virtual environment of its own.
     #[serde(default)]
     pub(crate) python: Vec<String>,
+    /// Python packages that make it faster, and that it does without where there is none for a machine.
+    #[serde(default)]
+    pub(crate) faster: Vec<String>,
     /// Programs that have to be in the `PATH`.
     #[serde(default)]
     pub(crate) programs: Vec<String>,

@@ -238,5 +238,5 @@ pub(crate) fn png_and_pdf(name: &str, title: &str, svg: &str) -> Result<(Vec<u8>
         .ok_or_else(|| wrong(format!("{} x {} pixels can't be held", size.width(), size.height())))?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
     let png = pixels.encode_png().map_err(|e| wrong(e.to_string()))?;
-    Ok((png, pdf(&tree, title)))
+    Ok((png, pdf(&tree, title).map_err(wrong)?))
 }

@@ -11,13 +11,17 @@ use resvg::{tiny_skia, usvg};
 /// Points of paper in a pixel of a tree, of which there are 96 in an inch.
 const PAPER: f32 = 0.75;
 
-pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Vec<u8> {
+/// A page of a drawing's lines and plain colours.
+///
+/// # Errors
+/// Names what else is in the drawing.
+pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Result<Vec<u8>, String> {
     let (width, height) = (PAPER * tree.size().width(), PAPER * tree.size().height());
     let mut content = Content::new();
     // Round: at a sharp corner a mitre would stand out.
     content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
     // On paper the second coordinate goes up.
-    group(&mut content, tree.root(), Transform::from_row(PAPER, 0.0, 0.0, -PAPER, 0.0, height));
+    group(&mut content, tree.root(), Transform::from_row(PAPER, 0.0, 0.0, -PAPER, 0.0, height))?;
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
     packed.write_all(&content.finish()).expect("memory takes all");
     let packed = packed.finish().expect("memory takes all");
@@ -32,25 +36,32 @@ pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Vec<u8> {
     sheet.finish();
     pdf.stream(drawing, &packed).filter(Filter::FlateDecode);
     pdf.document_info(info).title(TextStr(title));
-    pdf.finish()
+    Ok(pdf.finish())
 }
 
-fn group(content: &mut Content, of: &usvg::Group, paper: Transform) {
+fn group(content: &mut Content, of: &usvg::Group, paper: Transform) -> Result<(), String> {
+    if of.opacity().get() < 1.0 || of.clip_path().is_some() || of.mask().is_some() || !of.filters().is_empty()
+    {
+        return Err("a group that is clear, cut or filtered, which is not drawn as PDF".into());
+    }
     for node in of.children() {
         match node {
-            usvg::Node::Group(inner) => group(content, inner, paper),
-            usvg::Node::Path(shape) => path(content, shape, paper),
-            usvg::Node::Text(text) => group(content, text.flattened(), paper),
-            // No figure has one.
-            usvg::Node::Image(_) => {}
+            usvg::Node::Group(inner) => group(content, inner, paper)?,
+            usvg::Node::Path(shape) => path(content, shape, paper)?,
+            usvg::Node::Text(text) => group(content, text.flattened(), paper)?,
+            usvg::Node::Image(_) => return Err("a picture, which is not drawn as PDF".into()),
         }
     }
+    Ok(())
 }
 
-fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) {
+fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) -> Result<(), String> {
     let to_paper = shape.abs_transform().post_concat(paper);
-    let fill = shape.fill().and_then(|fill| rgb(fill.paint()));
-    let stroke = shape.stroke().and_then(|stroke| Some((rgb(stroke.paint())?, stroke.width().get())));
+    let fill = shape.fill().map(|fill| rgb(fill.paint(), fill.opacity())).transpose()?;
+    let stroke = shape
+        .stroke()
+        .map(|stroke| Ok::<_, String>((rgb(stroke.paint(), stroke.opacity())?, stroke.width().get())));
+    let stroke = stroke.transpose()?;
     if let Some([red, green, blue]) = fill {
         content.set_fill_rgb(red, green, blue);
     }
@@ -97,17 +108,20 @@ fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) {
         (None, Some(_)) => content.stroke(),
         (None, None) => content.end_path(),
     };
+    Ok(())
 }
 
 fn cubic(content: &mut Content, [one, two, to]: [(f32, f32); 3]) {
     content.cubic_to(one.0, one.1, two.0, two.1, to.0, to.1);
 }
 
-/// Figures are drawn in plain colours.
-fn rgb(paint: &usvg::Paint) -> Option<[f32; 3]> {
+/// A plain colour that hides what is below.
+fn rgb(paint: &usvg::Paint, opacity: usvg::Opacity) -> Result<[f32; 3], String> {
     match paint {
-        usvg::Paint::Color(c) => Some([c.red, c.green, c.blue].map(|part| rounded(f32::from(part) / 255.0))),
-        _ => None,
+        usvg::Paint::Color(c) if opacity.get() == 1.0 => {
+            Ok([c.red, c.green, c.blue].map(|part| rounded(f32::from(part) / 255.0)))
+        }
+        _ => Err("a gradient, a pattern or a clear colour, which is not drawn as PDF".into()),
     }
 }
 
@@ -128,7 +142,7 @@ mod tests {
                    <path fill=\"none\" stroke=\"#FF0000\" stroke-width=\"20\" d=\"M0 0l360 180\"/>\
                    <path fill=\"#0000FF\" d=\"M100 100q100 0 100 100z\"/></svg>";
         let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap();
-        let made = pdf(&tree, "a title");
+        let made = pdf(&tree, "a title").unwrap();
         let text = String::from_utf8_lossy(&made);
         assert!(text.starts_with("%PDF-") && text.contains("/MediaBox [0 0 72 36]"), "{text}");
         assert!(text.contains("(a title)"), "{text}");
@@ -138,5 +152,29 @@ mod tests {
         // From the top left corner to the middle, two points wide; the curve by its cubic form.
         assert!(drawn.contains("1 0 0 RG\n2 w\n0 36 m\n36 18 l\nS"), "{drawn}");
         assert!(drawn.contains("0 0 1 rg\n10 26 m\n16.667 26 20 22.667 20 16 c\nh\nf"), "{drawn}");
+    }
+
+    #[test]
+    fn what_a_page_would_lack_is_refused() {
+        let refused = |inside: &str| {
+            let svg =
+                format!("<svg width=\"9\" height=\"9\" xmlns=\"http://www.w3.org/2000/svg\">{inside}</svg>");
+            let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
+            pdf(&tree, "").err()
+        };
+        let square = "d=\"M1 1h5v5h-5z\"";
+        assert_eq!(refused(&format!("<path {square}/>")), None);
+        let gradient = format!(
+            "<linearGradient id=\"g\"><stop offset=\"0\"/><stop offset=\"1\" stop-color=\"red\"/></linearGradient>\
+             <path fill=\"url(#g)\" {square}/>"
+        );
+        for (inside, what) in [
+            (gradient, "a gradient"),
+            (format!("<path fill-opacity=\"0.5\" {square}/>"), "a clear colour"),
+            (format!("<g opacity=\"0.5\"><path {square}/><path {square}/></g>"), "a group"),
+        ] {
+            let found = refused(&inside);
+            assert!(found.as_ref().is_some_and(|reason| reason.contains(what)), "{inside}: {found:?}");
+        }
     }
 }

@@ -31,6 +31,12 @@ pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {
     run(Command::new(folder.join("bin/python"))
         .args(["-m", "pip", "install", "--quiet"])
         .args(&needs.python))?;
+    for package in &needs.faster {
+        let pip = ["-m", "pip", "install", "--quiet", package];
+        if run(Command::new(folder.join("bin/python")).args(pip)).is_err() {
+            println!("{}: does without {package}, which would make it faster", manifest.name);
+        }
+    }
     Ok(0)
 }
 

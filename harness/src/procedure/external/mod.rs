@@ -103,8 +103,9 @@ pub(crate) fn taken(problem: &Problem, fields: Vec<Vec<Vector3>>, end: f64) -> R
     let history = (steps(problem.setup) > 0).then(|| history(problem, &outer, &fields, end));
     let load = history.as_ref().map_or(1.0, |history| history.last.load);
     let u = fields.into_iter().next_back().unwrap_or_default();
-    let residual = is_of_nodes(problem).then(|| residual(problem, &outer, &u, load));
-    let supports = supports(problem, &outer, &u, load);
+    let inner = is_of_nodes(problem).then(|| inner_forces(problem, &u));
+    let residual = inner.as_ref().map(|inner| residual(problem, &outer, inner, load));
+    let supports = inner.map_or_else(Vec::new, |inner| supports(problem, &outer, &inner, load));
     Ok(Solution { u, supports, dofs: problem.free_dofs(), residual, history, ..Solution::default() })
 }
 
@@ -129,16 +130,18 @@ pub(crate) fn steps(setup: &Setup) -> usize {
 /// The steps of an answer, or its end alone, with energies and volume ratios of our own elements.
 fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f64) -> StepHistory {
     let count = fields.len() as f64;
-    let plain = is_plain(problem);
+    let (plain, of_nodes) = (is_plain(problem), is_of_nodes(problem));
     let steps: Vec<LoadStep> = (1..)
         .zip(fields)
         .map(|(step, u)| {
             let (energy, smallest_j) = energy(problem, u);
+            let load = end * f64::from(step) / count;
+            let supported = of_nodes.then(|| supports(problem, outer, &inner_forces(problem, u), load));
             LoadStep {
-                load: end * f64::from(step) / count,
+                load,
                 strain_energy: Some(energy).filter(|energy| plain && energy.is_finite()),
                 smallest_j,
-                supports: supports(problem, outer, u, end * f64::from(step) / count),
+                supports: supported.unwrap_or_default(),
                 ..LoadStep::at_start(0)
             }
         })
@@ -153,10 +156,9 @@ fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f
 }
 
 /// Forces that our elements leave unbalanced at free nodes, over the larger of inner forces and loads.
-fn residual(problem: &Problem, outer: &[Vector3], u: &[Vector3], load: f64) -> f64 {
-    let inner = inner_forces(problem, u);
+fn residual(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) -> f64 {
     let size = |forces: &[Vector3]| forces.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
-    let largest = size(&inner).max(load * size(outer));
+    let largest = size(inner).max(load * size(outer));
     let mut left: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| outer * load - inner).collect();
     for fixed in problem.prepared.fixed() {
         left[fixed.node as usize][usize::from(fixed.axis)] = 0.0;
@@ -164,13 +166,8 @@ fn residual(problem: &Problem, outer: &[Vector3], u: &[Vector3], load: f64) -> f
     if largest > 0.0 { size(&left) / largest } else { 0.0 }
 }
 
-/// Force (N) of each support on the body, by our elements, at this part of the load; none where more than nodes acts and where a
-/// field is none of theirs.
-fn supports(problem: &Problem, outer: &[Vector3], u: &[Vector3], load: f64) -> Vec<Vector3> {
-    if !is_of_nodes(problem) {
-        return Vec::new();
-    }
-    let inner = inner_forces(problem, u);
+/// Force (N) of each support on the body, of the inner forces at this part of the load; none where a field is none of ours.
+fn supports(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) -> Vec<Vector3> {
     let nodes: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| inner - outer * load).collect();
     let forces = ConditionForces { nodes: &nodes, rows: &[], weak: &[] };
     let found = problem.prepared.support_forces(&forces);

@@ -1,0 +1,86 @@
+//! The guide's first page, followed by the clock: from a fresh clone to a picture of an organ.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+
+/// The page.
+const PAGE: &str = "docs/src/guide/own-organ.md";
+/// How long it may take on two cores, the build included.
+const LIMIT: f64 = 600.0;
+/// What there has to be at the end.
+const MADE: [&str; 3] =
+    ["kidney-results/report/report.html", "kidney-results/report/figures", "kidney-results/volumes"];
+
+/// Clones the last commit, then runs every command of the page up to the first run, each as it stands there.
+pub(super) fn newcomer(root: &Path) -> Result<u8> {
+    let folder = root.join("target/newcomer");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder)?;
+    }
+    std::fs::create_dir_all(&folder)?;
+    let page = std::fs::read_to_string(root.join(PAGE)).context(PAGE)?;
+    let commands = commands(&page);
+    ensure!(commands.iter().any(|line| line.starts_with("cargo install")), "{PAGE} installs nothing");
+    ensure!(commands.len() >= 4, "{PAGE} has no path from the install to a run");
+    let (clone, installed) = (folder.join("tissuebench"), folder.join("installed"));
+    let mut git = Command::new("git");
+    git.args(["clone", "--quiet"]).arg(root).arg(&clone);
+    ensure!(git.status().context("could not start git")?.success(), "git clone failed");
+
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let with_installed = [installed.join("bin")].into_iter().chain(std::env::split_paths(&path));
+    let with_installed = std::env::join_paths(with_installed)?;
+    let mut all = 0.0;
+    for command in commands {
+        let start = Instant::now();
+        let mut shell = Command::new("sh");
+        shell.args(["-ec", command]).current_dir(&clone);
+        shell.env("PATH", &with_installed).env("CARGO_INSTALL_ROOT", &installed).env_remove("CARGO_TARGET_DIR");
+        let status = shell.status().context("could not start sh")?;
+        let took = start.elapsed().as_secs_f64();
+        all += took;
+        eprintln!("xtask: {took:7.1} s  {command}");
+        ensure!(status.success(), "`{command}` ended with {status}");
+    }
+    for made in MADE {
+        ensure!(clone.join(made).exists(), "{made} was not made");
+    }
+    eprintln!("xtask: {all:7.1} s  in all, of {LIMIT} s");
+    Ok(u8::from(all > LIMIT))
+}
+
+/// The commands of a page's shell blocks up to the first run of a scene; a block below a comment is not to be run as it stands.
+fn commands(page: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    let (mut inside, mut before) = (false, "");
+    for line in page.lines() {
+        match line {
+            "```sh" => inside = !before.starts_with("<!--"),
+            "```" => inside = false,
+            command if inside => {
+                found.push(command);
+                if command.starts_with("tissuebench run") {
+                    break;
+                }
+            }
+            _ => {}
+        }
+        before = line;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::commands;
+
+    #[test]
+    fn commands_end_with_the_first_run() {
+        let page = "# A page\n```sh\ncargo install\n```\ntext\n<!-- exits 2 -->\n```sh\nwrong\n```\n\
+                    ```sh\ntissuebench init\ntissuebench run a\ntissuebench run b\n```\n";
+        assert_eq!(commands(page), ["cargo install", "tissuebench init", "tissuebench run a"]);
+    }
+}
