@@ -38,7 +38,10 @@ pub(super) fn newcomer(root: &Path) -> Result<u8> {
         let start = Instant::now();
         let mut shell = Command::new("sh");
         shell.args(["-ec", command]).current_dir(&clone);
-        shell.env("PATH", &with_installed).env("CARGO_INSTALL_ROOT", &installed).env_remove("CARGO_TARGET_DIR");
+        shell
+            .env("PATH", &with_installed)
+            .env("CARGO_INSTALL_ROOT", &installed)
+            .env_remove("CARGO_TARGET_DIR");
         let status = shell.status().context("could not start sh")?;
         let took = start.elapsed().as_secs_f64();
         all += took;

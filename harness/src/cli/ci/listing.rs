@@ -30,8 +30,9 @@ fn row(run: &Planned) -> [String; 4] {
 
 /// One digit: the estimate is good to a factor of three.
 fn seconds(seconds: f64) -> String {
-    let step = 10f64.powf(seconds.max(1e-3).log10().floor());
-    format!("{} s", (seconds / step).round() * step.max(1e-3))
+    // Through its text: a product of 6 and a tenth has more digits than one.
+    let rounded: f64 = format!("{:.0e}", seconds.max(1e-3)).parse().unwrap_or(seconds);
+    format!("{rounded} s")
 }
 
 #[cfg(test)]
@@ -40,6 +41,9 @@ mod tests {
 
     #[test]
     fn estimates_have_one_digit() {
-        assert_eq!([0.0123, 3.4, 678.0].map(seconds), ["0.01 s", "3 s", "700 s"]);
+        assert_eq!(
+            [0.0, 0.0123, 0.61, 3.4, 678.0].map(seconds),
+            ["0.001 s", "0.01 s", "0.6 s", "3 s", "700 s"]
+        );
     }
 }
