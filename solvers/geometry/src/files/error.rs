@@ -78,7 +78,7 @@ pub enum FileError {
         unit: f64,
     },
     /// A name from which no format follows.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2 or 4.1), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
