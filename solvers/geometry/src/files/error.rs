@@ -276,6 +276,39 @@ pub enum Problem {
         /// What to do.
         help: &'static str,
     },
+    /// A keyword that neither Abaqus nor CalculiX has.
+    #[error("*{found} is no keyword of Abaqus or CalculiX{}", match nearest {
+        Some(nearest) => format!("; did you mean *{nearest}?"),
+        None => String::new(),
+    })]
+    UnknownKeyword {
+        /// As the file has it, in capitals.
+        found: String,
+        /// The one that is spelled most like it, if any is.
+        nearest: Option<&'static str>,
+    },
+    /// Numbers beyond those that the head of a section claims.
+    #[error("the section says that its {what} are numbered {} to {}, but they are {} to {}", claimed[0], claimed[1], found[0], found[1])]
+    Range {
+        /// Nodes or elements.
+        what: &'static str,
+        /// The least and the largest number that the file says there are.
+        claimed: [u64; 2],
+        /// Those there are.
+        found: [u64; 2],
+    },
+    /// A block of elements whose type has another dimension than their entity.
+    #[error(
+        "a block of an entity of dimension {entity} has elements of type {kind}, whose dimension is {dimension}"
+    )]
+    Dimension {
+        /// That of the block.
+        entity: i64,
+        /// The type as the file has it.
+        kind: i64,
+        /// That of the type.
+        dimension: i64,
+    },
     /// Text that is no XML.
     #[error("{problem}")]
     Xml {

@@ -118,9 +118,11 @@ impl Sets<'_> {
         let mut found = Vec::new();
         for (place, words) in &card.data {
             if card.generate {
-                for number in generated(*place, words)? {
-                    found.extend(self.one(whole, card, *place, instance, of_nodes, &number.to_string())?);
-                }
+                let content = instance.map_or(whole, |placed| &placed.part.content);
+                let numbers = generated(content, !of_nodes, *place, words)?;
+                let of = if of_nodes { "node" } else { "element" };
+                let numbers = numbers.map_err(|number| card.unknown(*place, of, &number.to_string()))?;
+                found.extend(placed(content, instance, of_nodes, &numbers));
                 continue;
             }
             for word in words.iter().filter(|word| !word.is_empty()) {
@@ -161,25 +163,15 @@ impl Sets<'_> {
             }
         };
         let content = instance.map_or(whole, |placed| &placed.part.content);
-        let (node, cell) = instance.map_or((0, 0), |placed| (placed.first_node, placed.first_cell));
-        let mut found = Vec::new();
-        for number in numbers {
+        for number in &numbers {
             let known =
-                if of_nodes { content.node_of(number).is_some() } else { content.knows_element(number) };
+                if of_nodes { content.node_of(*number).is_some() } else { content.knows_element(*number) };
             if !known {
-                return Err(card.unknown(
-                    place,
-                    if of_nodes { "node" } else { "element" },
-                    &number.to_string(),
-                ));
-            }
-            if of_nodes {
-                found.extend(content.node_of(number).map(|n| n + node));
-            } else {
-                found.extend(content.cell_of(number).map(|c| c + cell));
+                let of = if of_nodes { "node" } else { "element" };
+                return Err(card.unknown(place, of, &number.to_string()));
             }
         }
-        Ok(found)
+        Ok(placed(content, instance, of_nodes, &numbers))
     }
 
     fn surface(&self, whole: &mut Content, card: &Waiting) -> Parsed<()> {
@@ -204,4 +196,17 @@ impl Sets<'_> {
         }
         Ok(())
     }
+}
+
+/// Nodes or cells of numbers, where the instance was placed.
+fn placed(content: &Content, instance: Option<&Placed>, of_nodes: bool, numbers: &[u64]) -> Vec<u32> {
+    let (node, cell) = instance.map_or((0, 0), |placed| (placed.first_node, placed.first_cell));
+    let one = |&number: &u64| {
+        if of_nodes {
+            content.node_of(number).map(|n| n + node)
+        } else {
+            content.cell_of(number).map(|c| c + cell)
+        }
+    };
+    numbers.iter().filter_map(one).collect()
 }

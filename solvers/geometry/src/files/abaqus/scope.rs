@@ -147,7 +147,13 @@ impl Scope {
         for &(place, line) in &card.data {
             let words = split(line);
             if card.get("GENERATE").is_some() {
-                found.extend(generated(place, &words)?);
+                let numbers = generated(&self.content, of_elements, place, &words);
+                let unknown = |number: u64| {
+                    let of = if of_elements { "element" } else { "node" };
+                    let number = number.to_string();
+                    (place, Problem::UnknownMember { what, name: name.into(), of, number })
+                };
+                found.extend(numbers?.map_err(unknown)?);
                 self.few_enough(place, found.len())?;
                 continue;
             }
@@ -296,23 +302,36 @@ impl Scope {
     }
 }
 
-/// `first, last, step`, the step 1 unless given.
-pub(super) fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64> + use<>> {
+/// Numbers of nodes or elements from `first, last, step`, the step 1 unless given. Those between that the deck does not have are none of
+/// the range, as in Abaqus; the first and the last are there, else the inner result is the one that is not.
+pub(super) fn generated(
+    content: &Content,
+    of_elements: bool,
+    place: Place,
+    words: &[String],
+) -> Parsed<Result<Vec<u64>, u64>> {
     let word = |k: usize| words.get(k).map(String::as_str).filter(|word| !word.is_empty());
     let first = whole(place, word(0).unwrap_or(""), "the first number")?;
     let last = whole(place, word(1).unwrap_or(""), "the last number")?;
     let step = word(2).map_or(Ok(1), |word| whole(place, word, "the step between numbers"))?;
-    let count = last.checked_sub(first).map(|span| span / step.max(1));
-    match count {
-        Some(count) if step > 0 && count >= MOST => {
-            Err((place, Problem::TooMany { what: "numbers to generate", count: count as usize }))
-        }
-        Some(count) if step > 0 => Ok((0..=count).map(move |k| first + k * step)),
-        _ => {
-            let expected = "a first number, a last one not below it, and a step of 1 or more";
-            Err((place, Problem::Expected { expected, found: words.join(", ") }))
-        }
+    let wrong = |expected| Err((place, Problem::Expected { expected, found: words.join(", ") }));
+    let Some(span) = last.checked_sub(first).filter(|_| step > 0) else {
+        return wrong("a first number, a last one not below it, and a step of 1 or more");
+    };
+    if !span.is_multiple_of(step) {
+        return wrong("a last number that the steps from the first one reach");
     }
+    let count = span / step;
+    if count >= MOST {
+        return Err((place, Problem::TooMany { what: "numbers to generate", count: count as usize }));
+    }
+    let known = |number: u64| {
+        if of_elements { content.knows_element(number) } else { content.node_of(number).is_some() }
+    };
+    if let Some(missing) = [first, last].into_iter().find(|&end| !known(end)) {
+        return Ok(Err(missing));
+    }
+    Ok(Ok((0..=count).map(|k| first + k * step).filter(|&number| known(number)).collect()))
 }
 
 /// Numbers that one line may generate: more than decks have, and made in a moment.
