@@ -157,6 +157,18 @@ pub enum Problem {
         /// Where the first one is.
         place: Place,
     },
+    /// Two solids on the same side of a face that they share: they overlap.
+    #[error(
+        "element {element} shares a face with element {first} ({place}) and lies on the same side of it: they overlap"
+    )]
+    SameSide {
+        /// Number of the later element in the file.
+        element: u64,
+        /// Number of the first one.
+        first: u64,
+        /// Where the first one is.
+        place: Place,
+    },
     /// A coordinate that is not finite.
     #[error("node {number} has a coordinate that is not finite")]
     NotFinite {

@@ -11,6 +11,7 @@ mod format;
 mod gmsh;
 mod lines;
 mod numbers;
+mod overlap;
 mod rows;
 mod surface;
 mod vtk;
