@@ -203,7 +203,7 @@ method = [
     let objects: Vec<Value> = done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let moved: Vec<f64> =
         objects.iter().filter_map(|object| object["metrics"]["max-z"]["value"].as_f64()).collect();
-    assert!(moved.len() == 2 && (moved[0] / moved[1] - 1.0).abs() < 0.2 && moved[0] > 1e-4, "{moved:?}");
+    assert!(moved.len() == 2 && (moved[0] / moved[1] - 1.0).abs() < 0.3 && moved[0] > 1e-4, "{moved:?}");
     let other = text.replace("\"seen\"", "\"lid\"");
     let done = tissuebench(&["run", &write(&dir, "other.toml", &other), "--once"]);
     assert_fails(&done, 2, "it has surface, held, pressed, seen, skin");
