@@ -6,10 +6,11 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::cards::{Card, split, unquoted};
 use super::kinds::faces;
-use super::scope::{Scope, generated};
+use super::ranges::Range;
+use super::scope::Scope;
 use crate::CellKind;
 
-/// Members of all sets: sets of sets can double with every line.
+/// Members of all sets, and numbers of all ranges: sets of sets can double with every line.
 const MOST: usize = 1 << 23;
 
 /// A part where it was placed.
@@ -77,19 +78,17 @@ struct Sets<'a> {
 /// Adds the sets and surfaces of an assembly to the whole; nodes and elements outside of instances are those of its own numbers.
 pub(super) fn add(whole: &mut Content, waiting: &[Waiting], placed: &[Placed]) -> Parsed<()> {
     let mut sets = Sets { placed, nodes: HashMap::new(), cells: HashMap::new() };
-    let (mut names, mut members): (Vec<&str>, usize) = (Vec::new(), 0);
+    let (mut names, mut members, mut ranges): (Vec<&str>, usize, usize) = (Vec::new(), 0, 0);
     for card in waiting {
         if card.keyword == "SURFACE" {
             sets.surface(whole, card)?;
             continue;
         }
         let of_nodes = card.keyword == "NSET";
-        let found = sets.members(whole, card, of_nodes)?;
+        let found = sets.members(whole, card, of_nodes, &mut ranges)?;
         let lists = if of_nodes { &mut sets.nodes } else { &mut sets.cells };
         members += found.len();
-        if members > MOST {
-            return Err((card.place, Problem::TooMany { what: "members of sets", count: members }));
-        }
+        few_enough(card.place, members)?;
         let key = card.name.to_ascii_uppercase();
         if of_nodes && !lists.contains_key(&key) {
             names.push(&card.name);
@@ -107,8 +106,14 @@ impl Sets<'_> {
         self.placed.iter().find(|placed| placed.name.eq_ignore_ascii_case(name))
     }
 
-    /// Nodes or cells that a set lists.
-    fn members(&self, whole: &Content, card: &Waiting, of_nodes: bool) -> Parsed<Vec<u32>> {
+    /// Nodes or cells that a set lists; `ranges` counts the numbers of all ranges.
+    fn members(
+        &self,
+        whole: &Content,
+        card: &Waiting,
+        of_nodes: bool,
+        ranges: &mut usize,
+    ) -> Parsed<Vec<u32>> {
         let instance = match &card.instance {
             None => None,
             Some(name) => {
@@ -119,17 +124,18 @@ impl Sets<'_> {
         for (place, words) in &card.data {
             if card.generate {
                 let content = instance.map_or(whole, |placed| &placed.part.content);
-                let numbers = generated(content, !of_nodes, *place, words)?;
+                let range = Range::read(*place, words)?;
+                *ranges += range.count();
+                few_enough(*place, *ranges)?;
                 let of = if of_nodes { "node" } else { "element" };
+                let numbers = range.members(content, !of_nodes);
                 let numbers = numbers.map_err(|number| card.unknown(*place, of, &number.to_string()))?;
                 found.extend(placed(content, instance, of_nodes, &numbers));
                 continue;
             }
             for word in words.iter().filter(|word| !word.is_empty()) {
                 found.extend(self.one(whole, card, *place, instance, of_nodes, &unquoted(word))?);
-                if found.len() > MOST {
-                    return Err((*place, Problem::TooMany { what: "members of sets", count: found.len() }));
-                }
+                few_enough(*place, found.len())?;
             }
         }
         Ok(found)
@@ -196,6 +202,10 @@ impl Sets<'_> {
         }
         Ok(())
     }
+}
+
+fn few_enough(place: Place, count: usize) -> Parsed<()> {
+    if count <= MOST { Ok(()) } else { Err((place, Problem::TooMany { what: "members of sets", count })) }
 }
 
 /// Nodes or cells of numbers, where the instance was placed.

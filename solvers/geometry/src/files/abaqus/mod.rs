@@ -10,6 +10,7 @@ mod cards;
 mod deck;
 mod keywords;
 mod kinds;
+mod ranges;
 mod scope;
 pub(super) mod write;
 
