@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use geometry::files::{Format, GmshVersion};
 use geometry::generate::{raise_order, to_tets};
 use geometry::stuffing::{Stuffing, stuff};
 use geometry::{CellKind, Mesh, Surface, cloud_from_mesh, files, quality, read_points_text};
@@ -56,9 +57,13 @@ fn take(mesh: &Mesh) {
         let _ = raise_order(mesh);
     }
     let folder = tempfile::tempdir().expect("a folder for temporary files");
-    for name in ["again.msh", "again.inp", "again.vtu"] {
+    for name in ["again.msh", "again-4.1.msh", "again.inp", "again.vtu"] {
         let file = folder.path().join(name);
-        if files::write(mesh, &file, 1.0).is_ok() {
+        let written = match name {
+            "again-4.1.msh" => files::write_as(mesh, &file, 1.0, Format::Gmsh(GmshVersion::FourOne)),
+            _ => files::write(mesh, &file, 1.0),
+        };
+        if written.is_ok() {
             let again = files::read(&file, 1.0).expect("what is written can be read");
             assert!(again.points() == mesh.points() && again.cell_count() == mesh.cell_count());
             assert!(again.region_names() == mesh.region_names(), "{name}: names of regions");

@@ -122,3 +122,18 @@ fn a_mesh_is_not_converted_onto_itself() {
     assert_eq!(std::fs::read_to_string(&from).unwrap(), MESH);
     assert_eq!(tissuebench(&["mesh", "convert", &from, &to, "--element", "tet10"]).code, 0);
 }
+
+#[test]
+fn a_version_of_gmsh_is_chosen_for_its_files_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to, vtu) = (write(&dir, "two.msh", MESH), inside(&dir, "new.msh"), inside(&dir, "new.vtu"));
+    for (version, head) in [("4.1", "$MeshFormat\n4.1 0 8\n"), ("2.2", "$MeshFormat\n2.2 0 8\n")] {
+        assert_eq!(tissuebench(&["mesh", "convert", &from, &to, "--version", version]).code, 0);
+        assert!(std::fs::read_to_string(&to).unwrap().starts_with(head), "{version}");
+        assert_eq!(tissuebench(&["mesh", "info", &to]).code, 0);
+    }
+    let convert =
+        |to: &str, version: &str| tissuebench(&["mesh", "convert", &from, to, "--version", version]);
+    assert_fails(&convert(&vtu, "4.1"), 2, "new.vtu: --version is of Gmsh's format; write a .msh file");
+    assert_fails(&convert(&to, "3.0"), 2, "versions 2.2 and 4.1 are written");
+}

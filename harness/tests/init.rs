@@ -162,7 +162,7 @@ fn what_makes_no_scene_is_refused_by_its_option() {
     refused(&["--poisson", "0.5"], "--poisson '0.5': a number from 0 to below 0.5");
     refused(&["--unit", "inch"], "--unit 'inch': is not a length unit: m, cm, mm or um");
     refused(&["--press-from", "botom"], "did you mean 'bottom'?");
-    refused(&["--hold", "lid"], "--hold 'lid': the file names no surface; or write comparisons");
+    refused(&["--hold", "lid"], "--hold 'lid': the file names bean; or write comparisons");
     refused(&["--hold", "z < 3"], "--hold");
     refused(&["--hold", "z < -30 mm"], "no corner of the surface lies there");
     refused(&["--hold", "z < 30 mm"], "holds the whole body");

@@ -50,6 +50,7 @@ fn a_surface_is_filled_and_described() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let says = [
         "  surface     1472 triangles, ",
+        "  surfaces    ellipsoid: ",
         "  spacing     3.000 mm, up to 4 times that inside",
         "% of the surface's 12.4",
         "degrees between",
@@ -57,7 +58,9 @@ fn a_surface_is_filled_and_described() {
     assert!(says.iter().all(|says| done.stdout.contains(says)), "{}", done.stdout);
     let info = tissuebench(&["mesh", "info", &to]);
     assert!(
-        info.code == 0 && info.stdout.contains("surfaces    surface: "),
+        info.code == 0
+            && info.stdout.contains("surfaces    ellipsoid: ")
+            && info.stdout.contains(" surface: "),
         "{}{}",
         info.stdout,
         info.stderr
@@ -174,6 +177,36 @@ method = [{{ id = "made", family = "fem", element = "tet4", size = {{ spacing = 
     // Stretched by 0.05 over 1 cm and by 0.2 over the next, less where it is held.
     let x = object["metrics"]["max-x"]["value"].as_f64().unwrap();
     assert!((2.0e-3..2.7e-3).contains(&x), "{object}");
+}
+
+/// Groups of an OBJ file are named surfaces of elements and of clouds on it.
+#[test]
+fn names_of_a_surface_file_are_held_and_loaded() {
+    let dir = tempfile::tempdir().unwrap();
+    let cube = "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nv 0 0 10\nv 10 0 10\nv 10 10 10\nv 0 10 10\n\
+        o skin\nf 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n\
+        g held\nf 4 1 5 8\ng pressed seen\nf 5 6 7 8\n";
+    write(&dir, "cube.obj", cube);
+    let text = r#"title = "A cube of an OBJ file"
+body = { shape = "file", path = "cube.obj", unit = "mm" }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ on = "held", fix = "xyz" }]
+load = [{ on = "seen", traction = ["0 Pa", "0 Pa", "1 kPa"] }]
+output = { probes = [["5 mm", "5 mm", "9 mm"]] }
+method = [
+  { id = "elements", family = "fem", element = "tet10", size = { spacing = "2 mm" } },
+  { id = "cloud", nodes = 300, family = "efg", kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "cell-smoothed", points = 1 }, essential = "nitsche" },
+]
+"#;
+    let done = tissuebench(&["run", &write(&dir, "scene.toml", text), "--once", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let objects: Vec<Value> = done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let moved: Vec<f64> =
+        objects.iter().filter_map(|object| object["metrics"]["max-z"]["value"].as_f64()).collect();
+    assert!(moved.len() == 2 && (moved[0] / moved[1] - 1.0).abs() < 0.3 && moved[0] > 1e-4, "{moved:?}");
+    let other = text.replace("\"seen\"", "\"lid\"");
+    let done = tissuebench(&["run", &write(&dir, "other.toml", &other), "--once"]);
+    assert_fails(&done, 2, "it has surface, held, pressed, seen, skin");
 }
 
 #[test]

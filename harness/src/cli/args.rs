@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
+use geometry::files::GmshVersion;
 
 use super::adapter::AdapterAction;
 use super::ci::CiArgs;
@@ -314,7 +315,7 @@ pub enum MeshAction {
 pub struct ConvertArgs {
     /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
     pub from: PathBuf,
-    /// The file to write, by its suffix Gmsh 2.2 (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
+    /// The file to write, by its suffix Gmsh (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
     /// .stl; another one than FROM
     pub to: PathBuf,
     /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
@@ -323,6 +324,9 @@ pub struct ConvertArgs {
     /// Leave nodes out that no element and no set names, which are refused otherwise
     #[arg(long)]
     pub drop_unused: bool,
+    /// Version of Gmsh's format for a .msh file: 2.2 (the default, which most programs read) or 4.1
+    #[arg(long, value_name = "2.2|4.1", value_parser = gmsh_version)]
+    pub version: Option<GmshVersion>,
 }
 
 /// Arguments of `mesh make`.
@@ -354,6 +358,14 @@ pub struct MakeArgs {
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let metres = catalogue::Dimension::Length.read(text).map_err(|bad| bad.to_string())?;
     if metres > 0.0 { Ok(metres) } else { Err("a length above zero".into()) }
+}
+
+fn gmsh_version(text: &str) -> Result<GmshVersion, String> {
+    match text {
+        "2.2" => Ok(GmshVersion::Two),
+        "4.1" => Ok(GmshVersion::FourOne),
+        _ => Err("versions 2.2 and 4.1 are written".into()),
+    }
 }
 
 /// A unit of the coordinates in a file.

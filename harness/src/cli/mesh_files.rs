@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use geometry::files::{Format, GmshVersion};
 use geometry::generate::{raise_order, to_tets};
 use geometry::{CellKind, Mesh, files, quality};
 
@@ -25,7 +26,9 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
     }
 }
 
-fn convert(ConvertArgs { from, to, element, drop_unused }: &ConvertArgs) -> Result<(), Failure> {
+fn convert(args: &ConvertArgs) -> Result<(), Failure> {
+    let ConvertArgs { from, to, element, drop_unused, version } = args;
+    let format = format(to, *version)?;
     let read = if *drop_unused { files::read_without_unused } else { files::read };
     let mesh = read(from, MILLIMETRE).map_err(input)?;
     quality::check(&mesh)
@@ -38,11 +41,21 @@ fn convert(ConvertArgs { from, to, element, drop_unused }: &ConvertArgs) -> Resu
         None => mesh,
         Some(name) => into(&mesh, name)?,
     };
-    files::write(&mesh, to, MILLIMETRE).map_err(input)?;
-    let boundary =
-        if to.extension().is_some_and(|s| s.eq_ignore_ascii_case("stl")) { "the boundary of " } else { "" };
+    files::write_as(&mesh, to, MILLIMETRE, format).map_err(input)?;
+    let boundary = if format == Format::Stl { "the boundary of " } else { "" };
     println!("{}: {boundary}{} nodes, {} cells", to.display(), mesh.points().len(), mesh.cell_count());
     Ok(())
+}
+
+/// The format to write; a version is one of Gmsh's.
+fn format(to: &Path, version: Option<GmshVersion>) -> Result<Format, Failure> {
+    match (Format::of(to).map_err(input)?, version) {
+        (Format::Gmsh(_), Some(version)) => Ok(Format::Gmsh(version)),
+        (format, None) => Ok(format),
+        (_, Some(_)) => {
+            Err(input(format!("{}: --version is of Gmsh's format; write a .msh file", to.display())))
+        }
+    }
 }
 
 pub(super) fn input(error: impl std::fmt::Display) -> Failure {

@@ -43,22 +43,37 @@ pub fn info(file: &Path, unit: LengthUnit, format: Format) -> Result<(), Failure
 fn of_surface(file: &Path, surface: &Surface, unit: LengthUnit, format: Format) -> Result<(), Failure> {
     let (points, triangles) = (surface.points().len(), surface.triangles().len());
     let [low, high] = surface.bounds();
+    let groups = groups(surface);
     if format == Format::Json {
+        let named = groups.iter().map(|(name, triangles)| json!({ "name": name, "triangles": triangles }));
+        let named: Vec<Value> = named.collect();
         let object = json!({
             "file": file, "kind": "surface", "points": points, "triangles": triangles, "area_m2": surface.area(),
-            "volume_m3": surface.volume(), "extent_m": extent_json(low, high), "unit": unit.name,
+            "volume_m3": surface.volume(), "surfaces": named, "extent_m": extent_json(low, high), "unit": unit.name,
             "unit_guess": guess((high - low).amax(), unit),
         });
         println!("{object}");
         return Ok(());
     }
     println!("{}: a closed surface of {triangles} triangles, {points} corners", file.display());
+    for (at, (name, triangles)) in groups.iter().enumerate() {
+        row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {triangles} triangles"));
+    }
     row("extent", &extent(low, high, unit));
     row("unit", &of_unit((high - low).amax(), unit));
     row("area", &format!("{} cm^2", digits(surface.area() / CENTIMETRE.powi(2))));
     row("volume", &format!("{} cm^3", digits(surface.volume() / CENTIMETRE.powi(3))));
     row("next", "tissuebench mesh make fills it with tetrahedra");
     Ok(())
+}
+
+/// Names of a surface's groups, with their numbers of triangles.
+fn groups(surface: &Surface) -> Vec<(&str, usize)> {
+    let mut found: Vec<(&str, usize)> = surface.groups().names().iter().map(|name| (&**name, 0)).collect();
+    for triangle in 0..surface.triangles().len() {
+        surface.groups().of(triangle).iter().for_each(|&group| found[group as usize].1 += 1);
+    }
+    found
 }
 
 /// What is known of a mesh.

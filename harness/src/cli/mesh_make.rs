@@ -30,6 +30,10 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         doublings => format!(", up to {} times that inside", 1 << doublings),
     };
     row("surface", &described(&surface));
+    for (at, name) in surface.groups().names().iter().enumerate() {
+        let facets = mesh.group(name).map_or(0, <[_]>::len);
+        row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {facets} faces"));
+    }
     row("spacing", &format!("{}{inside}", length(spacing)));
     let fit = stuffing::fit(&surface, &mesh);
     let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);

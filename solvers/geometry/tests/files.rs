@@ -217,7 +217,7 @@ fn at_line<'a>((from, to, line, says): (&'a str, &'a str, u32, &str)) -> (&'a st
 fn broken_decks_name_the_line() {
     let cases = [
         ("*heading", "heading", 1, "'heading' begins no mesh file"),
-        ("*Node, NSET", "*Nodes, NSET", 12, "element 11 names node 1"),
+        ("*Node, NSET", "*Nodes, NSET", 4, "*NODES is no keyword of Abaqus or CalculiX; did you mean *NODE?"),
         ("1.D0", "1,D0", 6, "expected a coordinate, found 'D0'"),
         ("1.0d+0", "nan", 7, "expected a coordinate, found 'nan'"),
         ("1.0d+0", "1e999", 7, "node 3 has a coordinate that is not finite"),

@@ -35,6 +35,20 @@ fn instances_do_not_multiply_a_small_part() {
     assert!(placed(9000).contains("too many nodes and elements placed by *INSTANCE"), "{}", placed(9000));
 }
 
+/// Ranges of ten million numbers of which two are there, one after another.
+#[test]
+fn ranges_take_no_time_without_end() {
+    let far = TET.replace("4,0,0,1\n", "9999999,0,0,1\n").replace("1,1,2,3,4", "1,1,2,3,9999999");
+    let ranges = |count: usize| format!("*NSET,NSET=n,GENERATE\n{}", "1,9999999\n".repeat(count));
+    assert_eq!(refusal(&format!("{far}{}", ranges(1))), "4 nodes");
+    let found = refusal(&format!("{far}{}", ranges(5000)));
+    assert!(found.contains("too many members of sets: "), "{found}");
+    let part =
+        format!("*PART,NAME=p\n{far}*END PART\n*ASSEMBLY,NAME=a\n*INSTANCE,NAME=i,PART=p\n*END INSTANCE\n");
+    let found = refusal(&format!("{part}{}", ranges(5000).replace("NSET=n", "NSET=n,INSTANCE=i")));
+    assert!(found.contains("too many members of sets: "), "{found}");
+}
+
 #[test]
 fn a_tag_has_a_length() {
     let many: String = (0..20_000).map(|k| format!("a{k}=\"1\" ")).collect();

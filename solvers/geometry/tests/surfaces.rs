@@ -237,6 +237,7 @@ fn surfaces_that_cross_are_refused() {
             points: (0..8).map(corner).collect(),
             triangles: faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
             faces: (1..=12).collect(),
+            ..Soup::default()
         };
         moved(soup, at)
     };

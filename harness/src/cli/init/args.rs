@@ -26,7 +26,7 @@ pub struct InitArgs {
     /// The side from which the plate presses: top (z), bottom, left (x), right, front (y) or back (default: top)
     #[arg(long, value_name = "SIDE")]
     pub press_from: Option<String>,
-    /// What is held: comparisons such as "z < 3 mm", or a surface that a mesh file names (default: a fifth of the body, away from the
+    /// What is held: comparisons such as "z < 3 mm", or a surface that the file names (default: a fifth of the body, away from the
     /// plate)
     #[arg(long, value_name = "WHERE")]
     pub hold: Option<String>,

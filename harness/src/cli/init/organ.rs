@@ -29,7 +29,9 @@ impl Organ {
     /// Reads a closed surface or a mesh.
     pub fn read(file: &Path, unit: LengthUnit) -> Result<Organ, Failure> {
         let (surface, names) = if files::is_surface(file) {
-            (files::read_surface(file, unit.metres).map_err(input)?, Vec::new())
+            let surface = files::read_surface(file, unit.metres).map_err(input)?;
+            let names = surface.groups().names().to_vec();
+            (surface, names)
         } else {
             let mesh = files::read(file, unit.metres).map_err(input)?;
             let boundary = BoundaryFaces::new(&mesh);

@@ -152,7 +152,7 @@ impl Wanted {
         };
         let [low, high] = self.bounds.map(|p| [0, 1, 2].map(|axis| self.length(p[axis])));
         format!(
-            r#"# What is held: nodes where comparisons hold, joined by 'and', or `on` a surface that a mesh file names.
+            r#"# What is held: nodes where comparisons hold, joined by 'and', or `on` a surface that the file names.
 # The body is x = {} to {}, y = {} to {}, z = {} to {}. fix = "xy" lets it slide along z.
 [[support]]
 {place}

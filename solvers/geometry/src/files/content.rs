@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::error::{FileError, Parsed, Place, Problem};
 use super::numbers::Numbers;
+use super::overlap::Cells;
 use super::rows::Row;
 use crate::{CellKind, Facet, Mesh, Point3};
 
@@ -283,7 +284,7 @@ impl Content {
         unused: Unused,
     ) -> Result<(Mesh, Vec<Row>), FileError> {
         let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
-        self.refuse_twins().map_err(at)?;
+        self.refuse_overlaps().map_err(at)?;
         self.attach().map_err(at)?;
         let wrong = |source| FileError::Mesh { file: file.to_path_buf(), source };
         let mut used = vec![u32::MAX; self.points.len()];
@@ -332,26 +333,20 @@ impl Content {
         Err((place, Problem::UnusedNode { number, others: all.count() }))
     }
 
-    /// Refuses cells of the same corners: their volume would count twice.
-    fn refuse_twins(&self) -> Parsed<()> {
-        let mut keys: Vec<([u32; 8], u32)> = Vec::with_capacity(self.kinds.len());
-        let mut start = 0;
-        for (cell, kind) in self.kinds.iter().enumerate() {
-            let mut key = [u32::MAX; 8];
-            let corners = kind.corner_count();
-            key[..corners].copy_from_slice(&self.nodes[start..start + corners]);
-            key[..corners].sort_unstable();
-            keys.push((key, cell as u32));
-            start += kind.node_count();
+    /// Refuses cells that lie on one another: their volume would count twice.
+    fn refuse_overlaps(&self) -> Parsed<()> {
+        let cells = Cells { kinds: &self.kinds, nodes: &self.nodes, points: &self.points };
+        if let Some([first, second]) = cells.twins().map(|pair| pair.map(|cell| self.rows[cell])) {
+            let problem = Problem::SameNodes { element: second.tag, first: first.tag, place: first.place };
+            return Err((second.place, problem));
         }
-        keys.sort_unstable();
-        let twins = keys.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-        let Some((first, second)) = twins.map(|pair| (pair[0].1, pair[1].1)).min_by_key(|pair| pair.1) else {
-            return Ok(());
-        };
-        let (first, second) = (self.rows[first as usize], self.rows[second as usize]);
-        let problem = Problem::SameNodes { element: second.tag, first: first.tag, place: first.place };
-        Err((second.place, problem))
+        match cells.same_side().map(|pair| pair.map(|cell| self.rows[cell])) {
+            None => Ok(()),
+            Some([first, second]) => {
+                let problem = Problem::SameSide { element: second.tag, first: first.tag, place: first.place };
+                Err((second.place, problem))
+            }
+        }
     }
 
     /// Finds the cell face of every surface element; between two cells, that of the first.

@@ -78,7 +78,7 @@ pub enum FileError {
         unit: f64,
     },
     /// A name from which no format follows.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2 or 4.1), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
@@ -150,6 +150,18 @@ pub enum Problem {
     /// Two solids of the same nodes: their volume would count twice.
     #[error("element {element} has the same nodes as element {first} ({place})")]
     SameNodes {
+        /// Number of the later element in the file.
+        element: u64,
+        /// Number of the first one.
+        first: u64,
+        /// Where the first one is.
+        place: Place,
+    },
+    /// Two solids on the same side of a face that they share: they overlap.
+    #[error(
+        "element {element} shares a face with element {first} ({place}) and lies on the same side of it: they overlap"
+    )]
+    SameSide {
         /// Number of the later element in the file.
         element: u64,
         /// Number of the first one.
@@ -275,6 +287,39 @@ pub enum Problem {
         what: String,
         /// What to do.
         help: &'static str,
+    },
+    /// A keyword that neither Abaqus nor CalculiX has.
+    #[error("*{found} is no keyword of Abaqus or CalculiX{}", match nearest {
+        Some(nearest) => format!("; did you mean *{nearest}?"),
+        None => String::new(),
+    })]
+    UnknownKeyword {
+        /// As the file has it, in capitals.
+        found: String,
+        /// The one that is spelled most like it, if any is.
+        nearest: Option<&'static str>,
+    },
+    /// Numbers beyond those that the head of a section claims.
+    #[error("the section says that its {what} are numbered {} to {}, but they are {} to {}", claimed[0], claimed[1], found[0], found[1])]
+    Range {
+        /// Nodes or elements.
+        what: &'static str,
+        /// The least and the largest number that the file says there are.
+        claimed: [u64; 2],
+        /// Those there are.
+        found: [u64; 2],
+    },
+    /// A block of elements whose type has another dimension than their entity.
+    #[error(
+        "a block of an entity of dimension {entity} has elements of type {kind}, whose dimension is {dimension}"
+    )]
+    Dimension {
+        /// That of the block.
+        entity: i64,
+        /// The type as the file has it.
+        kind: i64,
+        /// That of the type.
+        dimension: i64,
     },
     /// Text that is no XML.
     #[error("{problem}")]

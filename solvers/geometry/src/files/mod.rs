@@ -7,9 +7,11 @@
 mod abaqus;
 mod content;
 mod error;
+mod format;
 mod gmsh;
 mod lines;
 mod numbers;
+mod overlap;
 mod rows;
 mod surface;
 mod vtk;
@@ -23,6 +25,8 @@ use content::{Content, Unused};
 use error::Parsed;
 
 pub use error::{FileError, Place, Problem};
+pub use format::Format;
+pub use gmsh::GmshVersion;
 pub use rows::{Row, inverted, row_of_cell};
 pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 pub use vtu::write::{Values, solution_vtu, surface_vtu};
@@ -75,19 +79,26 @@ pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     Ok(content.into_mesh(unit, file, Unused::LeftOut)?.0)
 }
 
-/// Writes a mesh in the format of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary as `.stl`. Numbers of the first
-/// three are written so that they read back to the same bits (for `unit = 1`; else to the rounding of one division and one product).
+/// Writes a mesh in the [`Format`] of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary as `.stl`.
 ///
 /// # Errors
 /// Another suffix, a name that the format can't hold, or a folder that can't be written.
 pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
+    write_as(mesh, file, unit, Format::of(file)?)
+}
+
+/// As [`write`], in a format of one's own choice. Numbers of all but STL are written so that they read back to the same bits (for
+/// `unit = 1`; else to the rounding of one division and one product).
+///
+/// # Errors
+/// A name that the format can't hold, or a folder that can't be written.
+pub fn write_as(mesh: &Mesh, file: &Path, unit: f64, format: Format) -> Result<(), FileError> {
     check_unit(file, unit)?;
-    let bytes = match suffix(file).as_str() {
-        "msh" => gmsh::write::text(mesh, unit).map(String::into_bytes),
-        "inp" => abaqus::write::text(mesh, unit).map(String::into_bytes),
-        "vtu" => vtu::write::bytes(mesh, unit),
-        "stl" => Ok(surface::write(mesh, unit)),
-        _ => return Err(FileError::Suffix { file: file.to_path_buf() }),
+    let bytes = match format {
+        Format::Gmsh(version) => gmsh::text(mesh, unit, version).map(String::into_bytes),
+        Format::Abaqus => abaqus::write::text(mesh, unit).map(String::into_bytes),
+        Format::Vtu => vtu::write::bytes(mesh, unit),
+        Format::Stl => Ok(surface::write(mesh, unit)),
     };
     let bytes = bytes.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
     std::fs::write(file, bytes).map_err(|source| FileError::Io { file: file.to_path_buf(), source })

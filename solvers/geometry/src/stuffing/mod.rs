@@ -8,6 +8,7 @@
 mod cuts;
 mod lattice;
 mod measure;
+mod names;
 mod octree;
 mod parts;
 mod stencil;
@@ -17,6 +18,7 @@ use rayon::prelude::*;
 use crate::{CellKind, Facet, Mesh, Point3, Surface};
 use cuts::Cuts;
 use lattice::Lattice;
+use names::named;
 use octree::{Frame, Octree};
 use stencil::{Side, Tet};
 
@@ -47,7 +49,8 @@ pub struct Stuffing {
 /// Tetrahedra inside a surface.
 #[derive(Clone, Debug)]
 pub struct Stuffed {
-    /// The mesh, its boundary the group "surface".
+    /// The mesh, its boundary the group "surface". Groups of the surface are groups of it, which replace one of that name; a group much
+    /// smaller than the cells may have no facet.
     pub mesh: Mesh,
     /// Parts of less than eight nodes of the lattice that are left out: tips that the surface cuts off from the rest.
     pub left_out: usize,
@@ -120,7 +123,7 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
     if parts.tets.is_empty() {
         return Err(StuffingError::TooCoarse { spacing });
     }
-    Ok(Stuffed { mesh: mesh(&points, &parts), left_out: parts.left_out })
+    Ok(Stuffed { mesh: named(surface, mesh(&points, &parts)), left_out: parts.left_out })
 }
 
 /// Fills a surface with about so many nodes: the nearest of some spacings, found as nodes grow with the third power of one.

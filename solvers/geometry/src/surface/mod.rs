@@ -6,6 +6,7 @@
 mod closed;
 mod crossing;
 mod error;
+mod groups;
 mod nested;
 mod of_mesh;
 mod shape;
@@ -13,6 +14,8 @@ mod soup;
 mod tree;
 
 pub use error::{SurfaceError, SurfaceProblem};
+pub use groups::Groups;
+pub(crate) use groups::Set;
 pub use of_mesh::{BoundaryFaces, triangles_of};
 pub use soup::Soup;
 pub(crate) use tree::Tree;
@@ -24,6 +27,7 @@ use crate::{Point3, Vector3};
 pub struct Surface {
     points: Vec<Point3>,
     triangles: Vec<[u32; 3]>,
+    groups: Groups,
     normals: Normals,
     tree: Tree,
     volume: f64,
@@ -47,7 +51,8 @@ impl Surface {
         let (soup, neighbours) = closed::closed(soup)?;
         crossing::refuse(&soup)?;
         nested::refuse(&soup, &neighbours)?;
-        let Soup { points, triangles, .. } = soup;
+        let Soup { points, triangles, groups, .. } = soup;
+        let groups = groups.without_empty();
         let points: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords * unit)).collect();
         let normals = Normals::new(&points, &triangles, &neighbours);
         let tree = Tree::new(&points, &triangles);
@@ -66,7 +71,7 @@ impl Surface {
             sum
         });
         let areas = areas.collect();
-        Ok(Surface { volume, areas, points, triangles, normals, tree })
+        Ok(Surface { volume, areas, points, triangles, groups, normals, tree })
     }
 
     /// Positions of the corners, m.
@@ -77,6 +82,11 @@ impl Surface {
     /// Corners of the triangles.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// Named groups of triangles, each of at least one.
+    pub fn groups(&self) -> &Groups {
+        &self.groups
     }
 
     /// Positions of a triangle's corners, m.

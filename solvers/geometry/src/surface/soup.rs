@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::Groups;
 use crate::{Point3, Vector3};
 
 /// Triangles whose corners may be listed once for each, as in STL.
@@ -13,6 +14,8 @@ pub struct Soup {
     pub triangles: Vec<[u32; 3]>,
     /// Number of each triangle's face in the file, from 1: a face of many corners is several triangles.
     pub faces: Vec<u32>,
+    /// Named groups of triangles.
+    pub groups: Groups,
 }
 
 impl Soup {
@@ -49,10 +52,14 @@ impl Soup {
             index
         };
         let new: Vec<u32> = self.points.iter().map(&mut place).collect();
-        let triangles = self.triangles.iter().map(|t| t.map(|p| new[p as usize])).zip(&self.faces);
-        let kept = triangles.filter(|([a, b, c], _)| a != b && b != c && a != c);
-        let (triangles, faces) = kept.map(|(t, &face)| (t, face)).unzip();
-        Soup { points, triangles, faces }
+        let corners = |t: usize| self.triangles[t].map(|p| new[p as usize]);
+        let has_area = |&t: &usize| {
+            let [a, b, c] = corners(t);
+            a != b && b != c && a != c
+        };
+        let kept: Vec<usize> = (0..self.triangles.len()).filter(has_area).collect();
+        let (triangles, faces) = kept.iter().map(|&t| (corners(t), self.faces[t])).unzip();
+        Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
     }
 
     /// Length of the diagonal of the box around all corners.

@@ -26,7 +26,8 @@ pub fn sphere_like(levels: u32, map: impl Fn(Vector3) -> Vector3) -> Soup {
         triangles = finer;
     }
     let faces = (1..=triangles.len() as u32).collect();
-    Soup { points: points.into_iter().map(|p| Point3::from(map(p))).collect(), triangles, faces }
+    let points = points.into_iter().map(|p| Point3::from(map(p))).collect();
+    Soup { points, triangles, faces, ..Soup::default() }
 }
 
 /// An organ with bumps and a hilum.

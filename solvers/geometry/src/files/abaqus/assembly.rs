@@ -6,10 +6,11 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::cards::{Card, split, unquoted};
 use super::kinds::faces;
-use super::scope::{Scope, generated};
+use super::ranges::Range;
+use super::scope::Scope;
 use crate::CellKind;
 
-/// Members of all sets: sets of sets can double with every line.
+/// Members of all sets, and numbers of all ranges: sets of sets can double with every line.
 const MOST: usize = 1 << 23;
 
 /// A part where it was placed.
@@ -77,19 +78,17 @@ struct Sets<'a> {
 /// Adds the sets and surfaces of an assembly to the whole; nodes and elements outside of instances are those of its own numbers.
 pub(super) fn add(whole: &mut Content, waiting: &[Waiting], placed: &[Placed]) -> Parsed<()> {
     let mut sets = Sets { placed, nodes: HashMap::new(), cells: HashMap::new() };
-    let (mut names, mut members): (Vec<&str>, usize) = (Vec::new(), 0);
+    let (mut names, mut members, mut ranges): (Vec<&str>, usize, usize) = (Vec::new(), 0, 0);
     for card in waiting {
         if card.keyword == "SURFACE" {
             sets.surface(whole, card)?;
             continue;
         }
         let of_nodes = card.keyword == "NSET";
-        let found = sets.members(whole, card, of_nodes)?;
+        let found = sets.members(whole, card, of_nodes, &mut ranges)?;
         let lists = if of_nodes { &mut sets.nodes } else { &mut sets.cells };
         members += found.len();
-        if members > MOST {
-            return Err((card.place, Problem::TooMany { what: "members of sets", count: members }));
-        }
+        few_enough(card.place, members)?;
         let key = card.name.to_ascii_uppercase();
         if of_nodes && !lists.contains_key(&key) {
             names.push(&card.name);
@@ -107,8 +106,14 @@ impl Sets<'_> {
         self.placed.iter().find(|placed| placed.name.eq_ignore_ascii_case(name))
     }
 
-    /// Nodes or cells that a set lists.
-    fn members(&self, whole: &Content, card: &Waiting, of_nodes: bool) -> Parsed<Vec<u32>> {
+    /// Nodes or cells that a set lists; `ranges` counts the numbers of all ranges.
+    fn members(
+        &self,
+        whole: &Content,
+        card: &Waiting,
+        of_nodes: bool,
+        ranges: &mut usize,
+    ) -> Parsed<Vec<u32>> {
         let instance = match &card.instance {
             None => None,
             Some(name) => {
@@ -118,16 +123,19 @@ impl Sets<'_> {
         let mut found = Vec::new();
         for (place, words) in &card.data {
             if card.generate {
-                for number in generated(*place, words)? {
-                    found.extend(self.one(whole, card, *place, instance, of_nodes, &number.to_string())?);
-                }
+                let content = instance.map_or(whole, |placed| &placed.part.content);
+                let range = Range::read(*place, words)?;
+                *ranges += range.count();
+                few_enough(*place, *ranges)?;
+                let of = if of_nodes { "node" } else { "element" };
+                let numbers = range.members(content, !of_nodes);
+                let numbers = numbers.map_err(|number| card.unknown(*place, of, &number.to_string()))?;
+                found.extend(placed(content, instance, of_nodes, &numbers));
                 continue;
             }
             for word in words.iter().filter(|word| !word.is_empty()) {
                 found.extend(self.one(whole, card, *place, instance, of_nodes, &unquoted(word))?);
-                if found.len() > MOST {
-                    return Err((*place, Problem::TooMany { what: "members of sets", count: found.len() }));
-                }
+                few_enough(*place, found.len())?;
             }
         }
         Ok(found)
@@ -161,25 +169,15 @@ impl Sets<'_> {
             }
         };
         let content = instance.map_or(whole, |placed| &placed.part.content);
-        let (node, cell) = instance.map_or((0, 0), |placed| (placed.first_node, placed.first_cell));
-        let mut found = Vec::new();
-        for number in numbers {
+        for number in &numbers {
             let known =
-                if of_nodes { content.node_of(number).is_some() } else { content.knows_element(number) };
+                if of_nodes { content.node_of(*number).is_some() } else { content.knows_element(*number) };
             if !known {
-                return Err(card.unknown(
-                    place,
-                    if of_nodes { "node" } else { "element" },
-                    &number.to_string(),
-                ));
-            }
-            if of_nodes {
-                found.extend(content.node_of(number).map(|n| n + node));
-            } else {
-                found.extend(content.cell_of(number).map(|c| c + cell));
+                let of = if of_nodes { "node" } else { "element" };
+                return Err(card.unknown(place, of, &number.to_string()));
             }
         }
-        Ok(found)
+        Ok(placed(content, instance, of_nodes, &numbers))
     }
 
     fn surface(&self, whole: &mut Content, card: &Waiting) -> Parsed<()> {
@@ -204,4 +202,21 @@ impl Sets<'_> {
         }
         Ok(())
     }
+}
+
+fn few_enough(place: Place, count: usize) -> Parsed<()> {
+    if count <= MOST { Ok(()) } else { Err((place, Problem::TooMany { what: "members of sets", count })) }
+}
+
+/// Nodes or cells of numbers, where the instance was placed.
+fn placed(content: &Content, instance: Option<&Placed>, of_nodes: bool, numbers: &[u64]) -> Vec<u32> {
+    let (node, cell) = instance.map_or((0, 0), |placed| (placed.first_node, placed.first_cell));
+    let one = |&number: &u64| {
+        if of_nodes {
+            content.node_of(number).map(|n| n + node)
+        } else {
+            content.cell_of(number).map(|c| c + cell)
+        }
+    };
+    numbers.iter().filter_map(one).collect()
 }

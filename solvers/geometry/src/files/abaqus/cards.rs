@@ -1,11 +1,12 @@
 //! A deck as cards: a keyword with its parameters and the data lines below.
 
 use super::super::error::{Parsed, Place, Problem};
+use super::keywords;
 
 /// A keyword line with the data below it.
 pub(super) struct Card<'a> {
     pub(super) place: Place,
-    /// In capitals, with single spaces.
+    /// In capitals, with single spaces; a known one as it is written in full.
     pub(super) keyword: String,
     parameters: Vec<(String, String)>,
     /// Data lines with their places; blank ones and comments are left out.
@@ -58,6 +59,7 @@ fn closed(place: Place, line: String, mut cards: Vec<Card>) -> Parsed<Open> {
         None => (part.to_ascii_uppercase(), String::new()),
     });
     let keyword = keyword.join(" ").to_ascii_uppercase();
+    let keyword = keywords::known(&keyword).map_or(keyword, String::from);
     let card = Card { place, keyword, parameters: parameters.collect(), data: Vec::new() };
     cards.push(card);
     Ok((None, cards))

@@ -6,6 +6,7 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::assembly::{self, Placed, Waiting};
 use super::cards::{Card, cards, real, split};
+use super::keywords;
 use super::scope::Scope;
 use super::text;
 use crate::{Point3, Vector3};
@@ -92,6 +93,10 @@ impl Deck {
             | "TRANSFORM SHELL" => {
                 let help = "write the deck with all nodes and elements in it, in one system of coordinates";
                 Err((card.place, Problem::Unread { what: format!("*{}", card.keyword), help }))
+            }
+            keyword if keywords::known(keyword).is_none() => {
+                let found = keyword.chars().take(40).collect();
+                Err((card.place, Problem::UnknownKeyword { found, nearest: keywords::nearest(keyword) }))
             }
             _ => {
                 scope.read_over(card);

@@ -7,6 +7,7 @@ use super::super::error::{Parsed, Place, Problem};
 use super::super::rows::Row;
 use super::cards::{Card, real, split, unquoted, whole};
 use super::kinds::{KNOWN, Type, element_type, faces};
+use super::ranges::Range;
 use crate::{CellKind, Point3};
 
 /// Nodes, elements and what names them. Names count without their case; what is kept is as first written.
@@ -143,12 +144,20 @@ impl Scope {
         let of_elements = card.keyword == "ELSET";
         let name = card.need(if of_elements { "ELSET" } else { "NSET" })?;
         let what = if of_elements { "element set" } else { "node set" };
-        let mut found = Vec::new();
+        let (mut found, mut ranges) = (Vec::new(), 0);
         for &(place, line) in &card.data {
             let words = split(line);
             if card.get("GENERATE").is_some() {
-                found.extend(generated(place, &words)?);
-                self.few_enough(place, found.len())?;
+                let range = Range::read(place, &words)?;
+                // A range takes as long as it is, whatever of it is there.
+                ranges += range.count();
+                self.few_enough(place, found.len() + ranges)?;
+                let unknown = |number: u64| {
+                    let of = if of_elements { "element" } else { "node" };
+                    let number = number.to_string();
+                    (place, Problem::UnknownMember { what, name: name.into(), of, number })
+                };
+                found.extend(range.members(&self.content, of_elements).map_err(unknown)?);
                 continue;
             }
             for word in words.iter().filter(|word| !word.is_empty()) {
@@ -177,10 +186,10 @@ impl Scope {
                     }
                     Err(_) => found.extend(&sets.get(&unquoted(word)).ok_or_else(unknown)?.1),
                 }
-                self.few_enough(place, found.len())?;
+                self.few_enough(place, found.len() + ranges)?;
             }
         }
-        self.members += found.len() as u64;
+        self.members += (found.len() + ranges) as u64;
         let sets = if of_elements { &mut self.elsets } else { &mut self.nsets };
         sets.of(name).extend(found);
         Ok(())
@@ -190,7 +199,7 @@ impl Scope {
     fn few_enough(&self, place: Place, more: usize) -> Parsed<()> {
         let count = self.members + more as u64;
         let problem = Problem::TooMany { what: "members of sets", count: count as usize };
-        if count <= 2 * MOST { Ok(()) } else { Err((place, problem)) }
+        if count <= MOST { Ok(()) } else { Err((place, problem)) }
     }
 
     /// Members of a set of nodes or of elements.
@@ -296,27 +305,8 @@ impl Scope {
     }
 }
 
-/// `first, last, step`, the step 1 unless given.
-pub(super) fn generated(place: Place, words: &[String]) -> Parsed<impl Iterator<Item = u64> + use<>> {
-    let word = |k: usize| words.get(k).map(String::as_str).filter(|word| !word.is_empty());
-    let first = whole(place, word(0).unwrap_or(""), "the first number")?;
-    let last = whole(place, word(1).unwrap_or(""), "the last number")?;
-    let step = word(2).map_or(Ok(1), |word| whole(place, word, "the step between numbers"))?;
-    let count = last.checked_sub(first).map(|span| span / step.max(1));
-    match count {
-        Some(count) if step > 0 && count >= MOST => {
-            Err((place, Problem::TooMany { what: "numbers to generate", count: count as usize }))
-        }
-        Some(count) if step > 0 => Ok((0..=count).map(move |k| first + k * step)),
-        _ => {
-            let expected = "a first number, a last one not below it, and a step of 1 or more";
-            Err((place, Problem::Expected { expected, found: words.join(", ") }))
-        }
-    }
-}
-
-/// Numbers that one line may generate: more than decks have, and made in a moment.
-const MOST: u64 = 10_000_000;
+/// Members of all sets and numbers of all ranges.
+const MOST: u64 = 20_000_000;
 
 /// Corners and mid-edge nodes as they are.
 const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];

@@ -9,7 +9,10 @@ mod scanner;
 mod sections;
 mod text1;
 mod text2;
-pub(super) mod write;
+mod write;
+
+pub use write::GmshVersion;
+pub(super) use write::text;
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};

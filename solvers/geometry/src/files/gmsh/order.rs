@@ -42,6 +42,16 @@ pub(super) fn element(kind: u64) -> Option<Element> {
 }
 
 impl Element {
+    /// 0 of a point to 3 of a solid.
+    pub(super) fn dimension(self) -> i64 {
+        match self {
+            Element::Cell(_) => 3,
+            Element::Face { .. } => 2,
+            Element::Ignored { nodes: 1 } => 0,
+            Element::Ignored { .. } => 1,
+        }
+    }
+
     pub(super) fn node_count(self) -> usize {
         match self {
             Element::Cell(kind) => kind.node_count(),

@@ -106,9 +106,10 @@ impl<'a> Scanner<'a> {
         if length == 0 {
             return self.fail(Problem::End { expected });
         }
-        let found = String::from_utf8_lossy(&rest[..length.min(40)]);
-        let Ok(value) = found.parse() else {
-            return self.fail(Problem::Expected { expected, found: found.into() });
+        let parsed = std::str::from_utf8(&rest[..length]).ok().and_then(|word| word.parse().ok());
+        let Some(value) = parsed else {
+            let found = String::from_utf8_lossy(&rest[..length.min(40)]).into();
+            return self.fail(Problem::Expected { expected, found });
         };
         self.at += length;
         Ok(value)

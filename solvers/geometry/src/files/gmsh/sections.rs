@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::super::content::Content;
-use super::super::error::{Parsed, Problem};
+use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
 use super::super::rows::Row;
 use super::KNOWN;
@@ -26,6 +26,20 @@ enum Version {
 
 /// Physical tags by dimension and tag of an entity.
 type Entities = HashMap<(u64, i64), Vec<u64>>;
+
+/// The least and the largest number that a section says it has, and where it says so.
+type Claim = (Place, [u64; 2]);
+
+/// The least and the largest number so far.
+#[derive(Clone, Copy, Default)]
+struct Range(Option<[u64; 2]>);
+
+impl Range {
+    fn add(&mut self, number: u64) {
+        let [least, largest] = self.0.unwrap_or([number; 2]);
+        self.0 = Some([least.min(number), largest.max(number)]);
+    }
+}
 
 struct Reader<'a> {
     scanner: Scanner<'a>,
@@ -168,7 +182,8 @@ impl Reader<'_> {
         let wide = self.version == Version::FourOne;
         let blocks = self.scanner.size("the number of blocks of nodes")?;
         let blocks = self.scanner.counted(blocks, 20, "blocks of nodes")?;
-        let claimed = self.totals("the number of nodes")?;
+        let (claimed, claimed_range) = self.totals("the number of nodes")?;
+        let mut range = Range::default();
         for _ in 0..blocks {
             // Dimension and tag of the entity, in an order that the versions differ in.
             let [first, second, parametric] = self.ints("the head of a block of nodes")?;
@@ -184,6 +199,7 @@ impl Reader<'_> {
             }
             let tags: Vec<u64> =
                 (0..count).map(|_| self.scanner.size("a node number")).collect::<Parsed<_>>()?;
+            tags.iter().for_each(|&number| range.add(number));
             for number in tags {
                 let at = self.point()?;
                 self.content.node(self.scanner.place(), number, at)?;
@@ -191,17 +207,28 @@ impl Reader<'_> {
             }
         }
         self.whole("nodes", claimed, self.content.node_count())?;
+        self.within("nodes", claimed_range, range)?;
         self.scanner.exactly("$EndNodes")
     }
 
-    /// How many there are in all blocks; version 4.1 adds the least and the largest number.
-    fn totals(&mut self, expected: &'static str) -> Parsed<u64> {
+    /// How many there are in all blocks, and in version 4.1 the least and the largest number.
+    fn totals(&mut self, expected: &'static str) -> Parsed<(u64, Option<Claim>)> {
         let claimed = self.scanner.size(expected)?;
-        if self.version == Version::FourOne {
-            self.scanner.size(expected)?;
-            self.scanner.size(expected)?;
+        if self.version != Version::FourOne {
+            return Ok((claimed, None));
         }
-        Ok(claimed)
+        let range = [self.scanner.size("the least number")?, self.scanner.size("the largest number")?];
+        Ok((claimed, Some((self.scanner.place(), range))))
+    }
+
+    /// Refuses other numbers than the section says.
+    fn within(&self, what: &'static str, claimed: Option<Claim>, Range(found): Range) -> Parsed<()> {
+        match (claimed, found) {
+            (Some((place, claimed)), Some(found)) if claimed != found => {
+                Err((place, Problem::Range { what, claimed, found }))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses blocks that have more or fewer together than the section says.
@@ -262,19 +289,26 @@ impl Reader<'_> {
         let wide = self.version == Version::FourOne;
         let blocks = self.scanner.size("the number of blocks of elements")?;
         let blocks = self.scanner.counted(blocks, 20, "blocks of elements")?;
-        let claimed = self.totals("the number of elements")?;
+        let (claimed, claimed_range) = self.totals("the number of elements")?;
+        let mut range = Range::default();
         for _ in 0..blocks {
             let [first, second, kind] = self.ints("the head of a block of elements")?;
             let (dimension, tag) = if wide { (first, second) } else { (second, first) };
+            let of_kind = u64::try_from(kind).ok().and_then(element).map(Element::dimension);
+            if let Some(own) = of_kind.filter(|own| *own != dimension) {
+                return self.scanner.fail(Problem::Dimension { entity: dimension, kind, dimension: own });
+            }
             let count = self.scanner.size("the number of elements of a block")?;
             let count = self.scanner.counted(count, 8, "elements")?;
             let groups = self.entities.get(&(dimension.unsigned_abs(), tag)).cloned().unwrap_or_default();
             for _ in 0..count {
                 let number = self.scanner.tag(wide, "an element number")?;
+                range.add(number);
                 self.element(number, kind, &groups, wide)?;
             }
         }
         self.whole("elements", claimed, self.content.element_count())?;
+        self.within("elements", claimed_range, range)?;
         self.scanner.exactly("$EndElements")
     }
 

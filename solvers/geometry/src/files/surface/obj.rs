@@ -1,13 +1,17 @@
-//! OBJ: corners, then faces of any number of them; normals, textures and materials are read over.
+//! OBJ: corners, then faces of any number of them, which are in all groups of the last `g`, or where that names none in the object of the last `o`.
+//! Normals, textures and materials are read over.
 
 use super::super::error::{Parsed, Problem};
 use super::super::lines::Lines;
 use crate::Point3;
-use crate::surface::Soup;
+use crate::surface::{Set, Soup};
 
 /// Words that begin a line beside those of corners and faces.
-const OTHERS: [&str; 14] =
-    ["vt", "vn", "vp", "o", "g", "s", "l", "p", "usemtl", "mtllib", "usemap", "maplib", "mg", "lod"];
+const OTHERS: [&str; 12] =
+    ["vt", "vn", "vp", "s", "l", "p", "usemtl", "mtllib", "usemap", "maplib", "mg", "lod"];
+
+/// Groups of one face at most: of a small file many faces in many groups would take gigabytes.
+const MOST_GROUPS: usize = 100;
 
 /// Whether the first line that is no comment begins with a word of the format.
 pub(super) fn is_text(bytes: &[u8]) -> bool {
@@ -18,7 +22,7 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
     let word = first.and_then(|line| line.split(u8::is_ascii_whitespace).next());
     word.is_some_and(|word| {
-        word == b"v" || word == b"f" || OTHERS.iter().any(|other| other.as_bytes() == word)
+        [&b"v"[..], b"f", b"g", b"o"].contains(&word) || OTHERS.iter().any(|other| other.as_bytes() == word)
     })
 }
 
@@ -26,6 +30,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     let mut lines = Lines::new(super::super::text(bytes)?);
     let mut soup = Soup::default();
     let mut faces = 0;
+    let (mut groups, mut object) = (Set::default(), Set::default());
     while let Some(line) = lines.next() {
         // A line may go on after a backslash.
         let mut whole = line.split('#').next().unwrap_or_default().to_string();
@@ -57,7 +62,17 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
                     });
                 }
                 soup.face(faces, &corners);
+                let set = if groups == Set::default() { object } else { groups };
+                soup.groups.fill(soup.triangles.len(), set);
             }
+            Some("g") => {
+                let names: Vec<&str> = words.collect();
+                if names.len() > MOST_GROUPS {
+                    return lines.fail(Problem::TooMany { what: "groups of a face", count: names.len() });
+                }
+                groups = soup.groups.set(names);
+            }
+            Some("o") => object = soup.groups.set([words.collect::<Vec<_>>().join(" ").as_str()]),
             Some(word) if OTHERS.contains(&word) => {}
             Some(_) => {
                 let expected = "v, f or another word of the format";

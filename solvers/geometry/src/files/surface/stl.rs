@@ -1,8 +1,8 @@
-//! STL: triangles with all their corners, as text or in 50 bytes each.
+//! STL: triangles with all their corners, as text or in 50 bytes each. The name of a solid is a group of its triangles.
 
 use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
-use crate::surface::{Soup, triangles_of};
+use crate::surface::{Set, Soup, triangles_of};
 use crate::{Mesh, Point3};
 
 /// Bytes before the triangles: a comment of 80 and their number.
@@ -70,11 +70,14 @@ fn add(soup: &mut Soup, place: Place, corners: [Point3; 3]) -> Parsed<()> {
 fn lines(text: &str) -> Parsed<Soup> {
     let mut lines = Lines::new(text);
     let mut soup = Soup::default();
-    let mut open = false;
+    let (mut open, mut set) = (false, Set::default());
     while let Some(line) = lines.next() {
         let words: Vec<String> = line.split_ascii_whitespace().map(str::to_ascii_lowercase).collect();
         match (words[0].as_str(), open) {
-            ("solid", false) => open = true,
+            ("solid", false) => {
+                open = true;
+                set = soup.groups.set([&line["solid".len()..]]);
+            }
             ("endsolid", true) => open = false,
             ("facet", true) => {
                 let place = lines.place();
@@ -86,6 +89,7 @@ fn lines(text: &str) -> Parsed<Soup> {
                 word(&mut lines, &["endloop"], "endloop (a facet has three corners)")?;
                 word(&mut lines, &["endfacet"], "endfacet")?;
                 add(&mut soup, place, corners)?;
+                soup.groups.fill(soup.triangles.len(), set);
             }
             (_, true) => {
                 return lines.fail(Problem::Expected { expected: "facet or endsolid", found: line.into() });

@@ -1,0 +1,85 @@
+//! The keywords of Abaqus and CalculiX: one that neither has is a typing error, behind which nodes or elements may be lost.
+
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+/// Those of Abaqus's keyword reference, those of CalculiX, and some that older versions of either had; one a line.
+const LIST: &str = include_str!("keywords.txt");
+
+/// Longer ones are no typing errors.
+const LONGEST: usize = 60;
+
+/// Keywords by their letters.
+static KNOWN: LazyLock<HashMap<String, &str>> =
+    LazyLock::new(|| LIST.lines().map(|keyword| (letters(keyword), keyword)).collect());
+
+/// Blanks and hyphens do not count: CalculiX leaves blanks out.
+fn letters(keyword: &str) -> String {
+    keyword.chars().filter(|c| !matches!(c, ' ' | '-')).collect()
+}
+
+/// A keyword in capitals as it is written in full; `None` if there is none.
+pub(super) fn known(keyword: &str) -> Option<&'static str> {
+    KNOWN.get(&letters(keyword)).copied()
+}
+
+/// The keyword that takes the fewest changes of a letter, if these are few.
+pub(super) fn nearest(keyword: &str) -> Option<&'static str> {
+    if keyword.len() > LONGEST {
+        return None;
+    }
+    let found: Vec<char> = letters(keyword).chars().collect();
+    let away = |known: &&str| changes(&found, &letters(known).chars().collect::<Vec<char>>());
+    let best = LIST.lines().min_by_key(away)?;
+    (3 * away(&best) <= found.len()).then_some(best)
+}
+
+/// Letters to change, add or leave out, or neighbours to exchange, to make one word of the other.
+fn changes(a: &[char], b: &[char]) -> usize {
+    let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let changed = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = changed.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(least);
+        }
+        rows.push(row);
+    }
+    rows[a.len()][b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_in_capitals_and_each_once() {
+        assert_eq!(KNOWN.len(), LIST.lines().count());
+        let plain = |line: &str| line.bytes().all(|b| b.is_ascii_uppercase() || b"0123456789 -".contains(&b));
+        assert!(LIST.lines().all(|line| plain(line) && line.trim() == line && !line.is_empty()));
+    }
+
+    #[test]
+    fn words_are_found_without_blanks_and_typing_errors_are_near() {
+        assert_eq!(known("SOLIDSECTION"), Some("SOLID SECTION"));
+        assert_eq!(known("PRE-TENSION SECTION"), known("PRETENSIONSECTION"));
+        assert_eq!(known("NODES"), None);
+        for (found, meant) in [
+            ("NODES", Some("NODE")),
+            ("ELEMNT", Some("ELEMENT")),
+            ("ELMEENT", Some("ELEMENT")),
+            ("SOILD SECTION", Some("SOLID SECTION")),
+            ("SURFCE", Some("SURFACE")),
+            ("KEYWORD", None),
+            ("SOMETHING ELSE", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(found), meant, "{found}");
+        }
+        assert_eq!(nearest(&"NODE".repeat(100_000)), None);
+    }
+}

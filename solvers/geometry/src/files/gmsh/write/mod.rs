@@ -1,0 +1,70 @@
+//! The writers of versions 2.2 and 4.1 in text: regions and facet groups become physical groups by their names.
+
+mod text2;
+mod text4;
+
+use std::fmt::Write;
+
+use super::order::order;
+use crate::{Facet, Mesh};
+
+/// A version of Gmsh's format that is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GmshVersion {
+    /// 2.2, which most other programs read.
+    #[default]
+    Two,
+    /// 4.1, with entities.
+    FourOne,
+}
+
+/// The file's text, in lengths of `unit` metres; or a name that it can't hold.
+pub(in crate::files) fn text(mesh: &Mesh, unit: f64, version: GmshVersion) -> Result<String, String> {
+    let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
+    if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r'])) {
+        return Err(name.into());
+    }
+    Ok(match version {
+        GmshVersion::Two => text2::text(mesh, unit),
+        GmshVersion::FourOne => text4::text(mesh, unit),
+    })
+}
+
+/// Physical tag of a region.
+fn region_tag(region: u16) -> usize {
+    usize::from(region) + 1
+}
+
+/// Physical tag of a facet group by its place among the names: behind those of the regions, so that no tag is of both.
+fn group_tag(mesh: &Mesh, group: usize) -> usize {
+    mesh.region_names().len() + group + 1
+}
+
+fn physical_names(out: &mut String, mesh: &Mesh) {
+    // Writing to a string can't fail.
+    let _ = writeln!(out, "$PhysicalNames\n{}", mesh.region_names().len() + mesh.group_names().count());
+    for (group, name) in mesh.group_names().enumerate() {
+        let _ = writeln!(out, "2 {} \"{name}\"", group_tag(mesh, group));
+    }
+    for (region, name) in mesh.region_names().iter().enumerate() {
+        let _ = writeln!(out, "3 {} \"{name}\"", region_tag(region as u16));
+    }
+    out.push_str("$EndPhysicalNames\n");
+}
+
+/// The nodes of a face up to the end of the line.
+fn face_nodes(out: &mut String, mesh: &Mesh, facet: Facet) {
+    for node in mesh.facet_nodes(facet) {
+        let _ = write!(out, " {}", node + 1);
+    }
+    out.push('\n');
+}
+
+/// The nodes of a cell in Gmsh's order up to the end of the line.
+fn cell_nodes(out: &mut String, mesh: &Mesh, cell: usize) {
+    let nodes = mesh.cell(cell);
+    for &local in order(mesh.kind(cell)) {
+        let _ = write!(out, " {}", nodes[local] + 1);
+    }
+    out.push('\n');
+}

@@ -1,0 +1,41 @@
+//! Version 2.2: an element for each facet of each group, then the cells, each with its physical tag.
+
+use std::fmt::Write;
+
+use super::super::order::type_numbers;
+use super::{cell_nodes, face_nodes, group_tag, physical_names, region_tag};
+use crate::Mesh;
+
+pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
+    let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+    // Writing to a string can't fail.
+    macro_rules! line {
+        ($($arg:tt)*) => { let _ = writeln!(out, $($arg)*); };
+    }
+    physical_names(&mut out, mesh);
+    line!("$Nodes\n{}", mesh.points().len());
+    for (node, p) in mesh.points().iter().enumerate() {
+        line!("{} {} {} {}", node + 1, p.x / unit, p.y / unit, p.z / unit);
+    }
+    let group = |name: &str| mesh.group(name).unwrap_or_default();
+    let faces: usize = mesh.group_names().map(|name| group(name).len()).sum();
+    line!("$EndNodes\n$Elements\n{}", faces + mesh.cell_count());
+    let mut number = 0;
+    for (at, name) in mesh.group_names().enumerate() {
+        let tag = group_tag(mesh, at);
+        for &facet in group(name) {
+            number += 1;
+            let kind = type_numbers(mesh.kind(facet.cell as usize)).1;
+            let _ = write!(out, "{number} {kind} 2 {tag} {tag}");
+            face_nodes(&mut out, mesh, facet);
+        }
+    }
+    for cell in 0..mesh.cell_count() {
+        number += 1;
+        let (kind, tag) = (type_numbers(mesh.kind(cell)).0, region_tag(mesh.region(cell)));
+        let _ = write!(out, "{number} {kind} 2 {tag} {tag}");
+        cell_nodes(&mut out, mesh, cell);
+    }
+    out.push_str("$EndElements\n");
+    out
+}

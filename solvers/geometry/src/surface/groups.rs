@@ -1,0 +1,108 @@
+//! Named groups of triangles: a triangle is in none, one or several.
+
+use std::collections::HashMap;
+
+/// Groups of triangles by name. Triangles name sets of groups, of which a file has few.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Groups {
+    names: Vec<String>,
+    known: HashMap<String, u32>,
+    /// Sets of names that occur; a triangle without a set is in no group.
+    sets: Vec<Vec<u32>>,
+    places: HashMap<Vec<u32>, u32>,
+    /// Set of each triangle; those behind the end have none.
+    of: Vec<u32>,
+}
+
+/// The set of a triangle that is in no group.
+const NONE: u32 = u32::MAX;
+
+/// A set of groups, for triangles that are added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Set(u32);
+
+impl Default for Set {
+    fn default() -> Set {
+        Set(NONE)
+    }
+}
+
+impl Groups {
+    /// The set of these names, made where it is new. Blanks around a name are no part of it; an empty name is none.
+    pub(crate) fn set<'a>(&mut self, names: impl IntoIterator<Item = &'a str>) -> Set {
+        let names = names.into_iter().map(kept).filter(|name| !name.is_empty());
+        let mut set: Vec<u32> = names.map(|name| self.name(name)).collect();
+        set.sort_unstable();
+        set.dedup();
+        if set.is_empty() {
+            return Set(NONE);
+        }
+        let next = self.sets.len() as u32;
+        let place = *self.places.entry(set.clone()).or_insert(next);
+        if place == next {
+            self.sets.push(set);
+        }
+        Set(place)
+    }
+
+    fn name(&mut self, name: String) -> u32 {
+        let next = self.names.len() as u32;
+        let place = *self.known.entry(name.clone()).or_insert(next);
+        if place == next {
+            self.names.push(name);
+        }
+        place
+    }
+
+    /// Puts the triangles that were added since the last call into a set; `triangles` are there now.
+    pub(crate) fn fill(&mut self, triangles: usize, Set(set): Set) {
+        self.of.resize(triangles, set);
+    }
+
+    /// The groups of some triangles alone, in their order.
+    pub(super) fn of_triangles(&self, kept: &[usize]) -> Groups {
+        let of = kept.iter().map(|&t| self.set_of(t)).collect();
+        Groups { of, ..self.clone() }
+    }
+
+    fn set_of(&self, triangle: usize) -> u32 {
+        self.of.get(triangle).copied().unwrap_or(NONE)
+    }
+
+    /// Names of all groups, in the order of the file.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The groups of a triangle, as places among the names.
+    pub fn of(&self, triangle: usize) -> &[u32] {
+        self.sets.get(self.set_of(triangle) as usize).map_or(&[], Vec::as_slice)
+    }
+
+    /// The same without the names that no triangle has.
+    pub(super) fn without_empty(&self) -> Groups {
+        let mut has = vec![false; self.names.len()];
+        let mut occurs = vec![false; self.sets.len()];
+        self.of.iter().filter(|&&set| set != NONE).for_each(|&set| occurs[set as usize] = true);
+        for (set, _) in self.sets.iter().zip(&occurs).filter(|(_, occurs)| **occurs) {
+            set.iter().for_each(|&name| has[name as usize] = true);
+        }
+        let mut kept = Groups::default();
+        for (name, _) in self.names.iter().zip(has).filter(|(_, has)| *has) {
+            kept.name(name.clone());
+        }
+        let names =
+            |set: &[u32]| -> Vec<&str> { set.iter().map(|&name| &*self.names[name as usize]).collect() };
+        let sets: Vec<Set> = (self.sets.iter().zip(occurs))
+            .map(|(set, occurs)| if occurs { kept.set(names(set)) } else { Set(NONE) })
+            .collect();
+        kept.of = self.of.iter().map(|&set| sets.get(set as usize).map_or(NONE, |set| set.0)).collect();
+        kept
+    }
+}
+
+/// A name that every format of meshes can hold as far as it is ASCII: quotation marks, commas and control characters are replaced.
+fn kept(name: &str) -> String {
+    let plain = |c: char| if c == '"' || c == ',' || c.is_control() { '_' } else { c };
+    name.trim().chars().map(plain).collect()
+}
