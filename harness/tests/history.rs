@@ -48,7 +48,7 @@ fn results_of_commits_are_kept_and_a_worse_error_is_marked() {
     let table = Path::new(&results).join("report/tables/over-commits.csv");
     assert!(std::fs::read_to_string(table).unwrap().contains("worse"));
     // A study draws it too, and says before its runs that a history can't be read.
-    let study = write(&dir, "study.toml", "title = \"one block\"\nscenes = [\"block.toml\"]\n");
+    let study = write(&dir, "study.toml", "title = \"one block\"\n[[run]]\nscene = \"block.toml\"\n");
     let verified = inside(&dir, "verified");
     let verify = |history: &str| tissuebench(&["verify", &study, "--out", &verified, "--history", history]);
     assert_fails(&verify(&inside(&dir, "none")), 2, "holds no history");

@@ -95,7 +95,8 @@ pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failu
             Some(group) => all.extend_from_slice(group),
             None if name == "surface" => all.extend(mesh.boundary()),
             None => {
-                let known: Vec<&str> = std::iter::once("surface").chain(mesh.group_names()).collect();
+                let known: Vec<&str> = mesh.group_names().filter(|name| *name != "surface").collect();
+                let known = [&["surface"], &known[..]].concat();
                 let problem = format!("names '{name}', a surface that the mesh does not have");
                 let help = format!("it has {}", known.join(", "));
                 return Err(Failure::input(self::key(place, key), problem, &help));
