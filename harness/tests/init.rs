@@ -110,6 +110,26 @@ fn a_scene_is_replaced_only_by_force() {
     drop(dir);
 }
 
+/// Cells of a coarse mesh cut off the tip of a pyramid, and a probe there would be outside of the body.
+#[test]
+fn a_body_with_a_tip_has_its_probes_inside() {
+    let corners = [[0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30]];
+    let face = |name: &str, [a, b, c]: [usize; 3]| {
+        let vertex = |k: usize| corners[k].map(|x| x.to_string()).join(" ");
+        let loops = [a, b, c].map(|k| format!("vertex {}", vertex(k))).join("\n");
+        format!("solid {name}\nfacet normal 0 0 0\nouter loop\n{loops}\nendloop\nendfacet\nendsolid {name}\n")
+    };
+    let solids = [("base", [0, 2, 1]), ("left", [0, 1, 3]), ("front", [0, 3, 2]), ("slope", [1, 2, 3])];
+    let dir = tempfile::tempdir().unwrap();
+    let file = write(&dir, "tip.stl", &solids.map(|(name, nodes)| face(name, nodes)).concat());
+    let out = inside(&dir, "tip.toml");
+    let init = ["init", "--file", &file, "--unit", "mm", "--hold", "base", "--out", &out];
+    let done = tissuebench(&init);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let done = tissuebench(&["run", &out, "--once", "--method", "tet4-coarse", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+}
+
 /// Every side, method, drive and strain makes a scene that can be planned; a few are run.
 #[test]
 fn every_choice_makes_a_scene() {

@@ -15,6 +15,9 @@ const GRID: usize = 11;
 /// Probes lie at least this part of the smallest extent below the surface, which coarse meshes cut off.
 const BELOW: f64 = 0.05;
 
+/// Points that are tried from a tip to the middle.
+const STRIDES: i32 = 20;
+
 /// A body that a plate can press.
 pub(super) struct Organ {
     /// Its boundary, in metres.
@@ -64,11 +67,16 @@ impl Organ {
         self.surface.points().iter().fold(first, |best, p| if ahead(p) > ahead(&best) { *p } else { best })
     }
 
-    /// Close to the plate: just below the point that it touches first.
+    /// Close to the plate: just below the point that it touches first; where that is a tip, which coarse meshes cut off, on the way
+    /// from it to the middle.
     pub fn near(&self, side: Side) -> Point3 {
-        let mut p = self.first_touched(side);
-        p[side.axis()] -= side.sign() * BELOW * self.smallest_extent();
-        if self.depth(&p) > 0.0 { p } else { self.first_touched(side) }
+        let (tip, middle) = (self.first_touched(side), self.middle());
+        let below = BELOW * self.smallest_extent();
+        let mut straight = tip;
+        straight[side.axis()] -= side.sign() * below;
+        let on_the_way = (1..STRIDES).map(|k| tip + (middle - tip) * (f64::from(k) / f64::from(STRIDES)));
+        let inside = std::iter::once(straight).chain(on_the_way).find(|p| self.depth(p) > 0.5 * below);
+        inside.unwrap_or(middle)
     }
 
     /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points.
