@@ -286,6 +286,18 @@ impl Single {
         &self.symbolic
     }
 
+    /// The least pivot of `L L^T` over the diagonal entry of its matrix; 0 of `L D L^T`.
+    pub fn least_pivot(&self, matrix: &Symmetric) -> f64 {
+        if !self.definite {
+            return 0.0;
+        }
+        let forward = &self.symbolic.forward;
+        let ratio = |(k, l): (usize, f32)| f64::from(l).powi(2) / matrix.diagonal(forward[k]);
+        // A ratio that is none counts as 0.
+        let least = |least: f64, ratio: f64| if ratio >= least { least } else { ratio.max(0.0) };
+        pivots(&self.symbolic.cholesky, &self.values).map(ratio).fold(f64::INFINITY, least)
+    }
+
     pub fn negative_pivots(&self) -> usize {
         if self.definite {
             return 0;
@@ -352,5 +364,33 @@ mod tests {
                 assert!(on(threads) == one, "{kind:?} on {threads} threads");
             }
         }
+    }
+
+    /// Chains of two unknowns that are coupled by all but `gap`: of each pivot `1 - (1 - gap)^2` is left.
+    fn pairs(gap: f64) -> Symmetric {
+        let count = 40;
+        let offsets = |pair: usize| [3 * pair + 1, 3 * pair + 3];
+        Symmetric {
+            offsets: std::iter::once(0).chain((0..count).flat_map(offsets)).collect(),
+            rows: (0..count).flat_map(|pair| [2 * pair, 2 * pair, 2 * pair + 1]).collect(),
+            values: (0..count).flat_map(|_| [1.0, 1.0 - gap, 1.0]).collect(),
+            multipliers: 2 * count,
+            vertices: (0..=2 * count).collect(),
+        }
+    }
+
+    #[test]
+    fn a_factor_in_single_precision_knows_what_rounding_leaves_open() {
+        for (gap, clear) in [(0.5, true), (1e-3, true), (1e-5, false), (1e-7, false), (-0.1, false)] {
+            let matrix = pairs(gap);
+            let symbolic = Some(Arc::new(Symbolic::new(&matrix).unwrap()));
+            let factor = super::super::factor_roughly(symbolic.as_ref(), &matrix, Kind::Definite);
+            assert_eq!(factor.is_ok_and(|factor| factor.is_clear(&matrix)), clear, "{gap}");
+        }
+        let matrix = pairs(0.5);
+        let single = Single::new(Arc::new(Symbolic::new(&matrix).unwrap()), &matrix, true).ok().unwrap();
+        assert!((single.least_pivot(&matrix) - 0.75).abs() < 1e-6);
+        let indefinite = Single::new(single.symbolic().clone(), &matrix, false).ok().unwrap();
+        assert_eq!(indefinite.least_pivot(&matrix), 0.0);
     }
 }

@@ -101,6 +101,11 @@ impl Unsymmetric {
         (self.symmetric.matrix, self.extra)
     }
 
+    /// Whether the factor, if it is one of the symmetric matrix, proves that to be definite.
+    pub fn is_clear(&self) -> bool {
+        self.symmetric.factor.is_clear(self.matrix())
+    }
+
     /// The symmetric matrix.
     pub fn matrix(&self) -> &Symmetric {
         &self.symmetric.matrix

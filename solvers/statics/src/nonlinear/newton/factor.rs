@@ -70,12 +70,22 @@ impl Newton<'_> {
         Ok(Ok((Factored::Unsymmetric(near), step)))
     }
 
-    /// Whether the tangent of a step with a kept or a rounded factor is definite, by a factor of its own in double precision, which
-    /// is the next to be kept.
+    /// Whether the tangent of a step with a kept or a rounded factor is definite, by a factor of its own, which is the next to be kept:
+    /// in single precision, and in double where rounding leaves that open.
     pub(super) fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
         let Factored::Unsymmetric(near) = &last.factored else { return Ok(()) };
         let matrix = near.matrix();
         last.proven = true;
+        if !self.doubtful {
+            self.exact = false;
+            if let Ok(factor) = self.numbers(matrix, matrix.kind())
+                && factor.is_clear(matrix)
+            {
+                last.definite = true;
+                self.factor = Some(factor);
+                return Ok(());
+            }
+        }
         self.exact = true;
         last.definite = match self.numbers(matrix, matrix.kind()) {
             Ok(factor) => {

@@ -21,7 +21,7 @@ pub(super) struct Direction {
     pub closures: Vec<f64>,
     /// Whether the tangent was positive definite, tools driven by force included.
     pub definite: bool,
-    /// Whether that is of a factor of its own, not of the kept one.
+    /// Whether that is of a factor of its own, not of the kept one, and beyond rounding.
     pub proven: bool,
     pub factored: Factored,
     /// The tools whose borders the factor has.
@@ -35,6 +35,11 @@ impl Factored {
             Factored::Symmetric(_) => true,
             Factored::Unsymmetric(f) => f.stable(),
         }
+    }
+
+    /// Whether a factor in single precision proves its tangent to be definite.
+    fn is_clear(&self) -> bool {
+        matches!(self, Factored::Unsymmetric(f) if f.is_clear())
     }
 
     /// Solves in place; the iterations it took.
@@ -124,7 +129,8 @@ impl Newton<'_> {
         if self.descent == Descent::Smooth && !definite {
             return Err(SolveError::NotPositiveDefinite.into());
         }
-        let proven = self.exact || self.descent == Descent::Down && !definite;
+        let lifted = self.descent == Descent::Down && !definite;
+        let proven = self.exact || lifted || factored.is_clear();
         let last = Direction { step: Vec::new(), closures: Vec::new(), definite, proven, factored, tools };
         self.take(last, right, state, balance, time)
     }
