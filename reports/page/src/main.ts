@@ -81,7 +81,7 @@ function toolbar(): HTMLElement {
   shown();
   listen(shown);
   return h("div", { class: "toolbar", role: "search", "aria-label": "Filters of the whole page" },
-    only, field("method", "Methods shown: words, or -word to leave out", "methods, e.g. hex -mean"), field("find", "Search in tables and findings", "search"), clear);
+    only, field("method", "Methods shown: words, or -word to leave out", "methods, e.g. hex"), field("find", "Search in tables and findings", "search"), clear);
 }
 
 /** One of the report's plots. */
