@@ -25,6 +25,8 @@ export const percent = (value: number, n = 2): string => (value >= 1e-5 ? `${dig
 
 export const whole = (value: number): string => value.toLocaleString("en-US");
 
+export const plural = (n: number, word: string): string => `${whole(n)} ${word}${n === 1 ? "" : "s"}`;
+
 /** A tick of a logarithmic axis: plain from 0.0001 to 1000. */
 export function tick(value: number): string {
   const power = Math.floor(Math.log10(value) + 1e-9);

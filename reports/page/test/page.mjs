@@ -265,6 +265,8 @@ test("dark mode is dark, and print keeps the front", async (open) => {
   assert.ok(await page.eval(`document.querySelector("#front svg").getBoundingClientRect().height > 100`));
   const { data: pdf } = await page.send("Page.printToPDF", {});
   assert.ok(pdf.length > 10000);
+  const undrawn = await page.eval(`${all("figure")}.filter((f) => f.checkVisibility() && !f.querySelector("svg.plot, .plot svg, .picture svg")).length`);
+  assert.equal(undrawn, 0, "figures without a plot on paper");
 });
 
 let failed = 0;
