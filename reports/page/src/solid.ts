@@ -14,6 +14,8 @@ export interface Body {
   tools: { points: string; quads: string; along: [number, number, number] }[];
   states: { time: number; u: string; closures: number[]; values: [string, string, string] | null }[];
   left_out: number;
+  /** The method whose points and faces it has, which come with that one. */
+  like?: string;
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
@@ -168,7 +170,9 @@ class Solid {
 }
 
 /** Puts the bodies of a case into a place. */
-export function show(place: HTMLElement, bodies: Body[]) {
+export function show(place: HTMLElement, packed: Body[]) {
+  const surface = (body: Body) => packed.find((b) => b.method === body.like) ?? body;
+  const bodies = packed.map((b) => ({ ...b, points: surface(b).points, faces: surface(b).faces }));
   const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio));
   renderer.setScissorTest(true);
