@@ -16,6 +16,8 @@ export interface Body {
   left_out: number;
   /** The method whose points and faces it has, which come with that one. */
   like?: string;
+  /** The method whose tools it has. */
+  tools_like?: string;
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
@@ -171,8 +173,11 @@ class Solid {
 
 /** Puts the bodies of a case into a place. */
 export function show(place: HTMLElement, packed: Body[]) {
-  const surface = (body: Body) => packed.find((b) => b.method === body.like) ?? body;
-  const bodies = packed.map((b) => ({ ...b, points: surface(b).points, faces: surface(b).faces }));
+  const of = (method: string | undefined, body: Body) => packed.find((b) => b.method === method) ?? body;
+  const bodies = packed.map((b) => {
+    const { points, faces } = of(b.like, b);
+    return { ...b, points, faces, tools: of(b.tools_like, b).tools };
+  });
   const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio));
   renderer.setScissorTest(true);

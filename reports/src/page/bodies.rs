@@ -21,6 +21,9 @@ struct BodyView<'a> {
     /// The method of an earlier body with the same points and faces, which are not repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
     like: Option<&'a str>,
+    /// The method of an earlier body with the same tools.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tools_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
 }
@@ -42,7 +45,14 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     let mut bodies: Vec<BodyView> = fields
         .iter()
         .filter_map(|f| {
-            Some(BodyView { case: &f.case, method: &f.method, title: &f.title, like: None, body: view(f)? })
+            Some(BodyView {
+                case: &f.case,
+                method: &f.method,
+                title: &f.title,
+                like: None,
+                tools_like: None,
+                body: view(f)?,
+            })
         })
         .collect();
     bodies.sort_by_key(|b| runs.iter().position(|r| r.is.case == b.case && r.is.method == b.method));
@@ -61,19 +71,24 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
-/// Methods on one mesh have one surface: only the first of them in a case keeps it.
+/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a case keeps these.
 fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
         let own = &mut rest[0];
-        let same = |b: &&BodyView| {
-            b.case == own.case && b.body.points == own.body.points && b.body.faces == own.body.faces
+        let first = |same: fn(&Body, &Body) -> bool| {
+            before.iter().find(|b| b.case == own.case && same(&b.body, &own.body)).map(|b| b.method)
         };
-        if let Some(first) = before.iter().find(same) {
-            own.like = Some(first.method);
+        let like = first(|a, b| a.points == b.points && a.faces == b.faces);
+        let tools_like = first(|a, b| !a.tools.is_empty() && a.tools == b.tools);
+        if like.is_some() {
             own.body.points.clear();
             own.body.faces.clear();
         }
+        if tools_like.is_some() {
+            own.body.tools.clear();
+        }
+        (own.like, own.tools_like) = (like, tools_like);
     }
 }
 
@@ -81,7 +96,8 @@ fn share(bodies: &mut [BodyView]) {
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
         let largest = |least: usize| {
-            let needed = |b: &BodyView| bodies.iter().any(|o| o.case == b.case && o.like == Some(b.method));
+            let needs = |o: &BodyView, b: &BodyView| [o.like, o.tools_like].contains(&Some(b.method));
+            let needed = |b: &BodyView| bodies.iter().any(|o| o.case == b.case && needs(o, b));
             let takes = |b: &BodyView| b.body.states.len() > least && (least > 0 || !needed(b));
             let several = bodies.iter().enumerate().filter(|(_, b)| takes(b));
             several.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
@@ -113,7 +129,7 @@ mod tests {
                 states: vec![state(), state(), state()],
                 ..Body::default()
             };
-            BodyView { case: "a", method, title: "", like: None, body }
+            BodyView { case: "a", method, title: "", like: None, tools_like: None, body }
         };
         let fitted = |room: usize| -> Vec<(&str, usize, usize)> {
             let mut all = vec![view("small", 10), view("large", 100)];
@@ -132,7 +148,7 @@ mod tests {
         let view = |case: &'static str, method: &'static str, points: usize| {
             let states = vec![BodyState { u: pack(vec![1f32; 3 * points]), ..BodyState::default() }];
             let body = Body { points: pack(vec![0f32; 3 * points]), states, ..Body::default() };
-            BodyView { case, method, title: "", like: None, body }
+            BodyView { case, method, title: "", like: None, tools_like: None, body }
         };
         let mut all =
             vec![view("a", "tet4", 10), view("a", "tet10", 20), view("a", "efg", 10), view("b", "tet4", 10)];
