@@ -9,7 +9,6 @@ use crate::commits;
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
-use crate::record::Record;
 use crate::select;
 use crate::store::{make_dir, read_run, remove_files, write_text};
 use crate::tables;
@@ -42,8 +41,8 @@ pub fn render_over_commits(
         None => Vec::new(),
     };
     // Along an axis a scene is another one from value to value: it has maps of its own.
-    let as_they_are: Vec<Record> = set.records.iter().filter(|r| r.at.is_none()).cloned().collect();
-    let (runs, clouds) = clouds::part(&select::runs(&as_they_are));
+    let as_they_are = set.records.iter().filter(|r| r.at.is_none());
+    let (runs, clouds) = clouds::part(&select::runs(as_they_are));
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;

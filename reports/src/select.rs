@@ -142,8 +142,8 @@ fn shown(a: &Record, b: &Record) -> Ordering {
 }
 
 /// Gathers records into runs, in the order that they are shown in.
-pub(crate) fn runs(records: &[Record]) -> Vec<Run<'_>> {
-    let mut sorted: Vec<&Record> = records.iter().collect();
+pub(crate) fn runs<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<Run<'r>> {
+    let mut sorted: Vec<&Record> = records.into_iter().collect();
     sorted.sort_by_key(|r| r.key());
     let by_run = sorted.chunk_by(|a, b| a.run == b.run);
     let mut runs: Vec<Run> = by_run.map(|chunk| Run { is: chunk[0], records: chunk.to_vec() }).collect();

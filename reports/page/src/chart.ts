@@ -52,16 +52,22 @@ function ticks(axis: Axis, ends: [number, number], room: number): number[] {
 const inSeconds = (axis: Axis) => /\[s\]/.test(axis.label);
 const isError = (axis: Axis) => /error.* \[1\]$/.test(axis.label);
 
+/** Poisson's ratio is drawn as 1/(1 − 2ν), which spreads what is nearly incompressible, and read as itself. */
+const isPoisson = (axis: Axis) => axis.label.startsWith("1/(1 − 2ν)");
+const poisson = (spread: number) => String(Number((0.5 - 0.5 / spread).toPrecision(4)));
+
 function tickText(axis: Axis): (value: number) => string {
+  if (isPoisson(axis)) return poisson;
   if (inSeconds(axis) && axis.log) return (v) => duration(v, 1).replace(/\.0+ /, " ");
-  if (isError(axis) && axis.log) return (v) => (v >= 1e-5 ? `${tick(100 * v)} %` : tick(v));
+  if (isError(axis) && axis.log) return (v) => (v > 0.99e-6 ? `${tick(100 * v)} %` : tick(v));
   return axis.log ? tick : (v) => digits(v, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
 }
 
 /** An axis' name without the unit that its ticks have. */
-const axisName = (axis: Axis) => (axis.log && (inSeconds(axis) || isError(axis)) ? axis.label.replace(/ \[(s|1)\]/, "") : axis.label);
+const axisName = (axis: Axis) => (isPoisson(axis) ? "Poisson's ratio ν, spaced as 1/(1 − 2ν)" : axis.log && (inSeconds(axis) || isError(axis)) ? axis.label.replace(/ \[(s|1)\]/, "") : axis.label);
 
 function value(axis: Axis, v: number): string {
+  if (isPoisson(axis)) return poisson(v);
   if (inSeconds(axis)) return duration(v);
   if (isError(axis)) return percent(v, 3);
   return digits(v, 4);

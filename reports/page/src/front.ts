@@ -76,7 +76,7 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
     see: { x: near.map((d) => d[2]), y: error === null ? [] : [error] },
     under: (x, y) => [
       ask.band ? Plot.rect([0], { x1: x[0], x2: x[1], y1: y[0], y2: Math.max(y[0], Math.min(ask.band, y[1])), fill: "currentColor", fillOpacity: 0.05 }) : null,
-      ask.band && ask.band > y[0] ? Plot.text(["within the reference's own uncertainty"], { x: x[1], y: ask.band, textAnchor: "end", dy: 9, dx: -4, fill: "var(--soft)" }) : null,
+      ask.band && ask.band > y[0] ? Plot.text(["within the reference's own uncertainty"], { x: x[0], y: ask.band, textAnchor: "start", dy: 9, dx: 4, fill: "var(--soft)" }) : null,
       error === null ? null : Plot.ruleY([error], { stroke: "currentColor", strokeOpacity: 0.6, strokeDasharray: "4 3" }),
       error === null ? null : Plot.text([percent(error, 1)], { x: x[1], y: error, textAnchor: "end", dy: -7, dx: -2, fill: "var(--soft)" }),
       Plot.ruleX(near, { x: (d) => d[2], stroke: "currentColor", strokeOpacity: 0.5, strokeDasharray: "2 3" }),
@@ -84,11 +84,15 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
       Plot.line(stairs.flatMap((p, i) => [[p.x, i ? stairs[i - 1].counts! : y[1]], [p.x, p.counts!]]).concat(stairs.length ? [[x[1], stairs[stairs.length - 1].counts!]] : [])
         .map(([a, b]) => [a, Math.min(b, y[1])]), { stroke: "currentColor", strokeOpacity: 0.16, strokeWidth: 5, strokeLinejoin: "round", className: "front" }),
     ],
-    over: () => [
-      Plot.dot(found, { x: "x", y: "y", r: 9, stroke: "var(--accent)", strokeWidth: 2.2 }),
-      Plot.text(found, { x: "x", y: "y", text: (p: Point) => name(p.label), dx: 13, dy: -11, textAnchor: "start", fontWeight: "bold",
-        fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 }),
-    ],
+    over: (x) => {
+      // To the left of a marker in the right half, where its name would be cut.
+      const left = found.some((p) => p.x > Math.sqrt(x[0] * x[1]));
+      return [
+        Plot.dot(found, { x: "x", y: "y", r: 9, stroke: "var(--accent)", strokeWidth: 2.2 }),
+        Plot.text(found, { x: "x", y: "y", text: (p: Point) => name(p.label), dx: left ? -13 : 13, dy: -11, textAnchor: left ? "end" : "start",
+          fontWeight: "bold", fill: "currentColor", stroke: "var(--paper)", strokeWidth: 4 }),
+      ];
+    },
     height: error === null ? 300 : Math.max(340, Math.min(480, window.innerHeight - 430)),
   };
 }

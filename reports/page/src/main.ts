@@ -10,7 +10,7 @@ import { map, mapKey, tally } from "./map";
 import type { Body } from "./solid";
 import { address, change, fits, isOff, listen, state, toggle } from "./state";
 import { rowsLeft, sheet } from "./table";
-import { list, slug, whole } from "./text";
+import { list, plural, slug, whole } from "./text";
 
 declare global {
   interface Window { showBodies?: (place: HTMLElement, bodies: Body[]) => void }
@@ -47,7 +47,6 @@ const section = (id: string, title: string, ...content: (Node | string | null | 
 
 function header(): HTMLElement {
   const c = page.counts;
-  const plural = (n: number, word: string) => `${whole(n)} ${word}${n === 1 ? "" : "s"}`;
   const checks = c.pass + c.fail + c.known + c.not_run;
   const items: (HTMLElement | false)[] = [
     h("li", {}, plural(page.cases.length, "case")), h("li", {}, plural(c.runs, "run")), h("li", {}, plural(c.numbers, "number")),
@@ -81,7 +80,7 @@ function toolbar(): HTMLElement {
   shown();
   listen(shown);
   return h("div", { class: "toolbar", role: "search", "aria-label": "Filters of the whole page" },
-    only, field("method", "Methods shown: words, or -word to leave out", "methods, e.g. hex -mean"), field("find", "Search in tables and findings", "search"), clear);
+    only, field("method", "Methods shown: words, or -word to leave out", "methods, e.g. hex"), field("find", "Search in tables and findings", "search"), clear);
 }
 
 /** One of the report's plots. */
@@ -105,11 +104,13 @@ function figure(title: string, labels: number[], make: () => Chart, file: string
   fill();
   let redraw: (() => void) | null = null;
   // Drawn when it comes near the window: a case has a dozen of them.
-  const seen = new IntersectionObserver((entries) => {
-    if (redraw || !entries.some((e) => e.isIntersecting)) return;
-    redraw = put(place, make);
+  const draw = () => {
+    redraw ??= put(place, make);
     seen.disconnect();
-  }, { rootMargin: "600px" });
+  };
+  const seen = new IntersectionObserver((entries) => { if (entries.some((e) => e.isIntersecting)) draw(); }, { rootMargin: "600px" });
+  // Paper has all that is unfolded.
+  addEventListener("beforeprint", () => { if (made.checkVisibility()) draw(); });
   const made = h("figure", {}, h("h4", {}, title), chips, place, file && files(file));
   seen.observe(made);
   listen((changed) => {
@@ -204,7 +205,7 @@ function tableSection(table: Table, open = false): HTMLElement {
   const say = () => {
     const left = rowsLeft(table).length;
     const all = table.columns[0].rows.length;
-    count.textContent = left === all ? `${whole(all)} rows` : `${whole(left)} of ${whole(all)} rows`;
+    count.textContent = left === all ? plural(all, "row") : `${whole(left)} of ${plural(all, "row")}`;
   };
   say();
   listen((changed) => { if (changed.some((k) => ["only", "method", "find"].includes(k))) say(); });
@@ -222,7 +223,7 @@ function solvers(): HTMLElement {
   const failed = table("failed-runs");
   const reasons = failed ? [...new Set(failed.columns.find((c) => c.head === "case")?.words ?? [])] : [];
   const text = failed
-    ? `${failed.columns[0].rows.length} runs ended early or gave no numbers, on ${list(reasons)}. Why stands in the table.`
+    ? `${plural(failed.columns[0].rows.length, "run")} ended early or gave no numbers, on ${list(reasons)}. The table says why.`
     : "Every run gave all of its numbers.";
   return section("solvers", "Solvers, and what failed", h("p", {}, text),
     ...found.map((t) => tableSection(t, t.name === "solvers" || t.name === "failed-runs")));

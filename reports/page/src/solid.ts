@@ -14,6 +14,10 @@ export interface Body {
   tools: { points: string; quads: string; along: [number, number, number] }[];
   states: { time: number; u: string; closures: number[]; values: [string, string, string] | null }[];
   left_out: number;
+  /** The method whose points and faces it has, which come with that one. */
+  like?: string;
+  /** The method whose tools it has. */
+  tools_like?: string;
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
@@ -168,7 +172,12 @@ class Solid {
 }
 
 /** Puts the bodies of a case into a place. */
-export function show(place: HTMLElement, bodies: Body[]) {
+export function show(place: HTMLElement, packed: Body[]) {
+  const of = (method: string | undefined, body: Body) => packed.find((b) => b.method === method) ?? body;
+  const bodies = packed.map((b) => {
+    const { points, faces } = of(b.like, b);
+    return { ...b, points, faces, tools: of(b.tools_like, b).tools };
+  });
   const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio));
   renderer.setScissorTest(true);
@@ -285,15 +294,17 @@ export function show(place: HTMLElement, bodies: Body[]) {
   const methods: [string, string][] = bodies.map((b) => [b.method, b.title]);
   const slider = (name: string, value: number, input: (value: number) => void) =>
     h("input", { type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name, input: (e) => input(Number((e.target as HTMLInputElement).value)) });
+  const depth = slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); });
+  depth.hidden = true;
   const check = h("input", { type: "checkbox", checked: true, change: () => { view.mesh = check.checked; update(); } });
   place.replaceChildren(
     h("div", { class: "toolbar" },
       select("body", methods, view.left, (to) => { view.left = to; update(); }),
       select("second body", [["", "alone"], ...methods], "", (to) => { view.right = to; update(); }),
       select("field", FIELDS.filter((f) => f[0] === "u" || bodies.some((b) => b.states.some((s) => s.values))).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
-      ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small" }, "load ", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
-      select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; cut(); update(); }),
-      slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); }),
+      ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small slid" }, "load", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
+      select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
+      depth,
       h("label", { class: "small" }, check, " mesh"),
       h("button", { type: "button", class: "quiet", click: () => { home(); draw(); } }, "reset view")),
     canvas, bar, said);

@@ -3,6 +3,7 @@
 import type { Column, Table } from "./data";
 import { h } from "./dom";
 import { fits, listen, state } from "./state";
+import { plural, whole } from "./text";
 
 const SHOWN = 100;
 const WHO = ["method", "series", "source", "label"];
@@ -86,14 +87,14 @@ export function sheet(table: Table): HTMLElement {
       return h("td", { class: c.number ? "n" : text.length > 60 ? "long" : text.length > 24 ? "mid" : "" }, text);
     })));
     const total = table.columns[0].rows.length;
-    const said = h("span", { class: "soft small" }, kept.length === total ? `${total} rows` : `${kept.length} of ${total} rows`);
+    const said = h("span", { class: "soft small" }, kept.length === total ? plural(total, "row") : `${whole(kept.length)} of ${plural(total, "row")}`);
     const button = (text: string, make: () => string) => {
       const made = h("button", { type: "button", class: "quiet" }, text);
       made.addEventListener("click", async () => { await copy(make()); made.textContent = "copied"; setTimeout(() => (made.textContent = text), 1200); });
       return made;
     };
     const heads = table.columns.map((c) => c.head);
-    const more = shown.length < kept.length && h("button", { type: "button", class: "quiet", click: () => { all = true; draw(); } }, `Show all ${kept.length} rows`);
+    const more = shown.length < kept.length && h("button", { type: "button", class: "quiet", click: () => { all = true; draw(); } }, `Show all ${whole(kept.length)} rows`);
     made.replaceChildren(
       h("div", { class: "tools" }, said, h("span", { class: "soft small" }, "copy as"),
         button("CSV", () => csv([heads, ...texts(table, rows(), true)])), button("Markdown", () => markdown(table, texts(table, rows(), false))),

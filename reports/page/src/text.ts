@@ -25,10 +25,12 @@ export const percent = (value: number, n = 2): string => (value >= 1e-5 ? `${dig
 
 export const whole = (value: number): string => value.toLocaleString("en-US");
 
-/** A tick of a logarithmic axis: plain from 0.001 to 1000. */
+export const plural = (n: number, word: string): string => `${whole(n)} ${word}${n === 1 ? "" : "s"}`;
+
+/** A tick of a logarithmic axis: plain from 0.0001 to 1000. */
 export function tick(value: number): string {
   const power = Math.floor(Math.log10(value) + 1e-9);
-  if (power >= -3 && power <= 3) return String(Number(value.toPrecision(3)));
+  if (power >= -4 && power <= 3) return String(Number(value.toPrecision(3)));
   const mantissa = Math.round(value / 10 ** power);
   return `${mantissa === 1 ? "" : `${mantissa}×`}10${raised(power)}`;
 }

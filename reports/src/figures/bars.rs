@@ -4,6 +4,7 @@ use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
 use super::{Data, Figure, representative};
+use crate::look::Look;
 use crate::published::read_as;
 use crate::record::Family;
 use crate::select::{Run, competing, kernels, labels, series};
@@ -15,9 +16,6 @@ const ROW: f64 = 16.0;
 const TOP: f64 = 42.0;
 const DIRECTIONS: [(&str, &str); 4] =
     [("rms-x", "RMS x [mm]"), ("rms-y", "RMS y [mm]"), ("rms-z", "RMS z [mm]"), ("rms", "RMS |u| [mm]")];
-const ELEMENTS: Colour = [0x00, 0x72, 0xb2];
-const CLOUDS: Colour = [0x00, 0x9e, 0x73];
-const PAPER: Colour = [0xe6, 0x9f, 0x00];
 /// Millimetres below which a difference is rounding.
 const NOTHING: f64 = 1e-9;
 
@@ -41,7 +39,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
             let values = DIRECTIONS.map(|(q, _)| run.value(q).map(|v| v * 1e3));
             // An error of exactly nothing is the reference itself.
             if values.iter().flatten().any(|v| *v > 0.0) {
-                let colour = if run.is.family == Family::Fem { ELEMENTS } else { CLOUDS };
+                let colour = Look::of(&name, run.is.family).colour;
                 rows.push((format!("{name}, {} nodes", run.is.nodes), values, colour));
             }
         }
@@ -52,13 +50,13 @@ fn figure(group: &[Run]) -> Option<Figure> {
     let publication = read_as(is);
     if let Some(publication) = publication {
         let published = |q: &str| publication.number(Family::Efg, q).map(|v| v * 1e3);
-        rows.push(("published, EFG from FE".into(), DIRECTIONS.map(|(q, _)| published(q)), PAPER));
+        rows.push(("published, EFG from FE".into(), DIRECTIONS.map(|(q, _)| published(q)), GREY));
     }
     let mut caption = String::from(
-        "Root mean square of the displacement difference from the reference, one scale for all columns; finite elements blue, meshfree methods green",
+        "Root mean square of the displacement difference from the reference, one scale for all columns; each method in its colour",
     );
     if publication.is_some() {
-        caption += ", orange what the publication's text gives for EFG against its own FE";
+        caption += ", grey what the publication's text gives for EFG against its own FE";
     }
     if usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24 {
         caption += "; the finest run of each method";

@@ -5,10 +5,11 @@ use std::sync::{Arc, OnceLock};
 use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use resvg::{tiny_skia, usvg};
+use resvg::usvg;
 
 use super::backend::{Facet, LINE_HEIGHT, Paths, escaped};
 use super::pdf::pdf;
+use super::pixels::png;
 use crate::error::ReportError;
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
@@ -222,7 +223,7 @@ fn fonts() -> Result<(), &'static str> {
     if *done { Ok(()) } else { Err("the built-in fonts can't be read") }
 }
 
-/// The picture in pixels, twice the size a screen shows it, and as PDF.
+/// The picture in pixels and as PDF.
 pub(crate) fn png_and_pdf(name: &str, title: &str, svg: &str) -> Result<(Vec<u8>, Vec<u8>), ReportError> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
@@ -233,10 +234,5 @@ pub(crate) fn png_and_pdf(name: &str, title: &str, svg: &str) -> Result<(Vec<u8>
     });
     let options = usvg::Options { fontdb: fontdb.clone(), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|e| wrong(e.to_string()))?;
-    let size = tree.size().to_int_size().scale_by(2.0).ok_or_else(|| wrong("it is too large".into()))?;
-    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
-        .ok_or_else(|| wrong(format!("{} x {} pixels can't be held", size.width(), size.height())))?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
-    let png = pixels.encode_png().map_err(|e| wrong(e.to_string()))?;
-    Ok((png, pdf(&tree, title).map_err(wrong)?))
+    Ok((png(&tree).map_err(wrong)?, pdf(&tree, title).map_err(wrong)?))
 }

@@ -109,7 +109,7 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
                 canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
             }
             if clock == Clock::Repeated {
-                deadlines(canvas, panel, scale, &near(lines));
+                deadlines(canvas, panel, scale, lines);
             }
             for line in lines {
                 let Some(style) = find(styles, &line.label) else { continue };
@@ -213,13 +213,18 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
 }
 
 /// Vertical lines where a frame must be done.
-fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, drawn: &[Deadline]) {
+fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, lines: &[Line]) {
     let (_, top, _, bottom) = panel.frame;
-    for deadline in drawn {
+    let markers: Vec<_> = all(lines).map(|r| panel.at(scale * r.seconds, r.error)).collect();
+    for deadline in near(lines) {
         let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
         canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
-        // Along its line: beside it there is no room where that is near an end of the axis.
-        canvas.vertical((x + 6.0, bottom - 18.0), deadline.name, TEXT);
+        // Along its line: beside it there is no room where that is near an end of the axis. At the end with fewer markers.
+        let covered =
+            |y: f64| markers.iter().filter(|m| (m.0 - x - 6.0).abs() < 9.0 && (m.1 - y).abs() < 20.0).count();
+        let (low, high) = (bottom - 18.0, top + 18.0);
+        let y = if covered(high) < covered(low) { high } else { low };
+        canvas.vertical((x + 6.0, y), deadline.name, TEXT);
     }
 }
 

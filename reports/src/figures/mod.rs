@@ -13,6 +13,7 @@ mod history;
 mod locking;
 mod over_commits;
 mod pdf;
+mod pixels;
 mod section;
 mod silhouette;
 mod stability;

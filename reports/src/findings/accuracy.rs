@@ -12,7 +12,7 @@ use crate::text::{list, percent, plural, significant};
 /// An error that grows more than this from the most compressible to the least compressible material counts as locking.
 const LOCKS: f64 = 2.0;
 
-/// Who locks, with numbers, and who does not.
+/// Which methods lock, the worst first, how far each is off, and which do not.
 pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for case in competing(runs) {
@@ -34,7 +34,8 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
                     .value("pressure")
                     .map(|p| format!(", pressure error {}", percent(p)))
                     .unwrap_or_default();
-                locked.push(format!("{label} ({} to {}{tip}{pressure})", percent(before), percent(after)));
+                let text = format!("{label}, {} to {}{tip}{pressure}", percent(before), percent(after));
+                locked.push((after, label, text));
             } else {
                 free.push(label);
             }
@@ -42,10 +43,13 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
         let Some((from, to)) = span else { continue };
         let name = &case[0].is.case;
         if !locked.is_empty() {
+            locked.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let labels: Vec<String> = locked.iter().map(|l| l.1.clone()).collect();
             out.push(format!(
                 "{name}: from ν = {from} to {to}, at the middle size, the relative L2 error more than doubles with {}.",
-                list(&locked)
+                list(&labels)
             ));
+            out.extend(locked.iter().map(|l| format!("{name}: {}.", l.2)));
         }
         if !free.is_empty() {
             let many = free.len() > 8;

@@ -11,13 +11,19 @@ use crate::select::Run;
 const SCRIPT: &str = include_str!("../../page/built/solid.js");
 
 /// Bytes for all bodies of a page: with these, the page of the whole verification stays below 8 MB.
-const ROOM: usize = 4 << 20;
+const ROOM: usize = 3_400_000;
 
 #[derive(Clone, Serialize)]
 struct BodyView<'a> {
     case: &'a str,
     method: &'a str,
     title: &'a str,
+    /// The method of an earlier body with the same points and faces, which are not repeated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    like: Option<&'a str>,
+    /// The method of an earlier body with the same tools.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tools_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
 }
@@ -38,9 +44,19 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     let view = |f: &'_ SurfaceField| f.body.clone().filter(|b| !b.states.is_empty());
     let mut bodies: Vec<BodyView> = fields
         .iter()
-        .filter_map(|f| Some(BodyView { case: &f.case, method: &f.method, title: &f.title, body: view(f)? }))
+        .filter_map(|f| {
+            Some(BodyView {
+                case: &f.case,
+                method: &f.method,
+                title: &f.title,
+                like: None,
+                tools_like: None,
+                body: view(f)?,
+            })
+        })
         .collect();
     bodies.sort_by_key(|b| runs.iter().position(|r| r.is.case == b.case && r.is.method == b.method));
+    share(&mut bodies);
     fit(&mut bodies, ROOM);
     bodies.sort_by_key(|b| b.case);
     let mut out = String::new();
@@ -55,11 +71,35 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
+/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a case keeps these.
+fn share(bodies: &mut [BodyView]) {
+    for k in 1..bodies.len() {
+        let (before, rest) = bodies.split_at_mut(k);
+        let own = &mut rest[0];
+        let first = |same: fn(&Body, &Body) -> bool| {
+            before.iter().find(|b| b.case == own.case && same(&b.body, &own.body)).map(|b| b.method)
+        };
+        let like = first(|a, b| a.points == b.points && a.faces == b.faces);
+        let tools_like = first(|a, b| !a.tools.is_empty() && a.tools == b.tools);
+        if like.is_some() {
+            own.body.points.clear();
+            own.body.faces.clear();
+        }
+        if tools_like.is_some() {
+            own.body.tools.clear();
+        }
+        (own.like, own.tools_like) = (like, tools_like);
+    }
+}
+
 /// Takes states from the largest bodies, all but the last, until all have room; then the largest bodies.
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
         let largest = |least: usize| {
-            let several = bodies.iter().enumerate().filter(move |(_, b)| b.body.states.len() > least);
+            let needs = |o: &BodyView, b: &BodyView| [o.like, o.tools_like].contains(&Some(b.method));
+            let needed = |b: &BodyView| bodies.iter().any(|o| o.case == b.case && needs(o, b));
+            let takes = |b: &BodyView| b.body.states.len() > least && (least > 0 || !needed(b));
+            let several = bodies.iter().enumerate().filter(|(_, b)| takes(b));
             several.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
         };
         match (largest(1), largest(0)) {
@@ -89,7 +129,7 @@ mod tests {
                 states: vec![state(), state(), state()],
                 ..Body::default()
             };
-            BodyView { case: "a", method, title: "", body }
+            BodyView { case: "a", method, title: "", like: None, tools_like: None, body }
         };
         let fitted = |room: usize| -> Vec<(&str, usize, usize)> {
             let mut all = vec![view("small", 10), view("large", 100)];
@@ -101,5 +141,22 @@ mod tests {
         assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
         assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
         assert_eq!(fitted(3000), [("small", 1, 2)]);
+    }
+
+    #[test]
+    fn methods_on_one_mesh_share_their_surface() {
+        let view = |case: &'static str, method: &'static str, points: usize| {
+            let states = vec![BodyState { u: pack(vec![1f32; 3 * points]), ..BodyState::default() }];
+            let body = Body { points: pack(vec![0f32; 3 * points]), states, ..Body::default() };
+            BodyView { case, method, title: "", like: None, tools_like: None, body }
+        };
+        let mut all =
+            vec![view("a", "tet4", 10), view("a", "tet10", 20), view("a", "efg", 10), view("b", "tet4", 10)];
+        share(&mut all);
+        let likes: Vec<_> = all.iter().map(|b| (b.like, b.body.points.is_empty())).collect();
+        assert_eq!(likes, [(None, false), (None, false), (Some("tet4"), true), (None, false)]);
+        // A surface that another body needs stays.
+        fit(&mut all, 700);
+        assert_eq!(all.iter().map(|b| (b.case, b.method)).collect::<Vec<_>>(), [("a", "tet4"), ("a", "efg")]);
     }
 }
