@@ -18,6 +18,8 @@ export interface Body {
   like?: string;
   /** The method whose tools it has. */
   tools_like?: string;
+  /** On the first body of a case: methods whose bodies had no room. */
+  without?: string[];
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
@@ -240,10 +242,11 @@ export function show(place: HTMLElement, packed: Body[]) {
     const first = solid(view.left);
     const state = first.body.states[stateOf(first)];
     label.textContent = first.body.states.length > 1 ? `state ${stateOf(first) + 1} of ${first.body.states.length}, at ${digits(state.time, 3)}` : "";
-    const kept = bodies.find((b) => b.left_out > 0);
+    const states = shown().filter((s) => s.body.left_out > 0).map((s) => `${s.body.left_out} of ${s.body.left_out + s.body.states.length} states of ${s.body.method}`);
+    const lost = [...states, ...(bodies[0].without ?? [])];
     said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
       + (shown().some((s) => !s.values(view.field, stateOf(s))) ? "Grey: the field is not known at this state. " : "")
-      + (kept ? `Left out to keep the page small: ${kept.left_out} of ${kept.left_out + kept.states.length} states.` : "");
+      + (lost.length ? `Left out to keep the page small: ${lost.join(", ")}.` : "");
     canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
     draw();
   }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::body::Body;
+use crate::body::{Body, BodyState};
 use crate::error::ReportError;
 use crate::run_set::SurfaceField;
 use crate::select::Run;
@@ -12,6 +12,8 @@ const SCRIPT: &str = include_str!("../../page/built/solid.js");
 
 /// Bytes for all bodies of a page: with these, the page of the whole verification stays below 8 MB.
 const ROOM: usize = 3_400_000;
+/// A body of more than this part of the room gives way to load steps of others where a coarser one of its method is there.
+const LARGE: f64 = 0.05;
 
 #[derive(Clone, Serialize)]
 struct BodyView<'a> {
@@ -26,6 +28,12 @@ struct BodyView<'a> {
     tools_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
+    /// Which of a method's sizes are of one kind.
+    #[serde(skip)]
+    series: &'a str,
+    /// On the first body of a case: methods whose bodies have no room.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    without: Vec<&'a str>,
 }
 
 impl BodyView<'_> {
@@ -33,10 +41,18 @@ impl BodyView<'_> {
         let Body { points, faces, tools, states, .. } = &self.body;
         let fixed = points.len() + faces.iter().map(|f| f.indices.len()).sum::<usize>();
         let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
-        let of_state = |values: &[String; 3]| values.iter().map(String::len).sum();
-        let moving = states.iter().map(|s| s.u.len() + s.values.as_ref().map_or(0, of_state));
-        fixed + tools + moving.sum::<usize>()
+        fixed + tools + states.iter().map(of_state).sum::<usize>()
     }
+
+    /// Its size with its last state alone.
+    fn least(&self) -> usize {
+        let states = &self.body.states;
+        self.size() - states[..states.len() - 1].iter().map(of_state).sum::<usize>()
+    }
+}
+
+fn of_state(state: &BodyState) -> usize {
+    state.u.len() + state.values.as_ref().map_or(0, |values| values.iter().map(String::len).sum())
 }
 
 /// The elements; nothing for results without bodies.
@@ -45,6 +61,7 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     let mut bodies: Vec<BodyView> = fields
         .iter()
         .filter_map(|f| {
+            let run = runs.iter().find(|r| r.is.case == f.case && r.is.method == f.method);
             Some(BodyView {
                 case: &f.case,
                 method: &f.method,
@@ -52,13 +69,22 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
                 like: None,
                 tools_like: None,
                 body: view(f)?,
+                series: run.map_or(&f.method, |run| &run.is.series),
+                without: Vec::new(),
             })
         })
         .collect();
     bodies.sort_by_key(|b| runs.iter().position(|r| r.is.case == b.case && r.is.method == b.method));
     share(&mut bodies);
+    let all: Vec<(&str, &str)> = bodies.iter().map(|b| (b.case, b.method)).collect();
     fit(&mut bodies, ROOM);
     bodies.sort_by_key(|b| b.case);
+    for of_case in bodies.chunk_by_mut(|a, b| a.case == b.case) {
+        let lost = all.iter().filter(|(case, method)| {
+            *case == of_case[0].case && !of_case.iter().any(|kept| kept.method == *method)
+        });
+        of_case[0].without = lost.map(|(_, method)| *method).collect();
+    }
     let mut out = String::new();
     for case in bodies.chunk_by(|a, b| a.case == b.case) {
         let json = serde_json::to_string(case).map_err(ReportError::Page)?.replace('<', "\\u003c");
@@ -92,25 +118,33 @@ fn share(bodies: &mut [BodyView]) {
     }
 }
 
-/// Takes states from the largest bodies, all but the last, until all have room; then the largest bodies.
+/// Takes out large bodies that have a coarser sibling, then states of the largest bodies, all but the last, until all have room; then
+/// the largest bodies.
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
-        let largest = |least: usize| {
-            let needs = |o: &BodyView, b: &BodyView| [o.like, o.tools_like].contains(&Some(b.method));
-            let needed = |b: &BodyView| bodies.iter().any(|o| o.case == b.case && needs(o, b));
-            let takes = |b: &BodyView| b.body.states.len() > least && (least > 0 || !needed(b));
-            let several = bodies.iter().enumerate().filter(|(_, b)| takes(b));
-            several.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
+        let others = |b: &BodyView, is: &dyn Fn(&BodyView) -> bool| {
+            bodies.iter().any(|o| o.case == b.case && o.method != b.method && is(o))
         };
-        match (largest(1), largest(0)) {
-            (Some(k), _) => {
+        let needed = |b: &BodyView| others(b, &|o| [o.like, o.tools_like].contains(&Some(b.method)));
+        let gives_way = |b: &BodyView| {
+            b.least() as f64 > LARGE * room as f64
+                && others(b, &|o| o.series == b.series && o.least() < b.least())
+        };
+        let largest = |takes: &dyn Fn(&BodyView) -> bool| {
+            let taken = bodies.iter().enumerate().filter(|(_, b)| takes(b));
+            taken.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
+        };
+        let large = largest(&|b| !needed(b) && gives_way(b));
+        let (moving, any) = (largest(&|b| b.body.states.len() > 1), largest(&|b| !needed(b)));
+        match (large, moving, any) {
+            (None, Some(k), _) => {
                 let body = &mut bodies[k].body;
                 let gone = body.states.len() - 1;
                 body.states.drain(..gone);
                 body.left_out += gone;
             }
-            (None, Some(k)) => drop(bodies.remove(k)),
-            (None, None) => break,
+            (Some(k), _, _) | (None, None, Some(k)) => drop(bodies.remove(k)),
+            (None, None, None) => break,
         }
     }
 }
@@ -118,7 +152,7 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{BodyState, pack};
+    use crate::body::pack;
 
     #[test]
     fn what_has_no_room_is_left_out_and_counted() {
@@ -129,7 +163,16 @@ mod tests {
                 states: vec![state(), state(), state()],
                 ..Body::default()
             };
-            BodyView { case: "a", method, title: "", like: None, tools_like: None, body }
+            BodyView {
+                case: "a",
+                method,
+                title: "",
+                like: None,
+                tools_like: None,
+                body,
+                series: method,
+                without: Vec::new(),
+            }
         };
         let fitted = |room: usize| -> Vec<(&str, usize, usize)> {
             let mut all = vec![view("small", 10), view("large", 100)];
@@ -141,6 +184,11 @@ mod tests {
         assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
         assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
         assert_eq!(fitted(3000), [("small", 1, 2)]);
+        // A size of a method gives way to load steps of a coarser one.
+        let mut all = vec![view("coarse", 10), view("fine", 100)];
+        all.iter_mut().for_each(|b| b.series = "one");
+        fit(&mut all, 3839);
+        assert_eq!(all.iter().map(|b| (b.method, b.body.states.len())).collect::<Vec<_>>(), [("coarse", 3)]);
     }
 
     #[test]
@@ -148,7 +196,16 @@ mod tests {
         let view = |case: &'static str, method: &'static str, points: usize| {
             let states = vec![BodyState { u: pack(vec![1f32; 3 * points]), ..BodyState::default() }];
             let body = Body { points: pack(vec![0f32; 3 * points]), states, ..Body::default() };
-            BodyView { case, method, title: "", like: None, tools_like: None, body }
+            BodyView {
+                case,
+                method,
+                title: "",
+                like: None,
+                tools_like: None,
+                body,
+                series: method,
+                without: Vec::new(),
+            }
         };
         let mut all =
             vec![view("a", "tet4", 10), view("a", "tet10", 20), view("a", "efg", 10), view("b", "tet4", 10)];
