@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use common::{Done, PRESSED, assert_fails, inside, objects, write};
+use common::{Done, PRESSED, assert_fails, inside, objects, without, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -376,6 +376,19 @@ fn a_problem_is_written_for_others() {
     let tools: Value =
         serde_json::from_slice(&std::fs::read(dir.path().join("pressed/tools.json")).unwrap()).unwrap();
     assert_eq!((&tools[1]["name"], &tools[1]["drive"]["closure"]), (&"base".into(), &1e-3.into()));
+    let called = tissuebench(&dir, &["adapter", "run", "tissuebench", "pressed", "answer"]);
+    assert_fails(&called, 3, "not-offered: tissuebench does not take rigid tools (tools.json)");
+    let swings =
+        ["load", "reference", "output"].iter().fold(BLOCK.replace("OTHERS", ""), |s, key| without(&s, key));
+    let swings = swings.replace("size = {", "mass = \"consistent\", size = {")
+        + "procedure = { kind = \"modes\", modes = 2 }\n";
+    let swings = write(
+        &dir,
+        "swings.toml",
+        &swings.replace("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }"),
+    );
+    let done = tissuebench(&dir, &["export", &swings, "--method", "ours", "--out", "swings"]);
+    assert_fails(&done, 2, "'modes' is a kind that problems in files do not have yet");
     assert_fails(
         &tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]),
         2,

@@ -236,3 +236,38 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     let below = tissuebench(&["run", &write(&dir, "below.toml", &text(80.0))]);
     assert_fails(&below, 3, "not positive definite");
 }
+
+/// A thin part is lost between coarse cells, and a plate that does not get to a body presses nothing.
+#[test]
+fn lost_volume_and_a_tool_beside_the_body_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let corners = [[0, 0, 0], [40, 0, 0], [0, 40, 0], [0, 0, 40]];
+    let face = |nodes: [usize; 3]| {
+        let vertex = |k: usize| format!("vertex {}\n", corners[k].map(|x| x.to_string()).join(" "));
+        format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", nodes.map(vertex).concat())
+    };
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(face).concat();
+    write(&dir, "tip.stl", &format!("solid tip\n{faces}endsolid tip\n"));
+    let text = |spacing: &str, closure: &str| {
+        format!(
+            r#"title = "A pyramid under a plate"
+body = {{ shape = "file", path = "tip.stl", unit = "mm" }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3 }}
+support = [{{ where = "z <= 2 mm", fix = "xyz" }}]
+tool = [{{ name = "plate", shape = "plate", at = ["0 mm", "0 mm", "41 mm"], along = [0, 0, -1], drive = {{ closure = "{closure}" }}, penalty = "0.1 MPa/mm" }}]
+procedure = {{ kind = "static", steps = 4 }}
+method = [{{ id = "tet4", family = "fem", element = "tet4", size = {{ spacing = "{spacing}" }} }}]
+"#
+        )
+    };
+    let coarse = run(&dir, &text("10 mm", "1 mm")).remove(0);
+    let lost = coarse["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "volume-differs");
+    let lost = lost.unwrap_or_else(|| panic!("{coarse}"));
+    let ratio = metric(&coarse, "volume") / (40e-3f64.powi(3) / 6.0);
+    assert!((lost["value"].as_f64().unwrap() / ratio - 1.0).abs() < 1e-9 && ratio < 0.95, "{lost} {ratio}");
+    let beside = coarse["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tool-untouched");
+    assert_eq!(beside.unwrap_or_else(|| panic!("{coarse}"))["where"], "tool[0]");
+    let fine = run(&dir, &text("2 mm", "10 mm")).remove(0);
+    let codes = codes(&fine);
+    assert!(!codes.contains(&"volume-differs") && !codes.contains(&"tool-untouched"), "{codes:?}");
+}

@@ -1,5 +1,6 @@
 //! What is to be said against the numbers of a run: each warning where its number is known.
 
+use cases::scene::Procedure;
 use catalogue::{metric, warning};
 
 use super::exact_fit::Misfit;
@@ -55,6 +56,8 @@ pub(crate) fn warnings(
     found.extend(value(&metric::NITSCHE_FACTOR_NEEDED).and_then(|needed| bare_factor(run, needed)));
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
+    let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
+    found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
@@ -217,6 +220,17 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
             tool.carriers
         );
         Warning::new(&warning::FEW_CONTACT_POINTS, tool.carriers, format!("tool[{index}]"), message)
+    });
+    each.collect()
+}
+
+/// Tools of a static path only close: one that touches nothing at its end was set beside the body, or has slipped off it.
+fn untouched(step: &LoadStep) -> Vec<Warning> {
+    let free = step.tools.iter().enumerate().filter(|(_, tool)| tool.active == 0 && tool.closure != 0.0);
+    let each = free.map(|(index, _)| {
+        let message =
+            "touches nothing at the end: its force is 0. Let it close further (drive), or set it nearer (at)";
+        Warning::new(&warning::TOOL_UNTOUCHED, 0.0, format!("tool[{index}]"), message.to_string())
     });
     each.collect()
 }

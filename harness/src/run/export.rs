@@ -22,6 +22,7 @@ pub(crate) struct Exported {
 impl Group<'_> {
     /// Writes the problem of a method of finite elements to a folder, with the meshes for programs that read no arrays.
     pub(crate) fn export(&self, scenario: &Scenario, folder: &Path) -> Result<Exported, Failure> {
+        scenario.check_files().map_err(|failure| scenario.locate(failure))?;
         let about = scenario.about_elements()?;
         let (method, setup) = (scenario.discretise()?, scenario.setup()?);
         let (plan, _) = self.plan(scenario)?;

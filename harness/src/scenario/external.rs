@@ -61,6 +61,18 @@ impl Scenario<'_> {
         Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
+    /// Refuses a procedure that problems in files do not have yet.
+    pub(crate) fn check_files(&self) -> Result<(), Failure> {
+        match self.scene.procedure.kind() {
+            ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
+            other => {
+                let problem = format!("'{}' is a kind that problems in files do not have yet", other.name());
+                let help = "they have linear and static ones";
+                Err(Failure::input(Key::Scene("procedure.kind".into()), problem, help))
+            }
+        }
+    }
+
     /// What the scene asks of a solver: the word that an adapter lists in `can`, and a phrase for messages. Procedures that problems in files
     /// do not have yet are words of no adapter.
     fn asked(&self) -> Vec<(&'static str, String)> {

@@ -68,6 +68,11 @@ warnings! {
          strain at the integration points";
     NODES_DIFFER: "nodes-differ", None,
         "a mesh has more than 10 % more or fewer nodes than the scene asks for, as sizes of cells come in steps; nodes got over asked";
+    VOLUME_DIFFERS: "volume-differs", None,
+        "a mesh made inside a surface has 5 % less or more volume than that encloses, as parts thinner than its cells are left out; volume \
+         got over enclosed";
+    TOOL_UNTOUCHED: "tool-untouched", None,
+        "a tool of a static path touches nothing at the end, where its force is 0; no number";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,

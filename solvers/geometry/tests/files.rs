@@ -240,6 +240,12 @@ fn broken_decks_name_the_line() {
         ("SECOND, s3", "third, s3", 24, "surface 'slanted face' names set third"),
         ("*MATERIAL", "*SOLID SECTION, ELSET=none\n*MATERIAL", 25, "'none' names set none"),
         ("*MATERIAL", "*NGEN\n*MATERIAL", 25, "*NGEN is not read; write the deck with all nodes"),
+        (
+            "*MATERIAL",
+            "*NSET, NSET=a, INPUT=b.txt\n*MATERIAL",
+            25,
+            "INPUT of *NSET is not read; put the lines",
+        ),
         ("*MATERIAL", "*INCLUDE, INPUT=../other.inp\n*MATERIAL", 25, "lie in the folder of the deck"),
         ("*MATERIAL", "*INCLUDE, INPUT=/etc/passwd\n*MATERIAL", 25, "lie in the folder of the deck"),
         ("*MATERIAL", "*INCLUDE, INPUT=nothing.inp\n*MATERIAL", 25, "there is no such file"),

@@ -6,7 +6,8 @@ use std::time::Duration;
 use crate::Failure;
 use crate::adapter::{self, Answered, Found, Question, npy};
 use crate::cli::text::digits;
-use crate::procedure::external::problem::{TEXT, Text};
+use crate::error::ForeignStatus;
+use crate::procedure::external::problem::{TEXT, TOOLS, Text};
 use crate::process::Limits;
 
 /// Calls it and says what it answered; the exit code.
@@ -15,6 +16,10 @@ pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8,
     let wrong = |bad: String| Failure::Input(format!("{}: {bad}", path.display()));
     let text = std::fs::read_to_string(&path).map_err(|bad| wrong(bad.to_string()))?;
     let text: Text = serde_json::from_str(&text).map_err(|bad| wrong(bad.to_string()))?;
+    if let Some(reason) = adapter.manifest.refusal(&text.element, &asked(&text, problem)) {
+        eprintln!("{}: {} {reason}", ForeignStatus::NotOffered.name(), adapter.manifest.name);
+        return Ok(3);
+    }
     let nodes = npy::read(&problem.join("nodes.npy")).map_err(Failure::Input)?.shape.first().copied();
     let folder = |path: &Path| {
         std::fs::create_dir_all(path)
@@ -48,6 +53,17 @@ pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8,
     Ok(0)
 }
 
+/// What a problem asks of a solver, as a scene does.
+fn asked<'a>(text: &'a Text, problem: &Path) -> Vec<(&'a str, String)> {
+    let kind = text.procedure.kind.as_str();
+    let mut asked = vec![(kind, format!("kind = \"{kind}\""))];
+    asked.extend(text.materials.iter().map(|m| (m.law.as_str(), format!("the law \"{}\"", m.law))));
+    if problem.join(TOOLS).exists() {
+        asked.push(("tools", format!("rigid tools ({TOOLS})")));
+    }
+    asked
+}
+
 fn say(answered: &Answered) {
     let Answered { call, answer, fields, stalled } = answered;
     match stalled {
@@ -57,7 +73,7 @@ fn say(answered: &Answered) {
     let cpu = call.cpu.map_or(String::new(), |cpu| format!(", {} s of the processors", digits(cpu)));
     println!("  took        {} s{cpu}, {} MB", digits(call.wall), call.memory >> 20);
     for (phase, seconds) in &answer.phases {
-        println!("  own {phase:<8}{} s", digits(*seconds));
+        println!("  own {phase:<9}{} s", digits(*seconds));
     }
     let largest = fields.iter().flatten().map(|u| u.norm()).fold(0.0, f64::max);
     println!("  largest     {} mm", digits(1e3 * largest));

@@ -64,9 +64,11 @@ pub(super) fn copy(adapter: &Found, folder: &Path) -> Result<(), Failure> {
         let bytes = if file == "adapter.toml" { text.into_bytes() } else { bytes };
         std::fs::write(folder.join(&file), bytes).map_err(|source| bad(format!("{file}: {source}")))?;
     }
+    let beside = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     println!(
-        "{}: edit adapter.toml and its program, then: tissuebench adapter check {name}",
-        folder.display()
+        "{}: edit adapter.toml and its program, then: tissuebench adapter check {name} --adapters '{}'",
+        folder.display(),
+        beside.display()
     );
     Ok(())
 }

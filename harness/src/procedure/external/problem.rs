@@ -19,6 +19,8 @@ use crate::procedure::Problem;
 pub(crate) const SCHEMA: u32 = 1;
 /// The text.
 pub(crate) const TEXT: &str = "problem.json";
+/// The rigid tools, where there are some.
+pub(crate) const TOOLS: &str = "tools.json";
 /// Arrays, in the order that they are part of the problem's id.
 pub(crate) const ARRAYS: [&str; 6] =
     ["nodes.npy", "cells.npy", "regions.npy", "fixed.npy", "force.npy", "probes.npy"];
@@ -93,7 +95,7 @@ pub(crate) fn write(
         arrays(problem, folder)?;
         if !problem.setup.tools.is_empty() {
             let text = serde_json::to_string_pretty(&tools(problem)).map_err(|bad| bad.to_string())?;
-            save(&folder.join("tools.json"), text.as_bytes())?;
+            save(&folder.join(TOOLS), text.as_bytes())?;
         }
         for name in meshes {
             files::write(problem.method.mesh(), &folder.join(name), 1.0).map_err(|bad| bad.to_string())?;
@@ -117,7 +119,7 @@ fn id(text: &Text, folder: &Path) -> Result<String, String> {
     let Text { schema, element, materials, procedure, settings, .. } = text;
     let what = json!([schema, element, materials, procedure, settings]);
     hasher.update(what.to_string().as_bytes());
-    for name in ARRAYS.into_iter().chain(["tools.json"]) {
+    for name in ARRAYS.into_iter().chain([TOOLS]) {
         hasher.update(&std::fs::read(folder.join(name)).unwrap_or_default());
     }
     Ok(hasher.finalize().to_hex()[..16].to_string())

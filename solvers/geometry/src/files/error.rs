@@ -62,7 +62,7 @@ pub enum FileError {
         source: MeshError,
     },
     /// A region or group name that the format can't hold.
-    #[error("{file}: the name {name:?} is empty, holds a quotation mark or a line break, or for .inp a comma, blanks at an end, or differs from another in its case alone", file = file.display())]
+    #[error("{file}: the name {name:?} is empty, holds a quotation mark or a line break, or for .inp a comma, blanks at an end, a letter that is not ASCII, or differs from another in its case alone", file = file.display())]
     Name {
         /// The file.
         file: PathBuf,

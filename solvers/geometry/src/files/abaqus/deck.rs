@@ -68,6 +68,10 @@ impl Deck {
         let placed = !self.instances.is_empty() && self.open.is_none();
         let scope = self.open.as_mut().map_or(&mut self.flat, |(_, scope)| scope);
         match card.keyword.as_str() {
+            "NODE" | "ELEMENT" | "ELSET" | "NSET" | "SURFACE" if card.get("INPUT").is_some() => {
+                let help = "put the lines of that file below the keyword";
+                Err((card.place, Problem::Unread { what: format!("INPUT of *{}", card.keyword), help }))
+            }
             "NODE" => scope.nodes(card),
             "ELEMENT" => scope.elements(card),
             // Sets of the assembly name instances.
