@@ -87,7 +87,7 @@ pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
     write_as(mesh, file, unit, Format::of(file)?)
 }
 
-/// As [`write`], in a format of one's own choice. Numbers of all but STL are written so that they read back to the same bits (for
+/// As [`write()`], in a format of one's own choice. Numbers of all but STL are written so that they read back to the same bits (for
 /// `unit = 1`; else to the rounding of one division and one product).
 ///
 /// # Errors
