@@ -65,11 +65,11 @@ impl Scenario<'_> {
     pub(crate) fn check_files(&self) -> Result<(), Failure> {
         match self.scene.procedure.kind() {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
-            other => {
-                let problem = format!("'{}' is a kind that problems in files do not have yet", other.name());
-                let help = "they have linear and static ones";
-                Err(Failure::input(Key::Scene("procedure.kind".into()), problem, help))
-            }
+            _ => Err(Failure::input(
+                Key::Scene("procedure.kind".into()),
+                "is a kind that problems in files do not have yet",
+                "they have linear and static ones",
+            )),
         }
     }
 
