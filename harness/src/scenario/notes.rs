@@ -54,8 +54,7 @@ fn other_size(asked: usize, got: usize) -> Option<Warning> {
     let ratio = got as f64 / asked.max(1) as f64;
     ((ratio - 1.0).abs() > NEAR).then(|| {
         let message = format!(
-            "size = {{ nodes = {asked} }} gives {got} nodes, the nearest that was found: sizes of cells come in steps. Compare by the \
-             nodes there are, or give spacing"
+            "size = {{ nodes = {asked} }} gives {got} nodes: sizes of cells come in steps. Compare by the nodes there are, or give spacing"
         );
         Warning::new(&warning::NODES_DIFFER, ratio, "method.size.nodes", message)
     })
