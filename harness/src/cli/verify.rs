@@ -44,7 +44,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Err(code) = affordable(&plan.too_large(), args.force) {
         return code;
     }
-    // Told before hours of runs, not after them.
+    // A history that can't be read is refused before the runs, which may take hours.
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
         return unreported(&bad);
     }

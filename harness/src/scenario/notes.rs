@@ -1,12 +1,11 @@
 //! What can be said against a run before it starts: of the scene and its mesh alone.
 
-use cases::scene::{self, Body, Scene};
+use cases::scene::{self, Body, Scene, Size};
 use catalogue::warning;
-use geometry::{Mesh, files, quality};
+use geometry::{Mesh, quality};
 
 use super::file_body;
 use crate::discretise::place::{self, tolerance};
-use crate::error::Key;
 use crate::outcome::Warning;
 
 /// Part by which the nodes of a mesh may differ from those asked for without a word.
@@ -24,19 +23,15 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     }
     found.extend(scene.regions.iter().enumerate().filter_map(|(index, region)| cut(index, region, mesh)));
     found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
-    found.extend(other_volume(&scene.body, mesh));
+    found.extend(other_volume(&scene.body, method, mesh));
     found
 }
 
 /// Cells inside a surface leave out what is thinner than they are.
-fn other_volume(body: &Body, mesh: &Mesh) -> Option<Warning> {
-    let Body::File(file) = body else { return None };
-    // A mesh that is used as it is has its own volume; only one that was resized has been read as a surface too.
-    let surface = files::is_surface(&file.path).then(|| file_body::load(file).ok());
-    let enclosed = match surface.flatten() {
-        Some(body) => body.surface.volume(),
-        None => quality::volumes(&super::body::read(file, Key::Scene("body.path".into())).ok()?).iter().sum(),
-    };
+fn other_volume(body: &Body, method: &scene::Method, mesh: &Mesh) -> Option<Warning> {
+    let (Body::File(file), false) = (body, matches!(method.size(), Some(Size::File(_)))) else { return None };
+    // It was read to fill it.
+    let enclosed = file_body::load(file).ok()?.surface.volume();
     let ratio = quality::volumes(mesh).iter().sum::<f64>() / enclosed;
     ((ratio - 1.0).abs() > VOLUME).then(|| {
         let message = format!(

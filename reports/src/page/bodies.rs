@@ -12,7 +12,7 @@ const SCRIPT: &str = include_str!("../../page/built/solid.js");
 
 /// Bytes for all bodies of a page: with these, the page of the whole verification stays below 8 MB.
 const ROOM: usize = 3_400_000;
-/// A body of more than this part of the room gives way to load steps of others where a coarser one of its method is there.
+/// A body of more than this part of the room is left out before load steps of others where a coarser one of its method is there.
 const LARGE: f64 = 0.05;
 
 #[derive(Clone, Serialize)]
@@ -126,7 +126,7 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
             bodies.iter().any(|o| o.case == b.case && o.method != b.method && is(o))
         };
         let needed = |b: &BodyView| others(b, &|o| [o.like, o.tools_like].contains(&Some(b.method)));
-        let gives_way = |b: &BodyView| {
+        let can_go = |b: &BodyView| {
             b.least() as f64 > LARGE * room as f64
                 && others(b, &|o| o.series == b.series && o.least() < b.least())
         };
@@ -134,7 +134,7 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
             let taken = bodies.iter().enumerate().filter(|(_, b)| takes(b));
             taken.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
         };
-        let large = largest(&|b| !needed(b) && gives_way(b));
+        let large = largest(&|b| !needed(b) && can_go(b));
         let (moving, any) = (largest(&|b| b.body.states.len() > 1), largest(&|b| !needed(b)));
         match (large, moving, any) {
             (None, Some(k), _) => {
@@ -154,6 +154,19 @@ mod tests {
     use super::*;
     use crate::body::pack;
 
+    fn body_view(case: &'static str, method: &'static str, body: Body) -> BodyView<'static> {
+        BodyView {
+            case,
+            method,
+            title: "",
+            like: None,
+            tools_like: None,
+            body,
+            series: method,
+            without: Vec::new(),
+        }
+    }
+
     #[test]
     fn what_has_no_room_is_left_out_and_counted() {
         let view = |method: &'static str, points: usize| {
@@ -163,16 +176,7 @@ mod tests {
                 states: vec![state(), state(), state()],
                 ..Body::default()
             };
-            BodyView {
-                case: "a",
-                method,
-                title: "",
-                like: None,
-                tools_like: None,
-                body,
-                series: method,
-                without: Vec::new(),
-            }
+            body_view("a", method, body)
         };
         let fitted = |room: usize| -> Vec<(&str, usize, usize)> {
             let mut all = vec![view("small", 10), view("large", 100)];
@@ -184,7 +188,7 @@ mod tests {
         assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
         assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
         assert_eq!(fitted(3000), [("small", 1, 2)]);
-        // A size of a method gives way to load steps of a coarser one.
+        // A fine mesh is left out before load steps of a coarser one.
         let mut all = vec![view("coarse", 10), view("fine", 100)];
         all.iter_mut().for_each(|b| b.series = "one");
         fit(&mut all, 3839);
@@ -196,16 +200,7 @@ mod tests {
         let view = |case: &'static str, method: &'static str, points: usize| {
             let states = vec![BodyState { u: pack(vec![1f32; 3 * points]), ..BodyState::default() }];
             let body = Body { points: pack(vec![0f32; 3 * points]), states, ..Body::default() };
-            BodyView {
-                case,
-                method,
-                title: "",
-                like: None,
-                tools_like: None,
-                body,
-                series: method,
-                without: Vec::new(),
-            }
+            body_view(case, method, body)
         };
         let mut all =
             vec![view("a", "tet4", 10), view("a", "tet10", 20), view("a", "efg", 10), view("b", "tet4", 10)];

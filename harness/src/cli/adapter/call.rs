@@ -53,7 +53,7 @@ pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8,
     Ok(0)
 }
 
-/// What a problem asks of a solver, as a scene does.
+/// What the files of a problem ask of a solver, each with its word in `can`.
 fn asked<'a>(text: &'a Text, problem: &Path) -> Vec<(&'a str, String)> {
     let kind = text.procedure.kind.as_str();
     let mut asked = vec![(kind, format!("kind = \"{kind}\""))];
