@@ -2,11 +2,19 @@
 
 mod common;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use common::{PRESSED, inside, tissuebench, write};
 use serde_json::Value;
 
 fn floats(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+/// Numbers in single precision, as they are packed for the view in three dimensions.
+fn packed(text: &Value) -> Vec<f32> {
+    let bytes = STANDARD.decode(text.as_str().unwrap()).unwrap();
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
 }
 
 /// A block between plates is stretched alike everywhere, its sides free: true stress `F l / (A J)` along z and none across, so
@@ -42,6 +50,15 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
                 span = (span.0.min(z), span.1.max(z));
             }
         }
+        // Contact points of both plates: each in its place, as deep as the plates sink in.
+        let end = field["body"]["states"].as_array().unwrap().last().unwrap();
+        let touching = packed(&end["touching"]);
+        assert!(touching.len() >= 8, "{id}");
+        for point in touching.chunks_exact(4) {
+            let depth = f64::from(point[3]);
+            assert!((depth / number("penetration") - 1.0).abs() < 1e-3, "{id}: {depth}");
+        }
+        assert!((end["deepest_node"].as_f64().unwrap() / number("penetration") - 1.0).abs() < 1e-3, "{id}");
         // The whole deformed height is cut.
         assert!((span.1 - span.0 - height).abs() < 1e-3 * height, "{id}: {span:?} {height}");
         // The faces of both plates, where they stand at the end.

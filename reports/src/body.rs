@@ -1,5 +1,7 @@
 //! A body's surface at recorded states, for a view in three dimensions: single precision, packed as text.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
 /// The surface of a body, as its elements have it: faces of quadratic ones are curved.
@@ -46,6 +48,12 @@ pub struct BodyState {
     pub u: String,
     /// Way of each tool from its start, metres.
     pub closures: Vec<f64>,
+    /// Contact points that lie within a tool: three coordinates and the depth of each, metres, packed.
+    #[serde(default)]
+    pub touching: String,
+    /// How deep the deepest point of the body lies within a tool, metres: contact does not act there.
+    #[serde(default)]
+    pub deepest_node: f64,
     /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation gradient of the cell behind
     /// each face, packed, where they are known.
     pub values: Option<[String; 3]>,
@@ -53,17 +61,8 @@ pub struct BodyState {
 
 /// Numbers as base64 of their four bytes each, the lowest first.
 pub fn pack<T: Word>(numbers: impl IntoIterator<Item = T>) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let bytes: Vec<u8> = numbers.into_iter().flat_map(Word::bytes).collect();
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let word = three.iter().fold(0, |word, byte| word << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
-        for k in 0..4 {
-            let digit = char::from(DIGITS[(word >> (18 - 6 * k) & 63) as usize]);
-            text.push(if k <= three.len() { digit } else { '=' });
-        }
-    }
-    text
+    STANDARD.encode(bytes)
 }
 
 /// What is packed.
@@ -89,9 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_packed_as_base64_has_them() {
-        // RFC 4648, section 10: "foob" is Zm9vYg==.
-        assert_eq!(pack([u32::from_le_bytes(*b"foob")]), "Zm9vYg==");
+    fn numbers_are_packed_with_their_lowest_byte_first() {
         assert_eq!(pack([1.0f32, -2.5]), "AACAPwAAIMA=");
         assert_eq!(pack(Vec::<u32>::new()), "");
     }

@@ -86,6 +86,10 @@ fn the_same_as_point_by_point_and_in_balance() {
             let all = one_by_one(&tool, 2e-5, &rows, &u, &history);
             agree(found.as_ref(), &all);
             let found = found.unwrap();
+            let within = surface.within(&tool, 2e-5, &u);
+            assert!(within.iter().all(|(x, gap)| *gap < 0.0 && tool.gap(2e-5, x) == *gap));
+            assert_eq!(within.len(), all.iter().filter(|c| c.gap < 0.0).count());
+            assert_eq!(within.iter().fold(0.0f64, |m, (_, gap)| m.max(-gap)), found.max_penetration());
             assert!(found.points().len() > 3 && counts.active >= found.points().len() as u64, "{shape:?}");
             assert!(found.force().x.abs() > 1e-6, "{shape:?} does not drag");
             let forces: Vec<f64> = found

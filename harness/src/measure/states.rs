@@ -22,11 +22,28 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let at_nodes = |u: &[Vector3]| to_mesh.as_ref().map_or_else(|| u.to_vec(), |rows| rows.rows().apply(u));
     let cells = (solution.vibration.is_none() && !setup.relaxes())
         .then(|| Averages::new(mesh, &prepared.volume, prepared.source.points_per_cell()));
-    let state = |time, u: &[Vector3], parameters: Option<&[f64]>, step: Option<&LoadStep>| State {
-        time,
-        displacement: at_nodes(u),
-        tensors: cells.as_ref().zip(parameters).map(|(cells, parameters)| tensors(run, cells, u, parameters)),
-        closures: step.map_or(Vec::new(), |step| step.tools.iter().map(|tool| tool.closure).collect()),
+    let contact = prepared.contact();
+    let state = |time, u: &[Vector3], parameters: Option<&[f64]>, step: Option<&LoadStep>| {
+        let displacement = at_nodes(u);
+        let closures: Vec<f64> =
+            step.map_or(Vec::new(), |step| step.tools.iter().map(|tool| tool.closure).collect());
+        let tools = || setup.tools.iter().map(|placed| &placed.tool).zip(&closures);
+        let deformed = || mesh.points().iter().zip(&displacement).map(|(x, u)| x + u);
+        State {
+            time,
+            tensors: cells
+                .as_ref()
+                .zip(parameters)
+                .map(|(cells, parameters)| tensors(run, cells, u, parameters)),
+            touching: tools()
+                .flat_map(|(tool, closure)| contact.iter().flat_map(|at| at.within(tool, *closure, u)))
+                .collect(),
+            gap: tools()
+                .flat_map(|(tool, closure)| deformed().map(|x| tool.gap(*closure, &x)))
+                .fold(f64::INFINITY, f64::min),
+            displacement,
+            closures,
+        }
     };
     // Pressures of a field of its own are known at the end alone.
     let mixed = prepared.volume.pressure.is_some();

@@ -49,6 +49,8 @@ fn state(state: &State, used: &[u32], behind: &[usize]) -> BodyState {
         time: state.time,
         u: vectors(used.iter().map(|&n| state.displacement[n as usize])),
         closures: state.closures.clone(),
+        touching: pack(state.touching.iter().flat_map(|(x, gap)| [x.x, x.y, x.z, -gap].map(|v| v as f32))),
+        deepest_node: (-state.gap).max(0.0),
         values,
     }
 }

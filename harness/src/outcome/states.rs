@@ -28,6 +28,10 @@ pub(crate) struct State {
     pub(crate) tensors: Option<Tensors>,
     /// Way of each tool from its start, m.
     pub(crate) closures: Vec<f64>,
+    /// Where contact points lie within a tool (m), each with its signed distance (m, below 0).
+    pub(crate) touching: Vec<(Point3, f64)>,
+    /// Smallest signed distance (m) of a point of the mesh to a tool; infinite without tools.
+    pub(crate) gap: f64,
 }
 
 /// What each cell has, as means over its quadrature points.

@@ -1,8 +1,9 @@
 // Bodies in three dimensions: turned, zoomed, cut, two of them under one camera. Evaluated when a reader first asks for one.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh,
-  MeshLambertMaterial, PerspectiveCamera, Plane, Scene, Vector3, WebGLRenderer,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, IcosahedronGeometry, InstancedMesh,
+  LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Plane, Scene, Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { h, select } from "./dom";
@@ -12,7 +13,7 @@ import { digits } from "./text";
 export interface Body {
   method: string; title: string; points: string; faces: { nodes: number; indices: string }[];
   tools: { points: string; quads: string; along: [number, number, number] }[];
-  states: { time: number; u: string; closures: number[]; values: [string, string, string] | null }[];
+  states: { time: number; u: string; closures: number[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
   /** The method whose points and faces it has, which come with that one. */
   like?: string;
@@ -71,12 +72,14 @@ function pattern(nodes: number): Pattern {
 }
 
 const FIELDS: [string, string, string, number][] = [
-  ["u", "displacement", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
+  ["u", "displacement", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
 ];
 
 // Viridis (van der Walt and Smith, 2015), and blue over white to red (ColorBrewer).
 const RISING = ["#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725"];
 const SIGNED = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
+
+const DOT = new Color(0x101010);
 
 /** One method's body in a scene of its own. */
 class Solid {
@@ -87,10 +90,13 @@ class Solid {
   private readonly lines = new BufferGeometry();
   private readonly edges: LineSegments;
   private readonly tools = new Group();
-  readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
+  private readonly points: InstancedMesh;
+  readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   readonly wire = new LineBasicMaterial({ color: 0x101010, transparent: true, opacity: 0.3 });
+  readonly dots = new MeshBasicMaterial();
 
-  constructor(readonly body: Body) {
+  /** `grain`: radius of a contact point. */
+  constructor(readonly body: Body, grain: number) {
     this.reference = floats(body.points);
     this.faces = body.faces.map((f) => ({ indices: whole(f.indices), nodes: f.nodes, pattern: pattern(f.nodes) }));
     const triangles: number[] = [];
@@ -111,6 +117,10 @@ class Solid {
     const back = new DirectionalLight(0xffffff, 0.7);
     back.position.set(-2, -1, -1.5);
     this.scene.add(new AmbientLight(0xffffff, 1.6), light, back, new Mesh(this.surface, this.material), this.edges, this.tools);
+    const most = Math.max(0, ...body.states.map((_, k) => this.touching(k).length / 4));
+    this.points = new InstancedMesh(new IcosahedronGeometry(grain, 1), this.dots, most);
+    this.points.frustumCulled = false;
+    this.scene.add(this.points);
     for (const tool of body.tools) {
       const shape = new BufferGeometry();
       shape.setAttribute("position", new BufferAttribute(floats(tool.points), 3));
@@ -127,9 +137,19 @@ class Solid {
     return this.surface.index!.count / 3;
   }
 
-  /** Values of a field at a state: of each node, or of each face. */
+  /** Contact points within a tool at a state: place and depth of each. */
+  touching(state: number): Float32Array {
+    return floats(this.body.states[state].touching);
+  }
+
+  depths(state: number): Float32Array {
+    return this.touching(state).filter((_, k) => k % 4 === 3);
+  }
+
+  /** Values of a field at a state: of each node, or of each face; none of what the body itself does not have. */
   values(field: string, state: number): { each: Float32Array; ofNodes: boolean } | null {
     const at = this.body.states[state];
+    if (field === "d") return null;
     if (field === "u") {
       const u = floats(at.u);
       const size = new Float32Array(u.length / 3);
@@ -140,7 +160,7 @@ class Solid {
   }
 
   /** Moves the body to a state, in colours of a field. */
-  show(field: string, state: number, colour: (value: number) => Color, mesh: boolean) {
+  show(field: string, state: number, colour: (value: number) => Color, mesh: boolean, dots: boolean) {
     const u = floats(this.body.states[state].u);
     const values = this.values(field, state);
     const places = this.surface.getAttribute("position").array as Float32Array;
@@ -166,6 +186,20 @@ class Solid {
     this.surface.getAttribute("position").needsUpdate = this.surface.getAttribute("color").needsUpdate = true;
     this.surface.computeVertexNormals();
     this.edges.visible = mesh;
+    // Contact is between body and tool: seen through the body.
+    this.material.transparent = field === "d";
+    this.material.opacity = field === "d" ? 0.3 : 1;
+    this.material.depthWrite = field !== "d";
+    const touching = this.touching(state);
+    this.points.visible = dots || field === "d";
+    this.points.count = touching.length / 4;
+    for (let k = 0; k < this.points.count; k++) {
+      const [x, y, z, depth] = touching.subarray(4 * k, 4 * k + 4);
+      this.points.setMatrixAt(k, new Matrix4().setPosition(x, y, z));
+      this.points.setColorAt(k, field === "d" ? colour(depth) : DOT);
+    }
+    this.points.instanceMatrix.needsUpdate = true;
+    if (this.points.instanceColor) this.points.instanceColor.needsUpdate = true;
     this.tools.children.forEach((tool, k) => {
       const [x, y, z] = this.body.tools[k].along.map((a) => a * (this.body.states[state].closures[k] ?? 0));
       tool.position.set(x, y, z);
@@ -191,14 +225,23 @@ export function show(place: HTMLElement, packed: Body[]) {
   const camera = new PerspectiveCamera(28, 1, 1e-4, 100);
   const controls = new OrbitControls(camera, canvas);
   const plane = new Plane(new Vector3(-1, 0, 0), 0);
+  const box = { low: new Vector3(Infinity, Infinity, Infinity), high: new Vector3(-Infinity, -Infinity, -Infinity) };
+  const points = floats(bodies[0].points);
+  for (let k = 0; k < points.length; k += 3) {
+    const p = new Vector3(points[k], points[k + 1], points[k + 2]);
+    box.low.min(p);
+    box.high.max(p);
+  }
+  const middle = box.low.clone().add(box.high).multiplyScalar(0.5);
+  const size = box.high.clone().sub(box.low).length();
   const made = new Map<string, Solid>();
   const solid = (method: string) => {
-    if (!made.has(method)) made.set(method, new Solid(bodies.find((b) => b.method === method)!));
+    if (!made.has(method)) made.set(method, new Solid(bodies.find((b) => b.method === method)!, 0.006 * size));
     return made.get(method)!;
   };
   // Curved faces first: they show what this view is for.
   const best = [...bodies].sort((a, b) => Math.max(...b.faces.map((f) => f.nodes)) - Math.max(...a.faces.map((f) => f.nodes)));
-  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true };
+  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: true };
   const shown = () => [view.left, view.right].filter(Boolean).map(solid);
   const stateOf = (s: Solid) => Math.round(view.part * (s.body.states.length - 1));
 
@@ -208,6 +251,7 @@ export function show(place: HTMLElement, packed: Body[]) {
 
   function range(): [number, number] {
     let [low, high] = [Infinity, -Infinity];
+    if (view.field === "d") return [0, Math.max(...shown().flatMap((s) => [...s.depths(stateOf(s))]), 0) || 1];
     for (const s of shown()) {
       const values = s.values(view.field, stateOf(s));
       if (!values) continue;
@@ -222,6 +266,15 @@ export function show(place: HTMLElement, packed: Body[]) {
     return [0, high || 1];
   }
 
+  /** Where contact acts, and how deep the body is in a tool there and at its nodes. */
+  function contact(s: Solid): string {
+    const [at, depths] = [s.body.states[stateOf(s)], s.depths(stateOf(s))];
+    if (!depths.length) return "";
+    const mm = (metres: number) => `${digits(1e3 * metres, 2)} mm`;
+    return `Contact acts at the ${depths.length} points marked${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
+      + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} in. ` : "no node is in one. ");
+  }
+
   function update() {
     const [low, high] = range();
     const table = (view.field === "p" || view.field === "j" ? SIGNED : RISING).map((c) => new Color(c));
@@ -231,8 +284,8 @@ export function show(place: HTMLElement, packed: Body[]) {
       return mixed.copy(table[Math.floor(at)]).lerp(table[Math.floor(at) + 1], at % 1);
     };
     for (const s of shown()) {
-      s.show(view.field, stateOf(s), colour, view.mesh);
-      s.material.clippingPlanes = s.wire.clippingPlanes = view.axis ? [plane] : [];
+      s.show(view.field, stateOf(s), colour, view.mesh, view.dots);
+      s.material.clippingPlanes = s.wire.clippingPlanes = s.dots.clippingPlanes = view.axis ? [plane] : [];
     }
     const [, name, unit, scale] = FIELDS.find((f) => f[0] === view.field)!;
     const css = (view.field === "p" || view.field === "j" ? SIGNED : RISING).join(",");
@@ -245,7 +298,8 @@ export function show(place: HTMLElement, packed: Body[]) {
     const states = shown().filter((s) => s.body.left_out > 0).map((s) => `${s.body.left_out} of ${s.body.left_out + s.body.states.length} states of ${s.body.method}`);
     const lost = [...states, ...(bodies[0].without ?? [])];
     said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
-      + (shown().some((s) => !s.values(view.field, stateOf(s))) ? "Grey: the field is not known at this state. " : "")
+      + shown().map(contact).join("")
+      + (view.field !== "d" && shown().some((s) => !s.values(view.field, stateOf(s))) ? "Grey: the field is not known at this state. " : "")
       + (lost.length ? `Left out to keep the page small: ${lost.join(", ")}.` : "");
     canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
     draw();
@@ -265,15 +319,6 @@ export function show(place: HTMLElement, packed: Body[]) {
     });
   }
 
-  const box = { low: new Vector3(Infinity, Infinity, Infinity), high: new Vector3(-Infinity, -Infinity, -Infinity) };
-  const points = solid(view.left).reference;
-  for (let k = 0; k < points.length; k += 3) {
-    const p = new Vector3(points[k], points[k + 1], points[k + 2]);
-    box.low.min(p);
-    box.high.max(p);
-  }
-  const middle = box.low.clone().add(box.high).multiplyScalar(0.5);
-  const size = box.high.clone().sub(box.low).length();
   function home() {
     controls.target.copy(middle);
     // Tools, where there are any, are seen from the side.
@@ -299,16 +344,21 @@ export function show(place: HTMLElement, packed: Body[]) {
     h("input", { type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name, input: (e) => input(Number((e.target as HTMLInputElement).value)) });
   const depth = slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); });
   depth.hidden = true;
-  const check = h("input", { type: "checkbox", checked: true, change: () => { view.mesh = check.checked; update(); } });
+  const check = (name: string, take: (on: boolean) => void) => {
+    const box = h("input", { type: "checkbox", checked: true, change: () => { take(box.checked); update(); } });
+    return h("label", { class: "small" }, box, ` ${name}`);
+  };
+  const touched = bodies.some((b) => b.states.some((s) => s.touching));
   place.replaceChildren(
     h("div", { class: "toolbar" },
       select("body", methods, view.left, (to) => { view.left = to; update(); }),
       select("second body", [["", "alone"], ...methods], "", (to) => { view.right = to; update(); }),
-      select("field", FIELDS.filter((f) => f[0] === "u" || bodies.some((b) => b.states.some((s) => s.values))).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
+      select("field", FIELDS.filter((f) => f[0] === "u" || (f[0] === "d" ? touched : bodies.some((b) => b.states.some((s) => s.values)))).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
       ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small slid" }, "load", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
       select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
       depth,
-      h("label", { class: "small" }, check, " mesh"),
+      check("mesh", (on) => { view.mesh = on; }),
+      ...(touched ? [check("contact points", (on) => { view.dots = on; })] : []),
       h("button", { type: "button", class: "quiet", click: () => { home(); draw(); } }, "reset view")),
     canvas, bar, said);
   controls.listenToKeyEvents(canvas);

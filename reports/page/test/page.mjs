@@ -236,6 +236,16 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
     await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); e.value = 0; e.dispatchEvent(new Event("input")); })()`);
     was = await changed("the load step", was);
   }
+  // Contact points are counted, and told with the deepest of them.
+  const touches = await page.eval(`(() => { const m = document.querySelector('.solid select[aria-label="body"]').value; const b = JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.method === m); const t = new Float32Array(Uint8Array.from(atob(b.states[b.states.length - 1].touching), (c) => c.charCodeAt(0)).buffer); return [...t].filter((_, k) => k % 4 === 3); })()`);
+  if (touches.length) {
+    await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); if (e) { e.value = 1; e.dispatchEvent(new Event("input")); } })()`);
+    await pick("field", "'d'"); was = await changed("the depth of contact points", was);
+    const [, count, deepest] = (await page.eval(text(".solid"))).match(/acts at the (\d+) points marked, at most ([\d.e-]+) mm deep/);
+    assert.equal(Number(count), touches.length);
+    assert.ok(Math.abs(Number(deepest) / (1e3 * Math.max(...touches)) - 1) < 0.06, deepest);
+    await page.eval(`${all(".solid label")}.find((l) => l.innerText.includes("contact points")).querySelector("input").click()`);
+  }
   const triangles = Number(await page.eval("document.querySelector('.solid canvas').dataset.triangles"));
   await pick("second body", "e.options[e.options.length - 1].value");
   was = await changed("the second body", was);

@@ -52,7 +52,9 @@ impl BodyView<'_> {
 }
 
 fn of_state(state: &BodyState) -> usize {
-    state.u.len() + state.values.as_ref().map_or(0, |values| values.iter().map(String::len).sum())
+    state.u.len()
+        + state.touching.len()
+        + state.values.as_ref().map_or(0, |values| values.iter().map(String::len).sum())
 }
 
 /// The elements; nothing for results without bodies.

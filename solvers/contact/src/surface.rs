@@ -78,8 +78,14 @@ impl<'a> ContactSurface<'a> {
     /// Smallest signed distance (m) of all points to the tool in the state `u`; infinite without points.
     pub fn gap(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> f64 {
         (0..self.rows.points().len())
-            .map(|q| tool.shape().foot(&tool.local(closure, &self.position(q, u))).0)
+            .map(|q| tool.gap(closure, &self.position(q, u)))
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Where the points are that lie within the tool in the state `u` (m), each with its signed distance (m, below 0).
+    pub fn within(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> Vec<(Point3, f64)> {
+        let places = (0..self.rows.points().len()).map(|q| self.position(q, u));
+        places.map(|x| (x, tool.gap(closure, &x))).filter(|(_, gap)| *gap < 0.0).collect()
     }
 
     /// Points of each cluster that may come within `reach` (m) of the tool; all others cannot.

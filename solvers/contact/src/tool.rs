@@ -146,6 +146,11 @@ impl Tool {
         }
     }
 
+    /// Signed distance of the current position `x` (m), m; negative inside.
+    pub fn gap(&self, closure: f64, x: &Point3) -> f64 {
+        self.shape.foot(&self.local(closure, x)).0
+    }
+
     /// Position in the tool's frame.
     #[inline]
     pub(super) fn local(&self, closure: f64, x: &Point3) -> Vector3 {
