@@ -23,8 +23,8 @@ fn packed(text: &Value) -> Vec<f32> {
 fn a_section_between_plates_has_the_pressure_of_the_force() {
     let dir = tempfile::tempdir().unwrap();
     let out = inside(&dir, "out");
-    let done =
-        tissuebench(&["run", &write(&dir, "pressed.toml", PRESSED), "--format", "json", "--out", &out]);
+    let scene = format!("{PRESSED}reference = {{ method = \"hex8\" }}\n");
+    let done = tissuebench(&["run", &write(&dir, "pressed.toml", &scene), "--format", "json", "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let mut seen = 0;
     for line in done.stdout.lines() {
@@ -59,6 +59,14 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
             assert!((depth / number("penetration") - 1.0).abs() < 1e-3, "{id}: {depth}");
         }
         assert!((end["deepest_node"].as_f64().unwrap() / number("penetration") - 1.0).abs() < 1e-3, "{id}");
+        // Points are off from the reference by what the RMS error is of.
+        let off = packed(&field["body"]["compared"]["off"]);
+        let rms = (off.iter().map(|d| f64::from(*d).powi(2)).sum::<f64>() / off.len() as f64).sqrt();
+        assert!((rms - number("rms")).abs() < 1e-6 * rms + 1e-12, "{id}: {rms}");
+        assert_eq!(packed(&field["body"]["compared"]["points"]).len(), 3 * off.len(), "{id}");
+        // The nodes of the cloud, and of no other.
+        let nodes = if id == "efg" { run["nodes"].as_u64().unwrap() as usize } else { 0 };
+        assert_eq!(packed(&field["body"]["cloud"]).len(), 3 * nodes, "{id}");
         // The whole deformed height is cut.
         assert!((span.1 - span.0 - height).abs() < 1e-3 * height, "{id}: {span:?} {height}");
         // The faces of both plates, where they stand at the end.

@@ -11,12 +11,27 @@ pub struct Body {
     pub points: String,
     /// Faces by their number of nodes.
     pub faces: Vec<Faces>,
+    /// Where the displacement at the end is compared with the reference or the exact solution.
+    #[serde(default)]
+    pub compared: Option<Compared>,
+    /// Nodes of a cloud at the end, metres, packed; empty for elements, whose nodes their faces show.
+    #[serde(default)]
+    pub cloud: String,
     /// The tools where they start.
     pub tools: Vec<Skin>,
     /// States kept of the run, in order; the last is its end.
     pub states: Vec<BodyState>,
     /// Number of states that were left out, evenly.
     pub left_out: usize,
+}
+
+/// A displacement beside what it is compared with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Compared {
+    /// Where the reference or the exact solution has each point at the end, metres, packed.
+    pub points: String,
+    /// How far the body has it from there, metres, packed.
+    pub off: String,
 }
 
 /// Faces of one kind.

@@ -51,7 +51,7 @@ mod tables;
 mod text;
 
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
-pub use body::{Body, BodyState, Faces, Skin, pack};
+pub use body::{Body, BodyState, Compared, Faces, Skin, pack};
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};

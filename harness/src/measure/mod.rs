@@ -23,7 +23,7 @@ mod warnings;
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::{Matrix3, Vector3};
+use geometry::{Matrix3, Point3, Vector3};
 use material::{Law, Material as _};
 use statics::Body;
 
@@ -186,12 +186,7 @@ fn errors_in_the_volume(
 
 /// Differences from an exact solution or the references where displacements are compared.
 fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3], request: &Request) {
-    let points = if request.targets.is_empty() { run.method.nodes() } else { request.targets };
-    let against = match (&run.setup.exact, request.reference) {
-        (Some(exact), _) => Some(exact_at(exact.as_ref(), points)),
-        (None, Some(reference)) => Some(reference.targets.clone()),
-        (None, None) => None,
-    };
+    let against = against(run, request);
     if let Some(integrated) = request.integrated {
         push_difference(metrics, INTEGRATION, field, &integrated.targets);
         if let Some(against) = &against {
@@ -209,6 +204,19 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
     }
     if let Some(beside) = request.beside {
         push_difference(metrics, BESIDE, field, &beside.targets);
+    }
+}
+
+/// Where displacements are compared: the scene's points, or the method's own nodes.
+fn compared<'a>(run: &Solved<'a>, request: &Request<'a>) -> &'a [Point3] {
+    if request.targets.is_empty() { run.method.nodes() } else { request.targets }
+}
+
+/// The exact displacement there, or the reference's; `None` where neither is known.
+fn against(run: &Solved, request: &Request) -> Option<Vec<Vector3>> {
+    match (&run.setup.exact, request.reference) {
+        (Some(exact), _) => Some(exact_at(exact.as_ref(), compared(run, request))),
+        (None, reference) => reference.map(|reference| reference.targets.clone()),
     }
 }
 

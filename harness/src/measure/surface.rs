@@ -1,17 +1,17 @@
 //! What a run leaves for a view in three dimensions: its surface as the elements have it, at some of its states.
 
 use geometry::{Facet, Vector3};
-use reports::{Body, BodyState, Faces, Skin, pack};
+use reports::{Body, BodyState, Compared, Faces, Skin, pack};
 
-use super::{Solved, states};
+use super::{Field, Request, Solved, against, compared, states};
 use crate::Failure;
 use crate::outcome::{State, ToolSkin, von_mises};
 
 /// States kept of a run: as many as tell a way. A body of 1000 surface nodes has 20 kB in each.
 const KEPT: usize = 6;
 
-/// Surface, tools and states.
-pub(crate) fn surface(run: &Solved) -> Result<Body, Failure> {
+/// Surface, tools and states; `field` is what the request compares.
+pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<Body, Failure> {
     let all = states(run, KEPT)?;
     let mesh = &all.mesh;
     let mut facets = mesh.boundary();
@@ -29,10 +29,27 @@ pub(crate) fn surface(run: &Solved) -> Result<Body, Failure> {
     Ok(Body {
         points: vectors(used.iter().map(|&n| mesh.points()[n as usize].coords)),
         faces: faces.collect(),
+        compared: against(run, request).map(|against| {
+            let places = compared(run, request).iter().zip(&against).map(|(x, u)| x.coords + u);
+            let off = field.values.iter().zip(&against).map(|(u, exact)| (u - exact).norm() as f32);
+            Compared { points: vectors(places), off: pack(off) }
+        }),
+        cloud: cloud(run)?,
         tools: all.tools.iter().map(skin).collect(),
         states: all.states.iter().map(|s| state(s, &used, &behind)).collect(),
         left_out: all.left_out,
     })
+}
+
+/// Nodes of a cloud where they are at the end.
+fn cloud(run: &Solved) -> Result<String, Failure> {
+    let Solved { method, prepared, solution, .. } = *run;
+    if method.interpolates {
+        return Ok(String::new());
+    }
+    let (rows, _) = prepared.source.at_points(method.nodes())?;
+    let moved = rows.rows().apply(&solution.u);
+    Ok(vectors(method.nodes().iter().zip(moved).map(|(x, u)| x.coords + u)))
 }
 
 fn state(state: &State, used: &[u32], behind: &[usize]) -> BodyState {

@@ -167,7 +167,7 @@ fn loaded(
     mut meters: Meters,
 ) -> Result<(), Failure> {
     let measure::Solved { setup, solution, .. } = *run;
-    let field = displacement(run, &outcome.plan, request, &mut meters)?;
+    let displaced = displacement(run, &outcome.plan, request, &mut meters)?;
     outcome.phases = phases(&meters, run);
     let mut counters = meters.counters;
     if let Some(forces) = solution.forces {
@@ -175,7 +175,7 @@ fn loaded(
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     conclude(&mut outcome.plan, solution, &counters);
-    compare(outcome, run, &field, request)?;
+    compare(outcome, run, &displaced, request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     places(outcome, run)?;
     let over_time = over_time(run, &outcome.plan, request, &outcome.steps)?;
@@ -195,7 +195,7 @@ fn loaded(
     }
     if request.picture {
         let mut field = picture(&outcome.identity, run, outcome.last.as_ref())?;
-        field.body = Some(surface(run)?);
+        field.body = Some(surface(run, &displaced, &request.at_end(whole))?);
         outcome.field = Some(field);
     }
     outcome.counters = counters;

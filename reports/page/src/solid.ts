@@ -15,16 +15,28 @@ export interface Body {
   tools: { points: string; quads: string; along: [number, number, number] }[];
   states: { time: number; u: string; closures: number[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
+  /** Where the end is compared with the reference or the exact solution, and how far off it is there. */
+  compared: { points: string; off: string } | null;
+  /** Nodes of a cloud at the end. */
+  cloud: string;
   /** The method whose points and faces it has, which come with that one. */
   like?: string;
   /** The method whose tools it has. */
   tools_like?: string;
+  /** The method whose places of comparison it has. */
+  compared_like?: string;
   /** On the first body of a case: methods whose bodies had no room. */
   without?: string[];
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 const floats = (text: string) => new Float32Array(bytes(text));
+/** Places with a value each. */
+function joined(of: { points: string; off: string } | null): Float32Array {
+  if (!of) return new Float32Array();
+  const [points, off] = [floats(of.points), floats(of.off)];
+  return Float32Array.from({ length: 4 * off.length }, (_, k) => (k % 4 < 3 ? points[3 * Math.floor(k / 4) + (k % 4)] : off[Math.floor(k / 4)]));
+}
 const whole = (text: string) => new Uint32Array(bytes(text));
 
 /** Points of a face to a side: a curved one is drawn in so many straight pieces. */
@@ -72,14 +84,17 @@ function pattern(nodes: number): Pattern {
 }
 
 const FIELDS: [string, string, string, number][] = [
-  ["u", "displacement", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
+  ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
 ];
 
 // Viridis (van der Walt and Smith, 2015), and blue over white to red (ColorBrewer).
 const RISING = ["#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725"];
 const SIGNED = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
 
+/** Fields of points apart from the surface, which is then seen through. */
+const OF_POINTS = "de";
 const DOT = new Color(0x101010);
+const NODE = new Color(0xd6604d);
 
 /** One method's body in a scene of its own. */
 class Solid {
@@ -91,6 +106,8 @@ class Solid {
   private readonly edges: LineSegments;
   private readonly tools = new Group();
   private readonly points: InstancedMesh;
+  private readonly cloud: Float32Array;
+  private readonly compared: Float32Array;
   readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   readonly wire = new LineBasicMaterial({ color: 0x101010, transparent: true, opacity: 0.3 });
   readonly dots = new MeshBasicMaterial();
@@ -117,7 +134,9 @@ class Solid {
     const back = new DirectionalLight(0xffffff, 0.7);
     back.position.set(-2, -1, -1.5);
     this.scene.add(new AmbientLight(0xffffff, 1.6), light, back, new Mesh(this.surface, this.material), this.edges, this.tools);
-    const most = Math.max(0, ...body.states.map((_, k) => this.touching(k).length / 4));
+    this.cloud = floats(body.cloud);
+    this.compared = joined(body.compared);
+    const most = Math.max(this.compared.length / 4, ...body.states.map((_, k) => this.touching(k).length / 4)) + this.cloud.length / 3;
     this.points = new InstancedMesh(new IcosahedronGeometry(grain, 1), this.dots, most);
     this.points.frustumCulled = false;
     this.scene.add(this.points);
@@ -142,14 +161,24 @@ class Solid {
     return floats(this.body.states[state].touching);
   }
 
-  depths(state: number): Float32Array {
-    return this.touching(state).filter((_, k) => k % 4 === 3);
+  /** The same of a field of points: the comparison is of the end. */
+  marked(field: string, state: number): Float32Array {
+    if (field !== "e") return this.touching(state);
+    return this.isEnd(state) ? this.compared : new Float32Array();
+  }
+
+  isEnd(state: number): boolean {
+    return state === this.body.states.length - 1;
+  }
+
+  depths(field: string, state: number): Float32Array {
+    return this.marked(field, state).filter((_, k) => k % 4 === 3);
   }
 
   /** Values of a field at a state: of each node, or of each face; none of what the body itself does not have. */
   values(field: string, state: number): { each: Float32Array; ofNodes: boolean } | null {
     const at = this.body.states[state];
-    if (field === "d") return null;
+    if (OF_POINTS.includes(field)) return null;
     if (field === "u") {
       const u = floats(at.u);
       const size = new Float32Array(u.length / 3);
@@ -160,7 +189,7 @@ class Solid {
   }
 
   /** Moves the body to a state, in colours of a field. */
-  show(field: string, state: number, colour: (value: number) => Color, mesh: boolean, dots: boolean) {
+  show(field: string, state: number, colour: (value: number) => Color, view: { mesh: boolean; dots: boolean; cloud: boolean }) {
     const u = floats(this.body.states[state].u);
     const values = this.values(field, state);
     const places = this.surface.getAttribute("position").array as Float32Array;
@@ -185,19 +214,22 @@ class Solid {
         }
     this.surface.getAttribute("position").needsUpdate = this.surface.getAttribute("color").needsUpdate = true;
     this.surface.computeVertexNormals();
-    this.edges.visible = mesh;
-    // Contact is between body and tool: seen through the body.
-    this.material.transparent = field === "d";
-    this.material.opacity = field === "d" ? 0.3 : 1;
-    this.material.depthWrite = field !== "d";
-    const touching = this.touching(state);
-    this.points.visible = dots || field === "d";
-    this.points.count = touching.length / 4;
-    for (let k = 0; k < this.points.count; k++) {
-      const [x, y, z, depth] = touching.subarray(4 * k, 4 * k + 4);
-      this.points.setMatrixAt(k, new Matrix4().setPosition(x, y, z));
-      this.points.setColorAt(k, field === "d" ? colour(depth) : DOT);
-    }
+    this.edges.visible = view.mesh;
+    const ofPoints = OF_POINTS.includes(field);
+    const cloud = view.cloud && this.isEnd(state) ? this.cloud : new Float32Array();
+    // What is marked is within the body, or between it and a tool.
+    this.material.transparent = ofPoints || cloud.length > 0;
+    this.material.opacity = this.material.transparent ? 0.3 : 1;
+    this.material.depthWrite = !this.material.transparent;
+    const marked = ofPoints || view.dots ? this.marked(field, state) : new Float32Array();
+    let count = 0;
+    const mark = (x: number, y: number, z: number, c: Color) => {
+      this.points.setMatrixAt(count, new Matrix4().setPosition(x, y, z));
+      this.points.setColorAt(count++, c);
+    };
+    for (let k = 0; k < marked.length; k += 4) mark(marked[k], marked[k + 1], marked[k + 2], ofPoints ? colour(marked[k + 3]) : DOT);
+    for (let k = 0; k < cloud.length; k += 3) mark(cloud[k], cloud[k + 1], cloud[k + 2], NODE);
+    this.points.count = count;
     this.points.instanceMatrix.needsUpdate = true;
     if (this.points.instanceColor) this.points.instanceColor.needsUpdate = true;
     this.tools.children.forEach((tool, k) => {
@@ -212,7 +244,8 @@ export function show(place: HTMLElement, packed: Body[]) {
   const of = (method: string | undefined, body: Body) => packed.find((b) => b.method === method) ?? body;
   const bodies = packed.map((b) => {
     const { points, faces } = of(b.like, b);
-    return { ...b, points, faces, tools: of(b.tools_like, b).tools };
+    const compared = b.compared && { ...b.compared, points: of(b.compared_like, b).compared!.points };
+    return { ...b, points, faces, compared, tools: of(b.tools_like, b).tools };
   });
   const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -241,7 +274,7 @@ export function show(place: HTMLElement, packed: Body[]) {
   };
   // Curved faces first: they show what this view is for.
   const best = [...bodies].sort((a, b) => Math.max(...b.faces.map((f) => f.nodes)) - Math.max(...a.faces.map((f) => f.nodes)));
-  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: true };
+  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: true, cloud: false };
   const shown = () => [view.left, view.right].filter(Boolean).map(solid);
   const stateOf = (s: Solid) => Math.round(view.part * (s.body.states.length - 1));
 
@@ -251,7 +284,7 @@ export function show(place: HTMLElement, packed: Body[]) {
 
   function range(): [number, number] {
     let [low, high] = [Infinity, -Infinity];
-    if (view.field === "d") return [0, Math.max(...shown().flatMap((s) => [...s.depths(stateOf(s))]), 0) || 1];
+    if (OF_POINTS.includes(view.field)) return [0, Math.max(...shown().flatMap((s) => [...s.depths(view.field, stateOf(s))]), 0) || 1];
     for (const s of shown()) {
       const values = s.values(view.field, stateOf(s));
       if (!values) continue;
@@ -266,12 +299,15 @@ export function show(place: HTMLElement, packed: Body[]) {
     return [0, high || 1];
   }
 
-  /** Where contact acts, and how deep the body is in a tool there and at its nodes. */
-  function contact(s: Solid): string {
-    const [at, depths] = [s.body.states[stateOf(s)], s.depths(stateOf(s))];
+  const isKnown = (s: Solid) => view.field === "d" || (view.field === "e" ? s.marked("e", stateOf(s)).length > 0 : !!s.values(view.field, stateOf(s)));
+
+  /** What is marked: where contact acts and how deep the body is in a tool there and at its nodes, or where it is compared. */
+  function marks(s: Solid): string {
+    const [at, depths] = [s.body.states[stateOf(s)], s.depths("d", stateOf(s))];
+    if (view.field === "e") return s.marked("e", stateOf(s)).length ? "Points stand where the reference or the exact solution has them. " : "";
     if (!depths.length) return "";
     const mm = (metres: number) => `${digits(1e3 * metres, 2)} mm`;
-    return `Contact acts at the ${depths.length} points marked${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
+    return `Contact acts at the ${depths.length} points${view.dots || view.field === "d" ? " marked" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
       + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} in. ` : "no node is in one. ");
   }
 
@@ -284,7 +320,7 @@ export function show(place: HTMLElement, packed: Body[]) {
       return mixed.copy(table[Math.floor(at)]).lerp(table[Math.floor(at) + 1], at % 1);
     };
     for (const s of shown()) {
-      s.show(view.field, stateOf(s), colour, view.mesh, view.dots);
+      s.show(view.field, stateOf(s), colour, view);
       s.material.clippingPlanes = s.wire.clippingPlanes = s.dots.clippingPlanes = view.axis ? [plane] : [];
     }
     const [, name, unit, scale] = FIELDS.find((f) => f[0] === view.field)!;
@@ -298,8 +334,8 @@ export function show(place: HTMLElement, packed: Body[]) {
     const states = shown().filter((s) => s.body.left_out > 0).map((s) => `${s.body.left_out} of ${s.body.left_out + s.body.states.length} states of ${s.body.method}`);
     const lost = [...states, ...(bodies[0].without ?? [])];
     said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
-      + shown().map(contact).join("")
-      + (view.field !== "d" && shown().some((s) => !s.values(view.field, stateOf(s))) ? "Grey: the field is not known at this state. " : "")
+      + [...new Set(shown().map(marks))].join("")
+      + (shown().some((s) => !isKnown(s)) ? "Grey: the field is not known at this state. " : "")
       + (lost.length ? `Left out to keep the page small: ${lost.join(", ")}.` : "");
     canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
     draw();
@@ -344,21 +380,24 @@ export function show(place: HTMLElement, packed: Body[]) {
     h("input", { type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name, input: (e) => input(Number((e.target as HTMLInputElement).value)) });
   const depth = slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); });
   depth.hidden = true;
-  const check = (name: string, take: (on: boolean) => void) => {
-    const box = h("input", { type: "checkbox", checked: true, change: () => { take(box.checked); update(); } });
+  const check = (name: string, checked: boolean, take: (on: boolean) => void) => {
+    const box = h("input", { type: "checkbox", checked, change: () => { take(box.checked); update(); } });
     return h("label", { class: "small" }, box, ` ${name}`);
   };
+  const has = (field: string) =>
+    field === "u" || (field === "d" ? touched : bodies.some((b) => (field === "e" ? b.compared : b.states.some((s) => s.values))));
   const touched = bodies.some((b) => b.states.some((s) => s.touching));
   place.replaceChildren(
     h("div", { class: "toolbar" },
       select("body", methods, view.left, (to) => { view.left = to; update(); }),
       select("second body", [["", "alone"], ...methods], "", (to) => { view.right = to; update(); }),
-      select("field", FIELDS.filter((f) => f[0] === "u" || (f[0] === "d" ? touched : bodies.some((b) => b.states.some((s) => s.values)))).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
+      select("field", FIELDS.filter((f) => has(f[0])).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
       ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small slid" }, "load", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
       select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
       depth,
-      check("mesh", (on) => { view.mesh = on; }),
-      ...(touched ? [check("contact points", (on) => { view.dots = on; })] : []),
+      check("mesh", true, (on) => { view.mesh = on; }),
+      ...(touched ? [check("contact points", true, (on) => { view.dots = on; })] : []),
+      ...(bodies.some((b) => b.cloud) ? [check("nodes of clouds", false, (on) => { view.cloud = on; })] : []),
       h("button", { type: "button", class: "quiet", click: () => { home(); draw(); } }, "reset view")),
     canvas, bar, said);
   controls.listenToKeyEvents(canvas);

@@ -246,6 +246,21 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
     assert.ok(Math.abs(Number(deepest) / (1e3 * Math.max(...touches)) - 1) < 0.06, deepest);
     await page.eval(`${all(".solid label")}.find((l) => l.innerText.includes("contact points")).querySelector("input").click()`);
   }
+  const fields = await page.eval(`${all('.solid select[aria-label="field"] option')}.map((o) => o.value)`);
+  if (fields.includes("e")) {
+    await pick("field", "'e'"); was = await changed("the difference to the reference", was);
+    assert.match(await page.eval(text(".solid")), /Points stand where the reference/);
+  }
+  // A cloud's nodes, on request.
+  const cloud = await page.eval(`JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.cloud)?.method ?? ""`);
+  if (cloud) {
+    const first = await page.eval(`document.querySelector('.solid select[aria-label="body"]').value`);
+    await pick("body", JSON.stringify(cloud)); was = (await page.eval(seen))[1];
+    const box = `${all(".solid label")}.find((l) => l.innerText.includes("nodes of clouds")).querySelector("input")`;
+    await page.eval(`${box}.click()`); was = await changed("a cloud's nodes", was);
+    await page.eval(`${box}.click()`);
+    await pick("body", JSON.stringify(first)); was = (await page.eval(seen))[1];
+  }
   const triangles = Number(await page.eval("document.querySelector('.solid canvas').dataset.triangles"));
   await pick("second body", "e.options[e.options.length - 1].value");
   was = await changed("the second body", was);

@@ -26,6 +26,9 @@ struct BodyView<'a> {
     /// The method of an earlier body with the same tools.
     #[serde(skip_serializing_if = "Option::is_none")]
     tools_like: Option<&'a str>,
+    /// The method of an earlier body that is compared at the same points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    compared_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
     /// Which of a method's sizes are of one kind.
@@ -38,8 +41,10 @@ struct BodyView<'a> {
 
 impl BodyView<'_> {
     fn size(&self) -> usize {
-        let Body { points, faces, tools, states, .. } = &self.body;
-        let fixed = points.len() + faces.iter().map(|f| f.indices.len()).sum::<usize>();
+        let Body { points, faces, compared, cloud, tools, states, .. } = &self.body;
+        let compared = compared.as_ref().map_or(0, |c| c.points.len() + c.off.len());
+        let fixed =
+            points.len() + compared + cloud.len() + faces.iter().map(|f| f.indices.len()).sum::<usize>();
         let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
         fixed + tools + states.iter().map(of_state).sum::<usize>()
     }
@@ -70,6 +75,7 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
                 title: &f.title,
                 like: None,
                 tools_like: None,
+                compared_like: None,
                 body: view(f)?,
                 series: run.map_or(&f.method, |run| &run.is.series),
                 without: Vec::new(),
@@ -99,7 +105,7 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
-/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a case keeps these.
+/// Methods on one mesh have one surface, and all methods of a scene its tools and the points where they are compared: only the first of them in a case keeps these.
 fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
@@ -109,6 +115,11 @@ fn share(bodies: &mut [BodyView]) {
         };
         let like = first(|a, b| a.points == b.points && a.faces == b.faces);
         let tools_like = first(|a, b| !a.tools.is_empty() && a.tools == b.tools);
+        let compared_like =
+            first(|a, b| matches!((&a.compared, &b.compared), (Some(a), Some(b)) if a.points == b.points));
+        if let (Some(_), Some(compared)) = (compared_like, &mut own.body.compared) {
+            compared.points.clear();
+        }
         if like.is_some() {
             own.body.points.clear();
             own.body.faces.clear();
@@ -116,7 +127,7 @@ fn share(bodies: &mut [BodyView]) {
         if tools_like.is_some() {
             own.body.tools.clear();
         }
-        (own.like, own.tools_like) = (like, tools_like);
+        (own.like, own.tools_like, own.compared_like) = (like, tools_like, compared_like);
     }
 }
 
@@ -127,7 +138,8 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
         let others = |b: &BodyView, is: &dyn Fn(&BodyView) -> bool| {
             bodies.iter().any(|o| o.case == b.case && o.method != b.method && is(o))
         };
-        let needed = |b: &BodyView| others(b, &|o| [o.like, o.tools_like].contains(&Some(b.method)));
+        let needed =
+            |b: &BodyView| others(b, &|o| [o.like, o.tools_like, o.compared_like].contains(&Some(b.method)));
         let can_go = |b: &BodyView| {
             b.least() as f64 > LARGE * room as f64
                 && others(b, &|o| o.series == b.series && o.least() < b.least())
@@ -163,6 +175,7 @@ mod tests {
             title: "",
             like: None,
             tools_like: None,
+            compared_like: None,
             body,
             series: method,
             without: Vec::new(),
