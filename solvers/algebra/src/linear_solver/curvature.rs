@@ -1,6 +1,6 @@
 //! Directions along which a matrix is not definite.
 
-use nalgebra::Matrix3;
+use nalgebra::Matrix4;
 
 use super::{Factor, Symmetric, dot};
 use crate::AlgebraError;
@@ -90,9 +90,11 @@ impl Curvature {
         let mut last: Option<Tried> = None;
         for round in 0..ROUNDS {
             let mut rest: Vec<f64> = best.k.iter().zip(&best.d).map(|(k, d)| k - quotient * d).collect();
+            // Modes of many elements are found by the factor, those of a few, which are far below zero, by the diagonal.
+            let near: Vec<f64> = rest.iter().zip(diagonal).map(|(r, d)| r / d).collect();
             factor.solve(&mut rest)?;
             let mut basis = vec![best];
-            let tried = std::iter::once(Tried::new(rest, matrix, diagonal)).chain(last.take());
+            let tried = [rest, near].map(|x| Tried::new(x, matrix, diagonal)).into_iter().chain(last.take());
             for mut tried in tried {
                 if tried.orthonormal(&basis) {
                     basis.push(tried);
@@ -104,7 +106,7 @@ impl Curvature {
                 _ if i == j => matrix.dim() as f64,
                 _ => 0.0,
             };
-            let small = Matrix3::from_fn(|i, j| of(i.min(j), i.max(j))).symmetric_eigen();
+            let small = Matrix4::from_fn(|i, j| of(i.min(j), i.max(j))).symmetric_eigen();
             let at = small.eigenvalues.imin();
             let part = small.eigenvectors.column(at);
             let mut step = basis[0].clone();

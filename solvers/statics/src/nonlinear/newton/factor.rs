@@ -196,7 +196,7 @@ impl Newton<'_> {
                 && known < 0.0
                 && let Some(factor) = &self.factor
             {
-                known = self.curvature.shift(matrix, &diagonal, factor, false)?.max(0.0);
+                known = self.curvature.shift(matrix, &diagonal, factor, true)?.max(0.0);
                 if shift <= known {
                     continue;
                 }

@@ -170,6 +170,16 @@ const CHORD: f64 = 0.03;
 /// less while no point starts or ends to touch or to slide; where one does, a second such step rarely helps.
 const NEAR: f64 = 10.0;
 
+/// Iterations in turn that went an eighth of their step or less with a tangent that is not definite, after which the nearest
+/// equilibrium is given up: past a limit point there is none near. On the kidney between jaws such steps never came through, and
+/// ten of them took a sixth of the time of the whole path.
+const LOST: usize = 3;
+
+/// Whether the nearest equilibrium is given up.
+fn lost(log: &[Iteration]) -> bool {
+    log.len() >= LOST && log.iter().rev().take(LOST).all(|i| !i.definite && i.length <= 0.125)
+}
+
 /// Whether steps with the tangent of the iteration before are expected to end the iterations at `residual`: no more than
 /// three, each of which costs a sixth of one with its own tangent (tet4, 3855 unknowns). Where residuals fall as `C r^2`, the
 /// first leaves `2 r / r_before` of the residual, and so do the next.
@@ -449,7 +459,7 @@ impl<'a> Newton<'a> {
                 best = (done, if prescribed_move.is_some() { f64::INFINITY } else { residual });
             }
             // On the way down the energy forces first grow.
-            let stuck = self.descent != Descent::Down && done >= best.0 + PATIENCE;
+            let stuck = self.descent != Descent::Down && (done >= best.0 + PATIENCE || lost(&log[first..]));
             if done >= self.params.iterations || stuck || !residual.is_finite() {
                 return Err(self.not_converged(&balance, residual, done));
             }

@@ -7,7 +7,7 @@ use material::Law;
 use material::SaintVenantKirchhoff;
 use shape::{FixedDof, Point3, Vector3};
 
-use super::{Descent, Newton, NewtonParams, State};
+use super::{Descent, Iteration, Newton, NewtonParams, State, lost};
 use crate::nonlinear::solid::{Dilation, Solid};
 use crate::nonlinear::statics::StaticProblem;
 
@@ -62,4 +62,14 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
     assert!((buckled - 2.3).abs() < 0.1 && stable, "sway {buckled}");
     assert!(longest > 1.0 && longest <= 64.0, "length {longest}");
     assert!(below < 0.5 * above, "{below} J under {above} J");
+}
+
+#[test]
+fn short_steps_of_unstable_tangents_are_given_up_and_no_others() {
+    let step = |length, definite| Iteration { residual: 1.0, energy: 1.0, length, definite, chord: false };
+    let short = step(0.06, false);
+    assert!(lost(&[step(1.0, true), short, short, short]));
+    assert!(!lost(&[short, short]));
+    assert!(!lost(&[short, short, short, step(0.5, false)]));
+    assert!(!lost(&[short, step(0.06, true), short, short]));
 }
