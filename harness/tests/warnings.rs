@@ -271,3 +271,43 @@ method = [{{ id = "tet4", family = "fem", element = "tet4", size = {{ spacing = 
     let codes = codes(&fine);
     assert!(!codes.contains(&"volume-differs") && !codes.contains(&"tool-untouched"), "{codes:?}");
 }
+
+/// A tool that presses one block onto another goes through the gap between: blocks without a node in common do not touch.
+#[test]
+fn pieces_that_do_not_feel_each_other_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let run_with = |lift: usize| {
+        let levels = [0, 10, 10 + lift, 20 + lift];
+        // Lifted by nothing, the upper block has the nodes of the lower one's top.
+        let upper = if lift > 0 { 8 } else { 4 };
+        let node = |k: usize| {
+            let (level, corner) = (k / 4, k % 4);
+            let (x, y) = ([0, 20, 20, 0][corner], [0, 0, 20, 20][corner]);
+            format!("{} {x} {y} {}\n", k + 1, levels[if lift > 0 || level < 2 { level } else { 3 }])
+        };
+        let count = if lift > 0 { 16 } else { 12 };
+        let nodes: String = (0..count).map(node).collect();
+        let hex = |number: usize, first: usize| {
+            let nodes: Vec<String> = (1..=8).map(|k| (first + k).to_string()).collect();
+            format!("{number} 5 0 {}\n", nodes.join(" "))
+        };
+        let cells = hex(1, 0) + &hex(2, upper);
+        let mesh = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{count}\n{nodes}$EndNodes\n$Elements\n2\n{cells}$EndElements\n"
+        );
+        write(&dir, "blocks.msh", &mesh);
+        let text = r#"title = "One block on another"
+body = { shape = "file", path = "blocks.msh", unit = "mm" }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3 }
+support = [{ where = "x <= 0 mm", fix = "xyz" }]
+tool = [{ name = "plate", shape = "plate", at = ["0 mm", "0 mm", "TOP"], along = [0, 0, -1], drive = { closure = "1 mm" }, penalty = "0.1 MPa/mm" }]
+procedure = { kind = "static", steps = 1 }
+method = [{ id = "hex8", family = "fem", element = "hex8", size = { file = "blocks.msh" } }]
+"#;
+        run(&dir, &text.replace("TOP", &format!("{} mm", 20 + lift))).remove(0)
+    };
+    let apart = run_with(2);
+    let told = apart["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "pieces-apart");
+    assert_eq!(told.unwrap_or_else(|| panic!("{apart}"))["value"], 2.0);
+    assert!(!codes(&run_with(0)).contains(&"pieces-apart"));
+}

@@ -23,8 +23,21 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     }
     found.extend(scene.regions.iter().enumerate().filter_map(|(index, region)| cut(index, region, mesh)));
     found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
+    found.extend(apart(scene, mesh));
     found.extend(other_volume(&scene.body, method, mesh));
     found
+}
+
+/// Contact is between a body and tools: what a tool presses against another piece of the body goes through that.
+fn apart(scene: &Scene, mesh: &Mesh) -> Option<Warning> {
+    let pieces = if scene.tools.is_empty() { 1 } else { quality::pieces(mesh) };
+    (pieces > 1).then(|| {
+        let message = format!(
+            "the body is in {pieces} pieces without a node in common, which do not feel each other: hold each by a support, or join them in \
+             the mesh"
+        );
+        Warning::new(&warning::PIECES_APART, pieces as f64, "body", message)
+    })
 }
 
 /// Cells inside a surface leave out what is thinner than they are.

@@ -71,6 +71,8 @@ warnings! {
     VOLUME_DIFFERS: "volume-differs", None,
         "a mesh made inside a surface has 5 % less or more volume than that encloses, as parts thinner than its cells are left out; volume \
          got over enclosed";
+    PIECES_APART: "pieces-apart", None,
+        "the body is in pieces without a node in common, and tools press it: pieces do not feel each other; how many there are";
     TOOL_UNTOUCHED: "tool-untouched", None,
         "a tool of a static path touches nothing at the end, where its force is 0; no number";
     STEP_ERROR: "step-error", None,

@@ -170,14 +170,15 @@ const CHORD: f64 = 0.03;
 /// less while no point starts or ends to touch or to slide; where one does, a second such step rarely helps.
 const NEAR: f64 = 10.0;
 
-/// Iterations in turn that went an eighth of their step or less with a tangent that is not definite, after which the nearest
-/// equilibrium is given up: past a limit point there is none near. On the kidney between jaws such steps never came through, and
-/// ten of them took a sixth of the time of the whole path.
+/// The same where each of them went an eighth of its step or less with a tangent that is not definite: past a limit point there is no
+/// equilibrium near. Ten of them took a sixth of the time of the kidney's whole path.
 const LOST: usize = 3;
 
-/// Whether the nearest equilibrium is given up.
-fn lost(log: &[Iteration]) -> bool {
-    log.len() >= LOST && log.iter().rev().take(LOST).all(|i| !i.definite && i.length <= 0.125)
+/// Iterations without a residual smaller by a tenth that are waited for.
+fn patience(log: &[Iteration]) -> usize {
+    let last = log.len().saturating_sub(LOST);
+    let lost = log.len() >= LOST && log[last..].iter().all(|i| !i.definite && i.length <= 0.125);
+    if lost { LOST } else { PATIENCE }
 }
 
 /// Whether steps with the tangent of the iteration before are expected to end the iterations at `residual`: no more than
@@ -459,7 +460,7 @@ impl<'a> Newton<'a> {
                 best = (done, if prescribed_move.is_some() { f64::INFINITY } else { residual });
             }
             // On the way down the energy forces first grow.
-            let stuck = self.descent != Descent::Down && (done >= best.0 + PATIENCE || lost(&log[first..]));
+            let stuck = self.descent != Descent::Down && done >= best.0 + patience(&log[first..]);
             if done >= self.params.iterations || stuck || !residual.is_finite() {
                 return Err(self.not_converged(&balance, residual, done));
             }
