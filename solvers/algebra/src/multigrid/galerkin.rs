@@ -5,8 +5,8 @@
 use lanes::{LanePath, on_path};
 use rayon::prelude::*;
 
+use super::graph::Graph;
 use super::lower::{Lower, LowerRows};
-use super::operator::Operator;
 use super::transfer::{Transfer, Weight};
 
 /// Compressed rows of sorted node numbers.
@@ -59,17 +59,17 @@ impl Sets {
     }
 }
 
-/// `P^T A P` of `lower`, whose whole rows are those of `matrix`.
+/// `P^T A P` of `lower`, of which this is the graph.
 pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
     lower: &impl LowerRows<B>,
-    matrix: &Operator<B>,
+    graph: &Graph,
     transfer: &Transfer<W>,
 ) -> Lower<C> {
-    let nodes = matrix.nodes();
+    let nodes = graph.nodes();
     // Aggregates that a row of A P reaches, and those that a row of P^T A P does.
     let reached = Sets::unions(nodes, transfer.count, |i, add| {
         if !transfer.row(i).0.is_empty() {
-            matrix.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
+            graph.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
         }
     });
     let seen_by = transposed(nodes, transfer);

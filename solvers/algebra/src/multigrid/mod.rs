@@ -12,6 +12,7 @@
 mod aggregate;
 mod conjugate;
 mod galerkin;
+mod graph;
 mod level;
 mod lower;
 mod operator;

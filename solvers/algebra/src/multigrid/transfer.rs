@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use shape::Coarser;
 
 use super::aggregate::{Aggregates, MODES, Modes, NONE};
+use super::graph::Graph;
 use super::operator::{Entry, Operator};
-use super::sweep::times;
 
 /// What a node of a level with B degrees of freedom takes from a node of the next with C.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {
@@ -192,6 +192,7 @@ impl<const B: usize> Transfer<Dense<B>> {
     /// `P = (I - w D^-1 A) T` with `w = 4/3` over the largest eigenvalue of `D^-1 A` (Vanek, Mandel and Brezina 1996).
     pub fn smoothed(
         matrix: &Operator<B>,
+        graph: &Graph,
         aggregates: &Aggregates,
         functions: &[Modes<B>],
     ) -> Transfer<Dense<B>> {
@@ -199,41 +200,58 @@ impl<const B: usize> Transfer<Dense<B>> {
         let weight = 4.0 / (3.0 * matrix.largest_eigenvalue());
         let functions: Vec<[[f32; MODES]; B]> =
             functions.iter().map(|rows| rows.map(|row| row.map(|v| v as f32))).collect();
+        let (path, of) = (LanePath::best(), &aggregates.of[..]);
         let (offsets, columns, weights) = joined(matrix.nodes(), |i, row: &mut Vec<(u32, Dense<B>)>| {
-            let start = row.len();
-            for k in matrix.row(i) {
-                let (j, block) = matrix.at(k);
-                let aggregate = aggregates.of[j];
-                if aggregate == NONE {
-                    continue;
-                }
-                let place = row[start..].iter().position(|(column, _)| *column == aggregate);
-                let at = start + place.unwrap_or(row.len() - start);
-                if place.is_none() {
-                    row.push((aggregate, Dense([[0.0; MODES]; B])));
-                }
-                let sum = &mut row[at].1.0;
-                for b in 0..B {
-                    for a in 0..B {
-                        for m in 0..MODES {
-                            sum[a][m] += block[b][a] * functions[j][b][m];
-                        }
-                    }
-                }
-            }
-            for (column, Dense(sum)) in &mut row[start..] {
-                for m in 0..MODES {
-                    let divided = times(matrix.inverse(i), &std::array::from_fn(|a| sum[a][m]));
-                    for a in 0..B {
-                        let own = if *column == aggregates.of[i] { functions[i][a][m] } else { 0.0 };
-                        sum[a][m] = own - weight * divided[a];
-                    }
-                }
-            }
-            row[start..].sort_unstable_by_key(|(column, _)| *column);
+            smooth_row(path, (matrix, graph), i, of, &functions, weight, row);
         });
         Transfer { offsets, columns, weights, count: aggregates.count }
     }
+}
+
+on_path! {
+    /// Row `i` of `(I - w D^-1 A) T`, added to `rows`.
+    fn smooth_row<const B: usize>(
+        whole: (&Operator<B>, &Graph),
+        i: usize,
+        of: &[u32],
+        functions: &[[[f32; MODES]; B]],
+        weight: f32,
+        rows: &mut Vec<(u32, Dense<B>)>,
+    ) = smooth_row_lanes
+}
+
+#[inline(always)]
+fn smooth_row_lanes<const FMA: bool, const B: usize>(
+    (matrix, graph): (&Operator<B>, &Graph),
+    i: usize,
+    of: &[u32],
+    functions: &[[[f32; MODES]; B]],
+    weight: f32,
+    rows: &mut Vec<(u32, Dense<B>)>,
+) {
+    let start = rows.len();
+    for (j, block) in graph.row(matrix, i).filter(|(j, _)| of[*j] != NONE) {
+        let place = rows[start..].iter().position(|(column, _)| *column == of[j]);
+        let at = start + place.unwrap_or(rows.len() - start);
+        if place.is_none() {
+            rows.push((of[j], Dense([[0.0; MODES]; B])));
+        }
+        for (column, function) in block.iter().zip(&functions[j]) {
+            for (sum, a) in rows[at].1.0.iter_mut().zip(column) {
+                *sum = std::array::from_fn(|m| madd_f32::<FMA>(*a, function[m], sum[m]));
+            }
+        }
+    }
+    for (column, Dense(sum)) in &mut rows[start..] {
+        let mut row = if *column == of[i] { functions[i] } else { [[0.0; MODES]; B] };
+        for (column, sum) in matrix.inverse(i).iter().zip(&*sum) {
+            for (row, a) in row.iter_mut().zip(column) {
+                *row = std::array::from_fn(|m| madd_f32::<FMA>(-weight * a, sum[m], row[m]));
+            }
+        }
+        *sum = row;
+    }
+    rows[start..].sort_unstable_by_key(|(column, _)| *column);
 }
 
 impl Transfer<Diagonal> {
