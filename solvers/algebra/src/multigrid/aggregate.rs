@@ -37,7 +37,8 @@ pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>, graph: &Graph) ->
     let founded = of.clone();
     for i in (0..nodes).filter(|&i| founded[i] == NONE) {
         let strongest = graph
-            .row(matrix, i)
+            .range(i)
+            .map(|k| graph.at(matrix, i, k))
             .filter(|(j, _)| founded[*j] != NONE)
             .map(|(j, block)| (block.iter().flatten().map(|a| a * a).sum::<f32>(), founded[j]))
             .reduce(|best, next| if next.0 > best.0 { next } else { best });

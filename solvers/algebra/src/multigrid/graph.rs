@@ -50,7 +50,9 @@ impl Graph {
         self.offsets.len() - 1
     }
 
-    fn range(&self, row: usize) -> Range<usize> {
+    /// Places of a row.
+    #[inline(always)]
+    pub fn range(&self, row: usize) -> Range<usize> {
         self.offsets[row]..self.offsets[row + 1]
     }
 
@@ -60,20 +62,14 @@ impl Graph {
         &self.columns[self.range(row)]
     }
 
-    /// Columns and blocks of a whole row of the matrix that this is the graph of.
+    /// Column and block of one of the places ([`Graph::range`]) of a row, in the matrix that this is the graph of.
     #[inline(always)]
-    pub fn row<const B: usize>(
-        &self,
-        matrix: &Operator<B>,
-        row: usize,
-    ) -> impl Iterator<Item = (usize, [[f32; B]; B])> {
-        self.range(row).map(move |k| {
-            let (column, place) = (self.columns[k] as usize, self.places[k] as usize);
-            if column <= row {
-                (column, *matrix.of_lower(row, place))
-            } else {
-                (column, transposed(matrix.of_lower(column, place)))
-            }
-        })
+    pub fn at<const B: usize>(&self, matrix: &Operator<B>, row: usize, k: usize) -> (usize, [[f32; B]; B]) {
+        let (column, place) = (self.columns[k] as usize, self.places[k] as usize);
+        if column <= row {
+            (column, *matrix.of_lower(row, place))
+        } else {
+            (column, transposed(matrix.of_lower(column, place)))
+        }
     }
 }

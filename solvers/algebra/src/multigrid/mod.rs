@@ -17,6 +17,7 @@ mod level;
 mod lower;
 mod operator;
 mod pressure;
+mod sets;
 mod sweep;
 #[cfg(test)]
 mod tests;
