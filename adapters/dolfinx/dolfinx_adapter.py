@@ -52,6 +52,7 @@ def solve(text, load):
     node_of[order(x - origin, scale)] = ours
     if np.abs(x - nodes[node_of]).max() > scale:
         return {"status": "refused", "message": "its edges are curved: this adapter gives DOLFINx straight ones"}, None
+    times.append(time.process_time())
     lam, mu, found = fem.Function(constants), fem.Function(constants), fem.Function(V)
     region = regions[np.asarray(body.topology.original_cell_index)]
     for values, key in ((lam, "lambda"), (mu, "mu")):
@@ -69,7 +70,7 @@ def solve(text, load):
     right.array[:], start.array[:] = b, values
     K.zeroRowsColumns(rows, 1.0, start, right)
     K.setNearNullSpace(PETSc.NullSpace().create(vectors=[PETSc.Vec().createWithArray(m) for m in rigid(x)]))
-    times.append(time.perf_counter())
+    times.append(time.process_time())
     PETSc.Options().insertString(OPTIONS)
     solver = PETSc.KSP().create(K.comm)
     solver.setOperators(K)
@@ -83,11 +84,12 @@ def solve(text, load):
     return {"status": "ok", "counts": {"iterations": solver.getIterationNumber()}}, moved
 
 
-times = [time.perf_counter()]
+# Seconds of processors: those of a mesh, and of finding our nodes in it, are no part of a comparison of solvers.
+times = [time.process_time()]
 text = json.loads((problem / "problem.json").read_text())
 result, u = solve(text, lambda name: np.load(problem / f"{name}.npy"))
-times.append(time.perf_counter())
+times.append(time.process_time())
 if u is not None:
     np.save(answer / "displacement.npy", u)
-phases = {name: times[at + 1] - times[at] for at, name in enumerate(("assemble", "solve")[: len(times) - 1])}
+phases = {name: times[at + 1] - times[at] for at, name in enumerate(("mesh", "assemble", "solve")[: len(times) - 1])}
 (answer / "result.json").write_text(json.dumps(result | {"problem": text["id"], "phases": phases}))

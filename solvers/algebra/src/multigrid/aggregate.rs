@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use super::graph::Graph;
 use super::operator::Operator;
 
 /// In no aggregate.
@@ -22,12 +23,12 @@ pub(super) struct Aggregates {
 
 /// Passes over the nodes in their order: a node none of whose neighbours is taken founds an aggregate of all of them; what is left
 /// joins the neighbour of the most couplings; nodes without any neighbour stay out.
-pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>) -> Aggregates {
-    let nodes = matrix.nodes();
+pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>, graph: &Graph) -> Aggregates {
+    let nodes = graph.nodes();
     let mut of = vec![NONE; nodes];
     let mut count = 0;
     for i in 0..nodes {
-        let neighbours = matrix.columns(i);
+        let neighbours = graph.columns(i);
         if neighbours.len() > 1 && neighbours.iter().all(|&j| of[j as usize] == NONE) {
             neighbours.iter().for_each(|&j| of[j as usize] = count);
             count += 1;
@@ -35,9 +36,9 @@ pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>) -> Aggregates {
     }
     let founded = of.clone();
     for i in (0..nodes).filter(|&i| founded[i] == NONE) {
-        let strongest = matrix
-            .row(i)
-            .map(|k| matrix.at(k))
+        let strongest = graph
+            .range(i)
+            .map(|k| graph.at(matrix, i, k))
             .filter(|(j, _)| founded[*j] != NONE)
             .map(|(j, block)| (block.iter().flatten().map(|a| a * a).sum::<f32>(), founded[j]))
             .reduce(|best, next| if next.0 > best.0 { next } else { best });
@@ -46,7 +47,7 @@ pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>) -> Aggregates {
         }
     }
     for i in 0..nodes {
-        let neighbours = matrix.columns(i);
+        let neighbours = graph.columns(i);
         if of[i] == NONE && neighbours.len() > 1 {
             neighbours
                 .iter()

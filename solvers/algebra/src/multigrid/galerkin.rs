@@ -3,76 +3,26 @@
 //! With `S = P^T (L + D/2) P` it is `S + S^T`, so that only the lower triangle of A is read, and half of the products are made.
 
 use lanes::{LanePath, on_path};
-use rayon::prelude::*;
 
+use super::graph::Graph;
 use super::lower::{Lower, LowerRows};
-use super::operator::Operator;
+use super::sets::Sets;
 use super::transfer::{Transfer, Weight};
 
-/// Compressed rows of sorted node numbers.
-struct Sets {
-    offsets: Vec<usize>,
-    members: Vec<u32>,
-}
-
-impl Sets {
-    /// The union of what `visit` shows for each row, out of `count` numbers.
-    fn unions(rows: usize, count: usize, visit: impl Fn(usize, &mut dyn FnMut(&[u32])) + Sync) -> Sets {
-        const PART: usize = 512;
-        let parts: Vec<(Vec<u32>, Vec<usize>)> = (0..rows.div_ceil(PART))
-            .into_par_iter()
-            .map_init(
-                || vec![u32::MAX; count],
-                |mark, part| {
-                    let (mut members, mut lengths) = (Vec::new(), Vec::new());
-                    for i in part * PART..rows.min((part + 1) * PART) {
-                        let start = members.len();
-                        visit(i, &mut |numbers| {
-                            for &n in numbers {
-                                if mark[n as usize] != i as u32 {
-                                    mark[n as usize] = i as u32;
-                                    members.push(n);
-                                }
-                            }
-                        });
-                        members[start..].sort_unstable();
-                        lengths.push(members.len() - start);
-                    }
-                    (members, lengths)
-                },
-            )
-            .collect();
-        let mut offsets = vec![0];
-        let mut members = Vec::with_capacity(parts.iter().map(|p| p.0.len()).sum());
-        for (part, lengths) in parts {
-            for length in lengths {
-                offsets.push(offsets[offsets.len() - 1] + length);
-            }
-            members.extend(part);
-        }
-        Sets { offsets, members }
-    }
-
-    #[inline]
-    fn of(&self, i: usize) -> &[u32] {
-        &self.members[self.offsets[i]..self.offsets[i + 1]]
-    }
-}
-
-/// `P^T A P` of `lower`, whose whole rows are those of `matrix`.
+/// `P^T A P` of `lower`, of which this is the graph.
 pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
     lower: &impl LowerRows<B>,
-    matrix: &Operator<B>,
+    graph: &Graph,
     transfer: &Transfer<W>,
 ) -> Lower<C> {
-    let nodes = matrix.nodes();
+    let nodes = graph.nodes();
     // Aggregates that a row of A P reaches, and those that a row of P^T A P does.
     let reached = Sets::unions(nodes, transfer.count, |i, add| {
         if !transfer.row(i).0.is_empty() {
-            matrix.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
+            graph.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
         }
     });
-    let seen_by = transposed(nodes, transfer);
+    let seen_by = Sets::transposed(nodes, transfer.count, |i| transfer.row(i).0);
     let pattern = Sets::unions(transfer.count, transfer.count, |coarse, add| {
         seen_by.of(coarse).iter().for_each(|&i| add(reached.of(i as usize)));
     });
@@ -97,7 +47,8 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
     pattern: &Sets,
 ) -> Vec<[[f64; C]; C]> {
     let mut sums = vec![[[0.0; C]; C]; pattern.members.len()];
-    let mut rows: Vec<[[f64; C]; B]> = Vec::new();
+    // Of each aggregate that a row reaches by the whole matrix: its row of `(L + D/2) P`, and whether that has any.
+    let mut rows: Vec<(bool, [[f64; C]; B])> = Vec::new();
     for i in 0..lower.nodes() {
         let (columns, weights) = transfer.row(i);
         if columns.is_empty() {
@@ -105,7 +56,7 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
         }
         let reached = reached.of(i);
         rows.clear();
-        rows.resize(reached.len(), [[0.0; C]; B]);
+        rows.resize(reached.len(), (false, [[0.0; C]; B]));
         for (at, &j) in lower.columns(i).iter().enumerate() {
             let mut block = lower.block(i, at);
             if j as usize == i {
@@ -117,12 +68,13 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
                 while reached[place] != *column {
                     place += 1;
                 }
-                weight.multiply::<FMA>(&block, &mut rows[place]);
+                rows[place].0 = true;
+                weight.multiply::<FMA>(&block, &mut rows[place].1);
             }
         }
         for (&coarse, weight) in columns.iter().zip(weights) {
             let mut place = pattern.offsets[coarse as usize];
-            for (column, rows) in reached.iter().zip(&rows) {
+            for (column, (_, rows)) in reached.iter().zip(&rows).filter(|(_, (any, _))| *any) {
                 while pattern.members[place] != *column {
                     place += 1;
                 }
@@ -131,26 +83,6 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
         }
     }
     sums
-}
-
-/// Rows of the finer level that see each node of the next.
-fn transposed<W>(nodes: usize, transfer: &Transfer<W>) -> Sets {
-    let mut offsets = vec![0; transfer.count + 1];
-    for i in 0..nodes {
-        transfer.row(i).0.iter().for_each(|&column| offsets[column as usize + 1] += 1);
-    }
-    for c in 0..transfer.count {
-        offsets[c + 1] += offsets[c];
-    }
-    let mut next = offsets.clone();
-    let mut members = vec![0; offsets[transfer.count]];
-    for i in 0..nodes {
-        for &column in transfer.row(i).0 {
-            members[next[column as usize]] = i as u32;
-            next[column as usize] += 1;
-        }
-    }
-    Sets { offsets, members }
 }
 
 /// The lower triangle of `S + S^T`.

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 
 use super::aggregate::{Modes, aggregates, orthonormal};
 use super::galerkin::galerkin;
+use super::graph::Graph;
 use super::lower::{Lower, LowerRows};
 use super::operator::{Entry, Operator};
 use super::transfer::{Dense, Transfer, Weight};
@@ -130,16 +131,17 @@ pub(super) fn by_aggregates<const B: usize>(
     if B * lower.nodes() <= COARSEST {
         return coarsest(lower, scale);
     }
-    let matrix = Operator::new(lower, scale);
-    let aggregates = aggregates(&matrix);
+    let (matrix, graph) = (Operator::new(lower, scale), Graph::new(lower));
+    let aggregates = aggregates(&matrix, &graph);
     if 2 * aggregates.count > lower.nodes() {
         // Hardly coupled: no level below would be much smaller.
         return coarsest(lower, scale);
     }
     let (functions, coarse_modes) = orthonormal(&aggregates, modes);
-    let transfer = Transfer::<Dense<B>>::smoothed(&matrix, &aggregates, &functions);
+    let transfer = Transfer::<Dense<B>>::smoothed(&matrix, &graph, &aggregates, &functions);
     drop((aggregates, functions));
-    let coarse = galerkin(lower, &matrix, &transfer);
+    let coarse = galerkin(lower, &graph, &transfer);
+    drop(graph);
     let below = by_aggregates(&coarse, &coarse_modes, scale)?;
     Ok(Box::new(Smoothed::new(matrix, transfer, below)))
 }
@@ -151,8 +153,9 @@ pub(super) fn nested(
     modes: &[Modes<3>],
     scale: f64,
 ) -> Result<Box<dyn Level<3>>, FactorError> {
-    let matrix = Operator::new(lower, scale);
-    let coarse: Lower<3> = galerkin(lower, &matrix, &transfer);
+    let (matrix, graph) = (Operator::new(lower, scale), Graph::new(lower));
+    let coarse: Lower<3> = galerkin(lower, &graph, &transfer);
+    drop(graph);
     let below = by_aggregates(&coarse, modes, scale)?;
     Ok(Box::new(Smoothed::new(matrix, transfer, below)))
 }

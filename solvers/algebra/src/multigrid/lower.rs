@@ -6,7 +6,7 @@ use crate::Stiffness;
 pub(super) type Block<const B: usize> = [[f64; B]; B];
 
 /// Rows of a lower triangle: columns ascend, the diagonal is the last.
-pub(super) trait LowerRows<const B: usize> {
+pub(super) trait LowerRows<const B: usize>: Sync {
     fn nodes(&self) -> usize;
     fn columns(&self, row: usize) -> &[u32];
     /// The block at a place of a row. A degree of freedom without a stiffness has one of its own, [`LowerRows::unit`].
@@ -19,6 +19,8 @@ pub(super) trait LowerRows<const B: usize> {
 pub(super) struct Held<'a> {
     stiffness: &'a Stiffness,
     held: &'a [bool],
+    /// Of each node, whether any axis is held: hardly any is, and every block asks for two.
+    any: Vec<bool>,
     unit: f64,
 }
 
@@ -30,7 +32,8 @@ impl<'a> Held<'a> {
         let unit = (0..nodes)
             .flat_map(|i| (0..3).filter(move |a| !held[3 * i + a]).map(move |a| diagonal(i)[(a, a)]))
             .fold(0.0, f64::max);
-        Held { stiffness, held, unit }
+        let any = held.chunks_exact(3).map(|held| held.contains(&true)).collect();
+        Held { stiffness, held, any, unit }
     }
 }
 
@@ -48,9 +51,9 @@ impl LowerRows<3> for Held<'_> {
     fn block(&self, row: usize, at: usize) -> Block<3> {
         let (columns, blocks) = self.stiffness.row(row);
         let column = columns[at] as usize;
-        let (of_row, of_column) = (&self.held[3 * row..][..3], &self.held[3 * column..][..3]);
         let mut block = blocks[at].data.0;
-        if of_row.contains(&true) || of_column.contains(&true) {
+        if self.any[row] || self.any[column] {
+            let (of_row, of_column) = (&self.held[3 * row..][..3], &self.held[3 * column..][..3]);
             for (b, entries) in block.iter_mut().enumerate() {
                 for (a, entry) in entries.iter_mut().enumerate() {
                     if of_row[a] || of_column[b] {

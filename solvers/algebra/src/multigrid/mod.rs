@@ -12,10 +12,12 @@
 mod aggregate;
 mod conjugate;
 mod galerkin;
+mod graph;
 mod level;
 mod lower;
 mod operator;
 mod pressure;
+mod sets;
 mod sweep;
 #[cfg(test)]
 mod tests;

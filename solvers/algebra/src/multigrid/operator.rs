@@ -1,4 +1,4 @@
-//! The matrix of a level in single precision, whole rows of B x B blocks, and the chunks that it is swept in.
+//! The matrix of a level in single precision, rows of B x B blocks, and the chunks that it is swept in.
 //!
 //! Rows are swept in chunks that see each other as they were before the sweep, so that chunks can be swept at once: their
 //! number depends on the size of the matrix alone and the bits not on the threads. Couplings between chunks are added to
@@ -23,14 +23,15 @@ pub(super) type Part<'a, const B: usize> = (&'a [u32], &'a [[[f32; B]; B]]);
 const CHUNK: usize = 8192;
 const CHUNKS: usize = 8;
 
-/// A level's matrix, divided by the largest diagonal entry of the finest.
+/// A level's matrix, divided by the largest diagonal entry of the finest: its lower triangle, which a product goes through once for both
+/// triangles. On a cube of 107,811 unknowns the iterations take 0.4 (hex8) and 0.5 (tet4) of what they take with whole rows, half of which
+/// are read for nothing in a sweep.
 pub(super) struct Operator<const B: usize> {
-    offsets: Vec<usize>,
-    columns: Vec<u32>,
-    /// By columns.
-    blocks: Vec<[[f32; B]; B]>,
-    /// Of each row, the place of its diagonal block.
-    diagonals: Vec<usize>,
+    /// Couplings before the diagonal within the chunk of a row.
+    inside: Rows<B>,
+    /// All couplings to other chunks, before and after.
+    outside: Rows<B>,
+    diagonals: Vec<[[f32; B]; B]>,
     /// Of each row, the inverse of the diagonal block that is swept with.
     inverses: Vec<[[f32; B]; B]>,
     /// What was added to the diagonal for couplings between chunks; empty with one chunk.
@@ -38,129 +39,137 @@ pub(super) struct Operator<const B: usize> {
     chunks: Vec<Range<usize>>,
 }
 
+/// Compressed rows of blocks, each by columns.
+struct Rows<const B: usize> {
+    offsets: Vec<usize>,
+    columns: Vec<u32>,
+    blocks: Vec<[[f32; B]; B]>,
+}
+
+impl<const B: usize> Rows<B> {
+    /// Zeros, with so many blocks in each row.
+    fn zeros(lengths: impl Iterator<Item = usize>) -> Rows<B> {
+        let mut offsets = vec![0];
+        offsets.extend(lengths.scan(0, |end, length| {
+            *end += length;
+            Some(*end)
+        }));
+        let count = offsets[offsets.len() - 1];
+        Rows { offsets, columns: vec![0; count], blocks: vec![[[0.0; B]; B]; count] }
+    }
+
+    #[inline(always)]
+    fn row(&self, i: usize) -> Part<'_, B> {
+        let range = self.offsets[i]..self.offsets[i + 1];
+        (&self.columns[range.clone()], &self.blocks[range])
+    }
+}
+
 impl<const B: usize> Operator<B> {
-    /// The whole rows of a lower triangle, times `scale`.
+    /// The matrix of a lower triangle, times `scale`.
     pub fn new(lower: &impl LowerRows<B>, scale: f64) -> Operator<B> {
         let nodes = lower.nodes();
-        let mut offsets = vec![0; nodes + 1];
-        for i in 0..nodes {
-            let columns = lower.columns(i);
-            offsets[i + 1] += columns.len();
-            for &j in &columns[..columns.len() - 1] {
-                offsets[j as usize + 1] += 1;
-            }
-        }
-        for i in 0..nodes {
-            offsets[i + 1] += offsets[i];
-        }
-        let count = offsets[nodes];
-        let mut columns = vec![0; count];
-        let mut blocks = vec![[[0.0; B]; B]; count];
-        let diagonals: Vec<usize> = (0..nodes).map(|i| offsets[i] + lower.columns(i).len() - 1).collect();
-        // Rows come in order, so the part of a row beyond its diagonal fills in ascending order too.
-        let mut next: Vec<usize> = diagonals.iter().map(|d| d + 1).collect();
-        for i in 0..nodes {
-            for (at, &j) in lower.columns(i).iter().enumerate() {
-                let block = lower.block(i, at);
-                let here = offsets[i] + at;
-                columns[here] = j;
-                let j = j as usize;
-                for b in 0..B {
-                    for a in 0..B {
-                        blocks[here][b][a] = (scale * block[b][a]) as f32;
-                    }
-                }
-                if j < i {
-                    let there = next[j];
-                    next[j] += 1;
-                    columns[there] = i as u32;
-                    for b in 0..B {
-                        for a in 0..B {
-                            blocks[there][a][b] = blocks[here][b][a];
-                        }
-                    }
-                }
-            }
-        }
         let count = (nodes / CHUNK).clamp(1, CHUNKS);
-        let chunks = (0..count).map(|c| nodes * c / count..nodes * (c + 1) / count).collect();
-        let mut operator =
-            Operator { offsets, columns, blocks, diagonals, inverses: Vec::new(), added: Vec::new(), chunks };
+        let chunks: Vec<Range<usize>> =
+            (0..count).map(|c| nodes * c / count..nodes * (c + 1) / count).collect();
+        let (mut within, mut beyond) = (vec![0; nodes], vec![0; nodes]);
+        for chunk in &chunks {
+            for i in chunk.clone() {
+                let columns = lower.columns(i);
+                let before = columns.partition_point(|&j| (j as usize) < chunk.start);
+                beyond[i] += before;
+                columns[..before].iter().for_each(|&j| beyond[j as usize] += 1);
+                within[i] = columns.len() - before - 1;
+            }
+        }
+        let (mut inside, mut outside) = (Rows::zeros(within.into_iter()), Rows::zeros(beyond.into_iter()));
+        let mut diagonals = vec![[[0.0; B]; B]; nodes];
+        // Rows come in order, so what a row couples to after its chunk fills in ascending order too.
+        let (mut next, mut next_outside) = (0, outside.offsets.clone());
+        for chunk in &chunks {
+            for i in chunk.clone() {
+                for (at, &j) in lower.columns(i).iter().enumerate() {
+                    let block = lower.block(i, at).map(|column| column.map(|a| (scale * a) as f32));
+                    if j as usize == i {
+                        diagonals[i] = block;
+                    } else if j as usize >= chunk.start {
+                        (inside.columns[next], inside.blocks[next]) = (j, block);
+                        next += 1;
+                    } else {
+                        let mut add = |row: usize, column: u32, block| {
+                            let place = &mut next_outside[row];
+                            (outside.columns[*place], outside.blocks[*place]) = (column, block);
+                            *place += 1;
+                        };
+                        add(i, j, block);
+                        add(j as usize, i as u32, transposed(&block));
+                    }
+                }
+            }
+        }
+        let (added, inverses) = (Vec::new(), Vec::new());
+        let mut operator = Operator { inside, outside, diagonals, inverses, added, chunks };
         operator.invert_diagonals();
         operator
     }
 
     fn invert_diagonals(&mut self) {
-        if self.chunks.len() > 1 {
-            self.added = vec![[0.0; B]; self.nodes()];
-            for chunk in &self.chunks {
-                for i in chunk.clone() {
-                    for k in self.row(i).filter(|&k| !chunk.contains(&(self.columns[k] as usize))) {
-                        for column in &self.blocks[k] {
-                            self.added[i].iter_mut().zip(column).for_each(|(sum, a)| *sum += 0.5 * a.abs());
-                        }
-                    }
+        if self.is_chunked() {
+            let half = |i| {
+                let mut sums = [0.0; B];
+                for column in self.outside(i).1.iter().flatten() {
+                    sums.iter_mut().zip(column).for_each(|(sum, a)| *sum += 0.5 * a.abs());
                 }
-            }
+                sums
+            };
+            self.added = (0..self.nodes()).map(half).collect();
         }
-        self.inverses = (0..self.nodes())
-            .into_par_iter()
-            .map(|i| {
-                let block = &self.blocks[self.diagonals[i]];
-                let mut matrix = SMatrix::<f64, B, B>::from_fn(|a, b| f64::from(block[b][a]));
-                if let Some(added) = self.added.get(i) {
-                    (0..B).for_each(|a| matrix[(a, a)] += f64::from(added[a]));
-                }
-                inverse(&matrix)
-            })
-            .collect();
+        let inverted = |(i, block): (usize, &[[f32; B]; B])| {
+            let mut matrix = SMatrix::<f64, B, B>::from_fn(|a, b| f64::from(block[b][a]));
+            if let Some(added) = self.added.get(i) {
+                (0..B).for_each(|a| matrix[(a, a)] += f64::from(added[a]));
+            }
+            inverse(&matrix)
+        };
+        self.inverses = self.diagonals.par_iter().enumerate().map(inverted).collect();
     }
 
     pub fn nodes(&self) -> usize {
         self.diagonals.len()
     }
 
-    /// Number of blocks stored.
+    /// Number of blocks of both triangles.
     pub fn block_count(&self) -> usize {
-        self.columns.len()
+        self.nodes() + 2 * self.inside.columns.len() + self.outside.columns.len()
     }
 
-    /// Places of a row.
-    #[inline]
-    pub fn row(&self, i: usize) -> Range<usize> {
-        self.offsets[i]..self.offsets[i + 1]
-    }
-
-    /// Column and block at a place.
-    #[inline]
-    pub fn at(&self, k: usize) -> (usize, &[[f32; B]; B]) {
-        (self.columns[k] as usize, &self.blocks[k])
-    }
-
-    /// Columns of a row, ascending.
-    #[inline]
-    pub fn columns(&self, i: usize) -> &[u32] {
-        &self.columns[self.row(i)]
-    }
-
-    /// The part of a row before its diagonal.
+    /// The block at a place of a row of the lower triangle that this was made of.
     #[inline(always)]
-    pub fn before(&self, i: usize) -> Part<'_, B> {
-        let range = self.offsets[i]..self.diagonals[i];
-        (&self.columns[range.clone()], &self.blocks[range])
+    pub fn of_lower(&self, row: usize, place: usize) -> &[[f32; B]; B] {
+        let (columns, blocks) = self.outside(row);
+        let before = columns.partition_point(|&j| (j as usize) < row);
+        if place < before {
+            &blocks[place]
+        } else {
+            self.inside(row).1.get(place - before).unwrap_or(&self.diagonals[row])
+        }
     }
 
-    /// The part of a row after its diagonal.
+    /// The part of a row before its diagonal that is in its chunk.
     #[inline(always)]
-    pub fn after(&self, i: usize) -> Part<'_, B> {
-        let range = self.diagonals[i] + 1..self.offsets[i + 1];
-        (&self.columns[range.clone()], &self.blocks[range])
+    pub fn inside(&self, i: usize) -> Part<'_, B> {
+        self.inside.row(i)
     }
 
-    /// A whole row.
+    /// The part of a row in other chunks.
     #[inline(always)]
-    pub fn whole(&self, i: usize) -> Part<'_, B> {
-        (&self.columns[self.row(i)], &self.blocks[self.row(i)])
+    pub fn outside(&self, i: usize) -> Part<'_, B> {
+        self.outside.row(i)
+    }
+
+    #[inline(always)]
+    pub fn diagonal(&self, i: usize) -> &[[f32; B]; B] {
+        &self.diagonals[i]
     }
 
     /// Inverse of the diagonal block that a row is swept with.
@@ -213,20 +222,36 @@ impl<const B: usize> Operator<B> {
         self.chunks.len() > 1
     }
 
-    /// Every chunk with its part of `out`, at once.
+    /// Every chunk with its part of a vector, at once.
     pub fn each_chunk(&self, out: &mut [Entry<B>], run: impl Fn(&Range<usize>, &mut [Entry<B>]) + Sync) {
-        if let [chunk] = &self.chunks[..] {
-            return run(chunk, out);
-        }
-        let mut rest = out;
-        let mut parts = Vec::with_capacity(self.chunks.len());
-        for chunk in &self.chunks {
-            let (part, after) = std::mem::take(&mut rest).split_at_mut(chunk.len());
-            rest = after;
-            parts.push((chunk, part));
-        }
+        let parts: Vec<_> = self.chunks.iter().zip(self.split(out)).collect();
         parts.into_par_iter().for_each(|(chunk, part)| run(chunk, part));
     }
+
+    /// The same for two vectors.
+    pub fn each_chunk_of_two(
+        &self,
+        first: &mut [Entry<B>],
+        second: &mut [Entry<B>],
+        run: impl Fn(&Range<usize>, &mut [Entry<B>], &mut [Entry<B>]) + Sync,
+    ) {
+        let parts: Vec<_> = self.chunks.iter().zip(self.split(first)).zip(self.split(second)).collect();
+        parts.into_par_iter().for_each(|((chunk, first), second)| run(chunk, first, second));
+    }
+
+    /// The parts of a vector in each chunk.
+    fn split<'a>(&self, vector: &'a mut [Entry<B>]) -> impl Iterator<Item = &'a mut [Entry<B>]> {
+        self.chunks.iter().scan(vector, |rest, chunk| {
+            let (part, after) = std::mem::take(rest).split_at_mut(chunk.len());
+            *rest = after;
+            Some(part)
+        })
+    }
+}
+
+/// A block's transpose.
+pub(super) fn transposed<const B: usize>(block: &[[f32; B]; B]) -> [[f32; B]; B] {
+    std::array::from_fn(|b| std::array::from_fn(|a| block[a][b]))
 }
 
 /// Inverse of a diagonal block; of one that is not definite only that of its diagonal.

@@ -3,141 +3,153 @@
 use std::ops::Range;
 
 use lanes::{LanePath, madd_f32, on_path};
-use rayon::prelude::*;
 
 use super::operator::{Entry, Operator, Part};
-
-/// Rows of a residual that are made at once.
-const ROWS: usize = 512;
 
 impl<const B: usize> Operator<B> {
     /// `out = b - A x`.
     pub fn residual(&self, b: &[Entry<B>], x: &[Entry<B>], out: &mut [Entry<B>]) {
         let path = LanePath::best();
-        out.par_chunks_mut(ROWS).enumerate().for_each(|(part, out)| {
-            let start = part * ROWS;
-            residual_rows(path, self, &(start..start + out.len()), b, x, out);
-        });
+        self.each_chunk(out, |chunk, out| residual_rows(path, self, chunk, b, x, out));
     }
 
     /// One sweep forward from zero: `x = (D + L)^-1 b`; then `rest = b - A x`.
     pub fn sweep_forward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
         let path = LanePath::best();
-        self.each_chunk(x, |chunk, x| forward_rows(path, self, chunk, b, x));
-        let x = &*x;
-        self.each_chunk(rest, |chunk, rest| rest_rows(path, self, chunk, x, rest));
+        self.each_chunk_of_two(x, rest, |chunk, x, rest| forward_rows(path, self, chunk, b, x, rest));
+        if self.is_chunked() {
+            let x = &*x;
+            self.each_chunk(rest, |chunk, rest| outside_rows(path, self, chunk, x, rest));
+        }
     }
 
-    /// One sweep backward: the transpose of the sweep forward.
-    pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], before: &mut [Entry<B>]) {
+    /// One sweep backward: the transpose of the sweep forward. What `rest` has is lost.
+    pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
+        let path = LanePath::best();
+        rest.copy_from_slice(b);
         if self.is_chunked() {
-            before.copy_from_slice(x);
+            let x = &*x;
+            self.each_chunk(rest, |chunk, rest| {
+                for (i, rest) in chunk.clone().zip(&mut *rest) {
+                    rest.iter_mut().zip(self.added_part(i, &x[i])).for_each(|(rest, added)| *rest += added);
+                }
+                outside_rows(path, self, chunk, x, rest);
+            });
         }
-        let (path, before) = (LanePath::best(), &*before);
-        self.each_chunk(x, |chunk, x| backward_rows(path, self, chunk, b, before, x));
+        self.each_chunk_of_two(x, rest, |chunk, x, rest| backward_rows(path, self, chunk, x, rest));
     }
 }
 
 on_path! {
     fn residual_rows<const B: usize>(
-        matrix: &Operator<B>, rows: &Range<usize>, b: &[Entry<B>], x: &[Entry<B>], out: &mut [Entry<B>],
+        matrix: &Operator<B>, chunk: &Range<usize>, b: &[Entry<B>], x: &[Entry<B>], out: &mut [Entry<B>],
     ) = residual_lanes
 }
 on_path! {
+    fn outside_rows<const B: usize>(
+        matrix: &Operator<B>, chunk: &Range<usize>, x: &[Entry<B>], rest: &mut [Entry<B>],
+    ) = outside_lanes
+}
+on_path! {
     fn forward_rows<const B: usize>(
-        matrix: &Operator<B>, chunk: &Range<usize>, b: &[Entry<B>], x: &mut [Entry<B>],
+        matrix: &Operator<B>, chunk: &Range<usize>, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>],
     ) = forward_lanes
 }
 on_path! {
-    fn rest_rows<const B: usize>(
-        matrix: &Operator<B>, chunk: &Range<usize>, x: &[Entry<B>], rest: &mut [Entry<B>],
-    ) = rest_lanes
-}
-on_path! {
     fn backward_rows<const B: usize>(
-        matrix: &Operator<B>, chunk: &Range<usize>, b: &[Entry<B>], before: &[Entry<B>], x: &mut [Entry<B>],
+        matrix: &Operator<B>, chunk: &Range<usize>, x: &mut [Entry<B>], rest: &mut [Entry<B>],
     ) = backward_lanes
 }
 
 #[inline(always)]
 fn residual_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
-    rows: &Range<usize>,
+    chunk: &Range<usize>,
     b: &[Entry<B>],
     x: &[Entry<B>],
     out: &mut [Entry<B>],
 ) {
-    for (i, out) in rows.clone().zip(out) {
-        let mut sum = Sum::<FMA, B>::new();
-        sum.add_all(matrix.whole(i), x, 0);
-        *out = sum.from(&b[i]);
-    }
-}
-
-#[inline(always)]
-fn forward_lanes<const FMA: bool, const B: usize>(
-    matrix: &Operator<B>,
-    chunk: &Range<usize>,
-    b: &[Entry<B>],
-    x: &mut [Entry<B>],
-) {
+    out.copy_from_slice(&b[chunk.clone()]);
+    outside_lanes::<FMA, B>(matrix, chunk, x, out);
     for i in chunk.clone() {
-        let (_, inside) = split(matrix.before(i), chunk.start);
         let mut sum = Sum::<FMA, B>::new();
-        sum.add_all(inside, x, chunk.start);
-        x[i - chunk.start] = times(matrix.inverse(i), &sum.from(&b[i]));
+        sum.add(matrix.diagonal(i), &x[i]);
+        sum.add_all(matrix.inside(i), &x[chunk.clone()], chunk.start);
+        out[i - chunk.start] = sum.from(&out[i - chunk.start]);
+        subtract_transposed::<FMA, B>(matrix.inside(i), &x[i], out, chunk.start);
     }
 }
 
-/// What a forward sweep from zero leaves: `D + L` took its part, what the chunks did not see of each other and the upper triangle stay.
+/// Takes the products with what other chunks have from `rest`.
 #[inline(always)]
-fn rest_lanes<const FMA: bool, const B: usize>(
+fn outside_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
     chunk: &Range<usize>,
     x: &[Entry<B>],
     rest: &mut [Entry<B>],
 ) {
     for (i, rest) in chunk.clone().zip(rest) {
-        let (outside, _) = split(matrix.before(i), chunk.start);
-        let mut sum = Sum::<FMA, B>::new();
-        sum.add_all(outside, x, 0);
-        sum.add_all(matrix.after(i), x, 0);
-        *rest = sum.from(&matrix.added_part(i, &x[i]));
+        let outside = matrix.outside(i);
+        if !outside.0.is_empty() {
+            let mut sum = Sum::<FMA, B>::new();
+            sum.add_all(outside, x, 0);
+            *rest = sum.from(rest);
+        }
     }
 }
 
+/// `D + L` takes its part of `b`; the upper triangle and what was added to the diagonal stay in `rest`.
+#[inline(always)]
+fn forward_lanes<const FMA: bool, const B: usize>(
+    matrix: &Operator<B>,
+    chunk: &Range<usize>,
+    b: &[Entry<B>],
+    x: &mut [Entry<B>],
+    rest: &mut [Entry<B>],
+) {
+    for i in chunk.clone() {
+        let (here, row) = (i - chunk.start, matrix.inside(i));
+        let mut sum = Sum::<FMA, B>::new();
+        sum.add_all(row, x, chunk.start);
+        let own = times(matrix.inverse(i), &sum.from(&b[i]));
+        x[here] = own;
+        rest[here] = matrix.added_part(i, &own);
+        subtract_transposed::<FMA, B>(row, &own, rest, chunk.start);
+    }
+}
+
+/// `rest` is what the rows have to be, less the products with what is swept already.
 #[inline(always)]
 fn backward_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
     chunk: &Range<usize>,
-    b: &[Entry<B>],
-    before: &[Entry<B>],
     x: &mut [Entry<B>],
+    rest: &mut [Entry<B>],
 ) {
     for i in chunk.clone().rev() {
-        let here = i - chunk.start;
-        let mut right = matrix.added_part(i, &x[here]);
-        right.iter_mut().zip(&b[i]).for_each(|(s, b)| *s += b);
-        let (outside, inside) = split(matrix.before(i), chunk.start);
+        let (here, row) = (i - chunk.start, matrix.inside(i));
         let mut sum = Sum::<FMA, B>::new();
-        sum.add_all(outside, before, 0);
-        sum.add_all(inside, x, chunk.start);
-        let (inside, outside) = split(matrix.after(i), chunk.end);
-        sum.add_all(inside, x, chunk.start);
-        sum.add_all(outside, before, 0);
-        x[here] = times(matrix.inverse(i), &sum.from(&right));
+        sum.add_all_from_last(row, x, chunk.start);
+        let own = times(matrix.inverse(i), &sum.from(&rest[here]));
+        x[here] = own;
+        subtract_transposed::<FMA, B>(row, &own, rest, chunk.start);
     }
 }
 
-/// A part of a row before a column, and from it on.
+/// `out -= A^T x` of a part of a row, where `out` begins at node `start`.
 #[inline(always)]
-fn split<const B: usize>((columns, blocks): Part<'_, B>, column: usize) -> (Part<'_, B>, Part<'_, B>) {
-    let place = match columns {
-        [.., last] if (*last as usize) < column => columns.len(),
-        [first, ..] if (*first as usize) < column => columns.partition_point(|&j| (j as usize) < column),
-        _ => 0,
-    };
-    ((&columns[..place], &blocks[..place]), (&columns[place..], &blocks[place..]))
+fn subtract_transposed<const FMA: bool, const B: usize>(
+    (columns, blocks): Part<'_, B>,
+    x: &Entry<B>,
+    out: &mut [Entry<B>],
+    start: usize,
+) {
+    let minus = x.map(|x| -x);
+    for (&j, block) in columns.iter().zip(blocks) {
+        for (out, column) in out[j as usize - start].iter_mut().zip(block) {
+            *out = column.iter().zip(&minus).fold(*out, |sum, (a, x)| madd_f32::<FMA>(*a, *x, sum));
+        }
+    }
 }
 
 /// A sum of products of blocks: columns go to three sums in turn, none of which has to wait for the other two.
@@ -157,6 +169,14 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
     #[inline(always)]
     fn add_all(&mut self, (columns, blocks): Part<'_, B>, x: &[Entry<B>], start: usize) {
         for (&j, block) in columns.iter().zip(blocks) {
+            self.add(block, &x[j as usize - start]);
+        }
+    }
+
+    /// The same from the last column to the first: a sweep backward then reads the memory downward, which the processor foresees.
+    #[inline(always)]
+    fn add_all_from_last(&mut self, (columns, blocks): Part<'_, B>, x: &[Entry<B>], start: usize) {
+        for (&j, block) in columns.iter().zip(blocks).rev() {
             self.add(block, &x[j as usize - start]);
         }
     }

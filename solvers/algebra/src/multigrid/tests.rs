@@ -2,6 +2,7 @@
 
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
+use super::graph::Graph;
 use super::level::{Cycle, by_aggregates};
 use super::lower::{Block, Lower, LowerRows};
 use super::operator::Operator;
@@ -85,10 +86,10 @@ fn column<const B: usize>(transfer: &Transfer<Dense<B>>, nodes: usize, c: usize)
 #[test]
 fn a_coarse_matrix_is_the_triple_product() {
     let (lower, modes) = grid(6);
-    let matrix = Operator::new(&lower, 0.1);
-    let (functions, _) = orthonormal(&aggregates(&matrix), &modes);
-    let transfer = Transfer::smoothed(&matrix, &aggregates(&matrix), &functions);
-    let coarse = dense(&galerkin::<3, MODES, Dense<3>>(&lower, &matrix, &transfer));
+    let (matrix, graph) = (Operator::new(&lower, 0.1), Graph::new(&lower));
+    let (functions, _) = orthonormal(&aggregates(&matrix, &graph), &modes);
+    let transfer = Transfer::smoothed(&matrix, &graph, &aggregates(&matrix, &graph), &functions);
+    let coarse = dense(&galerkin::<3, MODES, Dense<3>>(&lower, &graph, &transfer));
     let fine = dense(&lower);
     assert!(transfer.count > 4, "{} aggregates", transfer.count);
     let columns: Vec<Vec<f64>> = (0..MODES * transfer.count).map(|c| column(&transfer, 216, c)).collect();
@@ -105,10 +106,10 @@ fn a_coarse_matrix_is_the_triple_product() {
 #[test]
 fn rigid_motions_are_prolonged_exactly_away_from_supports() {
     let (lower, modes) = grid(8);
-    let matrix = Operator::new(&lower, 0.1);
-    let aggregates = aggregates(&matrix);
+    let (matrix, graph) = (Operator::new(&lower, 0.1), Graph::new(&lower));
+    let aggregates = aggregates(&matrix, &graph);
     let (functions, coarse) = orthonormal(&aggregates, &modes);
-    let transfer = Transfer::smoothed(&matrix, &aggregates, &functions);
+    let transfer = Transfer::smoothed(&matrix, &graph, &aggregates, &functions);
     for m in 0..MODES {
         let values: Vec<[f32; MODES]> =
             coarse.iter().map(|rows| std::array::from_fn(|d| rows[d][m] as f32)).collect();
@@ -166,4 +167,60 @@ fn a_cycle_is_symmetric_and_positive() {
     let smooth: Vec<[f32; 3]> = modes.iter().map(|rows| std::array::from_fn(|a| rows[a][0] as f32)).collect();
     let (once, twice) = (inner(&cycle(&smooth, Cycle::V), &smooth), inner(&solve(&smooth), &smooth));
     assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
+}
+
+/// Both triangles from one, across two chunks: residuals, and the sweeps that take parts of them.
+#[test]
+fn sweeps_leave_the_residual_and_are_transposes() {
+    let (lower, _) = grid(26);
+    let matrix = Operator::new(&lower, 1.0);
+    assert!(matrix.is_chunked());
+    let nodes = lower.nodes();
+    let vector = |seed: f64| -> Vec<[f32; 3]> {
+        (0..nodes)
+            .map(|i| std::array::from_fn(|a| ((3 * i + a) as f64 * seed).fract() as f32 - 0.5))
+            .collect()
+    };
+    let near = |a: &[[f32; 3]], b: &[[f32; 3]], what: &str| {
+        let off = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-4, "{what}: {off}");
+    };
+    let inner = |a: &[[f32; 3]], b: &[[f32; 3]]| -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| f64::from(a * b)).sum()
+    };
+    let (b, x) = (vector(0.618034), vector(0.414214));
+    let mut exact = b.clone();
+    for i in 0..nodes {
+        for (at, &j) in lower.columns(i).iter().enumerate() {
+            let (j, block) = (j as usize, lower.block(i, at));
+            for c in 0..3 {
+                for r in 0..3 {
+                    exact[i][r] -= block[c][r] as f32 * x[j][c];
+                    exact[j][c] -= if j < i { block[c][r] as f32 * x[i][r] } else { 0.0 };
+                }
+            }
+        }
+    }
+    let zero = vec![[0.0; 3]; nodes];
+    let residual = |x: &[[f32; 3]]| {
+        let mut out = zero.clone();
+        matrix.residual(&b, x, &mut out);
+        out
+    };
+    near(&residual(&x), &exact, "residual");
+
+    let (mut forward, mut rest) = (zero.clone(), zero.clone());
+    matrix.sweep_forward(&b, &mut forward, &mut rest);
+    near(&rest, &residual(&forward), "what a sweep forward leaves");
+    let backward = |b: &[[f32; 3]], x: &[[f32; 3]]| {
+        let mut x = x.to_vec();
+        matrix.sweep_backward(b, &mut x, &mut zero.clone());
+        x
+    };
+    let (left, right) = (inner(&forward, &x), inner(&b, &backward(&x, &zero)));
+    assert!((left - right).abs() < 1e-5 * inner(&forward, &forward), "{left} and {right}");
+    // From anywhere it is one from zero of what is left.
+    let mut corrected = backward(&exact, &zero);
+    corrected.iter_mut().flatten().zip(x.iter().flatten()).for_each(|(c, x)| *c += x);
+    near(&backward(&b, &x), &corrected, "a sweep backward");
 }

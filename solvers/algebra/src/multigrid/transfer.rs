@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use shape::Coarser;
 
 use super::aggregate::{Aggregates, MODES, Modes, NONE};
+use super::graph::Graph;
 use super::operator::{Entry, Operator};
-use super::sweep::times;
+use super::sets::Sets;
 
 /// What a node of a level with B degrees of freedom takes from a node of the next with C.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {
@@ -192,6 +193,7 @@ impl<const B: usize> Transfer<Dense<B>> {
     /// `P = (I - w D^-1 A) T` with `w = 4/3` over the largest eigenvalue of `D^-1 A` (Vanek, Mandel and Brezina 1996).
     pub fn smoothed(
         matrix: &Operator<B>,
+        graph: &Graph,
         aggregates: &Aggregates,
         functions: &[Modes<B>],
     ) -> Transfer<Dense<B>> {
@@ -199,96 +201,109 @@ impl<const B: usize> Transfer<Dense<B>> {
         let weight = 4.0 / (3.0 * matrix.largest_eigenvalue());
         let functions: Vec<[[f32; MODES]; B]> =
             functions.iter().map(|rows| rows.map(|row| row.map(|v| v as f32))).collect();
-        let (offsets, columns, weights) = joined(matrix.nodes(), |i, row: &mut Vec<(u32, Dense<B>)>| {
-            let start = row.len();
-            for k in matrix.row(i) {
-                let (j, block) = matrix.at(k);
-                let aggregate = aggregates.of[j];
-                if aggregate == NONE {
-                    continue;
-                }
-                let place = row[start..].iter().position(|(column, _)| *column == aggregate);
-                let at = start + place.unwrap_or(row.len() - start);
-                if place.is_none() {
-                    row.push((aggregate, Dense([[0.0; MODES]; B])));
-                }
-                let sum = &mut row[at].1.0;
-                for b in 0..B {
-                    for a in 0..B {
-                        for m in 0..MODES {
-                            sum[a][m] += block[b][a] * functions[j][b][m];
-                        }
-                    }
-                }
-            }
-            for (column, Dense(sum)) in &mut row[start..] {
-                for m in 0..MODES {
-                    let divided = times(matrix.inverse(i), &std::array::from_fn(|a| sum[a][m]));
-                    for a in 0..B {
-                        let own = if *column == aggregates.of[i] { functions[i][a][m] } else { 0.0 };
-                        sum[a][m] = own - weight * divided[a];
-                    }
-                }
-            }
-            row[start..].sort_unstable_by_key(|(column, _)| *column);
+        let of = &aggregates.of[..];
+        let Sets { offsets, members: columns } = Sets::unions(matrix.nodes(), aggregates.count, |i, add| {
+            graph
+                .columns(i)
+                .iter()
+                .filter(|&&j| of[j as usize] != NONE)
+                .for_each(|&j| add(&of[j as usize..][..1]));
+        });
+        let mut weights = vec![Dense([[0.0; MODES]; B]); columns.len()];
+        let smoothing = Smoothing { matrix, graph, of, functions: &functions, weight };
+        let path = LanePath::best();
+        in_rows(&offsets, &mut weights, |rows, weights| {
+            smooth_rows(path, &smoothing, rows, &offsets, &columns, weights);
         });
         Transfer { offsets, columns, weights, count: aggregates.count }
     }
 }
 
+/// What a prolongation is smoothed with.
+struct Smoothing<'a, const B: usize> {
+    matrix: &'a Operator<B>,
+    graph: &'a Graph,
+    /// Aggregate of each node.
+    of: &'a [u32],
+    functions: &'a [[[f32; MODES]; B]],
+    weight: f32,
+}
+
+on_path! {
+    /// Rows of `(I - w D^-1 A) T`, whose weights start as zeros.
+    fn smooth_rows<const B: usize>(
+        by: &Smoothing<'_, B>, rows: Range<usize>, offsets: &[usize], columns: &[u32], weights: &mut [Dense<B>],
+    ) = smooth_rows_lanes
+}
+
+#[inline(always)]
+fn smooth_rows_lanes<const FMA: bool, const B: usize>(
+    by: &Smoothing<'_, B>,
+    rows: Range<usize>,
+    offsets: &[usize],
+    columns: &[u32],
+    weights: &mut [Dense<B>],
+) {
+    let mut rest = weights;
+    for i in rows {
+        let range = offsets[i]..offsets[i + 1];
+        let (row, after) = std::mem::take(&mut rest).split_at_mut(range.len());
+        rest = after;
+        let columns = &columns[range];
+        for k in by.graph.range(i) {
+            let (j, block) = by.graph.at(by.matrix, i, k);
+            let Some(at) = columns.iter().position(|column| *column == by.of[j]) else { continue };
+            let mut sum = row[at].0;
+            for (column, function) in block.iter().zip(&by.functions[j]) {
+                for (sum, a) in sum.iter_mut().zip(column) {
+                    *sum = std::array::from_fn(|m| madd_f32::<FMA>(*a, function[m], sum[m]));
+                }
+            }
+            row[at].0 = sum;
+        }
+        for (column, Dense(sum)) in columns.iter().zip(row) {
+            let mut out = if *column == by.of[i] { by.functions[i] } else { [[0.0; MODES]; B] };
+            for (column, sum) in by.matrix.inverse(i).iter().zip(&*sum) {
+                for (out, a) in out.iter_mut().zip(column) {
+                    *out = std::array::from_fn(|m| madd_f32::<FMA>(-by.weight * a, sum[m], out[m]));
+                }
+            }
+            *sum = out;
+        }
+    }
+}
+
+/// Parts of rows with their entries, at once.
+fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usize>, &mut [T]) + Sync) {
+    const PART: usize = 512;
+    let (rows, mut rest) = (offsets.len() - 1, entries);
+    let mut parts = Vec::with_capacity(rows.div_ceil(PART));
+    for start in (0..rows).step_by(PART) {
+        let end = rows.min(start + PART);
+        let (part, after) = rest.split_at_mut(offsets[end] - offsets[start]);
+        rest = after;
+        parts.push((start..end, part));
+    }
+    parts.into_par_iter().for_each(|(rows, part)| run(rows, part));
+}
+
 impl Transfer<Diagonal> {
     /// Of degrees of freedom `3 node + axis` that are not held on either side.
     pub fn nested(coarser: &Coarser, held: &[bool]) -> Transfer<Diagonal> {
-        let (offsets, columns, weights) = joined(coarser.rows.len(), |i, row| {
+        let (mut offsets, mut columns, mut weights) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..coarser.rows.len() {
             let (nodes, values) = coarser.rows.row(i);
             for (&node, &value) in nodes.iter().zip(values) {
                 let place = coarser.places[node as usize] as usize;
                 let free = |a: usize| !held[3 * i + a] && !held[3 * place + a];
                 let weight = |a| if free(a) { value as f32 } else { 0.0 };
-                row.push((node, Diagonal(std::array::from_fn(weight))));
+                columns.push(node);
+                weights.push(Diagonal(std::array::from_fn(weight)));
             }
-        });
+            offsets.push(columns.len());
+        }
         Transfer { offsets, columns, weights, count: coarser.places.len() }
     }
-}
-
-/// Entries of some rows, and their number in each.
-type Part<T> = (Vec<(u32, T)>, Vec<usize>);
-
-/// Rows made in parts, joined in order: offsets, columns, values.
-fn joined<T: Send>(
-    nodes: usize,
-    rows: impl Fn(usize, &mut Vec<(u32, T)>) + Sync,
-) -> (Vec<usize>, Vec<u32>, Vec<T>) {
-    const PART: usize = 512;
-    let parts: Vec<Part<T>> = (0..nodes.div_ceil(PART))
-        .into_par_iter()
-        .map(|part| {
-            let mut entries = Vec::new();
-            let lengths = (part * PART..nodes.min((part + 1) * PART))
-                .map(|i| {
-                    let start = entries.len();
-                    rows(i, &mut entries);
-                    entries.len() - start
-                })
-                .collect();
-            (entries, lengths)
-        })
-        .collect();
-    let count = parts.iter().map(|p| p.0.len()).sum();
-    let mut offsets = Vec::with_capacity(nodes + 1);
-    offsets.push(0);
-    let (mut columns, mut values) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    for (entries, lengths) in parts {
-        for length in lengths {
-            offsets.push(offsets[offsets.len() - 1] + length);
-        }
-        for (column, value) in entries {
-            columns.push(column);
-            values.push(value);
-        }
-    }
-    (offsets, columns, values)
 }
 
 /// Sums that parts of `rows` rows add to, one sum for each part, then all in order: the parts depend on the number of rows alone.

@@ -1,0 +1,75 @@
+//! Whole rows of a symmetric matrix of which the lower triangle is stored: what a hierarchy is made with, and not kept.
+
+use std::ops::Range;
+
+use super::lower::LowerRows;
+use super::operator::{Operator, transposed};
+
+/// Columns of every row, ascending, and where their blocks are in the lower triangle.
+pub(super) struct Graph {
+    offsets: Vec<usize>,
+    columns: Vec<u32>,
+    /// Place in the row of the lower triangle: in that of this row, or beyond the diagonal in that of the column.
+    places: Vec<u32>,
+}
+
+impl Graph {
+    pub fn new<const B: usize>(lower: &impl LowerRows<B>) -> Graph {
+        let nodes = lower.nodes();
+        let mut offsets = vec![0; nodes + 1];
+        for i in 0..nodes {
+            let columns = lower.columns(i);
+            offsets[i + 1] += columns.len();
+            for &j in &columns[..columns.len() - 1] {
+                offsets[j as usize + 1] += 1;
+            }
+        }
+        for i in 0..nodes {
+            offsets[i + 1] += offsets[i];
+        }
+        let (mut columns, mut places) = (vec![0; offsets[nodes]], vec![0; offsets[nodes]]);
+        // Rows come in order, so the part of a row beyond its diagonal fills in ascending order too.
+        let mut next = offsets.clone();
+        for i in 0..nodes {
+            for (at, &j) in lower.columns(i).iter().enumerate() {
+                let mut add = |row: usize, column: u32| {
+                    columns[next[row]] = column;
+                    places[next[row]] = at as u32;
+                    next[row] += 1;
+                };
+                add(i, j);
+                if (j as usize) < i {
+                    add(j as usize, i as u32);
+                }
+            }
+        }
+        Graph { offsets, columns, places }
+    }
+
+    pub fn nodes(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Places of a row.
+    #[inline(always)]
+    pub fn range(&self, row: usize) -> Range<usize> {
+        self.offsets[row]..self.offsets[row + 1]
+    }
+
+    /// Columns of a row, ascending.
+    #[inline]
+    pub fn columns(&self, row: usize) -> &[u32] {
+        &self.columns[self.range(row)]
+    }
+
+    /// Column and block of one of the places ([`Graph::range`]) of a row, in the matrix that this is the graph of.
+    #[inline(always)]
+    pub fn at<const B: usize>(&self, matrix: &Operator<B>, row: usize, k: usize) -> (usize, [[f32; B]; B]) {
+        let (column, place) = (self.columns[k] as usize, self.places[k] as usize);
+        if column <= row {
+            (column, *matrix.of_lower(row, place))
+        } else {
+            (column, transposed(matrix.of_lower(column, place)))
+        }
+    }
+}

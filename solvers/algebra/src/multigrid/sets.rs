@@ -1,0 +1,73 @@
+//! Sets of numbers by rows: which nodes of one level belong to which of another.
+
+use rayon::prelude::*;
+
+/// Compressed rows of ascending numbers.
+pub(super) struct Sets {
+    pub offsets: Vec<usize>,
+    pub members: Vec<u32>,
+}
+
+impl Sets {
+    /// The union of what `visit` shows for each row, out of `count` numbers.
+    pub fn unions(rows: usize, count: usize, visit: impl Fn(usize, &mut dyn FnMut(&[u32])) + Sync) -> Sets {
+        const PART: usize = 512;
+        let parts: Vec<(Vec<u32>, Vec<usize>)> = (0..rows.div_ceil(PART))
+            .into_par_iter()
+            .map_init(
+                || vec![u32::MAX; count],
+                |mark, part| {
+                    let (mut members, mut lengths) = (Vec::new(), Vec::new());
+                    for i in part * PART..rows.min((part + 1) * PART) {
+                        let start = members.len();
+                        visit(i, &mut |numbers| {
+                            for &n in numbers {
+                                if mark[n as usize] != i as u32 {
+                                    mark[n as usize] = i as u32;
+                                    members.push(n);
+                                }
+                            }
+                        });
+                        members[start..].sort_unstable();
+                        lengths.push(members.len() - start);
+                    }
+                    (members, lengths)
+                },
+            )
+            .collect();
+        let mut offsets = vec![0];
+        let mut members = Vec::with_capacity(parts.iter().map(|p| p.0.len()).sum());
+        for (part, lengths) in parts {
+            for length in lengths {
+                offsets.push(offsets[offsets.len() - 1] + length);
+            }
+            members.extend(part);
+        }
+        Sets { offsets, members }
+    }
+
+    #[inline]
+    pub fn of(&self, i: usize) -> &[u32] {
+        &self.members[self.offsets[i]..self.offsets[i + 1]]
+    }
+
+    /// For each of `count` numbers the rows that have it.
+    pub fn transposed<'a>(rows: usize, count: usize, row: impl Fn(usize) -> &'a [u32]) -> Sets {
+        let mut offsets = vec![0; count + 1];
+        for i in 0..rows {
+            row(i).iter().for_each(|&n| offsets[n as usize + 1] += 1);
+        }
+        for n in 0..count {
+            offsets[n + 1] += offsets[n];
+        }
+        let mut next = offsets.clone();
+        let mut members = vec![0; offsets[count]];
+        for i in 0..rows {
+            for &n in row(i) {
+                members[next[n as usize]] = i as u32;
+                next[n as usize] += 1;
+            }
+        }
+        Sets { offsets, members }
+    }
+}
