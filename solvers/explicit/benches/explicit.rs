@@ -11,9 +11,8 @@
 //! | hex8 mean dilation | 656 (one pass) | 2500 | 33 ns | 63 ns |
 //! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 860 | 40 ns | 22 ns |
 //!
-//! What each kernel waits for, from its measured distance to these bounds: tet4 for the gather and scatter of 16 nodes'
-//! quads per lane pair (11 ns, 2.4 times the arithmetic; nodal dilation 21 ns, 2.2 times); hex8 for products, of which 950
-//! vectors of eight elements (mean dilation 1200) at one per cycle of 3.7 GHz are 32 ns (40), for sums and differences and
+//! What each kernel waits for, from its measured distance to these bounds: tet4 for gather and scatter (see the benchmark
+//! `tet4`); hex8 for products, of which 950 vectors of eight elements (mean dilation 1200) at one per cycle of 3.7 GHz are 32 ns (40), for sums and differences and
 //! the scatter of its nodes (20 ns), and outside the kernel for copies of nodes and their sums (5 ns): kernel alone 52 ns (62),
 //! whole evaluation 58 (68), beside busy neighbours the least of 20 samples; out of cache for memory, 130 (130); EFG for
 //! loads, eight per neighbour (53 ns in cache, 90 out of it).

@@ -1,6 +1,7 @@
 //! Explicit time integration: central differences with velocities at half steps.
 
 use super::critical_step::{CriticalStep, Estimate, LanczosParams, critical_step_touching};
+use super::step_lanes::{Forces, Inertia, accelerate, advance};
 use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
 use shape::{Matrix3, Vector3};
 
@@ -65,6 +66,7 @@ pub struct Dynamics<'a, 'b> {
     prescribed: &'b [Prescribed<'b>],
     params: DynamicsParams,
     constrained: Vec<bool>,
+    inertia: Inertia,
     tools: Option<Tools<'b>>,
     step: usize,
     /// Step and time of the last change of the time step.
@@ -121,6 +123,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             mass,
             prescribed,
             params,
+            inertia: Inertia::new(mass, &constrained),
             constrained,
             tools: None,
             step: 0,
@@ -286,35 +289,22 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let c = 0.5 * self.params.damping * dt;
         let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
         let first = step == 0;
-        let (mut kinetic, mut moved, mut work) = (0.0, 0.0, 0.0);
-        let (mut lost, mut next_lost) = (0.0, 0.0);
-        for i in 0..self.u.len() {
-            let m = self.mass[i];
-            let mut f = self.external[i] - self.internal[i];
-            if let Some(touch) = touch.get(i) {
-                f += touch;
+        // From here on what the body holds against its loads, contact included.
+        self.internal.iter_mut().zip(touch).for_each(|(f, t)| *f -= t);
+        if first {
+            // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
+            for i in 0..self.v.len() {
+                let f = self.external[i] - self.internal[i];
+                self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / self.mass[i]);
             }
-            if first {
-                // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
-                self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / m);
-            }
-            let mut before = self.v[i];
-            let mut after = before * keep + f * (push / m);
-            if !first {
-                work += 0.5 * before_dt * before.dot(&(self.external[i] + self.previous_external[i]));
-            }
-            for axis in 0..3 {
-                if self.constrained[3 * i + axis] {
-                    (before[axis], after[axis]) = (0.0, 0.0);
-                }
-            }
-            let mean = (before + after) * 0.5;
-            kinetic += 0.5 * m * before.dot(&after);
-            lost += m * before.dot(&mean);
-            next_lost += m * after.dot(&mean);
-            moved += after.norm_squared();
-            self.v[i] = after;
         }
+        self.prescribed.iter().for_each(|p| self.v[p.node as usize][p.axis as usize] = 0.0);
+        let forces =
+            Forces { external: &self.external, before: &self.previous_external, internal: &self.internal };
+        let sums = accelerate(self.force.path(), &self.inertia, [keep, push], forces, &mut self.v);
+        let (mut kinetic, mut moved) = (0.5 * sums.kinetic, sums.moved);
+        let [mut lost, mut next_lost] = sums.lost.map(|lost| 0.5 * lost);
+        let work = if first { 0.0 } else { 0.5 * before_dt * sums.work };
         // Prescribed velocities, their share of the energies and the reactions behind them.
         for (p, reaction) in self.prescribed.iter().zip(&mut self.reaction) {
             let (i, axis) = (p.node as usize, p.axis as usize);
@@ -323,8 +313,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             let after = ((p.motion)(time + after_dt) - now) / after_dt;
             let before = if first { after } else { (now - (p.motion)(time - before_dt)) / before_dt };
             let mean = 0.5 * (before + after);
-            let touch = touch.get(i).map_or(0.0, |f| f[axis]);
-            let next = self.internal[i][axis] - self.external[i][axis] - touch
+            let next = self.internal[i][axis] - self.external[i][axis]
                 + m * ((after - before) / dt + self.params.damping * mean);
             if !first {
                 self.work[1] += 0.5 * before_dt * before * (*reaction + next);
@@ -369,7 +358,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     /// `u_(n+1) = u_n + dt v_(n+1/2)`.
     fn advance(&mut self) {
         let dt = self.params.dt;
-        self.u.iter_mut().zip(&self.v).for_each(|(u, v)| *u += v * dt);
+        advance(self.force.path(), dt, &self.v, &mut self.u);
         self.before = dt;
         self.step += 1;
         let time = self.time();

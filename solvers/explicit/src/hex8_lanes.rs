@@ -10,9 +10,9 @@
 
 use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, close_group, stress};
-use super::quad::{add, lanes_of_differences, quads_of_lanes};
+use super::quad::{add_lanes, lanes_of, within};
 use super::trilinear::{slopes, slopes_back, value_at};
-use lanes::{LanePath, madd, on_path};
+use lanes::{LanePath, fetch, madd, on_path};
 use material::lane::invariants::{Coefficients, add_cofactor, piola, pressed};
 use material::lane::{LANES, LaneStrain, Lanes};
 use material::{Law, Volumetric};
@@ -33,17 +33,6 @@ pub(super) struct Point {
 
 impl Point {
     pub const EMPTY: Point = Point { map: [[0.0; LANES]; 9], weight: [0.0; LANES] };
-
-    /// Asks for the point's ten cache lines: the processor's own guess ends at the page, 0.9 of the time with it.
-    #[inline(always)]
-    fn fetch(&self) {
-        #[cfg(target_arch = "x86_64")]
-        for line in 0..size_of::<Point>() / 64 {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: a hint, and inside the point.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(self).cast::<i8>().add(64 * line)) };
-        }
-    }
 }
 
 /// What the passes leave for one another. Aligned: registers of 64 bytes would otherwise straddle cache lines.
@@ -82,12 +71,13 @@ impl Scratch {
 
 /// One node.
 #[inline(always)]
-fn gather<const FMA: bool>(block: &Block, k: usize, u: &[Slot], nodal: &mut [[Lanes; 8]; 3]) {
-    let mut origin = [Slot::ZERO; LANES];
-    for l in 0..LANES {
-        origin[l] = u[block.nodes[0][l] as usize];
-    }
-    let lanes = lanes_of_differences::<FMA>(u, &block.nodes[k], &origin);
+fn gather<const BITS: usize>(block: &Block, k: usize, u: &[Slot], nodal: &mut [[Lanes; 8]; 3]) {
+    assert!(within(&[block.nodes[0], block.nodes[k]], u.len()));
+    // SAFETY: the nodes were just looked at, and a kernel has the registers of its path.
+    let lanes = unsafe {
+        let origin = lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]);
+        lanes_of::<BITS>(u, &block.nodes[k], &origin)
+    };
     for i in 0..3 {
         nodal[i][k] = lanes[i];
     }
@@ -251,12 +241,11 @@ fn derivatives_back(s: &[LaneStrain; 8], i: usize, out: &mut [Lanes; 8]) {
 }
 
 #[inline(always)]
-fn scatter<const FMA: bool>(block: &Block, nodal: &[[Lanes; 8]; 3], f: &mut [Slot]) {
+fn scatter<const BITS: usize>(block: &Block, [x, y, z]: &[[Lanes; 8]; 3], f: &mut [Slot]) {
+    assert!(within(&block.nodes, f.len()));
     for k in 0..8 {
-        let quads = quads_of_lanes::<FMA>(&nodal[0][k], &nodal[1][k], &nodal[2][k]);
-        for l in 0..LANES {
-            add::<FMA>(&quads[l], &mut f[block.nodes[k][l] as usize]);
-        }
+        // SAFETY: as in `gather`.
+        unsafe { add_lanes::<BITS>(&x[k], &y[k], &z[k], &block.nodes[k], f) };
     }
 }
 
@@ -273,20 +262,20 @@ fn strains<const FMA: bool>(block: &Block, x: &mut Scratch) {
 
 /// `S` of the points to forces of the nodes, added to `f`.
 #[inline(always)]
-fn forces<const FMA: bool>(block: &Block, x: &mut Scratch, f: &mut [Slot]) {
+fn forces<const FMA: bool, const BITS: usize>(block: &Block, x: &mut Scratch, f: &mut [Slot]) {
     for i in 0..3 {
         derivatives_back(&x.points, i, &mut x.f[i]);
     }
-    scatter::<FMA>(block, &x.f, f);
+    scatter::<BITS>(block, &x.f, f);
 }
 
 on_path! {
     /// Internal forces of blocks (one at least) of one law, added to `f`; false where some `J` is not positive.
-    pub(super) fn internal(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = internal_lanes
+    pub(super) fn internal(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = internal_lanes::<BITS>
 }
 
 #[inline(always)]
-fn internal_lanes<const FMA: bool>(
+fn internal_lanes<const FMA: bool, const BITS: usize>(
     path: LanePath,
     blocks: &[Block],
     law: &LaneLaw,
@@ -294,18 +283,18 @@ fn internal_lanes<const FMA: bool>(
     f: &mut [Slot],
 ) -> bool {
     match law {
-        LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA>(blocks, *moduli, u, f),
-        LaneLaw::Other(law, _) => other::<FMA>(path, blocks, law, None, u, f),
+        LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA, BITS>(blocks, *moduli, u, f),
+        LaneLaw::Other(law, _) => other::<FMA, BITS>(path, blocks, law, None, u, f),
     }
 }
 
 on_path! {
     /// As [`internal`] with one dilation per element, the mean over its points.
-    pub(super) fn dilated(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = dilated_lanes
+    pub(super) fn dilated(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = dilated_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_lanes<const FMA: bool>(
+fn dilated_lanes<const FMA: bool, const BITS: usize>(
     path: LanePath,
     blocks: &[Block],
     law: &LaneLaw,
@@ -313,16 +302,21 @@ fn dilated_lanes<const FMA: bool>(
     f: &mut [Slot],
 ) -> bool {
     match law {
-        LaneLaw::NeoHookean(moduli) => dilated_neo_hookean::<FMA>(blocks, *moduli, u, f),
-        LaneLaw::Other(law, volume) => other::<FMA>(path, blocks, law, Some(volume), u, f),
+        LaneLaw::NeoHookean(moduli) => dilated_neo_hookean::<FMA, BITS>(blocks, *moduli, u, f),
+        LaneLaw::Other(law, volume) => other::<FMA, BITS>(path, blocks, law, Some(volume), u, f),
     }
 }
 
 #[inline(always)]
-fn neo_hookean<const FMA: bool>(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot]) -> bool {
+fn neo_hookean<const FMA: bool, const BITS: usize>(
+    blocks: &[Block],
+    moduli: Moduli,
+    u: &[Slot],
+    f: &mut [Slot],
+) -> bool {
     let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
     for k in 0..8 {
-        gather::<FMA>(&blocks[0], k, u, &mut x.u);
+        gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
@@ -331,18 +325,18 @@ fn neo_hookean<const FMA: bool>(blocks: &[Block], moduli: Moduli, u: &[Slot], f:
             law::<FMA>(&block.points[q].weight, moduli, &x.points[q], &mut x.coefficients[q], &mut good);
         }
         for q in 0..8 {
-            next.points[q].fetch();
-            gather::<FMA>(next, q, u, &mut x.u);
+            fetch(&next.points[q]);
+            gather::<BITS>(next, q, u, &mut x.u);
             let c = &x.coefficients[q];
             pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, _| [c[0][l], c[1][l], c[2][l]]);
         }
-        forces::<FMA>(block, &mut x, f);
+        forces::<FMA, BITS>(block, &mut x, f);
     }
     good == [1.0; LANES]
 }
 
 #[inline(always)]
-fn dilated_neo_hookean<const FMA: bool>(
+fn dilated_neo_hookean<const FMA: bool, const BITS: usize>(
     blocks: &[Block],
     moduli: Moduli,
     u: &[Slot],
@@ -350,7 +344,7 @@ fn dilated_neo_hookean<const FMA: bool>(
 ) -> bool {
     let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
     for k in 0..8 {
-        gather::<FMA>(&blocks[0], k, u, &mut x.u);
+        gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
@@ -362,21 +356,21 @@ fn dilated_neo_hookean<const FMA: bool>(
         }
         share::<FMA>(&x.sums, [moduli.mu, moduli.lambda, 0.0], &mut x.shared);
         for q in 0..8 {
-            next.points[q].fetch();
-            gather::<FMA>(next, q, u, &mut x.u);
+            fetch(&next.points[q]);
+            gather::<BITS>(next, q, u, &mut x.u);
             let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &x.shared);
             pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, h| {
                 pressed::<FMA>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
             });
         }
-        forces::<FMA>(block, &mut x, f);
+        forces::<FMA, BITS>(block, &mut x, f);
     }
     good == [1.0; LANES]
 }
 
 /// Any other law, point by point; the mean dilation acts on its `volume`.
 #[inline(always)]
-fn other<const FMA: bool>(
+fn other<const FMA: bool, const BITS: usize>(
     path: LanePath,
     blocks: &[Block],
     law: &Law,
@@ -386,7 +380,7 @@ fn other<const FMA: bool>(
 ) -> bool {
     let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
     for k in 0..8 {
-        gather::<FMA>(&blocks[0], k, u, &mut x.u);
+        gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
@@ -404,11 +398,11 @@ fn other<const FMA: bool>(
         let pressure = volume.map(|_| &x.shared[1]);
         stress(path, law, &x.points, &mut x.stress);
         for q in 0..8 {
-            next.points[q].fetch();
-            gather::<FMA>(next, q, u, &mut x.u);
+            fetch(&next.points[q]);
+            gather::<BITS>(next, q, u, &mut x.u);
             pull_back_stress::<FMA>(&block.points[q], &x.stress[q], pressure, &mut x.points[q]);
         }
-        forces::<FMA>(block, &mut x, f);
+        forces::<FMA, BITS>(block, &mut x, f);
     }
     good == [1.0; LANES]
 }

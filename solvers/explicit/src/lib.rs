@@ -42,6 +42,7 @@ mod pressing;
 mod quad;
 mod relaxation;
 mod rows;
+mod step_lanes;
 mod tet4;
 mod tet4_lanes;
 mod tools;

@@ -2,7 +2,8 @@
 //!
 //! The compiler turns loops over eight lanes into vector instructions by itself, but leaves sums of `[f64; 4]` scalar
 //! and builds lanes one number at a time, which stalls the loads behind them: written out here, at twice the speed.
-//! `WIDE` is true only inside kernels compiled for AVX2 and FMA; elsewhere the same sums run as plain loops.
+//! `WIDE` is true only inside kernels compiled for AVX2 and FMA, `BITS` is the width of a kernel's registers; without them the same
+//! sums run as plain loops.
 
 use super::chunks::Slot;
 use lanes::{LANES, madd};
@@ -32,69 +33,121 @@ pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     }
 }
 
-/// Components x, y, z of `u[nodes[l]] - origin[l]` for eight lanes. Loops and no `array::from_fn`: its closures were
-/// left as calls, which made the whole kernel three times as slow.
+/// Whether all nodes of these rows of lanes are below `count`: some ten vector instructions for a block, in place of a branch for each
+/// node as it is read.
 #[inline(always)]
-pub(super) fn lanes_of_differences<const WIDE: bool>(
+pub(super) fn within<const N: usize>(nodes: &[[u16; LANES]; N], count: usize) -> bool {
+    let mut last = 0;
+    for node in nodes.as_flattened() {
+        last = last.max(*node);
+    }
+    usize::from(last) < count
+}
+
+/// Components x, y, z of `u[nodes[l]] - origin[l]` for eight lanes. Loops and no `array::from_fn`: its closures were left as calls, which made
+/// the whole kernel three times as slow.
+///
+/// # Safety
+/// Registers of `BITS` must be there, and all nodes within `u`.
+#[inline(always)]
+pub(super) unsafe fn lanes_of<const BITS: usize>(
     u: &[Slot],
     nodes: &[u16; LANES],
-    origin: &[Slot; LANES],
+    origin: &[[f64; LANES]; 3],
 ) -> [[f64; LANES]; 3] {
     let mut out = [[0.0; LANES]; 3];
-    #[cfg(target_arch = "x86_64")]
-    if WIDE {
-        // SAFETY: as in `axpy`.
-        unsafe {
-            for half in 0..2 {
-                let mut d = [_mm256_setzero_pd(); 4];
-                for k in 0..4 {
-                    let l = 4 * half + k;
-                    let at = &u[nodes[l] as usize];
-                    d[k] = _mm256_sub_pd(_mm256_load_pd(at.0.as_ptr()), _mm256_load_pd(origin[l].0.as_ptr()));
-                }
-                let t = transposed(d);
+    // SAFETY: the caller's promise; slots are aligned, and other stores ask for no alignment and stay inside their arrays.
+    unsafe {
+        match BITS {
+            #[cfg(target_arch = "x86_64")]
+            512 => {
+                // Lanes 0 and 2 in one register, 1 and 3, 4 and 6, 5 and 7: unpacked by twos they come out in order.
+                let two = |low: u16, high: u16| {
+                    _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(quad(u, low)), quad(u, high))
+                };
+                let (a, b) = (two(nodes[0], nodes[2]), two(nodes[1], nodes[3]));
+                let (c, d) = (two(nodes[4], nodes[6]), two(nodes[5], nodes[7]));
+                let (xz, more_xz) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+                let (y, more_y) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+                let t = [
+                    _mm512_shuffle_f64x2::<0x88>(xz, more_xz),
+                    _mm512_shuffle_f64x2::<0x88>(y, more_y),
+                    _mm512_shuffle_f64x2::<0xdd>(xz, more_xz),
+                ];
                 for i in 0..3 {
-                    _mm256_storeu_pd(out[i].as_mut_ptr().add(4 * half), t[i]);
+                    let from = _mm512_loadu_pd(origin[i].as_ptr());
+                    _mm512_storeu_pd(out[i].as_mut_ptr(), _mm512_sub_pd(t[i], from));
                 }
             }
-        }
-        return out;
-    }
-    for l in 0..LANES {
-        let at = &u[nodes[l] as usize];
-        for i in 0..3 {
-            out[i][l] = at.0[i] - origin[l].0[i];
+            #[cfg(target_arch = "x86_64")]
+            256 => {
+                for half in 0..2 {
+                    let mut quads = [_mm256_setzero_pd(); 4];
+                    for k in 0..4 {
+                        quads[k] = quad(u, nodes[4 * half + k]);
+                    }
+                    let t = transposed(quads);
+                    for i in 0..3 {
+                        let from = _mm256_loadu_pd(origin[i].as_ptr().add(4 * half));
+                        _mm256_storeu_pd(out[i].as_mut_ptr().add(4 * half), _mm256_sub_pd(t[i], from));
+                    }
+                }
+            }
+            _ => {
+                for l in 0..LANES {
+                    let at = u.get_unchecked(nodes[l] as usize);
+                    for i in 0..3 {
+                        out[i][l] = at.0[i] - origin[i][l];
+                    }
+                }
+            }
         }
     }
     out
 }
 
-/// The other way: for every lane the quad (x, y, z, 0).
+/// The other way: adds (x, y, z) of every lane to its node, one lane after the other.
+///
+/// # Safety
+/// As [`lanes_of`].
 #[inline(always)]
-pub(super) fn quads_of_lanes<const WIDE: bool>(
+pub(super) unsafe fn add_lanes<const BITS: usize>(
     x: &[f64; LANES],
     y: &[f64; LANES],
     z: &[f64; LANES],
-) -> [Slot; LANES] {
-    let mut out = [Slot::ZERO; LANES];
-    #[cfg(target_arch = "x86_64")]
-    if WIDE {
-        // SAFETY: as in `axpy`.
-        unsafe {
+    nodes: &[u16; LANES],
+    f: &mut [Slot],
+) {
+    // SAFETY: as in `lanes_of`.
+    unsafe {
+        #[cfg(target_arch = "x86_64")]
+        if BITS > 64 {
             for half in 0..2 {
                 let row = |v: &[f64; LANES]| _mm256_loadu_pd(v.as_ptr().add(4 * half));
                 let t = transposed([row(x), row(y), row(z), _mm256_setzero_pd()]);
-                for l in 0..4 {
-                    _mm256_store_pd(out[4 * half + l].0.as_mut_ptr(), t[l]);
+                for k in 0..4 {
+                    let at = f.as_mut_ptr().add(nodes[4 * half + k] as usize).cast();
+                    _mm256_store_pd(at, _mm256_add_pd(t[k], _mm256_load_pd(at)));
                 }
             }
+            return;
         }
-        return out;
+        for l in 0..LANES {
+            let at = f.get_unchecked_mut(nodes[l] as usize);
+            for (i, v) in [x[l], y[l], z[l]].into_iter().enumerate() {
+                at.0[i] += v;
+            }
+        }
     }
-    for l in 0..LANES {
-        out[l] = Slot([x[l], y[l], z[l], 0.0]);
-    }
-    out
+}
+
+/// # Safety
+/// AVX must be there, and the node within `u`.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+unsafe fn quad(u: &[Slot], node: u16) -> __m256d {
+    // SAFETY: the caller's promise.
+    unsafe { _mm256_load_pd(u.as_ptr().add(node as usize).cast()) }
 }
 
 /// For eight lanes, both numbers of `pairs` summed over four nodes. Tet4 with nodal dilation takes 0.95 of the time that it
@@ -134,23 +187,6 @@ pub(super) fn lanes_of_sums<const WIDE: bool>(
     out
 }
 
-/// `y += x`.
-#[inline(always)]
-pub(super) fn add<const WIDE: bool>(x: &Slot, y: &mut Slot) {
-    #[cfg(target_arch = "x86_64")]
-    if WIDE {
-        // SAFETY: as in `axpy`.
-        unsafe {
-            let sum = _mm256_add_pd(_mm256_load_pd(x.0.as_ptr()), _mm256_load_pd(y.0.as_ptr()));
-            _mm256_store_pd(y.0.as_mut_ptr(), sum);
-        }
-        return;
-    }
-    for i in 0..4 {
-        y.0[i] += x.0[i];
-    }
-}
-
 /// 4 x 4 transpose.
 ///
 /// # Safety
@@ -168,5 +204,21 @@ unsafe fn transposed(r: [__m256d; 4]) -> [__m256d; 4] {
             _mm256_permute2f128_pd(a, c, 0x31),
             _mm256_permute2f128_pd(b, d, 0x31),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_node_beyond_the_slots_is_seen_wherever_it_is() {
+        let mut nodes = [[5; LANES]; 4];
+        assert!(within(&nodes, 6) && !within(&nodes, 5));
+        for place in 0..4 * LANES {
+            nodes.as_flattened_mut()[place] = 6;
+            assert!(!within(&nodes, 6), "{place}");
+            nodes.as_flattened_mut()[place] = 5;
+        }
     }
 }

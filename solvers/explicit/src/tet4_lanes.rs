@@ -1,14 +1,15 @@
 //! Kernels of the tetrahedron of four nodes: eight elements in the lanes of one block.
 //!
-//! Two passes over a few blocks, with the law between them: strains, then stress and forces. In one pass a block is a chain
-//! that fills the window of the processor (the neo-Hookean law in two takes 0.8 of the time). Each law's loop over blocks
-//! is compiled on its own: two in one function spoil each other's vectors.
+//! Three passes over a few blocks: strains, the law, then stress and forces. In one pass a block is a chain that fills the window of the
+//! processor: the neo-Hookean law in two takes 0.8 of the time, apart from gather and scatter in a pass of its own 0.77 of that.
+//! Each law's loop over blocks is compiled on its own: two in one function spoil each other's vectors. The benchmark `tet4`
+//! reports how far the kernel is from its bounds.
 
 use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, stress};
-use super::quad::{add, axpy, lanes_of_differences, lanes_of_sums, quads_of_lanes};
+use super::quad::{add_lanes, lanes_of, lanes_of_sums, within};
 use super::tet4::Chunk;
-use lanes::{LanePath, madd, on_path};
+use lanes::{LanePath, fetch, madd, on_path};
 use material::Law;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
 use material::lane::{LANES, LaneStrain, Lanes};
@@ -24,38 +25,54 @@ pub(super) struct Block {
     pub nodes: [[u16; LANES]; 4],
 }
 
-/// Aligned as [`LaneStrain`] is.
+/// What one pass leaves for the next. Aligned as [`LaneStrain`] is.
 #[repr(align(64))]
-struct Stresses([[Lanes; 9]; TOGETHER]);
+struct Passed<T>([T; TOGETHER]);
+
+impl Block {
+    /// Asks for a block to come: without that a hundred thousand elements take 1.8 times as long. Four to sixteen blocks ahead are
+    /// alike; those of a whole pass asked for at once are too many (1.5 times).
+    #[inline(always)]
+    fn fetch_ahead(&self) {
+        fetch(std::ptr::from_ref(self).wrapping_add(8));
+    }
+}
+
+/// Makes sure that all nodes of some blocks are among so many slots.
+#[inline(always)]
+fn check(blocks: &[Block], slots: usize) {
+    for block in blocks {
+        assert!(within(&block.nodes, slots), "a node outside the chunk's slots");
+    }
+}
 
 /// Displacements relative to node 0, [3 a + i].
+///
+/// # Safety
+/// Registers of `BITS` must be there, and the block's nodes within `u`.
 #[inline(always)]
-fn gather<const FMA: bool>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
-    let mut origin = [Slot::ZERO; LANES];
-    for l in 0..LANES {
-        origin[l] = u[block.nodes[0][l] as usize];
-    }
+unsafe fn gather<const BITS: usize>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
     let mut d = [[0.0; LANES]; 9];
+    // SAFETY: the caller's promise.
+    let origin = unsafe { lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]) };
     for a in 0..3 {
-        let lanes = lanes_of_differences::<FMA>(u, &block.nodes[a + 1], &origin);
+        // SAFETY: as above.
+        let lanes = unsafe { lanes_of::<BITS>(u, &block.nodes[a + 1], &origin) };
         d[3 * a..3 * a + 3].copy_from_slice(&lanes);
     }
     d
 }
 
-/// Adds the forces of nodes 1 to 3, and minus their sum on node 0.
+/// Adds the forces of nodes 1 to 3 and 0.
+///
+/// # Safety
+/// Registers of `BITS` must be there, and the block's nodes within `f`.
 #[inline(always)]
-fn scatter<const FMA: bool>(block: &Block, out: &[[f64; LANES]; 9], f: &mut [Slot]) {
-    let mut sum = [Slot::ZERO; LANES];
-    for a in 0..3 {
-        let quads = quads_of_lanes::<FMA>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]);
-        for l in 0..LANES {
-            add::<FMA>(&quads[l], &mut f[block.nodes[a + 1][l] as usize]);
-            axpy::<FMA>(-1.0, &quads[l], &mut sum[l]);
-        }
-    }
-    for l in 0..LANES {
-        add::<FMA>(&sum[l], &mut f[block.nodes[0][l] as usize]);
+unsafe fn scatter<const BITS: usize>(block: &Block, out: &[Lanes; 12], f: &mut [Slot]) {
+    for a in 0..4 {
+        let nodes = &block.nodes[(a + 1) % 4];
+        // SAFETY: the caller's promise.
+        unsafe { add_lanes::<BITS>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2], nodes, f) };
     }
 }
 
@@ -71,15 +88,16 @@ fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: us
     h
 }
 
-/// `f_a = w P grad N_a` of one lane.
+/// `f_a = w P grad N_a` of one lane, and minus their sum for node 0.
 #[inline(always)]
-fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [[f64; LANES]; 9]) {
+fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [Lanes; 12]) {
     let m = madd::<FMA>;
-    for a in 0..3 {
-        for i in 0..3 {
-            out[3 * a + i][l] =
-                m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]));
-        }
+    for i in 0..3 {
+        let row = |a: usize| {
+            m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]))
+        };
+        let (x, y, z) = (row(0), row(1), row(2));
+        (out[i][l], out[3 + i][l], out[6 + i][l], out[9 + i][l]) = (x, y, z, -x - y - z);
     }
 }
 
@@ -103,7 +121,7 @@ fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
 
 /// Forces of eight elements at the stress `p`.
 #[inline(always)]
-fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 9]) {
+fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 12]) {
     for l in 0..LANES {
         let w = block.weight[l];
         let p = weighted(p, w, l);
@@ -118,7 +136,7 @@ fn dilated_forces_of<const FMA: bool>(
     strain: &LaneStrain,
     p: &[Lanes; 9],
     pressure: &Lanes,
-    out: &mut [Lanes; 9],
+    out: &mut [Lanes; 12],
 ) {
     for l in 0..LANES {
         let w = block.weight[l];
@@ -129,36 +147,52 @@ fn dilated_forces_of<const FMA: bool>(
     }
 }
 
+/// Coefficients of `w P`.
 #[inline(always)]
-fn neo_hookean_forces<const FMA: bool>(
+fn neo_hookean_law<const FMA: bool>(
     block: &Block,
     strain: &LaneStrain,
     Moduli { mu, lambda }: Moduli,
-    out: &mut [Lanes; 9],
+    out: &mut [Lanes; 3],
 ) {
     for l in 0..LANES {
-        let (x, minors) = strain.invariants(l);
-        let p = piola::<FMA>(&strain.lane(l), minors, x.stress::<FMA>(block.weight[l], mu, lambda));
+        let (x, _) = strain.invariants(l);
+        let c = x.stress::<FMA>(block.weight[l], mu, lambda);
+        (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
+    }
+}
+
+/// Forces of eight elements at the stress of these coefficients.
+#[inline(always)]
+fn combined_forces<const FMA: bool>(
+    block: &Block,
+    strain: &LaneStrain,
+    c: &[Lanes; 3],
+    out: &mut [Lanes; 12],
+) {
+    for l in 0..LANES {
+        let (_, minors) = strain.invariants(l);
+        let p = piola::<FMA>(&strain.lane(l), minors, [c[0][l], c[1][l], c[2][l]]);
         forces::<FMA>(&p, &block.grads, l, out);
     }
 }
 
-/// The shared numbers are four times the means of `J_a^(2/3)` and `p_a`.
+/// As [`neo_hookean_law`] with the dilation of the groups. The shared numbers are four times the means of `J_a^(2/3)` and `p_a`.
 #[inline(always)]
-fn dilated_neo_hookean_forces<const FMA: bool>(
+fn dilated_neo_hookean_law<const FMA: bool>(
     block: &Block,
     strain: &LaneStrain,
     mu: f64,
     shared: &[Lanes; 2],
-    out: &mut [Lanes; 9],
+    out: &mut [Lanes; 3],
 ) {
     for l in 0..LANES {
-        let (h, (x, minors)) = (strain.lane(l), strain.invariants(l));
+        let (x, _) = strain.invariants(l);
         let w = block.weight[l];
-        let (_, isochoric) = x.isochoric::<FMA>(&h, w * mu);
+        let (_, isochoric) = x.isochoric::<FMA>(&strain.lane(l), w * mu);
         let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
-        let p = piola::<FMA>(&h, minors, pressed::<FMA>(isochoric, x.trace, s, wp));
-        forces::<FMA>(&p, &block.grads, l, out);
+        let c = pressed::<FMA>(isochoric, x.trace, s, wp);
+        (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
     }
 }
 
@@ -178,37 +212,45 @@ pub(super) fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slo
 }
 
 on_path! {
-    fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes
+    fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes::<BITS>
 }
 
 #[inline(always)]
-fn neo_hookean_lanes<const FMA: bool>(
+fn neo_hookean_lanes<const FMA: bool, const BITS: usize>(
     blocks: &[Block],
     moduli: Moduli,
     u: &[Slot],
     f: &mut [Slot],
     good: &mut Lanes,
 ) {
-    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 3]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 12];
     for blocks in blocks.chunks(TOGETHER) {
+        check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
-            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            block.fetch_ahead();
+            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
             x.check(good);
         }
-        for (block, x) in blocks.iter().zip(&x) {
-            neo_hookean_forces::<FMA>(block, x, moduli, &mut out);
-            scatter::<FMA>(block, &out, f);
+        for ((block, x), c) in blocks.iter().zip(&x).zip(&mut c.0) {
+            neo_hookean_law::<FMA>(block, x, moduli, c);
+        }
+        for ((block, x), c) in blocks.iter().zip(&x).zip(&c.0) {
+            combined_forces::<FMA>(block, x, c, &mut out);
+            // SAFETY: as above.
+            unsafe { scatter::<BITS>(block, &out, f) };
         }
     }
 }
 
 on_path! {
     /// Any other law.
-    fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes
+    fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes::<BITS>
 }
 
 #[inline(always)]
-fn other_lanes<const FMA: bool>(
+fn other_lanes<const FMA: bool, const BITS: usize>(
     path: LanePath,
     blocks: &[Block],
     law: &Law,
@@ -216,28 +258,32 @@ fn other_lanes<const FMA: bool>(
     f: &mut [Slot],
     good: &mut Lanes,
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 9];
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 9]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 12];
     for blocks in blocks.chunks(TOGETHER) {
+        check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
-            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            block.fetch_ahead();
+            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
             x.check(good);
         }
         stress(path, law, &x[..blocks.len()], &mut p.0);
         for (block, p) in blocks.iter().zip(&p.0) {
             forces_of::<FMA>(block, p, &mut out);
-            scatter::<FMA>(block, &out, f);
+            // SAFETY: as above.
+            unsafe { scatter::<BITS>(block, &out, f) };
         }
     }
 }
 
 on_path! {
     /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
-    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], not_inverted: &mut bool) = dilations_lanes
+    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], not_inverted: &mut bool) = dilations_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilations_lanes<const FMA: bool>(
+fn dilations_lanes<const FMA: bool, const BITS: usize>(
     laws: &[LaneLaw],
     chunk: &Chunk,
     u: &[Slot],
@@ -250,7 +296,10 @@ fn dilations_lanes<const FMA: bool>(
         // Of the other laws the first number alone.
         let [mu, ..] = laws[region as usize].of_group();
         for block in &chunk.blocks[first..end] {
-            let d = gather::<FMA>(block, u);
+            check(std::slice::from_ref(block), u.len());
+            block.fetch_ahead();
+            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            let d = unsafe { gather::<BITS>(block, u) };
             let mut out = [[0.0; LANES]; 2];
             for l in 0..LANES {
                 let h = gradient::<FMA>(&d, &block.grads, l);
@@ -294,37 +343,45 @@ pub(super) fn dilated(
 }
 
 on_path! {
-    fn dilated_neo_hookean(blocks: &[Block], mu: f64, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_neo_hookean_lanes
+    fn dilated_neo_hookean(blocks: &[Block], mu: f64, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_neo_hookean_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_neo_hookean_lanes<const FMA: bool>(
+fn dilated_neo_hookean_lanes<const FMA: bool, const BITS: usize>(
     blocks: &[Block],
     mu: f64,
     u: &[Slot],
     closed: &[[f64; 2]],
     f: &mut [Slot],
 ) {
-    let (mut x, mut out) = ([LaneStrain::ZERO; TOGETHER], [[0.0; LANES]; 9]);
+    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 3]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 12];
     for blocks in blocks.chunks(TOGETHER) {
+        check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
-            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            block.fetch_ahead();
+            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
         }
-        for (block, x) in blocks.iter().zip(&x) {
+        for ((block, x), c) in blocks.iter().zip(&x).zip(&mut c.0) {
             let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-            dilated_neo_hookean_forces::<FMA>(block, x, mu, &shared, &mut out);
-            scatter::<FMA>(block, &out, f);
+            dilated_neo_hookean_law::<FMA>(block, x, mu, &shared, c);
+        }
+        for ((block, x), c) in blocks.iter().zip(&x).zip(&c.0) {
+            combined_forces::<FMA>(block, x, c, &mut out);
+            // SAFETY: as above.
+            unsafe { scatter::<BITS>(block, &out, f) };
         }
     }
 }
 
 on_path! {
     /// Any other law.
-    fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes
+    fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_other_lanes<const FMA: bool>(
+fn dilated_other_lanes<const FMA: bool, const BITS: usize>(
     path: LanePath,
     blocks: &[Block],
     law: &Law,
@@ -332,17 +389,21 @@ fn dilated_other_lanes<const FMA: bool>(
     closed: &[[f64; 2]],
     f: &mut [Slot],
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Stresses([[[0.0; LANES]; 9]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 9];
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 9]; TOGETHER]));
+    let mut out = [[0.0; LANES]; 12];
     for blocks in blocks.chunks(TOGETHER) {
+        check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
-            strain::<FMA>(&gather::<FMA>(block, u), &block.grads, x);
+            block.fetch_ahead();
+            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
         }
         stress(path, law, &x[..blocks.len()], &mut p.0);
         for ((block, x), p) in blocks.iter().zip(&x).zip(&p.0) {
             let [_, pressure] = lanes_of_sums::<FMA>(closed, &block.nodes);
             dilated_forces_of::<FMA>(block, x, p, &pressure, &mut out);
-            scatter::<FMA>(block, &out, f);
+            // SAFETY: as above.
+            unsafe { scatter::<BITS>(block, &out, f) };
         }
     }
 }

@@ -39,6 +39,19 @@ pub fn madd_f32<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
 
+/// Asks for the cache lines of a value to come, at any address: the processor's own guess of what follows ends at the page.
+#[inline(always)]
+pub fn fetch<T>(at: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..size_of::<T>().div_ceil(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint, which reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast::<i8>().wrapping_add(64 * line)) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = at;
+}
+
 /// Instruction set of the lane kernels. Results have the same bits at any number of threads on one path; another path
 /// changes the last bits (fused multiply-add, width of sums), so a record names its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,25 +131,31 @@ fn has_avx512() -> bool {
 }
 
 /// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`; of
-/// `fn $name<const B: usize; W: [Weight<B>]>` it is `$kernel::<FMA, B, W>(args)`.
+/// `fn $name<const B: usize; W: [Weight<B>]>` it is `$kernel::<FMA, B, W>(args)`. A kernel that is named `$kernel::<BITS>` gets the
+/// width of the registers after `FMA`: 64, 256 or 512.
 #[macro_export]
 macro_rules! on_path {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$(const $size:ident: usize),* $(; $($kind:ident: [$($bound:tt)+]),+)?>)? ($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident) => {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$(const $size:ident: usize),* $(; $($kind:ident: [$($bound:tt)+]),+)?>)? ($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident $(::<$bits:ident>)?) => {
         $(#[$doc])*
         $vis fn $name $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? (path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
             match path.kind() {
-                $crate::Kind::Portable => $kernel::<false $($(, $size)* $($(, $kind)+)?)?>($($arg),*),
+                $crate::Kind::Portable => {
+                    $(const $bits: usize = 64;)?
+                    $kernel::<false $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*)
+                }
                 #[cfg(target_arch = "x86_64")]
                 $crate::Kind::Avx2 => {
+                    $(const $bits: usize = 256;)?
                     #[target_feature(enable = "avx2,fma")]
-                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
+                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: a path of this kind is made only where these features were detected.
                     unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::Kind::Avx512 => {
+                    $(const $bits: usize = 512;)?
                     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
+                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: as above.
                     unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
                 }

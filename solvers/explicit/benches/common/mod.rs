@@ -22,6 +22,7 @@ pub fn solid(kind: CellKind, cells: usize) -> (VolumeRows, DilationGroups, Vec<V
 
 /// Points spread over the cells of a grid, each with its (up to) 31 nearest grid nodes: the counts and the locality of
 /// a meshless cloud. The gradients are smooth nonsense of the right size.
+#[allow(dead_code)] // not of every benchmark
 pub fn cloud(cells: usize, per_cell: usize) -> (VolumeRows, Vec<Vector3>) {
     let (n, h) = (cells + 1, 0.04 / cells as f64);
     let (mut points, mut offsets, mut nodes, mut grads) = (Vec::new(), vec![0], Vec::new(), Vec::new());
