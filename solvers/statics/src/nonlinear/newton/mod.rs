@@ -172,7 +172,7 @@ const NEAR: f64 = 10.0;
 
 /// The same where each of them went an eighth of its step or less with a tangent that is not definite: past a limit point there is no
 /// equilibrium near. Ten of them took a sixth of the time of the kidney's whole path.
-const LOST: usize = 3;
+const LOST: usize = 4;
 
 /// Iterations without a residual smaller by a tenth that are waited for.
 fn patience(log: &[Iteration]) -> usize {

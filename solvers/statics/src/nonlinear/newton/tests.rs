@@ -68,8 +68,8 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
 fn short_steps_of_unstable_tangents_are_given_up_soon_and_no_others() {
     let step = |length, definite| Iteration { residual: 1.0, energy: 1.0, length, definite, chord: false };
     let short = step(0.06, false);
-    assert_eq!(patience(&[step(1.0, true), short, short, short]), 3);
-    assert_eq!(patience(&[short, short]), 10);
-    assert_eq!(patience(&[short, short, short, step(0.5, false)]), 10);
-    assert_eq!(patience(&[short, step(0.06, true), short, short]), 10);
+    assert_eq!(patience(&[step(1.0, true), short, short, short, short]), 4);
+    assert_eq!(patience(&[short, short, short]), 10);
+    assert_eq!(patience(&[short, short, short, short, step(0.5, false)]), 10);
+    assert_eq!(patience(&[short, step(0.06, true), short, short, short]), 10);
 }
