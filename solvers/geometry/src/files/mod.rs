@@ -10,6 +10,7 @@ mod error;
 mod format;
 mod gmsh;
 mod lines;
+mod names;
 mod numbers;
 mod overlap;
 mod rows;
