@@ -82,6 +82,31 @@ fn a_surface_is_filled_and_described() {
     assert!((one - 1.0).abs() < 0.1 && (eight - 1.0).abs() < 0.05, "{one} {eight}");
 }
 
+/// A plate of 60 x 60 x 3 mm, as OBJ with faces of four corners behind which the corners come.
+const PLATE: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
+v 0 0 0\nv 60 0 0\nv 60 60 0\nv 0 60 0\nv 0 0 3\nv 60 0 3\nv 60 60 3\nv 0 60 3\n";
+
+#[test]
+fn more_nodes_wanted_of_a_thin_plate_are_never_fewer_made() {
+    let dir = tempfile::tempdir().unwrap();
+    let (from, to) = (write(&dir, "plate.obj", PLATE), inside(&dir, "plate.msh"));
+    let counts = ["100", "400", "800", "1600", "3000"].map(|nodes| {
+        let done = tissuebench(&["mesh", "make", &from, "--nodes", nodes, "--uniform", "--out", &to]);
+        let count: usize = done.stdout.split(' ').nth(1).unwrap().parse().unwrap();
+        let says = done.stdout.contains(&format!("wanted      {nodes} nodes; of the sizes of cells"));
+        assert_eq!(says, (count as f64 / nodes.parse::<f64>().unwrap() - 1.0).abs() > 0.1, "{}", done.stdout);
+        count
+    });
+    assert!(counts.is_sorted() && counts[0] < 1000, "{counts:?}");
+    let crossed = write(&dir, "crossed.obj", &PLATE.replace("5 6 7 8", "5 7 6 8"));
+    let done = tissuebench(&["mesh", "make", &crossed, "--nodes", "100", "--out", &to]);
+    assert_fails(
+        &done,
+        2,
+        "crossed.obj:2: edges 1 and 3 of face 2, from its corners of these numbers on, cross",
+    );
+}
+
 #[test]
 fn an_open_surface_is_refused_with_its_place() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,9 +1,10 @@
 //! Meshes in and out of numpy, and in and out of files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use geometry::{CellKind, files};
+use geometry::CellKind;
+use geometry::files::{self, Format, GmshVersion};
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
 
@@ -21,6 +22,21 @@ fn metres(py: Python<'_>, unit: &str) -> PyResult<f64> {
     let known = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)];
     let found = known.into_iter().find(|(name, _)| *name == unit);
     found.map(|(_, metres)| metres).ok_or_else(|| input(py, &format!("unit: '{unit}'; give m, cm, mm or um")))
+}
+
+/// The format to write by a file's name; a version is one of Gmsh's.
+fn format(py: Python<'_>, path: &Path, version: Option<&str>) -> PyResult<Format> {
+    let format = Format::of(path).map_err(|bad| input(py, &bad.to_string()))?;
+    let version = match version {
+        None => return Ok(format),
+        Some("2.2") => GmshVersion::Two,
+        Some("4.1") => GmshVersion::FourOne,
+        Some(other) => return Err(input(py, &format!("version: '{other}'; give 2.2 or 4.1"))),
+    };
+    match format {
+        Format::Gmsh(_) => Ok(Format::Gmsh(version)),
+        _ => Err(input(py, &format!("{}: version is of Gmsh's format; write a .msh file", path.display()))),
+    }
 }
 
 /// Cells of one kind as an array of their nodes.
@@ -62,12 +78,13 @@ impl Mesh {
         Ok(Mesh { mesh: Arc::new(mesh) })
     }
 
-    /// To a file: .msh, .inp or .vtu by its name.
-    #[pyo3(signature = (path, unit = "mm"))]
-    fn write(&self, py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<()> {
+    /// To a file: .msh, .inp, .vtu or the boundary as .stl by its name; `version` is that of Gmsh's format.
+    #[pyo3(signature = (path, unit = "mm", version = None))]
+    fn write(&self, py: Python<'_>, path: PathBuf, unit: &str, version: Option<&str>) -> PyResult<()> {
         let unit = metres(py, unit)?;
-        let written = py.detach(|| files::write(&self.mesh, &path, unit));
-        written.map_err(|bad| input(py, &format!("{}: {bad}", path.display())))
+        let format = format(py, &path, version)?;
+        let written = py.detach(|| files::write_as(&self.mesh, &path, unit, format));
+        written.map_err(|bad| input(py, &bad.to_string()))
     }
 
     #[getter]

@@ -15,6 +15,15 @@ def test_a_mesh_goes_to_a_file_and_back(tmp_path):
         mesh.write(tmp_path / name)
         back = tb.Mesh.read(tmp_path / name)
         assert np.allclose(back.points, points, rtol=1e-15, atol=0) and np.array_equal(back.cells, cells)
+    for version in ["2.2", "4.1"]:
+        mesh.write(tmp_path / "b.msh", version=version)
+        assert (tmp_path / "b.msh").read_text().startswith(f"$MeshFormat\n{version} 0 8\n")
+        assert np.array_equal(tb.Mesh.read(tmp_path / "b.msh").cells, cells)
+    with pytest.raises(tb.SceneError, match="version: '4.0'; give 2.2 or 4.1"):
+        mesh.write(tmp_path / "c.msh", version="4.0")
+    with pytest.raises(tb.SceneError, match="c.inp: version is of Gmsh's format; write a .msh file"):
+        mesh.write(tmp_path / "c.inp", version="4.1")
+    assert not (tmp_path / "c.msh").exists() and not (tmp_path / "c.inp").exists()
     with pytest.raises(tb.SceneError, match="names node 9"):
         tb.Mesh(points, [[0, 1, 2, 9]])
     with pytest.raises(tb.SceneError, match="5 nodes each"):

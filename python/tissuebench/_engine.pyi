@@ -47,8 +47,8 @@ class Mesh:
     def __new__(cls, points: ArrayLike, cells: ArrayLike) -> Mesh: ...
     @staticmethod
     def read(path: Path, unit: str = "mm") -> Mesh: ...
-    def write(self, path: Path, unit: str = "mm") -> None:
-        """Writes .msh, .inp or .vtu, by the name."""
+    def write(self, path: Path, unit: str = "mm", version: str | None = None) -> None:
+        """Writes .msh, .inp, .vtu or the boundary as .stl, by the name; `version` of a .msh is "2.2" (unless given) or "4.1"."""
 
     @property
     def points(self) -> Floats: ...

@@ -8,6 +8,9 @@ use super::mesh_files::{input, row};
 use crate::Failure;
 use crate::cli::text::digits;
 
+/// A number of nodes is as asked for within this part of it.
+const NEAR: f64 = 0.1;
+
 /// Fills a surface, writes the mesh and prints how close it is.
 pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let MakeArgs { surface: file, unit, out, .. } = args;
@@ -34,6 +37,9 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         let facets = mesh.group(name).map_or(0, <[_]>::len);
         row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {facets} faces"));
     }
+    if let Some(nodes) = args.nodes {
+        wanted(nodes, mesh.points().len());
+    }
     row("spacing", &format!("{}{inside}", length(spacing)));
     let fit = stuffing::fit(&surface, &mesh);
     let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);
@@ -53,6 +59,16 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         row("left out", &format!("{left_out} parts thinner than the cells; make them smaller to have them"));
     }
     Ok(())
+}
+
+/// Says so where the number of nodes is another than was asked for.
+fn wanted(nodes: u32, made: usize) {
+    if (made as f64 / f64::from(nodes) - 1.0).abs() > NEAR {
+        row(
+            "wanted",
+            &format!("{nodes} nodes; of the sizes of cells that are tried none makes a nearer number"),
+        );
+    }
 }
 
 fn described(surface: &Surface) -> String {

@@ -236,7 +236,7 @@ fn broken_decks_name_the_line() {
         ("11, 12, 1", "11, 12, 0", 20, "a step of 1 or more"),
         ("11, 12, 1", "1, 4000000000", 20, "too many numbers to generate: 3999999999"),
         ("SECOND, s3", "SECOND, s5", 24, "expected a face that the element has"),
-        ("SECOND, s3", "SECOND", 24, "expected the face of an element, such as S1, found ''"),
+        ("SECOND, s3", "SECOND, 3", 24, "expected the face of an element, such as S1, found '3'"),
         ("SECOND, s3", "third, s3", 24, "surface 'slanted face' names set third"),
         ("*MATERIAL", "*SOLID SECTION, ELSET=none\n*MATERIAL", 25, "'none' names set none"),
         ("*MATERIAL", "*NGEN\n*MATERIAL", 25, "*NGEN is not read; write the deck with all nodes"),

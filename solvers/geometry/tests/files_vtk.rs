@@ -61,6 +61,62 @@ fn grids_are_read_with_their_regions() {
     assert!(read(spaced.as_bytes()).unwrap() == mesh);
 }
 
+/// A text grid of XML: two tetrahedra with these arrays of cells.
+fn vtu(arrays: &str) -> String {
+    format!(
+        "<VTKFile type=\"UnstructuredGrid\">
+<UnstructuredGrid><Piece NumberOfPoints=\"5\" NumberOfCells=\"2\">
+<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points>
+<Cells><DataArray type=\"Int64\" Name=\"connectivity\">0 1 2 3 1 2 3 4</DataArray>
+<DataArray type=\"Int64\" Name=\"offsets\">4 8</DataArray>
+<DataArray type=\"UInt8\" Name=\"types\">10 10</DataArray></Cells>
+<CellData>
+{arrays}
+</CellData></Piece></UnstructuredGrid></VTKFile>
+"
+    )
+}
+
+fn array(name: &str, kind: &str, values: &str) -> String {
+    format!("<DataArray type=\"{kind}\" Name=\"{name}\">{values}</DataArray>")
+}
+
+#[test]
+fn regions_are_numbered_by_whole_numbers_of_any_type() {
+    for name in ["material", "Material", "MaterialIDs", "MaterialIds", "region", "gmsh:physical"] {
+        for (kind, values) in [("Int32", "3 4"), ("Float64", "3.0 4e0")] {
+            let mesh = read(vtu(&array(name, kind, values)).as_bytes()).unwrap();
+            assert_eq!(mesh.region_names(), ["region-3", "region-4"], "{name} {kind}");
+        }
+        for (value, shown) in [("4.25", "4.25"), ("nan", "NaN"), ("1e300", "1000")] {
+            let bad = refusal(&vtu(&array(name, "Float64", &format!("3 {value}")))).unwrap();
+            assert!(bad.starts_with(&format!("m:8: cell 1 has {shown}")), "{bad}");
+            assert!(bad.contains(&format!("in the array '{name}', which numbers regions")), "{bad}");
+        }
+    }
+    let bad = refusal(&vtu(&array("surface", "Float64", "1 0.5"))).unwrap();
+    assert!(bad.starts_with("m:8: cell 1 has 0.5 in the array 'surface'"), "{bad}");
+    // Arrays of other names are not looked at.
+    let mesh = read(vtu(&array("stiffness", "Float64", "1.5 2.5")).as_bytes()).unwrap();
+    assert_eq!(mesh.region_names(), ["body"]);
+    let older = GRID.replace("material 1 3 int\n7 8 9", "material 1 3 double\n7 8.5 9");
+    let bad = refusal(&older).unwrap();
+    assert!(bad.starts_with("m:24: cell 1 has 8.5 in the array 'material'"), "{bad}");
+    let whole = read(older.replace("8.5", "8.0").as_bytes()).unwrap();
+    assert_eq!(whole.region_names(), ["region-7", "region-8"]);
+}
+
+#[test]
+fn two_arrays_of_materials_have_to_agree() {
+    let both =
+        |ids: &str| vtu(&(array("material", "Float64", "3 4") + "\n" + &array("MaterialIds", "Int32", ids)));
+    assert_eq!(read(both("3 4").as_bytes()).unwrap().region_names(), ["region-3", "region-4"]);
+    let bad = refusal(&both("3 5")).unwrap();
+    let says =
+        "cell 1 is in region 5 by the array 'MaterialIds' and in 4 by 'material': leave one of the two out";
+    assert!(bad.starts_with("m:") && bad.contains(says), "{bad}");
+}
+
 /// The same in binary, highest byte first.
 fn binary() -> Vec<u8> {
     let mut bytes =

@@ -136,7 +136,7 @@ fn every_broken_text_is_refused_with_its_place() {
     let obj_changes = [
         ("v 1 0 0", "v 1 0", "a.obj:5: expected a coordinate"),
         ("v 1 0 0", "v 1 inf 0", "a.obj:5: node 2 has a coordinate that is not finite"),
-        ("f 1 3 2", "f 1 3 9", "a.obj:10: face 1 names corner 9, which the file does not have before it"),
+        ("f 1 3 2", "f 1 3 9", "a.obj:10: face 1 names corner 9, which the file does not have"),
         ("f 1 3 2", "f 0 3 2", "face 1 names corner 0"),
         ("-3 -2", "-5 -2", "a.obj:12: face 3 names corner -5"),
         ("f 1 3 2", "f 1 3", "a.obj:10: expected a face of three corners or more"),

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use super::error::{FileError, Parsed, Place, Problem};
+use super::names::{Names, without_empty};
 use super::numbers::Numbers;
 use super::overlap::Cells;
 use super::rows::Row;
@@ -27,7 +28,22 @@ pub(super) struct Content {
     faces: Vec<Face>,
     group_names: Names,
     facets: Vec<(usize, Facet)>,
+    free: Vec<Free>,
     node_sets: Vec<(String, Vec<u32>)>,
+}
+
+/// What a name is of.
+#[derive(Clone, Copy)]
+pub(super) enum Named {
+    Region,
+    Surface,
+}
+
+/// A group that has the free faces of some cells, known when all cells are.
+struct Free {
+    place: Place,
+    group: usize,
+    cells: Vec<u32>,
 }
 
 /// What becomes of nodes that neither elements nor sets name.
@@ -73,7 +89,8 @@ impl Content {
     /// How much there is of it: nodes, nodes of cells, faces and members of sets.
     pub(super) fn extent(&self) -> usize {
         let sets: usize = self.node_sets.iter().map(|(_, nodes)| nodes.len()).sum();
-        self.points.len() + self.nodes.len() + self.facets.len() + self.faces.len() + sets
+        let free: usize = self.free.iter().map(|free| free.cells.len()).sum();
+        self.points.len() + self.nodes.len() + self.facets.len() + self.faces.len() + free + sets
     }
 
     /// Number of elements so far, cells or not.
@@ -220,6 +237,11 @@ impl Content {
         found.is_some()
     }
 
+    /// Gives a group the faces of some cells that no other cell has.
+    pub(super) fn free_faces(&mut self, place: Place, group: usize, cells: Vec<u32>) {
+        self.free.push(Free { place, group, cells });
+    }
+
     /// Kind of a cell.
     pub(super) fn kind(&self, cell: u32) -> CellKind {
         self.kinds[cell as usize]
@@ -240,12 +262,25 @@ impl Content {
         self.node_sets.push((name.into(), nodes));
     }
 
-    /// Adds all of another content, moved: the first node and the first cell of it here. Its numbers stay its own.
+    /// Names of regions.
+    pub(super) fn regions(&self) -> impl Iterator<Item = &str> {
+        self.region_names.list.iter().map(String::as_str)
+    }
+
+    /// Names of facet groups and of sets of nodes, which become such groups.
+    pub(super) fn surfaces(&self) -> impl Iterator<Item = &str> {
+        let sets = self.node_sets.iter().map(|(name, _)| name.as_str());
+        self.group_names.list.iter().map(String::as_str).chain(sets)
+    }
+
+    /// Adds all of another content, moved, its names changed by `named`: the first node and the first cell of it here. Its numbers stay
+    /// its own.
     pub(super) fn append(
         &mut self,
         place: Place,
         other: &Content,
         moved: impl Fn(&Point3) -> Point3,
+        named: impl Fn(Named, &str) -> String,
     ) -> Parsed<(u32, u32)> {
         let first_node =
             index(place, "nodes", self.points.len() + other.points.len())? - other.points.len() as u32;
@@ -256,10 +291,13 @@ impl Content {
         self.kinds.extend_from_slice(&other.kinds);
         self.nodes.extend(other.nodes.iter().map(|node| node + first_node));
         self.rows.extend_from_slice(&other.rows);
-        let regions: Vec<u16> =
-            other.region_names.list.iter().map(|name| self.region(place, name)).collect::<Parsed<_>>()?;
-        self.regions.extend(other.regions.iter().map(|&region| regions[region as usize]));
-        let groups: Vec<usize> = other.group_names.list.iter().map(|name| self.group(name)).collect();
+        let region = |name| self.region(place, &named(Named::Region, name));
+        let regions: Vec<u16> = other.regions().map(region).collect::<Parsed<_>>()?;
+        let region = |region: &u16| regions.get(*region as usize).copied().unwrap_or(NO_REGION);
+        self.regions.extend(other.regions.iter().map(region));
+        let surface = |name: &String| named(Named::Surface, name);
+        let groups: Vec<usize> =
+            other.group_names.list.iter().map(|name| self.group(&surface(name))).collect();
         let facet = |f: &Facet| Facet { cell: f.cell + first_cell, ..*f };
         self.facets.extend(other.facets.iter().map(|(group, f)| (groups[*group], facet(f))));
         let corner = |c: u32| if c == u32::MAX { c } else { c + first_node };
@@ -268,9 +306,14 @@ impl Content {
             group: groups[face.group],
             ..*face
         }));
+        self.free.extend(other.free.iter().map(|free| Free {
+            group: groups[free.group],
+            cells: free.cells.iter().map(|cell| cell + first_cell).collect(),
+            ..*free
+        }));
         let sets = other.node_sets.iter();
         self.node_sets.extend(
-            sets.map(|(name, nodes)| (name.clone(), nodes.iter().map(|node| node + first_node).collect())),
+            sets.map(|(name, nodes)| (surface(name), nodes.iter().map(|node| node + first_node).collect())),
         );
         Ok((first_node, first_cell))
     }
@@ -312,6 +355,15 @@ impl Content {
             // A set of a few nodes is no surface.
             if !facets.is_empty() {
                 groups.entry(name.clone()).or_default().extend(facets);
+            }
+        }
+        let boundary = if self.free.is_empty() { Vec::new() } else { mesh.boundary() };
+        for Free { place, group, cells } in self.free {
+            let name = &self.group_names.list[group];
+            let facets = groups.entry(name.clone()).or_default();
+            facets.extend(cells.iter().flat_map(|&cell| of_cell(&boundary, cell)));
+            if facets.is_empty() {
+                return Err(at((place, Problem::NoFreeFace { name: name.clone() })));
             }
         }
         for (name, mut facets) in groups {
@@ -401,47 +453,14 @@ fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
     mesh.boundary().iter().copied().filter(all).collect()
 }
 
-/// Regions that no cell has are left out.
-fn without_empty(regions: Vec<u16>, names: Vec<String>) -> (Vec<u16>, Vec<String>) {
-    let mut has = vec![false; names.len()];
-    regions.iter().for_each(|&r| has[r as usize] = true);
-    let mut next = 0;
-    let new: Vec<u16> = has
-        .iter()
-        .map(|&has| {
-            if has {
-                next += 1;
-                next - 1
-            } else {
-                u16::MAX
-            }
-        })
-        .collect();
-    let kept = names.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name).collect();
-    (regions.into_iter().map(|r| new[r as usize]).collect(), kept)
+/// The boundary faces of a cell, of all in the order of their cells.
+fn of_cell(boundary: &[Facet], cell: u32) -> impl Iterator<Item = Facet> {
+    let start = boundary.partition_point(|facet| facet.cell < cell);
+    boundary[start..].iter().take_while(move |facet| facet.cell == cell).copied()
 }
 
 fn index(place: Place, what: &'static str, count: usize) -> Parsed<u32> {
     // The last value means none.
     let index = u32::try_from(count).ok().filter(|&index| index != u32::MAX);
     index.ok_or((place, Problem::TooMany { what, count }))
-}
-
-/// Names in the order in which they come: a file may have thousands.
-#[derive(Default)]
-struct Names {
-    list: Vec<String>,
-    places: HashMap<String, usize>,
-}
-
-impl Names {
-    /// The place of a name in the list, added at the end if it is new.
-    fn place(&mut self, name: &str) -> usize {
-        if let Some(&place) = self.places.get(name) {
-            return place;
-        }
-        self.list.push(name.into());
-        self.places.insert(name.into(), self.list.len() - 1);
-        self.list.len() - 1
-    }
 }

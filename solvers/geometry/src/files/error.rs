@@ -182,12 +182,32 @@ pub enum Problem {
         number: u64,
     },
     /// A face whose corner isn't in the file.
-    #[error("face {face} names corner {node}, which the file does not have before it")]
+    #[error("face {face} names corner {node}, which the file does not have")]
     UnknownCorner {
         /// Number of the face in the file, from 1.
         face: u64,
         /// The corner as the file has it.
         node: i64,
+    },
+    /// A face that isn't one plane piece.
+    #[error(
+        "edges {} and {} of face {face}, from its corners of these numbers on, cross or touch: give each corner once, in order around the face, or cut it into triangles", edges[0], edges[1]
+    )]
+    CrossedFace {
+        /// Number of the face in the file, from 1.
+        face: u64,
+        /// The edges, from 1.
+        edges: [usize; 2],
+    },
+    /// A concave face of too many corners.
+    #[error(
+        "face {face} is concave and has {corners} corners; cut concave faces of more than 1000 into triangles"
+    )]
+    LargeFace {
+        /// Number of the face in the file, from 1.
+        face: u64,
+        /// How many it has.
+        corners: usize,
     },
     /// A file of another size than its own counts make.
     #[error("{count} {what} take {expected} bytes, but the file has {found}")]
@@ -280,6 +300,20 @@ pub enum Problem {
         /// What it names.
         number: String,
     },
+    /// A surface by the free faces of elements that have none.
+    #[error(
+        "surface '{name}' has no face: give the faces (S1, S2, ..), or elements with a face that no other element has"
+    )]
+    NoFreeFace {
+        /// Its name.
+        name: String,
+    },
+    /// An instance whose name another has.
+    #[error("instance '{name}' comes a second time; give each its own name")]
+    SameInstance {
+        /// Its name.
+        name: String,
+    },
     /// A keyword of the format that changes the mesh and is not read.
     #[error("{what} is not read; {help}")]
     Unread {
@@ -334,6 +368,31 @@ pub enum Problem {
         found: usize,
         /// The length wanted.
         expected: usize,
+    },
+    /// An array that numbers regions or surfaces with other than whole numbers.
+    #[error(
+        "cell {cell} has {value} in the array '{array}', which numbers regions or surfaces: give whole numbers, or give the array another name"
+    )]
+    NotWhole {
+        /// The array's name.
+        array: String,
+        /// The cell, from 0.
+        cell: usize,
+        /// Its value.
+        value: String,
+    },
+    /// Two arrays that number regions, each in its own way.
+    #[error(
+        "cell {cell} is in region {} by the array '{}' and in {} by '{}': leave one of the two out, or give it another name",
+        values[0], arrays[0], values[1], arrays[1]
+    )]
+    TwoRegions {
+        /// Names of the arrays.
+        arrays: [String; 2],
+        /// The first cell where they differ, from 0.
+        cell: usize,
+        /// Its values.
+        values: [i64; 2],
     },
     /// Something in a file that this one includes.
     #[error("in {file}, {place}: {problem}")]

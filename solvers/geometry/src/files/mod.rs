@@ -10,6 +10,7 @@ mod error;
 mod format;
 mod gmsh;
 mod lines;
+mod names;
 mod numbers;
 mod overlap;
 mod rows;
@@ -115,17 +116,22 @@ fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
 
 /// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
-    // Some editors put a mark of the encoding in front.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let whole = bytes;
+    let bytes = unmarked(bytes);
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
         [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] => vtu::parse(bytes),
         rest if rest.starts_with(b"# vtk") => vtk::parse(bytes),
-        _ if surface::holds_surface(bytes, file) => Err((Place::Line(1), Problem::Surface)),
+        _ if surface::holds_surface(whole, file) => Err((Place::Line(1), Problem::Surface)),
         _ => unknown(bytes),
     }
+}
+
+/// The bytes without the mark of the encoding that some editors put in front.
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// Names what a file begins with that is none of the formats.

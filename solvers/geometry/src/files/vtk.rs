@@ -2,7 +2,7 @@
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
-use super::vtk_cells::{Cells, REGIONS};
+use super::vtk_cells::{Array, Cells, regions};
 use crate::Point3;
 
 /// The newest version that there is.
@@ -32,8 +32,18 @@ struct Found {
     ends: Option<Vec<usize>>,
     list: Vec<i64>,
     types: Option<Vec<i64>>,
-    /// Whole numbers of cells by the names of their arrays.
-    arrays: Vec<(String, Vec<i64>)>,
+    /// Single numbers of cells.
+    arrays: Vec<Array>,
+}
+
+impl Found {
+    /// Keeps single numbers of cells, which may be regions; `place` is where they are described.
+    fn keep(&mut self, of: Of, parts: usize, name: &str, place: Place, values: Vec<f64>) {
+        if let (Of::Cells(_), 1) = (of, parts) {
+            // Blanks in names are written as %20.
+            self.arrays.push(Array { name: name.replace("%20", " "), place, values });
+        }
+    }
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
@@ -92,9 +102,9 @@ fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Pars
                 let Some(name) = scanner.word() else { return scanner.fail("the name of an array", "") };
                 // A field without arrays may be followed by their description.
                 let (parts, tuples) = (scanner.count()?, scanner.count()?);
-                let kind = scanner.kind()?;
-                let numbers = scanner.numbers(scanner.times(parts, tuples)?, &kind)?;
-                keep(found, of, &name, parts, numbers);
+                let (place, kind) = (scanner.place(), scanner.kind()?);
+                let values = scanner.numbers(scanner.times(parts, tuples)?, &kind)?;
+                found.keep(of, parts, &name, place, values);
                 if scanner.peek().as_deref() == Some("METADATA") {
                     scanner.word();
                     scanner.skip_to_blank_line();
@@ -103,7 +113,7 @@ fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Pars
         }
         "SCALARS" if of != Of::Grid => {
             let name = scanner.word().unwrap_or_default();
-            let kind = scanner.kind()?;
+            let (place, kind) = (scanner.place(), scanner.kind()?);
             let parts = match scanner.peek() {
                 Some(word) if word.parse::<usize>().is_ok() => scanner.count()?,
                 _ => 1,
@@ -112,20 +122,20 @@ fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Pars
                 scanner.word();
                 scanner.word();
             }
-            let numbers = scanner.numbers(scanner.times(values, parts)?, &kind)?;
-            keep(found, of, &name, parts, numbers);
+            let values = scanner.numbers(scanner.times(values, parts)?, &kind)?;
+            found.keep(of, parts, &name, place, values);
         }
         "VECTORS" | "NORMALS" | "TENSORS" | "TENSORS6" | "GLOBAL_IDS" | "PEDIGREE_IDS" if of != Of::Grid => {
             let name = scanner.word().unwrap_or_default();
-            let kind = scanner.kind()?;
+            let (place, kind) = (scanner.place(), scanner.kind()?);
             let parts = match word.to_ascii_uppercase().as_str() {
                 "VECTORS" | "NORMALS" => 3,
                 "TENSORS" => 9,
                 "TENSORS6" => 6,
                 _ => 1,
             };
-            let numbers = scanner.numbers(scanner.times(values, parts)?, &kind)?;
-            keep(found, of, &name, parts, numbers);
+            let values = scanner.numbers(scanner.times(values, parts)?, &kind)?;
+            found.keep(of, parts, &name, place, values);
         }
         "TEXTURE_COORDINATES" if of != Of::Grid => {
             scanner.word();
@@ -193,15 +203,6 @@ fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
     Ok(())
 }
 
-/// Keeps single numbers of cells, which may be regions.
-fn keep(found: &mut Found, of: Of, name: &str, parts: usize, numbers: Vec<f64>) {
-    if let (Of::Cells(_), 1) = (of, parts) {
-        let whole = numbers.into_iter().map(|number| number.round() as i64).collect();
-        // Blanks in names are written as %20.
-        found.arrays.push((name.replace("%20", " "), whole));
-    }
-}
-
 fn content(scanner: &Scanner, found: Found) -> Parsed<Content> {
     let missing = |section| (scanner.place(), Problem::Missing { section });
     let points = found.points.ok_or_else(|| missing("POINTS"))?;
@@ -216,14 +217,13 @@ fn content(scanner: &Scanner, found: Found) -> Parsed<Content> {
     for (number, x) in points.chunks_exact(3).enumerate() {
         content.node(Place::Node(number), number as u64, Point3::new(x[0], x[1], x[2]))?;
     }
-    let array = |names: &[&str]| {
-        let known = names.iter().find_map(|name| found.arrays.iter().find(|(known, _)| known == name));
-        known.map(|(_, values)| values.clone())
+    let array = |name: &str| -> Parsed<Option<Array>> {
+        let found = found.arrays.iter().find(|array| array.name.eq_ignore_ascii_case(name));
+        found.map_or(Ok(()), |array| counted(array.values.len(), types.len()))?;
+        Ok(found.cloned())
     };
-    let (regions, surfaces) = (array(&REGIONS), array(&["surface"]));
-    for values in [&regions, &surfaces].into_iter().flatten() {
-        counted(values.len(), types.len())?;
-    }
+    let regions = regions(array)?;
+    let surfaces = array("surface")?.map(|array| array.whole()).transpose()?;
     Cells { first: 0, types, ends, list: found.list, regions, surfaces }.add_to(&mut content, &[], &[])?;
     if content.cell_count() == 0 { Err((scanner.place(), Problem::NoCells)) } else { Ok(content) }
 }

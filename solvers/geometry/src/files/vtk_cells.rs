@@ -5,18 +5,17 @@ use super::error::{Parsed, Place, Problem};
 use super::rows::Row;
 use crate::CellKind;
 
-/// Arrays of cells that name regions, by the programs that write them; ours first.
-pub(super) const REGIONS: [&str; 10] = [
-    "region",
-    "gmsh:physical",
-    "physical",
-    "medit:ref",
-    "CellEntityIds",
-    "MaterialIDs",
-    "material",
-    "Material",
-    "RegionId",
-    "ElementBlockIds",
+/// Arrays of cells that number regions, by the programs that write them; ours first. Capitals don't count. Those of one row mean the same:
+/// where a grid has several of them, they have to agree.
+const REGIONS: [&[&str]; 8] = [
+    &["region"],
+    &["gmsh:physical"],
+    &["physical"],
+    &["medit:ref"],
+    &["CellEntityIds"],
+    &["MaterialIDs", "material"],
+    &["RegionId"],
+    &["ElementBlockIds"],
 ];
 
 /// Types whose cells are read, for the message of one whose are not.
@@ -24,6 +23,51 @@ const KNOWN: &str = "types 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines 
 
 /// The order of nodes is ours.
 const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+
+/// One number for each cell.
+#[derive(Clone)]
+pub(super) struct Array {
+    pub name: String,
+    /// Where its numbers are.
+    pub place: Place,
+    pub values: Vec<f64>,
+}
+
+/// Numbers of the regions of cells, by the first known array that a grid has; `array` finds one by its name without regard to capitals.
+pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<Option<Vec<i64>>> {
+    for names in REGIONS {
+        let found: Vec<Option<Array>> = names.iter().map(|name| array(name)).collect::<Parsed<_>>()?;
+        let mut found = found.into_iter().flatten();
+        if let Some(first) = found.next() {
+            found.try_for_each(|other| first.agree(&other))?;
+            return first.whole().map(Some);
+        }
+    }
+    Ok(None)
+}
+
+impl Array {
+    /// The numbers, which have to be whole: some programs write those of regions as reals.
+    pub fn whole(&self) -> Parsed<Vec<i64>> {
+        // Beyond 2^53 reals have no halves.
+        let is_whole = |value: f64| value.fract() == 0.0 && value.abs() <= 9_007_199_254_740_992.0;
+        match self.values.iter().position(|&value| !is_whole(value)) {
+            None => Ok(self.values.iter().map(|&value| value as i64).collect()),
+            Some(cell) => {
+                let (array, value) = (self.name.clone(), self.values[cell].to_string());
+                Err((self.place, Problem::NotWhole { array, cell, value }))
+            }
+        }
+    }
+
+    /// Refuses another array that has other numbers.
+    fn agree(&self, other: &Array) -> Parsed<()> {
+        let (own, others) = (self.whole()?, other.whole()?);
+        let Some(cell) = own.iter().zip(&others).position(|(a, b)| a != b) else { return Ok(()) };
+        let arrays = [self.name.clone(), other.name.clone()];
+        Err((other.place, Problem::TwoRegions { arrays, cell, values: [own[cell], others[cell]] }))
+    }
+}
 
 /// Cells of a grid.
 pub(super) struct Cells {

@@ -9,6 +9,7 @@ mod cuts;
 mod lattice;
 mod measure;
 mod names;
+mod nodes;
 mod octree;
 mod parts;
 mod stencil;
@@ -23,6 +24,7 @@ use octree::{Frame, Octree};
 use stencil::{Side, Tet};
 
 pub use measure::{Fit, fit};
+pub use nodes::{stuff_with_nodes, stuff_with_quadratic_nodes};
 
 /// Mean length of the edges of the lattice over the edge of its cubes: at each node six of it and eight of half a diagonal.
 pub const MEAN_EDGE: f64 = (6.0 + 4.0 * 1.732_050_807_568_877_2) / 14.0;
@@ -32,10 +34,6 @@ pub const LARGEST: u32 = 3;
 const CHUNK: usize = 64;
 /// Nodes that no machine here takes.
 const MOST: f64 = 2e7;
-
-/// Spacings that are tried for a number of nodes, and how close is close enough.
-const TRIES: usize = 6;
-const CLOSE: f64 = 0.02;
 
 /// How a surface is filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,74 +122,6 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
         return Err(StuffingError::TooCoarse { spacing });
     }
     Ok(Stuffed { mesh: named(surface, mesh(&points, &parts)), left_out: parts.left_out })
-}
-
-/// Fills a surface with about so many nodes: the nearest of some spacings, found as nodes grow with the third power of one.
-///
-/// # Errors
-/// As [`stuff`].
-pub fn stuff_with_nodes(
-    surface: &Surface,
-    nodes: usize,
-    doublings: u32,
-) -> Result<(Stuffed, f64), StuffingError> {
-    nearest(surface, nodes, nodes, doublings, |mesh| mesh.points().len())
-}
-
-/// The same, for so many nodes of quadratic tetrahedra: corners and the middles of edges.
-///
-/// # Errors
-/// As [`stuff`].
-pub fn stuff_with_quadratic_nodes(surface: &Surface, nodes: usize) -> Result<Stuffed, StuffingError> {
-    let count = |mesh: &Mesh| mesh.points().len() + edge_count(mesh);
-    // Of large meshes an eighth of the nodes are corners; of small ones, whose cells are mostly at the surface, more.
-    nearest(surface, nodes, nodes / 8, 0, count).map(|(stuffed, _)| stuffed)
-}
-
-/// Edges of tetrahedra.
-fn edge_count(mesh: &Mesh) -> usize {
-    let of_cell = |cell: usize| {
-        let nodes = mesh.cell(cell);
-        [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
-            .map(|[a, b]| (nodes[a].min(nodes[b]), nodes[a].max(nodes[b])))
-    };
-    let mut edges: Vec<(u32, u32)> = (0..mesh.cell_count()).flat_map(of_cell).collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges.len()
-}
-
-/// The mesh whose nodes, as `count` has them, are nearest to those wanted, of some spacings from that of so many corners on.
-fn nearest(
-    surface: &Surface,
-    nodes: usize,
-    corners: usize,
-    doublings: u32,
-    count: impl Fn(&Mesh) -> usize,
-) -> Result<(Stuffed, f64), StuffingError> {
-    let wanted = nodes.max(1) as f64;
-    let mut spacing = MEAN_EDGE * (2.0 * surface.volume() / corners.max(1) as f64).cbrt();
-    let mut best: Option<(f64, Stuffed, f64)> = None;
-    for _ in 0..TRIES {
-        let found = match stuff(surface, Stuffing { spacing, doublings }) {
-            Ok(stuffed) => {
-                let found = count(&stuffed.mesh) as f64;
-                let off = (found / wanted).ln().abs();
-                if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-                    best = Some((off, stuffed, spacing));
-                }
-                if off < CLOSE {
-                    break;
-                }
-                found
-            }
-            // Half the spacing has eight times the nodes.
-            Err(StuffingError::TooCoarse { .. }) => wanted / 8.0,
-            Err(bad) => return Err(bad),
-        };
-        spacing *= (found / wanted).cbrt();
-    }
-    best.map(|(_, stuffed, spacing)| (stuffed, spacing)).ok_or(StuffingError::TooCoarse { spacing })
 }
 
 /// The mesh of the parts: nodes in the order in which cells have them, corners turned to a positive volume.

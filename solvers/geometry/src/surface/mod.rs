@@ -9,6 +9,7 @@ mod error;
 mod groups;
 mod nested;
 mod of_mesh;
+mod polygon;
 mod shape;
 mod soup;
 mod tree;
@@ -17,6 +18,7 @@ pub use error::{SurfaceError, SurfaceProblem};
 pub use groups::Groups;
 pub(crate) use groups::Set;
 pub use of_mesh::{BoundaryFaces, triangles_of};
+pub(crate) use polygon::PolygonFault;
 pub use soup::Soup;
 pub(crate) use tree::Tree;
 

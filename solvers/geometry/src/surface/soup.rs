@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::Groups;
+use super::polygon::{self, PolygonFault};
 use crate::{Point3, Vector3};
 
 /// Triangles whose corners may be listed once for each, as in STL.
@@ -19,12 +20,19 @@ pub struct Soup {
 }
 
 impl Soup {
-    /// Adds a face of any number of corners, as triangles around its first.
-    pub(crate) fn face(&mut self, number: usize, corners: &[u32]) {
-        for pair in corners.windows(2).skip(1) {
-            self.triangles.push([corners[0], pair[0], pair[1]]);
-            self.faces.push(number as u32);
+    /// Adds a face of any number of corners as triangles.
+    pub(crate) fn face(&mut self, number: usize, corners: &[u32]) -> Result<(), PolygonFault> {
+        let points: Vec<Point3> = corners.iter().map(|&corner| self.points[corner as usize]).collect();
+        for triangle in polygon::cut(&points)? {
+            self.triangle(number, triangle.map(|place| corners[place]));
         }
+        Ok(())
+    }
+
+    /// Adds a triangle.
+    pub(crate) fn triangle(&mut self, number: usize, corners: [u32; 3]) {
+        self.triangles.push(corners);
+        self.faces.push(number as u32);
     }
 
     /// Corners nearer to each other than `tolerance` become one; triangles that lose a corner so are left out.

@@ -57,6 +57,17 @@ pub fn torus(tube: f64, around: u32, across: u32) -> Soup {
     soup
 }
 
+/// A block of twelve triangles with a corner at the origin.
+pub fn block(size: [f64; 3]) -> Soup {
+    let points = (0..8).map(|i| {
+        let end = |axis: usize| if i >> axis & 1 == 1 { size[axis] } else { 0.0 };
+        Point3::new(end(0), end(1), end(2))
+    });
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Soup { points: points.collect(), triangles, faces: (1..=12).collect(), ..Soup::default() }
+}
+
 /// Two soups as one.
 pub fn joined(a: Soup, b: Soup) -> Soup {
     let (first, count) = (a.points.len() as u32, a.triangles.len() as u32);

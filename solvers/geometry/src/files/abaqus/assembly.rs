@@ -58,6 +58,11 @@ impl Waiting {
         }))
     }
 
+    /// The name of a set of nodes or of a surface.
+    pub(super) fn surface(&self) -> Option<&str> {
+        (self.keyword != "ELSET").then_some(&self.name)
+    }
+
     fn unknown(&self, place: Place, of: &'static str, number: &str) -> (Place, Problem) {
         let what = match self.keyword.as_str() {
             "NSET" => "node set",
@@ -190,6 +195,10 @@ impl Sets<'_> {
                 continue;
             }
             let label = words.get(1).map(|word| word.to_ascii_uppercase()).unwrap_or_default();
+            if label.is_empty() {
+                whole.free_faces(*place, group, found);
+                continue;
+            }
             let face = label.strip_prefix('S').and_then(|face| face.parse::<usize>().ok());
             for cell in found {
                 let kind: CellKind = whole.kind(cell);

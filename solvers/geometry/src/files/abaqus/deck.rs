@@ -7,6 +7,7 @@ use super::super::error::{Parsed, Place, Problem};
 use super::assembly::{self, Placed, Waiting};
 use super::cards::{Card, cards, real, split};
 use super::keywords;
+use super::names::Shared;
 use super::scope::Scope;
 use super::text;
 use crate::{Point3, Vector3};
@@ -84,7 +85,7 @@ impl Deck {
             "SOLID SECTION" => scope.section(card),
             "INCLUDE" => self.include(card, depth),
             "PART" => {
-                self.open = Some((card.need("NAME")?.to_ascii_uppercase(), Scope::default()));
+                self.open = Some((card.need("NAME")?.into(), Scope::default()));
                 Ok(())
             }
             "END PART" => self.close_part(card.place),
@@ -151,7 +152,12 @@ impl Deck {
             let expected = "two different points of an axis";
             return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
         }
-        let name = card.get("NAME").unwrap_or_default().to_string();
+        // Without a name of its own it has that of its part.
+        let name =
+            card.get("NAME").filter(|name| !name.is_empty()).unwrap_or(&self.parts[part].0).to_string();
+        if self.instances.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
+            return Err((card.place, Problem::SameInstance { name }));
+        }
         self.instances.push(Instance { place: card.place, name, part, moved, turned });
         Ok(())
     }
@@ -202,10 +208,15 @@ impl Deck {
         let mut whole = std::mem::take(&mut self.flat.content);
         if self.instances.is_empty() && self.parts.len() == 1 {
             // A part that is placed nowhere is meant as it is.
-            whole.append(end, &self.parts[0].1.content, |x| *x)?;
+            let (name, part) = &self.parts[0];
+            let shared = Shared::new([&whole, &part.content].into_iter(), std::iter::empty());
+            whole.append(end, &part.content, |x| *x, |of, own| shared.full(name, of, own))?;
         }
         self.few_enough()?;
         let mut placed = Vec::with_capacity(self.instances.len());
+        let parts = self.instances.iter().map(|instance| &self.parts[instance.part].1.content);
+        let of_assembly = self.waiting.iter().filter_map(Waiting::surface);
+        let shared = Shared::new([&whole].into_iter().chain(parts), of_assembly);
         for Instance { place, name, part, moved, turned } in &self.instances {
             let turn = turned.map(|(at, axis, angle)| {
                 (at, nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(axis), angle))
@@ -215,10 +226,12 @@ impl Deck {
                 turn.map_or(x, |(at, turn)| at + turn * (x - at))
             };
             let part = &self.parts[*part].1;
-            let (first_node, first_cell) = whole.append(*place, &part.content, put)?;
+            let named = |of, own: &str| shared.full(name, of, own);
+            let (first_node, first_cell) = whole.append(*place, &part.content, put, named)?;
             placed.push(Placed { name, part, first_node, first_cell });
         }
         assembly::add(&mut whole, &self.waiting, &placed)?;
+        whole.fill_regions("body")?;
         match (whole.node_count(), whole.cell_count()) {
             (0, _) => Err((end, Problem::Missing { section: "*NODE" })),
             (_, 0) => Err((end, Problem::NoCells)),

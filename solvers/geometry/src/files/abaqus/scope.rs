@@ -220,46 +220,58 @@ impl Scope {
         for &(place, line) in &card.data {
             let words = split(line);
             let first = unquoted(&words[0]);
-            let unknown = |of| {
-                let number = first.clone();
+            let unknown = |of, number: String| {
                 (place, Problem::UnknownMember { what: "surface", name: name.into(), of, number })
             };
             let sets = if by_nodes { &self.nsets } else { &self.elsets };
             let numbers = match first.parse::<u64>() {
                 Ok(number) => vec![number],
-                Err(_) => sets.get(&first).ok_or_else(|| unknown("set"))?.1.clone(),
+                Err(_) => sets.get(&first).ok_or_else(|| unknown("set", first.clone()))?.1.clone(),
             };
             if by_nodes {
                 let nodes = numbers.iter().filter_map(|&number| self.content.node_of(number)).collect();
                 self.content.node_set(name, nodes);
                 continue;
             }
-            let face = words.get(1).map(|word| word.to_ascii_uppercase()).unwrap_or_default();
-            let face =
-                face.strip_prefix('S').and_then(|face| face.parse::<usize>().ok()).filter(|face| *face > 0);
-            let Some(face) = face else {
-                let found = words.get(1).cloned().unwrap_or_default();
-                return Err((
-                    place,
-                    Problem::Expected { expected: "the face of an element, such as S1", found },
-                ));
-            };
-            let group = self.content.group(name);
-            for number in numbers {
-                if !self.content.knows_element(number) {
-                    return Err(unknown("element"));
-                }
-                let Some(cell) = self.content.cell_of(number) else { continue };
-                let corners = faces(self.kinds[cell as usize]).get(face - 1);
-                if !corners.is_some_and(|corners| self.content.facet(group, cell, corners)) {
-                    let found = format!("S{face} of element {number}");
-                    return Err((
-                        place,
-                        Problem::Expected { expected: "a face that the element has", found },
-                    ));
-                }
+            if let Some(&number) = numbers.iter().find(|&&number| !self.content.knows_element(number)) {
+                return Err(unknown("element", number.to_string()));
+            }
+            match words.get(1).filter(|label| !label.is_empty()) {
+                Some(label) => self.faces(place, name, &numbers, label)?,
+                None => self.free_faces(place, name, &numbers)?,
             }
         }
+        Ok(())
+    }
+
+    /// Adds a face of each element, `S1` and so on, to a surface.
+    fn faces(&mut self, place: Place, name: &str, numbers: &[u64], label: &str) -> Parsed<()> {
+        let face = label.to_ascii_uppercase().strip_prefix('S').and_then(|face| face.parse::<usize>().ok());
+        let Some(face) = face.filter(|face| *face > 0) else {
+            let expected = "the face of an element, such as S1";
+            return Err((place, Problem::Expected { expected, found: label.into() }));
+        };
+        let group = self.content.group(name);
+        for &number in numbers {
+            let Some(cell) = self.content.cell_of(number) else { continue };
+            let corners = faces(self.kinds[cell as usize]).get(face - 1);
+            if !corners.is_some_and(|corners| self.content.facet(group, cell, corners)) {
+                let (expected, found) =
+                    ("a face that the element has", format!("S{face} of element {number}"));
+                return Err((place, Problem::Expected { expected, found }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the faces of elements that no other element has to a surface, and shells on faces.
+    fn free_faces(&mut self, place: Place, name: &str, numbers: &[u64]) -> Parsed<()> {
+        let group = self.content.group(name);
+        let cells = numbers.iter().filter_map(|&number| self.content.cell_of(number)).collect();
+        for (number, (line, corners)) in numbers.iter().filter_map(|n| Some((n, self.shells.get(n)?))) {
+            self.content.shell(Row { place: *line, tag: *number }, group, corners)?;
+        }
+        self.content.free_faces(place, group, cells);
         Ok(())
     }
 
@@ -288,7 +300,6 @@ impl Scope {
                 cells.into_iter().for_each(|cell| self.content.set_region(cell, region));
             }
         }
-        self.content.fill_regions("body")?;
         for key in &self.elsets.order {
             let (name, members) = &self.elsets.lists[key];
             for (number, (place, corners)) in members.iter().filter_map(|n| Some((n, self.shells.get(n)?))) {

@@ -6,10 +6,10 @@ mod stl;
 
 use std::path::Path;
 
-use super::error::FileError;
+use super::error::{FileError, Parsed, Place, Problem};
 use super::suffix;
 use crate::Surface;
-use crate::surface::{Soup, SurfaceError};
+use crate::surface::{PolygonFault, Soup, SurfaceError};
 
 pub(super) use stl::write;
 
@@ -28,6 +28,7 @@ pub fn read_surface(file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
 /// As [`read_surface`], from memory; `file` is the name used in errors.
 pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
     super::check_unit(file, unit)?;
+    let bytes = unmarked(bytes);
     let soup = match kind(bytes, file) {
         Some(Kind::Stl) => stl::parse(bytes),
         Some(Kind::Obj) => obj::parse(bytes),
@@ -45,7 +46,21 @@ pub fn is_surface(file: &Path) -> bool {
 }
 
 pub(super) fn holds_surface(bytes: &[u8], file: &Path) -> bool {
-    kind(bytes, file).is_some()
+    kind(unmarked(bytes), file).is_some()
+}
+
+/// A text without the mark of its encoding; the comment of a binary file may begin with anything.
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    if stl::is_binary(bytes) { bytes } else { super::unmarked(bytes) }
+}
+
+/// Adds a face of any number of corners to a surface.
+fn face(soup: &mut Soup, place: Place, number: usize, corners: &[u32]) -> Parsed<()> {
+    let face = number as u64;
+    soup.face(number, corners).map_err(|fault| match fault {
+        PolygonFault::Crosses(edges) => (place, Problem::CrossedFace { face, edges }),
+        PolygonFault::Corners(corners) => (place, Problem::LargeFace { face, corners }),
+    })
 }
 
 enum Kind {

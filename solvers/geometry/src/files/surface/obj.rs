@@ -1,7 +1,7 @@
-//! OBJ: corners, then faces of any number of them, which are in all groups of the last `g`, or where that names none in the object of the last `o`.
-//! Normals, textures and materials are read over.
+//! OBJ: corners and faces of any number of them, in any order. Faces are in all groups of the last `g`, or where that names none in the
+//! object of the last `o`. Normals, textures and materials are read over.
 
-use super::super::error::{Parsed, Problem};
+use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
 use crate::Point3;
 use crate::surface::{Set, Soup};
@@ -26,10 +26,18 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     })
 }
 
+/// Faces, whose corners may come later in the file.
+#[derive(Default)]
+struct Faces {
+    /// Place, end of its corners in the list, and groups of each.
+    rows: Vec<(Place, usize, Set)>,
+    /// Corners from 0 on, of all faces one after another.
+    corners: Vec<i64>,
+}
+
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     let mut lines = Lines::new(super::super::text(bytes)?);
-    let mut soup = Soup::default();
-    let mut faces = 0;
+    let (mut soup, mut faces) = (Soup::default(), Faces::default());
     let (mut groups, mut object) = (Set::default(), Set::default());
     while let Some(line) = lines.next() {
         // A line may go on after a backslash.
@@ -40,30 +48,10 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
         let mut words = whole.split_ascii_whitespace();
         match words.next() {
             None => {}
-            Some("v") => {
-                let mut at = [0.0; 3];
-                for x in &mut at {
-                    *x = lines.number(words.next(), "a coordinate")?;
-                }
-                if !at.iter().all(|x: &f64| x.is_finite()) {
-                    return lines.fail(Problem::NotFinite { number: soup.points.len() as u64 + 1 });
-                }
-                soup.points.push(at.into());
-            }
+            Some("v") => vertex(&lines, words, &mut soup.points)?,
             Some("f") => {
-                faces += 1;
-                let corners = words
-                    .map(|word| corner(&lines, word, faces, &soup.points))
-                    .collect::<Parsed<Vec<u32>>>()?;
-                if corners.len() < 3 {
-                    return lines.fail(Problem::Expected {
-                        expected: "a face of three corners or more",
-                        found: whole,
-                    });
-                }
-                soup.face(faces, &corners);
                 let set = if groups == Set::default() { object } else { groups };
-                soup.groups.fill(soup.triangles.len(), set);
+                faces.add(&lines, &whole, soup.points.len(), set)?;
             }
             Some("g") => {
                 let names: Vec<&str> = words.collect();
@@ -80,16 +68,65 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
             }
         }
     }
+    faces.add_to(&mut soup)?;
     Ok(soup)
 }
 
-/// A corner `7`, `7/2/3` or `-1`: from 1 on, or backwards from the last.
-fn corner(lines: &Lines, word: &str, face: usize, points: &[Point3]) -> Parsed<u32> {
+/// A corner's coordinates; what comes behind, a weight or a colour, is read over.
+fn vertex<'a>(
+    lines: &Lines,
+    mut words: impl Iterator<Item = &'a str>,
+    points: &mut Vec<Point3>,
+) -> Parsed<()> {
+    let mut at = [0.0; 3];
+    for x in &mut at {
+        *x = lines.number(words.next(), "a coordinate")?;
+    }
+    if !at.iter().all(|x: &f64| x.is_finite()) {
+        return lines.fail(Problem::NotFinite { number: points.len() as u64 + 1 });
+    }
+    points.push(at.into());
+    Ok(())
+}
+
+impl Faces {
+    /// Notes the face of a line, before which the file has `points` corners.
+    fn add(&mut self, lines: &Lines, line: &str, points: usize, set: Set) -> Parsed<()> {
+        let (start, face) = (self.corners.len(), self.rows.len() + 1);
+        for word in line.split_ascii_whitespace().skip(1) {
+            self.corners.push(corner(lines, word, face, points)?);
+        }
+        if self.corners.len() - start < 3 {
+            let expected = "a face of three corners or more";
+            return lines.fail(Problem::Expected { expected, found: line.into() });
+        }
+        self.rows.push((lines.place(), self.corners.len(), set));
+        Ok(())
+    }
+
+    /// Adds all faces, when all corners are known.
+    fn add_to(&self, soup: &mut Soup) -> Parsed<()> {
+        let mut start = 0;
+        for (row, &(place, end, set)) in self.rows.iter().enumerate() {
+            let known = |&at: &i64| {
+                let index = u32::try_from(at).ok().filter(|&at| (at as usize) < soup.points.len());
+                index.ok_or((place, Problem::UnknownCorner { face: row as u64 + 1, node: at + 1 }))
+            };
+            let corners = self.corners[start..end].iter().map(known).collect::<Parsed<Vec<u32>>>()?;
+            start = end;
+            super::face(soup, place, row + 1, &corners)?;
+            soup.groups.fill(soup.triangles.len(), set);
+        }
+        Ok(())
+    }
+}
+
+/// A corner `7`, `7/2/3` or `-1`: from 1 on, which may come later, or backwards from the last so far.
+fn corner(lines: &Lines, word: &str, face: usize, points: usize) -> Parsed<i64> {
     let number: i64 = lines.number(word.split('/').next(), "the number of a corner")?;
-    let count = points.len() as i64;
-    let index = if number < 0 { count.checked_add(number) } else { number.checked_sub(1) };
-    match index.filter(|&at| (0..count).contains(&at)) {
-        Some(at) => Ok(at as u32),
+    let index = if number < 0 { number.checked_add(points as i64) } else { number.checked_sub(1) };
+    match index.filter(|&at| at >= 0) {
+        Some(at) => Ok(at),
         None => lines.fail(Problem::UnknownCorner { face: face as u64, node: number }),
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
                             ("a face of three corners or more", corners.len().to_string());
                         return Err((place, Problem::Expected { expected, found }));
                     }
-                    soup.face(row + 1, &corners);
+                    super::face(&mut soup, place, row + 1, &corners)?;
                 }
             }
             if element.name == "vertex" {
@@ -151,6 +151,11 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
     if let Some(empty) = elements.iter().find(|element| element.properties.is_empty() && element.count > 0) {
         let found = format!("{} without one", empty.name);
         return Err((place, Problem::Expected { expected: "properties of each element", found }));
+    }
+    let order = |name: &str| elements.iter().position(|element| element.name == name);
+    if order("face") < order("vertex") {
+        let found = "face first".into();
+        return Err((place, Problem::Expected { expected: "element vertex before element face", found }));
     }
     let values = match format {
         Some("ascii") => {

@@ -63,7 +63,7 @@ fn add(soup: &mut Soup, place: Place, corners: [Point3; 3]) -> Parsed<()> {
     let first = u32::try_from(soup.points.len()).ok().filter(|first| *first < u32::MAX - 3);
     let first = first.ok_or((place, Problem::TooMany { what: "triangles", count: number }))?;
     soup.points.extend(corners);
-    soup.face(number, &[first, first + 1, first + 2]);
+    soup.triangle(number, [first, first + 1, first + 2]);
     Ok(())
 }
 

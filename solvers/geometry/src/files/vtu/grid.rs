@@ -1,12 +1,10 @@
 //! The grid: points, cells and what they are named by.
 
-use std::collections::HashMap;
-
 use roxmltree::{Document, Node};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
-use super::super::vtk_cells::{Cells, REGIONS};
+use super::super::vtk_cells::{Array, Cells, regions};
 use super::array::{Coding, Compressor, Numbers, Source, read};
 use crate::Point3;
 
@@ -176,25 +174,20 @@ impl<'a> File<'a> {
         };
         let length = ends.last().copied().unwrap_or(0);
         let list = whole(self.array(named("connectivity")?, length)?, self.place(of_cells))?;
-        let regions = self.cell_array(piece, cells, &REGIONS)?;
-        let surfaces = self.cell_array(piece, cells, &["surface"])?;
+        let regions = regions(|name| self.cell_array(piece, cells, name))?;
+        let surfaces = self.cell_array(piece, cells, "surface")?.map(|array| array.whole()).transpose()?;
         let cells = Cells { first, types, ends, list, regions, surfaces };
         cells.add_to(content, region_names, surface_names)
     }
 
-    /// Whole numbers per cell by the first name that is there.
-    fn cell_array(&self, piece: Node, cells: usize, names: &[&str]) -> Parsed<Option<Vec<i64>>> {
+    /// Numbers per cell, by the array's name without regard to capitals.
+    fn cell_array(&self, piece: Node, cells: usize, name: &str) -> Parsed<Option<Array>> {
         let data = piece.children().filter(|node| node.has_tag_name("CellData"));
-        let arrays: HashMap<&str, Node> = data
-            .flat_map(|data| data.children())
-            .filter_map(|node| Some((node.attribute("Name")?, node)))
-            .collect();
-        let Some(found) = names.iter().find_map(|name| arrays.get(name)) else { return Ok(None) };
-        Ok(Some(match self.array(*found, cells)? {
-            Numbers::Whole(values) => values,
-            // Some programs write numbers of regions as reals.
-            Numbers::Real(values) => values.into_iter().map(|value| value.round() as i64).collect(),
-        }))
+        let mut arrays = data.flat_map(|data| data.children());
+        let is_it = |node: &Node| node.attribute("Name").is_some_and(|own| own.eq_ignore_ascii_case(name));
+        let Some(found) = arrays.find(is_it) else { return Ok(None) };
+        let (name, place) = (found.attribute("Name").unwrap_or_default().into(), self.place(found));
+        Ok(Some(Array { name, place, values: reals(self.array(found, cells)?) }))
     }
 
     /// Texts of field data: numbers of characters with a zero behind each text.
