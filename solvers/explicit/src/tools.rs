@@ -1,8 +1,8 @@
 //! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
 
 use super::{ExplicitError, Springs};
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Stand, Tool};
-use contact::{Drive, ToolState};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts};
+use contact::{Drive, Stand, Tool, ToolState};
 use shape::{Point3, Vector3};
 
 /// A tool, its drive and its ramp.
@@ -56,6 +56,7 @@ pub struct ToolEnergies {
 /// Tools in motion with their contact, as a part of [`super::Dynamics`].
 pub struct Tools<'a> {
     surface: &'a ContactSurface<'a>,
+    search: ContactSearch<'a>,
     each: Vec<Moving<'a>>,
     forces: Vec<Vector3>,
     /// Nodes that carry a contact force, to be cleared before the next step.
@@ -107,7 +108,8 @@ impl<'a> Tools<'a> {
         }
         let each = tools.iter().map(|&of| Moving::new(of, surface, u)).collect();
         let forces = vec![Vector3::zeros(); u.len()];
-        Ok(Tools { surface, each, forces, touched: false, counts: ContactCounts::default() })
+        let search = ContactSearch::new(surface, tools.len());
+        Ok(Tools { surface, search, each, forces, touched: false, counts: ContactCounts::default() })
     }
 
     /// Every tool at the last step.
@@ -188,11 +190,11 @@ impl<'a> Tools<'a> {
             self.forces.fill(Vector3::zeros());
             self.touched = false;
         }
+        let mut search = self.search.at(u);
         for (index, tool) in self.each.iter_mut().enumerate() {
             let lost = |cause| ExplicitError::ContactAt { step, time, tool: index, cause };
-            let contacts = self
-                .surface
-                .tractions(tool.of.tool, tool.closure, u, &tool.history, &mut self.counts)
+            let contacts = search
+                .tractions(index, tool.of.tool, tool.closure, &tool.history, &mut self.counts)
                 .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
             if let Some(contacts) = &contacts {
