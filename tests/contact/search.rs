@@ -80,7 +80,8 @@ proptest! {
     }
 }
 
-/// Steps of a tenth of the margin, of the body and of the tool, towards each other along an axis and aslant.
+/// Steps of a tenth of the margin, of the body, of the tool and of both; alone, and after another tool whose jumps have its list made
+/// anew in every state.
 #[test]
 fn a_tool_that_comes_near_is_found_when_it_touches() {
     let block = Block::new(CellKind::Tet4, [16, 12, 3]);
@@ -88,18 +89,25 @@ fn a_tool_that_comes_near_is_found_when_it_touches() {
     let surface = ContactSurface::new(&rows);
     let points = rows.points().len();
     let step = 0.0125 * spacing(&rows);
+    let jumping = plate(0.1);
     for (body, tool) in [(1.0, 0.0), (0.0, 1.0), (0.6, 0.6)] {
-        for gap in [10.5, 12.5, 17.5, 35.5] {
+        for (gap, jumps) in [(10.5, false), (12.5, false), (17.5, true), (35.5, false), (35.5, true)] {
             let plate = plate(gap * step);
             let history = ContactHistory::new(&plate, points);
-            let mut search = ContactSearch::new(&surface, 1);
+            let mut search = ContactSearch::new(&surface, 2);
             let [mut counts, mut all] = [ContactCounts::default(); 2];
             for k in 0..60 {
                 let way = f64::from(k) * step;
-                let u = vec![Vector3::new(way, -way, body * way); block.mesh.points().len()];
-                let found = search.at(&u).tractions(0, &plate, tool * way, &history, &mut counts);
+                let u = vec![Vector3::new(way, -way, way) * body; block.mesh.points().len()];
+                let mut now = search.at(&u);
+                if jumps {
+                    let closure = 20.0 * step * f64::from(k % 2);
+                    let found = now.tractions(1, &jumping, closure, &history, &mut ContactCounts::default());
+                    assert_eq!(found, Ok(None));
+                }
+                let found = now.tractions(0, &plate, tool * way, &history, &mut counts);
                 let expected = surface.tractions(&plate, tool * way, &u, &history, &mut all);
-                assert_eq!(touching(found), touching(expected), "{body} {tool} {gap} {k}");
+                assert_eq!(touching(found), touching(expected), "{body} {tool} {gap} {jumps} {k}");
                 assert_eq!(counts.active > 0, f64::from(k) * (body + tool) > gap, "{body} {tool} {gap} {k}");
             }
         }
