@@ -74,14 +74,24 @@ impl<'a> ContactSearch<'a> {
         if u.len() != self.surface.rows().rows().node_count() {
             return f64::INFINITY;
         }
-        let (mut most, mut finite) = (Vector3::zeros(), Vector3::zeros());
-        for (&node, before) in self.nodes.iter().zip(&self.listed_at) {
+        // Four nodes side by side: none waits for the one before. A maximum forgets a NaN, a sum does not.
+        let (mut most, mut finite) = ([0.0f64; 12], [0.0; 12]);
+        let (fours, rest) = self.nodes.as_chunks::<4>();
+        let (before, rest_before) = self.listed_at.as_chunks::<4>();
+        let mut look = |k: usize, node: u32, before: &Vector3| {
             let change = u[node as usize] - before;
-            // A maximum forgets a NaN, a sum does not.
-            finite += change * 0.0;
-            most = most.sup(&change.abs());
+            for a in 0..3 {
+                let (most, finite) = (&mut most[3 * k + a], &mut finite[3 * k + a]);
+                let change = change[a].abs();
+                *finite += 0.0 * change;
+                *most = if change > *most { change } else { *most };
+            }
+        };
+        for (nodes, before) in fours.iter().zip(before) {
+            (0..4).for_each(|k| look(k, nodes[k], &before[k]));
         }
-        if finite == Vector3::zeros() { most.max() } else { f64::INFINITY }
+        rest.iter().zip(rest_before).for_each(|(&node, before)| look(0, node, before));
+        if finite == [0.0; 12] { most.into_iter().fold(0.0, f64::max) } else { f64::INFINITY }
     }
 }
 
