@@ -2,5 +2,6 @@
 
 mod law;
 mod passage;
+mod search;
 mod shapes;
 mod surface;

@@ -32,7 +32,7 @@ pub struct Contacts {
 pub struct ContactCounts {
     /// Evaluations asked for.
     pub evaluations: u64,
-    /// Of these, skipped whole: no cluster of points near the tool.
+    /// Of these, skipped whole: no point near the tool.
     pub skipped: u64,
     /// Points whose distance was computed.
     pub distances: u64,
@@ -51,7 +51,9 @@ impl ContactSurface<'_> {
         history: &ContactHistory,
         counts: &mut ContactCounts,
     ) -> Result<Option<Contacts>, ContactError> {
-        let found = self.scan(tool, closure, u, history, counts, |response, p, normal| {
+        let reach = self.reach(tool, closure, u, history, counts)?;
+        let near = self.near(tool, closure, reach, u)?;
+        let found = self.scan(tool, closure, u, history, counts, &near, |response, p, normal| {
             tool.stiffness(response, p, normal)
         })?;
         Ok(found.map(|found| {
@@ -69,19 +71,21 @@ impl ContactSurface<'_> {
         history: &ContactHistory,
         counts: &mut ContactCounts,
     ) -> Result<Option<Contacts>, ContactError> {
-        let found = self.scan(tool, closure, u, history, counts, |_, _, _| ())?;
+        let reach = self.reach(tool, closure, u, history, counts)?;
+        let near = self.near(tool, closure, reach, u)?;
+        let found = self.scan(tool, closure, u, history, counts, &near, |_, _, _| ())?;
         Ok(found.map(|found| Contacts::new(self, tool, closure, u, found, Vec::new())))
     }
 
-    fn scan<T: Send>(
+    /// Counts an evaluation and checks what it is given; the gap (m) up to which a point may touch.
+    pub(super) fn reach(
         &self,
         tool: &Tool,
         closure: f64,
         u: &[Vector3],
         history: &ContactHistory,
         counts: &mut ContactCounts,
-        tangent: impl Fn(&Response, &Vector3, &Vector3) -> T + Sync,
-    ) -> Result<Option<Vec<Found<T>>>, ContactError> {
+    ) -> Result<f64, ContactError> {
         let rows = self.rows();
         check_len("displacements", u.len(), rows.rows().node_count())?;
         check_len("points of the contact history", history.points(), rows.points().len())?;
@@ -90,8 +94,20 @@ impl ContactSurface<'_> {
         }
         counts.evaluations += 1;
         // A point with a multiplier may touch from outside: as far as l - k_n g > 0.
-        let reach = history.largest_multiplier() / tool.law().penalty();
-        let near = self.near(tool, closure, reach, u)?;
+        Ok(history.largest_multiplier() / tool.law().penalty())
+    }
+
+    /// Contact of some points, which are all that may touch.
+    pub(super) fn scan<T: Send>(
+        &self,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+        history: &ContactHistory,
+        counts: &mut ContactCounts,
+        near: &[&[u32]],
+        tangent: impl Fn(&Response, &Vector3, &Vector3) -> T + Sync,
+    ) -> Result<Option<Vec<Found<T>>>, ContactError> {
         if near.is_empty() {
             counts.skipped += 1;
             return Ok(None);
@@ -121,7 +137,7 @@ impl ContactSurface<'_> {
             found
         };
         let mut found = if near.len() < 2 * CHUNK {
-            touch(&near)
+            touch(near)
         } else {
             near.par_chunks(CHUNK).map(touch).collect::<Vec<_>>().into_iter().flatten().collect()
         };
@@ -137,7 +153,7 @@ impl ContactSurface<'_> {
     }
 }
 
-struct Found<T> {
+pub(super) struct Found<T> {
     point: u32,
     gap: f64,
     traction: Vector3,
@@ -148,7 +164,7 @@ struct Found<T> {
 }
 
 impl Contacts {
-    fn new<T>(
+    pub(super) fn new<T>(
         surface: &ContactSurface,
         tool: &Tool,
         closure: f64,

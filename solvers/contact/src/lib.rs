@@ -4,6 +4,8 @@
 //! A [`Tool`] is a [`ToolShape`] put somewhere, with a [`ContactLaw`]; it moves by `closure` (m) along its direction.
 //! A [`ContactSurface`] is a surface quadrature with its boxes. Evaluating one against the other gives [`Contacts`]:
 //! tractions per undeformed area and their consistent tangents at the points that touch, and nothing at the others.
+//! Over many small steps a [`ContactSearch`] finds the same with less work.
+//!
 //! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers. What no state shows by itself is
 //! checked after a step: [`ContactSurface::check_passage`] finds tools that jumped over the surface, and
 //! [`ContactSurface::check_overlap`] those that stand in the body between its points.
@@ -31,6 +33,7 @@ mod history;
 mod law;
 mod overlap;
 mod passage;
+mod search;
 mod surface;
 mod tool;
 mod tool_shape;
@@ -42,6 +45,7 @@ pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
 pub use overlap::Outline;
 pub use passage::Stand;
+pub use search::{ContactSearch, SearchAt};
 pub use surface::ContactSurface;
 pub use tool::{PointContact, Tool};
 pub use tool_shape::*;

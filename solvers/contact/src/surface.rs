@@ -7,7 +7,7 @@ use shape::{Point3, SurfaceRows, Vector3};
 use super::{ContactError, Contacts, Outline, Tool};
 
 /// Points per cluster, at most.
-const CLUSTER: usize = 32;
+pub(super) const CLUSTER: usize = 32;
 
 /// A surface made ready for contact. Made once per surface, for any number of tools and states.
 #[derive(Clone, Debug)]
@@ -73,6 +73,11 @@ impl<'a> ContactSurface<'a> {
     /// Number of clusters.
     pub fn clusters(&self) -> usize {
         self.clusters.len()
+    }
+
+    /// Largest `sum |N_I|` of all points.
+    pub(super) fn lebesgue(&self) -> f64 {
+        self.clusters.iter().map(|cluster| cluster.lebesgue).fold(0.0, f64::max)
     }
 
     /// Smallest signed distance (m) of all points to the tool in the state `u`; infinite without points.

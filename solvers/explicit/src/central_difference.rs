@@ -284,13 +284,14 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         if let Some(tools) = &mut self.tools {
             tools.step(step, time, [before_dt, after_dt], &self.u)?;
         }
-        let touch = self.tools.as_ref().map_or(&[][..], Tools::forces);
 
         let c = 0.5 * self.params.damping * dt;
         let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
         let first = step == 0;
         // From here on what the body holds against its loads, contact included.
-        self.internal.iter_mut().zip(touch).for_each(|(f, t)| *f -= t);
+        for (node, touch) in self.tools.iter().flat_map(Tools::forces) {
+            self.internal[node] -= touch;
+        }
         if first {
             // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
             for i in 0..self.v.len() {

@@ -1,7 +1,7 @@
 //! Rigid tools in a dynamic relaxation: a closure that is led, or one more unknown that a force moves.
 
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Stand, Tool};
-use contact::{Drive, ToolState};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface};
+use contact::{Drive, Stand, Tool, ToolState};
 use shape::Vector3;
 
 /// A tool under a constant drive, in the state that it starts from.
@@ -24,6 +24,7 @@ pub struct PressingTool<'a> {
 /// whatever touches. Slip is kept after every step of the relaxation, as in dynamics.
 pub struct Pressing<'a> {
     surface: &'a ContactSurface<'a>,
+    search: ContactSearch<'a>,
     tools: Vec<PressingTool<'a>>,
     /// Closures at the last step, m.
     before: Vec<f64>,
@@ -48,6 +49,7 @@ impl<'a> Pressing<'a> {
         let still = |tool: &PressingTool| ToolState::new(tool.closure, None);
         Pressing {
             surface,
+            search: ContactSearch::new(surface, tools.len()),
             before,
             moves: vec![0.0; tools.len()],
             pushed: vec![[0.0; 2]; tools.len()],
@@ -92,10 +94,11 @@ impl<'a> Pressing<'a> {
         u: &[Vector3],
         force: &mut [Vector3],
     ) -> Result<(), (usize, ContactError)> {
+        let mut search = self.search.at(u);
         for (k, tool) in self.tools.iter_mut().enumerate() {
             let lost = |cause| (k, cause);
-            let contacts = (self.surface)
-                .tractions(tool.tool, tool.closure, u, &tool.history, &mut self.counts)
+            let contacts = search
+                .tractions(k, tool.tool, tool.closure, &tool.history, &mut self.counts)
                 .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
             let touches = contacts.as_ref().is_some_and(|c| !c.points().is_empty());

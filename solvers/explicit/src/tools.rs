@@ -1,8 +1,8 @@
 //! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
 
 use super::{ExplicitError, Springs};
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Stand, Tool};
-use contact::{Drive, ToolState};
+use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts};
+use contact::{Drive, Stand, Tool, ToolState};
 use shape::{Point3, Vector3};
 
 /// A tool, its drive and its ramp.
@@ -56,10 +56,12 @@ pub struct ToolEnergies {
 /// Tools in motion with their contact, as a part of [`super::Dynamics`].
 pub struct Tools<'a> {
     surface: &'a ContactSurface<'a>,
+    search: ContactSearch<'a>,
     each: Vec<Moving<'a>>,
     forces: Vec<Vector3>,
-    /// Nodes that carry a contact force, to be cleared before the next step.
-    touched: bool,
+    /// Nodes that carry a contact force, each once, and whether a node is one of them.
+    loaded: Vec<u32>,
+    is_loaded: Vec<bool>,
     counts: ContactCounts,
 }
 
@@ -107,7 +109,9 @@ impl<'a> Tools<'a> {
         }
         let each = tools.iter().map(|&of| Moving::new(of, surface, u)).collect();
         let forces = vec![Vector3::zeros(); u.len()];
-        Ok(Tools { surface, each, forces, touched: false, counts: ContactCounts::default() })
+        let search = ContactSearch::new(surface, tools.len());
+        let (loaded, is_loaded) = (Vec::new(), vec![false; u.len()]);
+        Ok(Tools { surface, search, each, forces, loaded, is_loaded, counts: ContactCounts::default() })
     }
 
     /// Every tool at the last step.
@@ -171,9 +175,9 @@ impl<'a> Tools<'a> {
         Some(Springs { surface: self.surface.rows(), modulus })
     }
 
-    /// Contact forces on the tissue at the last step, N.
-    pub(super) fn forces(&self) -> &[Vector3] {
-        &self.forces
+    /// Nodes with a contact force on the tissue at the last step, each once, and that force, N.
+    pub(super) fn forces(&self) -> impl Iterator<Item = (usize, &Vector3)> {
+        self.loaded.iter().map(|&node| (node as usize, &self.forces[node as usize]))
     }
 
     /// Contact at step `n` in the state `u`, committed; then the tools' speeds at `n + 1/2` and their closures at `n + 1`.
@@ -184,20 +188,26 @@ impl<'a> Tools<'a> {
         dt: [f64; 2],
         u: &[Vector3],
     ) -> Result<(), ExplicitError> {
-        if self.touched {
-            self.forces.fill(Vector3::zeros());
-            self.touched = false;
+        // A few dozen nodes carry a force: to clear and to look at all took a fortieth of a step.
+        for node in self.loaded.drain(..) {
+            self.forces[node as usize] = Vector3::zeros();
+            self.is_loaded[node as usize] = false;
         }
+        let mut search = self.search.at(u);
         for (index, tool) in self.each.iter_mut().enumerate() {
             let lost = |cause| ExplicitError::ContactAt { step, time, tool: index, cause };
-            let contacts = self
-                .surface
-                .tractions(tool.of.tool, tool.closure, u, &tool.history, &mut self.counts)
+            let contacts = search
+                .tractions(index, tool.of.tool, tool.closure, &tool.history, &mut self.counts)
                 .map_err(lost)?;
             tool.history.commit(contacts.as_ref());
             if let Some(contacts) = &contacts {
-                contacts.add_force(self.surface.rows(), &mut self.forces);
-                self.touched = true;
+                let rows = self.surface.rows();
+                contacts.add_force(rows, &mut self.forces);
+                for &node in contacts.points().iter().flat_map(|&q| rows.rows().row(q as usize).0) {
+                    if !std::mem::replace(&mut self.is_loaded[node as usize], true) {
+                        self.loaded.push(node);
+                    }
+                }
             }
             tool.settle(contacts.as_ref(), self.surface);
             tool.check(index, step, time, dt, contacts.as_ref(), self.surface)?;

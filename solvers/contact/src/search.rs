@@ -1,0 +1,153 @@
+//! The contact search over many small steps: points that can touch before the body or the tool has moved by a margin are listed once
+//! and looked at until then (Verlet, Phys. Rev. 159 (1967), 98-103).
+//!
+//! A point that is farther from a tool than the margin cannot touch it while it and the tool have moved by less together. Over
+//! explicit steps of a micrometre a list serves some hundreds of them. On the published ramp a step looked at 191 points and made 256
+//! boxes around clusters for 17 points that touched, which took a fifth of its time.
+
+use shape::Vector3;
+
+use super::surface::CLUSTER;
+use super::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
+
+/// Margin over the mean distance between points: a larger one keeps a list for longer, with more points in it.
+const MARGIN: f64 = 0.125;
+/// Part of the margin that is left to rounding: enough for bodies that are a hundred million margins away from the origin.
+const ROUNDING: f64 = 1e-6;
+
+/// Finds contact for the same tools in one state after another. What it finds has the same bits as that of
+/// [`ContactSurface::tractions`], whatever the states before.
+#[derive(Clone, Debug)]
+pub struct ContactSearch<'a> {
+    surface: &'a ContactSurface<'a>,
+    /// Nodes that the surface sees, each once, and their displacements (m) in the state that the lists are from.
+    nodes: Vec<u32>,
+    listed_at: Vec<Vector3>,
+    /// States in which lists were made: one of an earlier state is out of date.
+    state: u64,
+    lists: Vec<List>,
+    /// m.
+    margin: f64,
+    /// Bound of a point's motion over the largest change of a nodal displacement's component.
+    stretch: f64,
+}
+
+/// Points that may touch one tool.
+#[derive(Clone, Debug)]
+struct List {
+    state: u64,
+    points: Vec<u32>,
+    /// Of the tool when the list was made, m.
+    closure: f64,
+    /// Gap at which a point with a multiplier still touches, m.
+    reach: f64,
+}
+
+impl<'a> ContactSearch<'a> {
+    /// For that many tools.
+    pub fn new(surface: &'a ContactSurface<'a>, tools: usize) -> ContactSearch<'a> {
+        let mut nodes = surface.nodes.clone();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let rows = surface.rows();
+        let area: f64 = rows.weights().iter().sum();
+        let spacing = (area / rows.points().len().max(1) as f64).sqrt();
+        ContactSearch {
+            listed_at: vec![Vector3::zeros(); nodes.len()],
+            nodes,
+            state: 0,
+            lists: vec![List { state: 0, points: Vec::new(), closure: 0.0, reach: 0.0 }; tools],
+            margin: MARGIN * spacing,
+            stretch: 3.0f64.sqrt() * surface.lebesgue(),
+            surface,
+        }
+    }
+
+    /// The search in the state `u` (m, one vector per node).
+    pub fn at<'s>(&'s mut self, u: &'s [Vector3]) -> SearchAt<'s, 'a> {
+        let moved = self.stretch * self.largest_change(u);
+        SearchAt { search: self, u, moved }
+    }
+
+    /// Largest change of a component since the lists were made, m; infinite where one is no number.
+    fn largest_change(&self, u: &[Vector3]) -> f64 {
+        if u.len() != self.surface.rows().rows().node_count() {
+            return f64::INFINITY;
+        }
+        // Four nodes side by side: none waits for the one before. A maximum forgets a NaN, a sum does not.
+        let (mut most, mut finite) = ([0.0f64; 12], [0.0; 12]);
+        let (fours, rest) = self.nodes.as_chunks::<4>();
+        let (before, rest_before) = self.listed_at.as_chunks::<4>();
+        let mut look = |k: usize, node: u32, before: &Vector3| {
+            let change = u[node as usize] - before;
+            for a in 0..3 {
+                let (most, finite) = (&mut most[3 * k + a], &mut finite[3 * k + a]);
+                let change = change[a].abs();
+                *finite += 0.0 * change;
+                *most = if change > *most { change } else { *most };
+            }
+        };
+        for (nodes, before) in fours.iter().zip(before) {
+            (0..4).for_each(|k| look(k, nodes[k], &before[k]));
+        }
+        rest.iter().zip(rest_before).for_each(|(&node, before)| look(0, node, before));
+        if finite == [0.0; 12] { most.into_iter().fold(0.0, f64::max) } else { f64::INFINITY }
+    }
+}
+
+/// A [`ContactSearch`] in one state.
+#[derive(Debug)]
+pub struct SearchAt<'s, 'a> {
+    search: &'s mut ContactSearch<'a>,
+    u: &'s [Vector3],
+    /// How far any point may have moved since the lists were made, m.
+    moved: f64,
+}
+
+impl SearchAt<'_, '_> {
+    /// As [`ContactSurface::tractions`], for the tool of that number: the same one in every state.
+    pub fn tractions(
+        &mut self,
+        number: usize,
+        tool: &Tool,
+        closure: f64,
+        history: &ContactHistory,
+        counts: &mut ContactCounts,
+    ) -> Result<Option<Contacts>, ContactError> {
+        let (surface, u) = (self.search.surface, self.u);
+        let reach = surface.reach(tool, closure, u, history, counts)?;
+        if !self.serves(number, closure, reach) {
+            self.list(number, tool, closure, reach)?;
+        }
+        let near: Vec<&[u32]> = self.search.lists[number].points.chunks(CLUSTER).collect();
+        let found = surface.scan(tool, closure, u, history, counts, &near, |_, _, _| ())?;
+        Ok(found.map(|found| Contacts::new(surface, tool, closure, u, found, Vec::new())))
+    }
+
+    fn serves(&self, number: usize, closure: f64, reach: f64) -> bool {
+        let ContactSearch { state, margin, lists, .. } = &*self.search;
+        let list = &lists[number];
+        let moved = self.moved + (closure - list.closure).abs();
+        // `moved <= ..`: a NaN must not pass. The first state is 1.
+        *state > 0 && list.state == *state && reach <= list.reach && moved <= (1.0 - ROUNDING) * margin
+    }
+
+    fn list(&mut self, number: usize, tool: &Tool, closure: f64, reach: f64) -> Result<(), ContactError> {
+        let (search, u) = (&mut *self.search, self.u);
+        let surface = search.surface;
+        let far = reach + search.margin;
+        let near = surface.near(tool, closure, far, u)?;
+        // Lists of other tools that were made in another state are out of date from here on.
+        if search.state == 0 || self.moved != 0.0 {
+            search.listed_at.iter_mut().zip(&search.nodes).for_each(|(to, &node)| *to = u[node as usize]);
+            search.state += 1;
+            self.moved = 0.0;
+        }
+        let list = &mut search.lists[number];
+        let may = |&q: &u32| tool.gap(closure, &surface.position(q as usize, u)) <= far;
+        list.points.clear();
+        list.points.extend(near.iter().copied().flatten().copied().filter(may));
+        (list.state, list.closure, list.reach) = (search.state, closure, reach);
+        Ok(())
+    }
+}
