@@ -225,7 +225,7 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
 #[test]
 fn surfaces_that_cross_are_refused() {
     let crossing = refused(joined(sphere_like(3, |n| n), moved(sphere_like(3, |n| n), [0.7, 0.1, 0.2])));
-    assert!(matches!(crossing, SurfaceProblem::Crossing { pairs: 100.., .. }), "{crossing}");
+    assert!(matches!(crossing, SurfaceProblem::Crossing { places: 50.., .. }), "{crossing}");
     // One part pushed through the other side.
     let pushed = refused(sphere_like(4, |n| if n.z > 0.8 { [n.x, n.y, n.z - 2.4].into() } else { n }));
     assert!(matches!(pushed, SurfaceProblem::Crossing { .. }), "{pushed}");

@@ -59,8 +59,8 @@ pub enum SurfaceProblem {
         triangles: [u32; 2],
         /// The middle of the first.
         at: Point3,
-        /// Number of such pairs.
-        pairs: usize,
+        /// Number of triangles that cross a later one.
+        places: usize,
     },
     /// A part whose triangles turn the wrong way: clockwise seen from outside, or of a cavity counter-clockwise.
     InsideOut {
@@ -119,8 +119,8 @@ impl fmt::Display for SurfaceProblem {
                 list(triangles),
                 line(ends)
             ),
-            SurfaceProblem::Crossing { triangles, at, pairs } => {
-                let more = if *pairs > 1 { format!(" ({pairs} such pairs)") } else { String::new() };
+            SurfaceProblem::Crossing { triangles, at, places } => {
+                let more = if *places > 1 { format!(" ({places} such places)") } else { String::new() };
                 let triangles = list(triangles);
                 write!(f, "the surface crosses itself: triangles {triangles} do, near {}{more}", point(at))
             }
