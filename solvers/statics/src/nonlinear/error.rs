@@ -58,6 +58,12 @@ pub enum StaticError {
         /// Pressure, Pa.
         pressure: f64,
     },
+    /// No shift of the diagonal makes a tangent definite on the way.
+    #[error(
+        "the body is unstable here: its tangent is not positive definite, not even with the diagonal doubled, and \
+         shows no way down to a stable equilibrium"
+    )]
+    Unstable,
     /// Newton's method did not converge.
     #[error(
         "no equilibrium after {iterations} iterations: relative residual {residual:.2e} (limit {tolerance:.0e}), \
