@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{PRESSED, assert_fails, inside, tissuebench, write};
+use common::{Done, PRESSED, assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -31,20 +31,31 @@ fn bonded_without(words: &[&str]) -> String {
         .collect()
 }
 
+/// The reference of a scene.
+fn made(dir: &TempDir, scene: &str, out: &str) -> Done {
+    let corners = [[5.0, 5.0, 5.0], [30.0, 5.0, 5.0], [5.0, 30.0, 5.0], [5.0, 5.0, 15.0]];
+    let scene = write(dir, "made.toml", scene);
+    let made = tissuebench(&["reference", &scene, "--points", &points(dir, corners), "--out", out]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    made
+}
+
 fn stored(dir: &TempDir) -> String {
     let out = inside(dir, "reference.json");
-    let corners = [[5.0, 5.0, 5.0], [30.0, 5.0, 5.0], [5.0, 30.0, 5.0], [5.0, 5.0, 15.0]];
-    let made = tissuebench(&[
-        "reference",
-        &write(dir, "made.toml", &bonded()),
-        "--points",
-        &points(dir, corners),
-        "--out",
-        &out,
-    ]);
-    assert_eq!(made.code, 0, "{}", made.stderr);
+    let made = made(dir, &bonded(), &out);
+    assert!(!made.stderr.contains("warning"), "{}", made.stderr);
     assert_eq!(made.stdout.lines().count(), 2, "{}", made.stdout);
     out
+}
+
+#[test]
+fn what_is_to_be_said_against_a_reference_is_told_as_it_is_made() {
+    let dir = tempfile::tempdir().unwrap();
+    let far = bonded().replace("\"20 mm\"], along = [0, 0, -1]", "\"30 mm\"], along = [0, 0, -1]");
+    let made = made(&dir, &far, &inside(&dir, "reference.json"));
+    for method in ["hex8", "hex20-mixed"] {
+        assert!(made.stderr.contains(&format!("warning: {method}: key 'tool[0]'")), "{}", made.stderr);
+    }
 }
 
 #[test]

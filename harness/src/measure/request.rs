@@ -5,7 +5,7 @@ use geometry::{Point3, Vector3};
 use interp::Scheme;
 
 use crate::Failure;
-use crate::outcome::{LoadStep, SchemeSettings, Watch};
+use crate::outcome::{LoadStep, SchemeSettings, Warning, Watch};
 
 /// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Reference {
     pub steps: Vec<LoadStep>,
     /// Whether it reached the whole load; if not, only its steps are compared with.
     pub finished: bool,
+    /// What is to be said against it.
+    pub warnings: Vec<Warning>,
     /// Evaluates the reference at any point, m; a stored one knows only the targets.
     pub at: Option<Evaluate>,
 }

@@ -261,6 +261,7 @@ pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Refere
     };
     let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
     let nodes = outcome.size.nodes as usize;
-    let (method, steps, finished) = (outcome.identity.method, outcome.steps, outcome.stalled.is_none());
-    Ok(Reference { method, nodes, targets: points, steps, finished, at: Some(Box::new(at)) })
+    let Outcome { identity, steps, stalled, warnings, .. } = outcome;
+    let (method, finished) = (identity.method, stalled.is_none());
+    Ok(Reference { method, nodes, targets: points, steps, finished, warnings, at: Some(Box::new(at)) })
 }

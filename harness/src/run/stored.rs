@@ -226,6 +226,7 @@ impl Stored {
             targets: at_points.map(|(&x, &u)| mirror.displacement(&x.into(), u.into())).collect(),
             steps: steps.collect(),
             finished: true,
+            warnings: Vec::new(),
             at: None,
         }
     }

@@ -11,7 +11,8 @@ use crate::run::{Group, case_name};
 
 /// A line for those who wait an hour for the end, and all that is left where there is none.
 fn waiting(step: &LoadStep) {
-    let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed);
+    // A sum that is -0 is no less than nothing.
+    let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed + 0.0);
     let tools: String = step.tools.iter().map(force).collect();
     eprintln!("{:6.2} % of the load in {} iterations{tools}", 100.0 * step.load, step.iterations);
 }
@@ -38,6 +39,9 @@ fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stor
     let mirror = Mirror::of(&scene.body);
     let images = points.iter().map(|x| mirror.place(x)).collect();
     let solution = Group::solve_for(scene, method, images, Watch::new(waiting))?;
+    for warning in &solution.warnings {
+        eprintln!("warning: {method}: {}", warning.text());
+    }
     let tool =
         |t: &ToolStep| StoredTool { closure: t.closure, force: t.pushed, low: t.pushed, high: t.pushed };
     let step = |step: &LoadStep| StoredStep {
