@@ -5,7 +5,8 @@ use contact::Drive;
 use shape::Vector3;
 
 use super::{Balance, Descent, Newton, State};
-use crate::nonlinear::Step;
+use crate::SolveError;
+use crate::nonlinear::{StaticError, Step};
 
 /// Strides of a start under displacement control before it is given up: a tool that slips off never reaches its force. Starts of the
 /// kidney between jaws take 10 to 13.
@@ -16,6 +17,33 @@ const SHORTEST: f64 = 0.1;
 const QUICK: usize = 6;
 
 impl Newton<'_> {
+    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, under displacement control.
+    pub fn find(
+        &mut self,
+        start: &State,
+        before: Option<&State>,
+        time: f64,
+        augmentations: usize,
+        descent: Descent,
+    ) -> Result<(State, Step), StaticError> {
+        let step = self.step(start, before, time, augmentations, descent);
+        step.and_then(|reached| self.checked(start, reached))
+            .or_else(|error| match descent {
+                Descent::Smooth | Descent::Nearest => self
+                    .under_displacement_control(start, time, augmentations, descent)
+                    .ok_or(error)
+                    .and_then(|reached| self.checked(start, reached)),
+                Descent::Guarded | Descent::Down => Err(error),
+            })
+            .map_err(|error| match error {
+                // A body that carried something holds together.
+                StaticError::Solve(SolveError::NotPositiveDefinite) if start.time > 0.0 => {
+                    StaticError::Unstable
+                }
+                error => error,
+            })
+    }
+
     /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
     /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
     pub(super) fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {

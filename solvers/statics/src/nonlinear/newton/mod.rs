@@ -19,7 +19,6 @@ use shape::Vector3;
 use self::balance::Balance;
 pub(crate) use self::passage::shortest_travel;
 use self::tangent::Direction;
-use crate::SolveError;
 use crate::body::check_len;
 use crate::load::nodal_forces;
 use crate::nonlinear::error::StaticError;
@@ -315,33 +314,6 @@ impl<'a> Newton<'a> {
     /// The parts of loads, supports and drives at `time`.
     fn scales(&self, time: f64) -> Scales {
         self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
-    }
-
-    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, under displacement control.
-    pub fn find(
-        &mut self,
-        start: &State,
-        before: Option<&State>,
-        time: f64,
-        augmentations: usize,
-        descent: Descent,
-    ) -> Result<(State, Step), StaticError> {
-        let step = self.step(start, before, time, augmentations, descent);
-        step.and_then(|reached| self.checked(start, reached))
-            .or_else(|error| match descent {
-                Descent::Smooth | Descent::Nearest => self
-                    .under_displacement_control(start, time, augmentations, descent)
-                    .ok_or(error)
-                    .and_then(|reached| self.checked(start, reached)),
-                Descent::Guarded | Descent::Down => Err(error),
-            })
-            .map_err(|error| match error {
-                // A body that carried something holds together.
-                StaticError::Solve(SolveError::NotPositiveDefinite) if start.time > 0.0 => {
-                    StaticError::Unstable
-                }
-                error => error,
-            })
     }
 
     /// From `start` to equilibrium at `time`; `before` is the state before `start`, for extrapolation.
