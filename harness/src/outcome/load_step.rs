@@ -34,7 +34,8 @@ impl ToolStep {
         ToolStep {
             closure: state.closure,
             force: state.force,
-            pushed: -state.force.dot(&tool.along()),
+            // Of a tool that touches nothing 0, which a sign in front makes -0.
+            pushed: 0.0 - state.force.dot(&tool.along()),
             active: state.active as u64,
             carriers: state.carriers,
             area: state.area,

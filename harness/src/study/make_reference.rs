@@ -11,8 +11,7 @@ use crate::run::{Group, case_name};
 
 /// A line for those who wait an hour for the end, and all that is left where there is none.
 fn waiting(step: &LoadStep) {
-    // A sum that is -0 is no less than nothing.
-    let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed + 0.0);
+    let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed);
     let tools: String = step.tools.iter().map(force).collect();
     eprintln!("{:6.2} % of the load in {} iterations{tools}", 100.0 * step.load, step.iterations);
 }

@@ -1,4 +1,4 @@
-//! Names that several instances have: they are told apart as Abaqus does, by `INSTANCE.NAME`.
+//! Names that occur in several instances: each becomes `INSTANCE.NAME`, as in Abaqus.
 
 use std::collections::HashSet;
 
@@ -38,13 +38,6 @@ fn capitals<'a>(names: impl Iterator<Item = &'a str>) -> HashSet<String> {
 
 /// The names that are in more than one of the sets.
 fn repeated(sets: impl Iterator<Item = HashSet<String>>) -> HashSet<String> {
-    let (mut known, mut twice) = (HashSet::new(), HashSet::new());
-    for name in sets.flatten() {
-        if known.contains(&name) {
-            twice.insert(name);
-        } else {
-            known.insert(name);
-        }
-    }
-    twice
+    let mut known = HashSet::new();
+    sets.flatten().filter(|name| !known.insert(name.clone())).collect()
 }
