@@ -74,6 +74,52 @@ fn sets_of_the_assembly_keep_their_names() {
     assert_eq!((nodes("Set-1"), nodes("P-1.Set-1")), (vec![0, 2, 3], vec![0, 1, 2]));
 }
 
+/// Abaqus/CAE writes the mesh of an independent instance within it, and its part without any.
+#[test]
+fn the_mesh_of_an_instance_is_its_own() {
+    let body = part("", SETS);
+    let mesh = body.split_once('\n').unwrap().1.replace("*END PART\n", "");
+    let independent =
+        |name: &str, shift: &str| format!("*INSTANCE, NAME={name}, PART=P\n{shift}{mesh}*END INSTANCE\n");
+    let around = |placed: &str| {
+        format!(
+            "*PART, NAME=P\n*END PART\n*ASSEMBLY, NAME=all\n{placed}*NSET, NSET=tip, INSTANCE=a\n1, 3, 4\n*END ASSEMBLY\n"
+        )
+    };
+    let one = deck(&around(&independent("a", "5., 0., 0.\n"))).unwrap();
+    assert_eq!(one.region_names(), ["Set-1"]);
+    assert_eq!(groups(&one), [("Set-1", 1), ("Surf-1", 1), ("tip", 1)]);
+    assert_eq!(one.points()[3], geometry::Point3::new(5.0, 0.0, 1.0));
+    let two = deck(&around(&(independent("a", "") + &independent("b", "2., 0., 0.\n")))).unwrap();
+    assert_eq!(two.region_names(), ["a.Set-1", "b.Set-1"]);
+    assert_eq!((two.cell_count(), two.points()[7].x), (2, 2.0));
+    // Sets that an instance adds to the mesh of its part.
+    let twice = [("a", "P"), ("b", "P")];
+    let added = assembly(&part("P", SETS), &twice, "").replacen(
+        "*END INSTANCE",
+        "*NSET, NSET=more\n2, 3, 4\n*END INSTANCE",
+        1,
+    );
+    let mesh = deck(&added).unwrap();
+    assert_eq!(
+        groups(&mesh),
+        [("a.Set-1", 1), ("a.Surf-1", 1), ("b.Set-1", 1), ("b.Surf-1", 1), ("more", 1)]
+    );
+    assert_eq!(mesh.facet_group_nodes(mesh.group("more").unwrap()), [1, 2, 3]);
+    let changes = [
+        (
+            "*END INSTANCE\n*NSET, NSET=tip",
+            "*NSET, NSET=tip",
+            "deck.inp:4: expected *END INSTANCE, found 'instance a is still open'",
+        ),
+        ("1, 2, 3\n", "1, 2, 9\n", "deck.inp:13: node set 'Set-1' names node 9"),
+        ("*END INSTANCE", "*END PART", "expected *PART before *END PART, found 'none'"),
+        ("*END INSTANCE", "*INSTANCE, NAME=b, PART=P", "expected *END INSTANCE before the next *INSTANCE"),
+    ];
+    let text = around(&independent("a", ""));
+    assert_refused(&text, changes.map(|(from, to, says)| (from, to, [says.into()])), |text| deck(text).err());
+}
+
 /// Three hexahedra in a row along x.
 const ROW: &str = "*NODE
 1, 0, 0, 0

@@ -32,6 +32,13 @@ fn instances_do_not_multiply_a_small_part() {
         refusal(&format!("{part}*ASSEMBLY,NAME=a\n{each}*END ASSEMBLY\n"))
     };
     assert_eq!(placed(3), "12 nodes");
+    let added = |count: usize| {
+        let nodes: String = (1..=1000).map(|k| format!("{k},{k},{},{}\n", k % 7, k % 5)).collect();
+        let each =
+            (0..count).map(|k| format!("*INSTANCE,NAME=i{k},PART=p\n*NSET,NSET=n\n1\n*END INSTANCE\n"));
+        refusal(&format!("*PART,NAME=p\n*NODE\n{nodes}*END PART\n{}", each.collect::<String>()))
+    };
+    assert!(added(9000).contains("too many nodes and elements placed by *INSTANCE"), "{}", added(9000));
     assert!(placed(9000).contains("too many nodes and elements placed by *INSTANCE"), "{}", placed(9000));
 }
 

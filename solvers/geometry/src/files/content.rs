@@ -11,7 +11,7 @@ use super::rows::Row;
 use crate::{CellKind, Facet, Mesh, Point3};
 
 /// What a file holds so far. Nodes and elements are named by the file's own numbers.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Content {
     node_numbers: Numbers,
     points: Vec<Point3>,
@@ -40,6 +40,7 @@ pub(super) enum Named {
 }
 
 /// A group that has the free faces of some cells, known when all cells are.
+#[derive(Clone)]
 struct Free {
     place: Place,
     group: usize,
@@ -57,6 +58,7 @@ pub(super) enum Unused {
 pub(super) const NO_REGION: u16 = u16::MAX;
 
 /// A surface element waiting for its cell; corners sorted, filled up with `u32::MAX`.
+#[derive(Clone)]
 struct Face {
     place: Place,
     element: u64,

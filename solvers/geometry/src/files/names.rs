@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// Names in the order in which they come: a file may have thousands.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Names {
     pub(super) list: Vec<String>,
     places: HashMap<String, usize>,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// Numbers to places. Most files count 1, 2, 3, ..: such a run takes no table.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Numbers {
     first: u64,
     run: u64,

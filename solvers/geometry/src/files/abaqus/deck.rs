@@ -15,6 +15,9 @@ use crate::{Point3, Vector3};
 /// Nodes, nodes of elements and members of sets that instances may place, whatever the size of the deck.
 const MOST_PLACED: usize = 1 << 23;
 
+/// What adds to the part of the instance that it stands in.
+const ADDED: [&str; 6] = ["NODE", "ELEMENT", "ELSET", "NSET", "SURFACE", "SOLID SECTION"];
+
 /// Files that include files: a deck that includes itself ends here.
 pub(super) const DEEPEST: usize = 8;
 
@@ -24,6 +27,10 @@ pub(super) struct Deck {
     flat: Scope,
     /// The part that is being read.
     open: Option<(String, Scope)>,
+    /// Whether the last instance is being read.
+    placing: bool,
+    /// Extent of the parts that instances add to.
+    copied: usize,
     parts: Vec<(String, Scope)>,
     instances: Vec<Instance>,
     /// Sets and surfaces of the assembly.
@@ -46,6 +53,8 @@ impl Deck {
             folder: folder.into(),
             flat: Scope::default(),
             open: None,
+            placing: false,
+            copied: 0,
             parts: Vec::new(),
             instances: Vec::new(),
             waiting: Vec::new(),
@@ -66,6 +75,9 @@ impl Deck {
     }
 
     fn card(&mut self, card: &Card, depth: usize) -> Parsed<()> {
+        if self.placing && self.open.is_none() && ADDED.contains(&card.keyword.as_str()) {
+            self.open = Some(self.own_part(card.place)?);
+        }
         let placed = !self.instances.is_empty() && self.open.is_none();
         let scope = self.open.as_mut().map_or(&mut self.flat, |(_, scope)| scope);
         match card.keyword.as_str() {
@@ -90,6 +102,10 @@ impl Deck {
             }
             "END PART" => self.close_part(card.place),
             "INSTANCE" => self.instance(card),
+            "END INSTANCE" => {
+                self.close_instance();
+                Ok(())
+            }
             "STEP" => {
                 self.ended = true;
                 Ok(())
@@ -111,17 +127,39 @@ impl Deck {
     }
 
     fn close_part(&mut self, place: Place) -> Parsed<()> {
-        let Some((name, mut scope)) = self.open.take() else {
+        let Some(part) = self.open.take().filter(|_| !self.placing) else {
             let expected = "*PART before *END PART";
             return Err((place, Problem::Expected { expected, found: "none".into() }));
         };
-        scope.close()?;
-        self.parts.push((name, scope));
+        self.parts.push(part);
         Ok(())
+    }
+
+    /// What an instance adds to its part makes a part of its own.
+    fn own_part(&mut self, place: Place) -> Parsed<(String, Scope)> {
+        let part = &self.parts[self.instances.last().map_or(0, |instance| instance.part)];
+        self.copied += part.1.content.extent();
+        if self.copied > MOST_PLACED {
+            let what = "nodes and elements placed by *INSTANCE";
+            return Err((place, Problem::TooMany { what, count: self.copied }));
+        }
+        Ok(part.clone())
+    }
+
+    fn close_instance(&mut self) {
+        self.placing = false;
+        if let (Some(part), Some(instance)) = (self.open.take(), self.instances.last_mut()) {
+            instance.part = self.parts.len();
+            self.parts.push(part);
+        }
     }
 
     /// `*INSTANCE, NAME, PART` with a shift, and a line to turn about with an angle in degrees.
     fn instance(&mut self, card: &Card) -> Parsed<()> {
+        if self.placing {
+            let expected = "*END INSTANCE before the next *INSTANCE";
+            return Err((card.place, Problem::Expected { expected, found: "none".into() }));
+        }
         let name = card.need("PART")?;
         let part = self.parts.iter().position(|(known, _)| known.eq_ignore_ascii_case(name));
         let part = part.ok_or_else(|| {
@@ -159,6 +197,7 @@ impl Deck {
             return Err((card.place, Problem::SameInstance { name }));
         }
         self.instances.push(Instance { place: card.place, name, part, moved, turned });
+        self.placing = true;
         Ok(())
     }
 
@@ -185,7 +224,7 @@ impl Deck {
     /// Refuses instances that make a mesh of eight million numbers and more out of a small deck.
     fn few_enough(&self) -> Parsed<()> {
         let written: usize = self.parts.iter().map(|(_, part)| part.content.extent()).sum();
-        let most = MOST_PLACED.max(8 * written);
+        let most = MOST_PLACED.max(8 * (written - self.copied));
         let mut placed = 0;
         for instance in &self.instances {
             placed += self.parts[instance.part].1.content.extent();
@@ -200,11 +239,16 @@ impl Deck {
     /// The whole mesh: the instances, or the flat deck.
     pub(super) fn finish(mut self) -> Parsed<Content> {
         let end = Place::Line(1);
+        if let Some(instance) = self.instances.last().filter(|_| self.placing) {
+            let found = format!("instance {} is still open", instance.name);
+            return Err((instance.place, Problem::Expected { expected: "*END INSTANCE", found }));
+        }
         if let Some((name, _)) = &self.open {
             let found = format!("part {name} is still open");
             return Err((end, Problem::Expected { expected: "*END PART", found }));
         }
         self.flat.close()?;
+        self.parts.iter_mut().try_for_each(|(_, part)| part.close())?;
         let mut whole = std::mem::take(&mut self.flat.content);
         if self.instances.is_empty() && self.parts.len() == 1 {
             // A part that is placed nowhere is meant as it is.

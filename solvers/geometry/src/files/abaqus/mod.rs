@@ -1,7 +1,7 @@
 //! Abaqus and CalculiX .inp decks: the mesh with its sets and surfaces, flat or in parts and instances.
 //!
 //! An element's region is the set of its `*SOLID SECTION`; without sections the smallest set it is in, of equally large ones the last;
-//! else "body". `*SURFACE`, `*NSET` and sets of shells on the faces of solids become facet groups. What several instances call the same
+//! else "body". What an instance adds to its part, be it the whole mesh, is its own. `*SURFACE`, `*NSET` and sets of shells on the faces of solids become facet groups. What several instances call the same
 //! is named `INSTANCE.NAME`. Reading ends at the first `*STEP`;
 //! before it a keyword that neither program has is refused. (Abaqus keywords reference; CalculiX
 //! CrunchiX manual, chapter 7.)

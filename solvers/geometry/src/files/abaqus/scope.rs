@@ -11,7 +11,7 @@ use super::ranges::Range;
 use crate::{CellKind, Point3};
 
 /// Nodes, elements and what names them. Names count without their case; what is kept is as first written.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Scope {
     pub(super) content: Content,
     kinds: Vec<CellKind>,
@@ -26,7 +26,7 @@ pub(super) struct Scope {
 }
 
 /// Members by name in capitals, with the name as written.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Sets {
     lists: HashMap<String, (String, Vec<u64>)>,
     order: Vec<String>,
