@@ -140,6 +140,8 @@ pub enum Body {
     Kidney {
         /// Only z >= 0, in cells drawn together around the z axis.
         half: bool,
+        /// These cells are drawn together less.
+        mildly_graded: bool,
     },
     /// The mesh of a file.
     File(MeshFile),
@@ -163,8 +165,8 @@ impl Body {
         let (parts, further): (&[_], &[_]) = match self {
             Body::Box { .. } => (&surfaces::BOX, &[]),
             Body::Cylinder { .. } => (&surfaces::CYLINDER, &[]),
-            Body::Ball { .. } | Body::Kidney { half: false } => (&surfaces::BALL, &[]),
-            Body::Kidney { half: true } => (&surfaces::BALL, &surfaces::HALF),
+            Body::Ball { .. } | Body::Kidney { half: false, .. } => (&surfaces::BALL, &[]),
+            Body::Kidney { half: true, .. } => (&surfaces::BALL, &surfaces::HALF),
             Body::SphereShell { octant: false, .. } => (&surfaces::SHELL, &[]),
             Body::SphereShell { octant: true, .. } => (&surfaces::SHELL, &surfaces::OCTANT),
             Body::File(_) => return None,

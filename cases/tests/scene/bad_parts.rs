@@ -18,6 +18,15 @@ fn one_mistake_gives_one_message() {
 }
 
 #[test]
+fn only_half_a_kidney_is_graded() {
+    let body = &SCENE[SCENE.find("[body]").expect("body")..SCENE.find("[material]").expect("material")];
+    let text = edited(body, "[body]\nshape = \"kidney\"\nmildly_graded = true\n");
+    let errors = parse(&text, "s.toml").expect_err("a whole kidney");
+    let graded = errors.iter().find(|e| e.key == "body.mildly_graded").expect("refused");
+    assert_eq!(graded.problem, "is for the half alone");
+}
+
+#[test]
 fn all_mistakes_of_a_file_are_told_in_the_order_of_its_lines() {
     let text = edited("young = \"20 kPa\"", "young = 20\ncolour = 1").replace("fix = \"xyz\"", "fix = 3");
     let errors = parse(&text, "s.toml").expect_err("three mistakes");

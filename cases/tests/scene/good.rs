@@ -411,6 +411,7 @@ fn all_shapes_and_laws_are_read() {
         "shape = \"ball\"\nradius = \"10 mm\"",
         "shape = \"sphere-shell\"\ninner = \"1 cm\"\nouter = \"2 cm\"\noctant = true",
         "shape = \"kidney\"",
+        "shape = \"kidney\"\nhalf = true\nmildly_graded = true",
         "shape = \"box\"\nsize = [\"1 mm\", \"1 mm\", \"1 mm\"]",
     ] {
         // Surfaces of a box are none of these shapes'.

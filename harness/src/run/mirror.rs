@@ -11,7 +11,7 @@ pub(crate) struct Mirror {
 
 impl Mirror {
     pub(crate) fn of(body: &Body) -> Mirror {
-        Mirror { half: matches!(body, Body::Kidney { half: true }) }
+        Mirror { half: matches!(body, Body::Kidney { half: true, .. }) }
     }
 
     /// The point of the body that stands for `x`.

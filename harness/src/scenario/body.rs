@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
-    self, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh, kidney_mesh,
-    raise_order, sphere_shell_mesh,
+    self, Drawn, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
+    kidney_mesh, raise_order, sphere_shell_mesh,
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
@@ -37,8 +37,8 @@ pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
         Body::Cylinder { radius, height } => Some(Arc::new(Cylinder { radius, height })),
         Body::Ball { radius } => Some(Arc::new(Ball { radius })),
         Body::SphereShell { inner, outer, octant: false } => Some(Arc::new(SphereShell { inner, outer })),
-        Body::Kidney { half: false } => Some(Arc::new(Kidney)),
-        Body::Kidney { half: true } => Some(Arc::new(HalfKidney)),
+        Body::Kidney { half: false, .. } => Some(Arc::new(Kidney)),
+        Body::Kidney { half: true, .. } => Some(Arc::new(HalfKidney)),
         Body::SphereShell { octant: true, .. } | Body::File(_) => None,
     }
 }
@@ -89,8 +89,11 @@ pub(super) fn unchecked(
                 let extent = if octant { ShellExtent::Octant } else { ShellExtent::Whole };
                 sphere_shell_mesh(kind, inner, outer, [n, n], 1.0, extent)
             }
-            Body::Kidney { half: false } => kidney_mesh(kind, n),
-            Body::Kidney { half: true } => half_kidney_mesh(kind, n),
+            Body::Kidney { half: false, .. } => kidney_mesh(kind, n),
+            Body::Kidney { half: true, mildly_graded } => {
+                let drawn = if mildly_graded { Drawn::Mildly } else { Drawn::Strongly };
+                half_kidney_mesh(kind, n, drawn)
+            }
             Body::File(_) => unreachable!("returned above"),
         };
         let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;

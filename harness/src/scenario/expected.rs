@@ -62,9 +62,9 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
         Body::Cylinder { radius, height } => {
             (n * n + 4.0 * n * layers) * (height / radius * n).round().max(1.0)
         }
-        Body::Ball { .. } | Body::Kidney { half: false } => n * n * n + 6.0 * n * n * layers,
-        // 3 n by 7 n / 2 by n cells with n layers around them, and the half of it.
-        Body::Kidney { half: true } => 20.0 * n * n * n,
+        Body::Ball { .. } | Body::Kidney { half: false, .. } => n * n * n + 6.0 * n * n * layers,
+        // 3 n by 7 n / 2 by n cells with n layers around them, and the half of it; drawn mildly there are a quarter more.
+        Body::Kidney { half: true, .. } => 20.0 * n * n * n,
         Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
         Body::File(_) => return of_spacing(body, kind, narrowest(body) / n),
     };
@@ -121,8 +121,9 @@ mod tests {
             Body::Box { min: [0.0; 3], max: [0.02, 0.05, 0.01] },
             Body::Cylinder { radius: 0.01, height: 0.05 },
             Body::Ball { radius: 0.01 },
-            Body::Kidney { half: false },
-            Body::Kidney { half: true },
+            Body::Kidney { half: false, mildly_graded: false },
+            Body::Kidney { half: true, mildly_graded: false },
+            Body::Kidney { half: true, mildly_graded: true },
             Body::SphereShell { inner: 0.01, outer: 0.03, octant: true },
             Body::SphereShell { inner: 0.01, outer: 0.03, octant: false },
         ];

@@ -12,7 +12,7 @@ mod lattice;
 mod shell;
 pub mod surfaces;
 
-pub use ball::{ball_mesh, half_kidney_mesh, kidney_mesh};
+pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};
 pub use convert::{raise_order, to_tets};
 pub use cylinder::cylinder_mesh;

@@ -268,7 +268,8 @@ fn sizes_spend_the_nodes_where_the_error_is() {
 #[test]
 fn half_kidney_samples_are_uniform() {
     let mut unit = numbers(11);
-    let mesh = geometry::generate::half_kidney_mesh(CellKind::Tet4, 8).unwrap();
+    let mesh =
+        geometry::generate::half_kidney_mesh(CellKind::Tet4, 8, geometry::generate::Drawn::Strongly).unwrap();
     let area = |group| -> f64 {
         let facets = mesh.group(group).unwrap().iter();
         let corners = facets.map(|&f| mesh.facet_nodes(f).map(|n| mesh.points()[n as usize]).collect());

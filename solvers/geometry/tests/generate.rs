@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use geometry::generate::{
-    GenerateError, Jitter, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh, kidney_mesh,
-    raise_order, sphere_shell_mesh, to_tets,
+    Drawn, GenerateError, Jitter, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
+    kidney_mesh, raise_order, sphere_shell_mesh, to_tets,
 };
 use geometry::shapes::{Kidney, Shape};
 use geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
@@ -26,8 +26,9 @@ fn bodies(kind: CellKind) -> Vec<(&'static str, Mesh, f64)> {
         ("shell", shell(ShellExtent::Whole), shell_volume),
         ("octant", shell(ShellExtent::Octant), shell_volume / 8.0),
         ("kidney", kidney_mesh(kind, 4).unwrap(), 4.0 / 3.0 * PI * 1e-5),
-        ("half kidney", half_kidney_mesh(kind, 2).unwrap(), 2.0 / 3.0 * PI * 1e-5),
-        ("half kidney, odd", half_kidney_mesh(kind, 3).unwrap(), 2.0 / 3.0 * PI * 1e-5),
+        ("half kidney", half_kidney_mesh(kind, 2, Drawn::Strongly).unwrap(), 2.0 / 3.0 * PI * 1e-5),
+        ("half kidney, odd", half_kidney_mesh(kind, 3, Drawn::Strongly).unwrap(), 2.0 / 3.0 * PI * 1e-5),
+        ("half kidney, mildly", half_kidney_mesh(kind, 2, Drawn::Mildly).unwrap(), 2.0 / 3.0 * PI * 1e-5),
     ]
 }
 

@@ -105,6 +105,9 @@ pub(crate) enum BodyKeys {
         #[serde(default)]
         #[schemars(extend("x-surfaces" = surfaces::HALF))]
         half: bool,
+        /// Of the half: its meshes are drawn together less under the jaw's edges, for meshes so fine that thin cells fold (10,000 nodes)
+        #[serde(default)]
+        mildly_graded: bool,
     },
     /// The mesh of a file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its surfaces itself; or a closed surface (STL, OBJ,
     /// PLY)

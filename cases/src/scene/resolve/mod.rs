@@ -167,7 +167,11 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
             report.require(outer > inner, "body.outer", "is not above inner", "the wall needs a thickness");
             Body::SphereShell { inner, outer, octant }
         }
-        BodyKeys::Kidney { half } => Body::Kidney { half },
+        BodyKeys::Kidney { half, mildly_graded } => {
+            let help = "leave it out, or add half = true: cells of the whole kidney are not drawn together";
+            report.require(half || !mildly_graded, "body.mildly_graded", "is for the half alone", help);
+            Body::Kidney { half, mildly_graded }
+        }
         BodyKeys::File { path, unit } => Body::File(mesh_file(&path, unit.0, "body.path", report)),
     })
 }

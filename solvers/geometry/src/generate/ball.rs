@@ -31,17 +31,43 @@ pub fn kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
     Ok(mesh)
 }
 
+/// How far the cells of [`half_kidney_mesh`] are drawn together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// To 0.27 of equal cells under the jaw's edges and to 0.30 under the surface: the most that a coarse mesh can do. `3 n` and `7 n / 2`
+    /// cells across the inner block along x and y, `(n - 1) / 2` from z = 0 to its top, and `n` layers around it.
+    ///
+    /// Between jaws that close by 7 mm, the force by 5,149 nodes of hex20 is within 0.5 % of that by four times as many, drawn mildly,
+    /// from 1.4 mm on. Finer ones fold: on 11,216 nodes hex20-p1 was unstable from 6.0 mm on, hex20-reduced turned inside out at 6.3 mm.
+    Strongly,
+    /// To 0.38 and 0.55: for fine meshes, of which cells so thin fold. `16 n / 5`, `4 n`, `3 n / 5` and `4 n / 5`.
+    Mildly,
+}
+
+impl Drawn {
+    /// Cells across the inner block, of both halves along z, and layers around it; each at least 1 on a side.
+    fn cells(self, n: usize) -> ([usize; 3], usize) {
+        match self {
+            Drawn::Strongly => ([3 * n, 7 * n / 2, 2 * (n.saturating_sub(1) / 2).max(1)], n),
+            Drawn::Mildly => ([16 * n / 5, 4 * n, 2 * (3 * n / 5).max(1)], (4 * n / 5).max(1)),
+        }
+    }
+
+    /// Strengths of [`towards_edge`] and [`towards_surface`].
+    fn strengths(self) -> [f64; 2] {
+        match self {
+            Drawn::Strongly => [6.0, 3.0],
+            Drawn::Mildly => [5.0, 2.0],
+        }
+    }
+}
+
 /// The half z >= 0 of the kidney, cells drawn together under the surface and under the edges of a jaw of 10 x 20 mm
-/// on the z axis: `3 n` and `7 n / 2` cells across the inner block along x and y, `(n - 1) / 2` from z = 0 to its top, and `n`
-/// layers around it (rounded down, and at least 1). Facet groups: "surface", and "symmetry" at z = 0.
-///
-/// Between jaws that close by 7 mm, the force by 5,149 nodes of hex20 is within 0.4 % of that by five times as many from 1.4 mm on. One
-/// layer in the core for `n = 5` is too few: hex20 with reduced integration folded at 6.5 mm.
-pub fn half_kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
+/// on the z axis, `n` about half of those across the jaw. Facet groups: "surface", and "symmetry" at z = 0.
+pub fn half_kidney_mesh(kind: CellKind, n: usize, drawn: Drawn) -> Result<Mesh, GenerateError> {
     check_cells("the number of cells across the jaw", n)?;
-    let [x, y] = [3 * n, 7 * n / 2];
-    let half = (n.saturating_sub(1) / 2).max(1);
-    let blocks = Blocks { cells: [x, y, 2 * half], layers: n, jaw: true };
+    let (cells, layers) = drawn.cells(n);
+    let blocks = Blocks { cells, layers, jaw: Some(drawn) };
     let mesh = parameter_ball(kind, blocks)?.moved(|p| Kidney.map(&onto_ball(p)))?;
     quality::check(&mesh)?;
     Ok(mesh)
@@ -54,13 +80,13 @@ struct Blocks {
     cells: [usize; 3],
     /// Layers around it.
     layers: usize,
-    /// Whether only the half above z = 0 is wanted, graded towards a jaw on it; `cells[2]` is even then.
-    jaw: bool,
+    /// If only the half above z = 0 is wanted, graded towards a jaw on it; `cells[2]` is even then.
+    jaw: Option<Drawn>,
 }
 
 fn unit_ball(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
     check_cells("the number of cells across the ball", n)?;
-    let mesh = parameter_ball(kind, Blocks { cells: [n; 3], layers: n.div_ceil(2), jaw: false })?;
+    let mesh = parameter_ball(kind, Blocks { cells: [n; 3], layers: n.div_ceil(2), jaw: None })?;
     Ok(mesh.moved(onto_ball)?)
 }
 
@@ -69,7 +95,7 @@ fn parameter_ball(kind: CellKind, blocks: Blocks) -> Result<Mesh, GenerateError>
     let Blocks { cells: [nx, ny, nz], layers, jaw } = blocks;
     check_total([nx, ny, nz + 6 * layers])?;
     let mut mesh = lattice::Lattice::default();
-    let below = if jaw { nz / 2 } else { 0 };
+    let below = jaw.map_or(0, |_| nz / 2);
     let mut add = |corners: [lattice::Key; 8]| {
         if corners.iter().all(|c| c[2] as usize >= below) {
             mesh.hexahedron(corners, |key| parameters(key, blocks));
@@ -92,7 +118,7 @@ fn parameter_ball(kind: CellKind, blocks: Blocks) -> Result<Mesh, GenerateError>
     let surface = |q: &Point3| q.coords.amax() == 1.0;
     let symmetry = |q: &Point3| q.z == 0.0;
     let groups: [lattice::Group; 2] = [(surfaces::BALL[0], &surface), (surfaces::HALF[0], &symmetry)];
-    Ok(into_kind(mesh.finish(&groups[..1 + jaw as usize])?, kind))
+    Ok(into_kind(mesh.finish(&groups[..1 + jaw.is_some() as usize])?, kind))
 }
 
 /// Key (i, j, k, layer) to the parameter cube: layer 0 is the inner cube, the last layer the surface.
@@ -100,8 +126,11 @@ fn parameters(key: lattice::Key, blocks: Blocks) -> Point3 {
     let out = key[3] as f64 / blocks.layers as f64;
     let across = |d: usize| 2.0 * key[d] as f64 / blocks.cells[d] as f64 - 1.0;
     let (out, [x, y]) = match blocks.jaw {
-        true => (towards_surface(out), [across(0), across(1)].map(towards_edge)),
-        false => (out, [across(0), across(1)]),
+        Some(drawn) => {
+            let [edge, surface] = drawn.strengths();
+            (towards_surface(out, surface), [across(0), across(1)].map(|u| towards_edge(u, edge)))
+        }
+        None => (out, [across(0), across(1)]),
     };
     Point3::from((INNER + (1.0 - INNER) * out) * Vector3::new(x, y, across(2)))
 }
@@ -110,19 +139,16 @@ fn parameters(key: lattice::Key, blocks: Blocks) -> Point3 {
 /// are the parameters 0.26 and 0.29 to 0.37 and 0.35. Of 0.27 to 0.36 the force was least off, by 1.0 %, with 0.30 (3,519 nodes).
 const EDGE: f64 = 0.30;
 
-/// Draws [-1, 1] together around +-[`EDGE`], to 0.27 of equal cells there (Roberts 1971, as in Tannehill, Anderson &
-/// Pletcher 1997, section 5.6).
-fn towards_edge(u: f64) -> f64 {
-    const STRENGTH: f64 = 6.0;
-    let at = 0.5 / STRENGTH * ((1.0 + STRENGTH.exp_m1() * EDGE) / (1.0 + (-STRENGTH).exp_m1() * EDGE)).ln();
-    let share = EDGE * (1.0 + (STRENGTH * (u.abs() - at)).sinh() / (STRENGTH * at).sinh());
+/// Draws [-1, 1] together around +-[`EDGE`] (Roberts 1971, as in Tannehill, Anderson & Pletcher 1997, section 5.6).
+fn towards_edge(u: f64, strength: f64) -> f64 {
+    let at = 0.5 / strength * ((1.0 + strength.exp_m1() * EDGE) / (1.0 + (-strength).exp_m1() * EDGE)).ln();
+    let share = EDGE * (1.0 + (strength * (u.abs() - at)).sinh() / (strength * at).sinh());
     if u.abs() == 1.0 { u } else { share.copysign(u) }
 }
 
-/// Draws [0, 1] together towards 1, to 0.30 of equal cells there.
-fn towards_surface(t: f64) -> f64 {
-    const STRENGTH: f64 = 3.0;
-    1.0 - (STRENGTH * (1.0 - t)).sinh() / STRENGTH.sinh()
+/// Draws [0, 1] together towards 1.
+fn towards_surface(t: f64, strength: f64) -> f64 {
+    1.0 - (strength * (1.0 - t)).sinh() / strength.sinh()
 }
 
 /// The parameter cube onto the unit ball: continuous, smooth within each of the seven blocks.
