@@ -224,7 +224,7 @@ impl Deck {
     /// Refuses instances that make a mesh of eight million numbers and more out of a small deck.
     fn few_enough(&self) -> Parsed<()> {
         let written: usize = self.parts.iter().map(|(_, part)| part.content.extent()).sum();
-        let most = MOST_PLACED.max(8 * (written - self.copied));
+        let most = MOST_PLACED.max(8 * written.saturating_sub(self.copied));
         let mut placed = 0;
         for instance in &self.instances {
             placed += self.parts[instance.part].1.content.extent();
