@@ -114,6 +114,7 @@ fn the_mesh_of_an_instance_is_its_own() {
         ),
         ("1, 2, 3\n", "1, 2, 9\n", "deck.inp:13: node set 'Set-1' names node 9"),
         ("*END INSTANCE", "*END PART", "expected *PART before *END PART, found 'none'"),
+        ("*END INSTANCE", "*PART, NAME=Q", "expected *END INSTANCE before the next *PART"),
         ("*END INSTANCE", "*INSTANCE, NAME=b, PART=P", "expected *END INSTANCE before the next *INSTANCE"),
     ];
     let text = around(&independent("a", ""));

@@ -96,6 +96,10 @@ impl Deck {
             "SURFACE" => scope.surface(card),
             "SOLID SECTION" => scope.section(card),
             "INCLUDE" => self.include(card, depth),
+            "PART" if self.placing => {
+                let expected = "*END INSTANCE before the next *PART";
+                Err((card.place, Problem::Expected { expected, found: "none".into() }))
+            }
             "PART" => {
                 self.open = Some((card.need("NAME")?.into(), Scope::default()));
                 Ok(())
