@@ -74,7 +74,7 @@ impl Mesh {
     fn read(py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<Mesh> {
         let unit = metres(py, unit)?;
         let read = py.detach(|| files::read(&path, unit));
-        let mesh = read.map_err(|bad| input(py, &format!("{}: {bad}", path.display())))?;
+        let mesh = read.map_err(|bad| input(py, &bad.to_string()))?;
         Ok(Mesh { mesh: Arc::new(mesh) })
     }
 

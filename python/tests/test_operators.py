@@ -30,6 +30,9 @@ def test_a_mesh_goes_to_a_file_and_back(tmp_path):
         tb.Mesh(points, [[0, 1, 2, 3, 4]])
     with pytest.raises(tb.SceneError, match="unit"):
         tb.Mesh.read(tmp_path / "a.msh", unit="inch")
+    with pytest.raises(tb.SceneError) as none:
+        tb.Mesh.read(tmp_path / "none.msh")
+    assert str(none.value).count("none.msh") == 1
 
 
 @pytest.mark.parametrize("method", ["tet4", "hex8", "hex20", "efg"])

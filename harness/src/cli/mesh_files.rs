@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use geometry::files::{Format, GmshVersion};
-use geometry::generate::{raise_order, to_tets};
+use geometry::generate::converted;
 use geometry::{CellKind, Mesh, files, quality};
 
 use super::mesh_info::info;
@@ -63,16 +63,12 @@ pub(super) fn input(error: impl std::fmt::Display) -> Failure {
 }
 
 fn into(mesh: &Mesh, name: &str) -> Result<Mesh, Failure> {
-    let is = |kinds: &[CellKind]| (0..mesh.cell_count()).all(|c| kinds.contains(&mesh.kind(c)));
+    let Some(kind) = CellKind::ALL.into_iter().find(|kind| kind.name() == name) else {
+        let problem = format!("no element '{name}'; there are tet4, tet10, hex8 and hex20");
+        return Err(Failure::Input(problem));
+    };
     let from = mesh.uniform_kind().map_or("mixed", CellKind::name);
-    match name {
-        _ if mesh.uniform_kind().is_some_and(|k| k.name() == name) => Ok(mesh.clone()),
-        "tet4" => Ok(to_tets(mesh)),
-        "tet10" if is(&[CellKind::Tet4, CellKind::Hex8]) => Ok(raise_order(&to_tets(mesh))),
-        "hex20" if is(&[CellKind::Hex8]) => Ok(raise_order(mesh)),
-        "tet10" | "hex8" | "hex20" => Err(Failure::Input(format!("{from} cells do not convert to {name}"))),
-        _ => Err(Failure::Input(format!("no element '{name}'; there are tet4, tet10, hex8 and hex20"))),
-    }
+    converted(mesh, kind).ok_or_else(|| Failure::Input(format!("{from} cells do not convert to {name}")))
 }
 
 pub(super) fn row(name: &str, value: &str) {

@@ -94,6 +94,11 @@ pub(super) fn waited_for(id: u32) -> Option<f64> {
     Some(seconds(&fields(id)?, TIMES_OF_CHILDREN))
 }
 
+/// Seconds that the system has worked for a process, to a hundredth.
+pub(super) fn by_the_system(id: u32) -> Option<f64> {
+    Some(fields(id)?.get(OWN_TIMES[1])? / TICKS_PER_SECOND)
+}
+
 fn seconds(fields: &[f64], of: [usize; 2]) -> f64 {
     of.iter().filter_map(|&at| fields.get(at)).sum::<f64>() / TICKS_PER_SECOND
 }

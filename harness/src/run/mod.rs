@@ -21,10 +21,11 @@ use crate::measure::{
     places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface, transfers,
     warnings,
 };
-use crate::outcome::timing::Timed;
+use crate::outcome::timing::{Timed, Timings};
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
 use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
+use crate::process;
 use crate::scenario::setup::Setup;
 use memory::Baseline;
 use repeated::repeated;
@@ -104,7 +105,15 @@ struct Pass {
     solution: Solution,
 }
 
+/// Share of a pass's processor time that went to the system from which on the pass was the first to use memory, and the least that is one:
+/// times of the system are known to a hundredth of a second.
+const FIRST_USE: f64 = 0.25;
+const LEAST_FIRST_USE: f64 = 0.03;
+
 /// The timed part, as often as it is repeated; the counters are those of the last pass.
+///
+/// A pass that first uses memory is taken once more and not timed. The host of a virtual machine takes back what is not in use: there a
+/// first use took 1.5 to 2 s per GB, a second one 0.05 to 0.3, and the rows of a cloud of 97,336 nodes 1.7 s, not 0.47.
 fn passes(
     method: &Discretisation,
     setup: &Setup,
@@ -112,8 +121,16 @@ fn passes(
     request: &Request,
     meters: &mut Meters,
 ) -> Result<Pass, Failure> {
-    let start = Instant::now();
+    let before = process::system_seconds();
+    let mut start = Instant::now();
     let mut pass = once(method, setup, plan, request, meters)?;
+    let repeats = request.repeats.most > 1 && method.outside.is_none();
+    if repeats && is_first_use(before, process::system_seconds(), &meters.timings.total().cpu) {
+        drop(pass);
+        meters.timings = Timings::default();
+        start = Instant::now();
+        pass = once(method, setup, plan, request, meters)?;
+    }
     for _ in 1..request.repeats.most {
         if start.elapsed().as_secs_f64() > request.repeats.seconds {
             break;
@@ -123,6 +140,12 @@ fn passes(
         pass = once(method, setup, plan, request, meters)?;
     }
     Ok(pass)
+}
+
+/// Whether a pass of so many seconds of the processors was the first to use its memory, by the system's seconds before and after it.
+fn is_first_use(before: Option<f64>, after: Option<f64>, spent: &[f64]) -> bool {
+    let system = after.zip(before).map_or(0.0, |(after, before)| after - before);
+    system >= LEAST_FIRST_USE && system > FIRST_USE * spent.iter().sum::<f64>()
 }
 
 fn once(
@@ -264,4 +287,17 @@ pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Refere
     let Outcome { identity, steps, stalled, warnings, .. } = outcome;
     let (method, finished) = (identity.method, stalled.is_none());
     Ok(Reference { method, nodes, targets: points, steps, finished, warnings, at: Some(Box::new(at)) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_first_use;
+
+    #[test]
+    fn a_first_use_of_memory_takes_a_quarter_of_the_time_and_is_long_enough_to_be_known() {
+        let first = |system: f64, spent: f64| is_first_use(Some(7.0), Some(7.0 + system), &[spent]);
+        assert!(first(1.2, 1.7) && first(0.04, 0.1));
+        assert!(!first(0.1, 0.47) && !first(0.02, 0.02));
+        assert!(!is_first_use(None, Some(1.0), &[1.0]) && !is_first_use(Some(1.0), None, &[1.0]));
+    }
 }

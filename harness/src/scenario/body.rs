@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
     self, Drawn, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
-    kidney_mesh, raise_order, sphere_shell_mesh,
+    is_convertible, kidney_mesh, raise_order, sphere_shell_mesh,
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
@@ -259,7 +259,12 @@ fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
         _ => {
             let found = mesh.uniform_kind().map_or("mixed", CellKind::name);
             let problem = format!("holds {found} cells, not {}", kind.name());
-            let help = format!("tissuebench mesh convert ... --element {}", kind.name());
+            let becomes: Vec<&str> =
+                CellKind::ALL.into_iter().filter(|k| is_convertible(&mesh, *k)).map(CellKind::name).collect();
+            let help = match is_convertible(&mesh, kind) {
+                true => format!("tissuebench mesh convert ... --element {}", kind.name()),
+                false => format!("they can't become {}; a method of {}", kind.name(), becomes.join(" or ")),
+            };
             Err(Failure::input(Key::Size("file"), problem, &help))
         }
     }

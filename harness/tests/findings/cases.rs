@@ -354,7 +354,7 @@ pub const CASES: &[Case] = &[
             "element = \"hex8\"\nsize = { file = \"two.msh\", unit = \"mm\" } #<",
         ),
         key: "method[0].size.file",
-        says: &["holds tet4 cells, not hex8", "mesh convert"],
+        says: &["holds tet4 cells, not hex8", "they can't become hex8; a method of tet4 or tet10"],
         stops: &["tet4"],
         ..SOUND
     },

@@ -8,6 +8,28 @@ use crate::{CellKind, Facet, Mesh};
 const HEX: CellKind = CellKind::Hex8;
 const TET: CellKind = CellKind::Tet4;
 
+/// Whether every cell can become one of `kind`: any can become tetrahedra with straight edges, linear cells quadratic ones of their form.
+pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
+    let all = |kinds: &[CellKind]| (0..mesh.cell_count()).all(|c| kinds.contains(&mesh.kind(c)));
+    all(&[kind])
+        || match kind {
+            CellKind::Tet4 => true,
+            CellKind::Tet10 => all(&[CellKind::Tet4, CellKind::Hex8]),
+            CellKind::Hex8 => false,
+            CellKind::Hex20 => all(&[CellKind::Hex8]),
+        }
+}
+
+/// The same body in cells of `kind`, if they can become those ([`is_convertible`]).
+pub fn converted(mesh: &Mesh, kind: CellKind) -> Option<Mesh> {
+    is_convertible(mesh, kind).then(|| match kind {
+        _ if mesh.uniform_kind() == Some(kind) => mesh.clone(),
+        CellKind::Tet4 => to_tets(mesh),
+        CellKind::Tet10 => raise_order(&to_tets(mesh)),
+        CellKind::Hex8 | CellKind::Hex20 => raise_order(mesh),
+    })
+}
+
 /// Linear tetrahedra over the same body: every hexahedron becomes six, tetrahedra keep their corners. Regions and
 /// facet groups come along; nodes that only quadratic cells used are dropped.
 ///
