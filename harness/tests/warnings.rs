@@ -272,6 +272,34 @@ method = [{{ id = "tet4", family = "fem", element = "tet4", size = {{ spacing = 
     assert!(!codes.contains(&"volume-differs") && !codes.contains(&"tool-untouched"), "{codes:?}");
 }
 
+/// A plate may lie anywhere: no place of it is inside or outside.
+#[test]
+fn a_plate_that_starts_in_the_body_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let run_at = |z: &str| {
+        let text = format!(
+            r#"title = "A block under a plate"
+body = {{ shape = "box", size = ["20 mm", "20 mm", "20 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3 }}
+support = [{{ where = "z == 0 mm", fix = "xyz" }}]
+tool = [{{ name = "plate", shape = "plate", at = ["0 mm", "0 mm", "{z}"], along = [0, 0, -1], drive = {{ closure = "0.5 mm" }}, penalty = "0.1 MPa/mm" }}]
+procedure = {{ kind = "static", steps = 2 }}
+method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [3, 3, 3] }} }}]
+"#
+        );
+        run(&dir, &text).remove(0)
+    };
+    let deep = run_at("18 mm");
+    let told = deep["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tool-inside");
+    let told = told.unwrap_or_else(|| panic!("{deep}"));
+    assert_eq!(told["where"], "tool[0]");
+    assert!((told["value"].as_f64().unwrap() - 2e-3).abs() < 1e-9, "{told}");
+    for near in ["20 mm", "19.9 mm", "20.2 mm"] {
+        let run = run_at(near);
+        assert!(!codes(&run).contains(&"tool-inside"), "{near}: {run}");
+    }
+}
+
 /// A tool that presses one block onto another goes through the gap between: blocks without a node in common do not touch.
 #[test]
 fn pieces_that_do_not_feel_each_other_are_told() {

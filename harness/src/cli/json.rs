@@ -90,7 +90,7 @@ struct MeanObject<'a> {
 
 #[derive(Serialize)]
 struct StepObject<'a> {
-    /// Part of the loading, 0 to 1.
+    /// Part of the loading, 0 to 1; of the time in dynamics.
     load: f64,
     /// J.
     strain_energy: Option<f64>,

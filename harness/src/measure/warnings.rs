@@ -27,6 +27,8 @@ const MISFIT: f64 = 0.01;
 const UNBALANCED: f64 = 0.05;
 /// Of the largest displacement.
 const ROUNDING: f64 = 1e-12;
+/// Of the body's narrowest extent.
+const DEEP: f64 = 0.01;
 /// Of the largest displacement, in one step.
 const LONG_STEP: f64 = 0.01;
 /// Certain digits of the largest displacement. Two or three more are right as a rule, and as many fewer of strains, which then hold
@@ -58,6 +60,7 @@ pub(crate) fn warnings(
     found.extend(last.into_iter().flat_map(few_carriers));
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
     found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
+    found.extend(inside(run));
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
@@ -220,6 +223,30 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
             tool.carriers
         );
         Warning::new(&warning::FEW_CONTACT_POINTS, tool.carriers, format!("tool[{index}]"), message)
+    });
+    each.collect()
+}
+
+/// Tools that stand in the undeformed body: an interference that is meant is small beside it.
+fn inside(run: &Solved) -> Vec<Warning> {
+    let points = run.prepared.contact_points();
+    let extents = (0..3).map(|axis| {
+        let along = || points.iter().map(|x| x[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    });
+    let narrowest = extents.fold(f64::INFINITY, f64::min);
+    let each = run.setup.tools.iter().enumerate().filter_map(|(index, placed)| {
+        let depth = -points.iter().map(|x| placed.tool.gap(0.0, x)).fold(f64::INFINITY, f64::min);
+        let message = || {
+            format!(
+                "stands {:.3} mm deep in the body before anything moves, all of which the first step has to press out: set it \
+                 farther away (at)",
+                1e3 * depth
+            )
+        };
+        (depth > DEEP * narrowest).then(|| {
+            Warning::new(&warning::TOOL_INSIDE, depth, format!("tool[{index}]"), message())
+        })
     });
     each.collect()
 }

@@ -63,7 +63,7 @@ impl ToolStep {
 /// The end of a load step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadStep {
-    /// Part of the loading, 0 to 1.
+    /// Part of the loading, 0 to 1; of the time in dynamics.
     pub load: f64,
     /// One per tool of the scene.
     pub tools: Vec<ToolStep>,

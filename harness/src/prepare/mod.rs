@@ -150,6 +150,11 @@ impl Prepared {
             .collect()
     }
 
+    /// The points at which tools may touch, m; none without tools.
+    pub fn contact_points(&self) -> &[Point3] {
+        self.touch.as_ref().map_or(&[], |touch| touch.surface.points())
+    }
+
     /// Where tools may touch, as the solver takes it; `None` without tools.
     pub fn contact(&self) -> Option<ContactSurface<'_>> {
         self.touch.as_ref().map(Touch::contact)

@@ -75,6 +75,8 @@ warnings! {
         "the body is in pieces without a node in common, and tools press it: pieces do not feel each other; how many there are";
     TOOL_UNTOUCHED: "tool-untouched", None,
         "a tool of a static path touches nothing at the end, where its force is 0; no number";
+    TOOL_INSIDE: "tool-inside", Length,
+        "a tool stands in the body before anything moves, so that the first step has all of that to press out; how deep";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
