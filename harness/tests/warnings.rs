@@ -290,10 +290,10 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [3
         run(&dir, &text).remove(0)
     };
     let deep = run_at("18 mm");
-    let told = deep["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tool-inside");
-    let told = told.unwrap_or_else(|| panic!("{deep}"));
-    assert_eq!(told["where"], "tool[0]");
-    assert!((told["value"].as_f64().unwrap() - 2e-3).abs() < 1e-9, "{told}");
+    let found = deep["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "tool-inside");
+    let found = found.unwrap_or_else(|| panic!("{deep}"));
+    assert_eq!(found["where"], "tool[0]");
+    assert!((found["value"].as_f64().unwrap() - 2e-3).abs() < 1e-9, "{found}");
     for near in ["20 mm", "19.9 mm", "20.2 mm"] {
         let run = run_at(near);
         assert!(!codes(&run).contains(&"tool-inside"), "{near}: {run}");

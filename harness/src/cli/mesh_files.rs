@@ -39,7 +39,7 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     }
     let mesh = match element.as_deref() {
         None => mesh,
-        Some(name) => into(&mesh, name)?,
+        Some(name) => into(mesh, name)?,
     };
     files::write_as(&mesh, to, MILLIMETRE, format).map_err(input)?;
     let boundary = if format == Format::Stl { "the boundary of " } else { "" };
@@ -62,7 +62,7 @@ pub(super) fn input(error: impl std::fmt::Display) -> Failure {
     Failure::Input(error.to_string())
 }
 
-fn into(mesh: &Mesh, name: &str) -> Result<Mesh, Failure> {
+fn into(mesh: Mesh, name: &str) -> Result<Mesh, Failure> {
     let Some(kind) = CellKind::ALL.into_iter().find(|kind| kind.name() == name) else {
         let problem = format!("no element '{name}'; there are tet4, tet10, hex8 and hex20");
         return Err(Failure::Input(problem));

@@ -82,12 +82,7 @@ fn check_positive(what: &'static str, found: f64) -> Result<(), GenerateError> {
 
 /// Turns a hex8 mesh into the kind asked for, mid-edge nodes halfway between their corners.
 fn into_kind(hexes: Mesh, kind: CellKind) -> Mesh {
-    match kind {
-        CellKind::Hex8 => hexes,
-        CellKind::Hex20 => raise_order(&hexes),
-        CellKind::Tet4 => to_tets(&hexes),
-        CellKind::Tet10 => raise_order(&to_tets(&hexes)),
-    }
+    converted(hexes, kind).expect("hexahedra become any kind")
 }
 
 /// Positions in [0, 1] of `cells + 1` nodes whose spacing grows geometrically; `ratio` = last / first interval.

@@ -21,12 +21,12 @@ pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
 }
 
 /// The same body in cells of `kind`, if they can become those ([`is_convertible`]).
-pub fn converted(mesh: &Mesh, kind: CellKind) -> Option<Mesh> {
-    is_convertible(mesh, kind).then(|| match kind {
-        _ if mesh.uniform_kind() == Some(kind) => mesh.clone(),
-        CellKind::Tet4 => to_tets(mesh),
-        CellKind::Tet10 => raise_order(&to_tets(mesh)),
-        CellKind::Hex8 | CellKind::Hex20 => raise_order(mesh),
+pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
+    is_convertible(&mesh, kind).then(|| match kind {
+        _ if mesh.uniform_kind() == Some(kind) => mesh,
+        CellKind::Tet4 => to_tets(&mesh),
+        CellKind::Tet10 => raise_order(&to_tets(&mesh)),
+        CellKind::Hex8 | CellKind::Hex20 => raise_order(&mesh),
     })
 }
 
