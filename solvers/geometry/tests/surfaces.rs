@@ -339,3 +339,55 @@ proptest! {
         }
     }
 }
+
+/// A box whose one side has a corner in the middle of an edge of another, closed by a triangle without an area; and the same where two
+/// corners lie on the edge, so that one needle leans on another.
+#[test]
+fn needles_that_close_a_t_junction_are_no_crossing() {
+    let corner = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    for between in [vec![5.0], vec![3.0, 7.0], vec![2.0, 5.0, 8.0]] {
+        let mut soup = Soup {
+            points: vec![
+                corner(0.0, 0.0, 0.0),
+                corner(10.0, 0.0, 0.0),
+                corner(10.0, 10.0, 0.0),
+                corner(0.0, 10.0, 0.0),
+                corner(0.0, 0.0, 10.0),
+                corner(10.0, 0.0, 10.0),
+                corner(10.0, 10.0, 10.0),
+                corner(0.0, 10.0, 10.0),
+            ],
+            ..Soup::default()
+        };
+        soup.triangles = vec![
+            [0, 2, 1],
+            [0, 3, 2],
+            [4, 5, 6],
+            [4, 6, 7],
+            [1, 2, 6],
+            [1, 6, 5],
+            [2, 3, 7],
+            [2, 7, 6],
+            [3, 0, 4],
+            [3, 4, 7],
+        ];
+        let mut row = vec![0u32];
+        for &x in &between {
+            row.push(soup.points.len() as u32);
+            soup.points.push(corner(x, 0.0, 0.0));
+        }
+        row.push(1);
+        // The front: a fan from the upper left corner to the row, and the rest.
+        soup.triangles.extend(row.windows(2).map(|two| [4, two[0], two[1]]));
+        soup.triangles.push([4, 1, 5]);
+        // Needles between the row and the edge of the bottom.
+        soup.triangles.extend(row[1..].windows(2).map(|two| [0, two[1], two[0]]));
+        soup.faces = (1..=soup.triangles.len() as u32).collect();
+        let count = soup.triangles.len();
+        let surface = Surface::new(soup, 1.0).unwrap_or_else(|bad| panic!("{between:?}: {bad}"));
+        assert!((surface.volume() - 1000.0).abs() < 1e-9 && (surface.area() - 600.0).abs() < 1e-9);
+        assert_eq!(surface.triangles().len(), count);
+        assert!((surface.signed_distance(&corner(5.0, -1.0, 0.0)) - 1.0).abs() < 1e-12);
+        assert!((surface.signed_distance(&corner(5.0, 2.0, 1.0)) + 1.0).abs() < 1e-12);
+    }
+}

@@ -30,6 +30,8 @@ pub(super) struct Content {
     facets: Vec<(usize, Facet)>,
     free: Vec<Free>,
     node_sets: Vec<(String, Vec<u32>)>,
+    /// Elements of the file have nodes of their own inside.
+    leaves_unused_out: bool,
 }
 
 /// What a name is of.
@@ -114,6 +116,11 @@ impl Content {
             }
         }
         Ok(())
+    }
+
+    /// Nodes that nothing names are left out: elements of the file have nodes inside.
+    pub(super) fn leave_unused_out(&mut self) {
+        self.leaves_unused_out = true;
     }
 
     /// Notes that a node is wanted, whether a cell has it or not; `false` if there is none of this number.
@@ -284,6 +291,7 @@ impl Content {
         moved: impl Fn(&Point3) -> Point3,
         named: impl Fn(Named, &str) -> String,
     ) -> Parsed<(u32, u32)> {
+        self.leaves_unused_out |= other.leaves_unused_out;
         let first_node =
             index(place, "nodes", self.points.len() + other.points.len())? - other.points.len() as u32;
         let first_cell =
@@ -336,7 +344,7 @@ impl Content {
         for &node in &self.nodes {
             used[node as usize] = 0;
         }
-        if unused == Unused::Refused {
+        if unused == Unused::Refused && !self.leaves_unused_out {
             self.refuse_unused(&used).map_err(at)?;
         }
         let mut points = Vec::new();

@@ -19,6 +19,7 @@ mod vtk;
 mod vtk_cells;
 mod vtu;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use crate::Mesh;
@@ -129,9 +130,13 @@ fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     }
 }
 
-/// The bytes without the mark of the encoding that some editors put in front.
+/// The bytes without the mark of the encoding that some editors put in front, and without the zeros that some programs write behind a
+/// text.
 fn unmarked(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
+    let behind_text = bytes[end..].iter().all(|&b| b == 0 || b.is_ascii_whitespace());
+    if behind_text { &bytes[..end] } else { bytes }
 }
 
 /// Names what a file begins with that is none of the formats.
@@ -142,12 +147,14 @@ fn unknown<T>(bytes: &[u8]) -> Parsed<T> {
     Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
 }
 
-/// The text of a file.
-fn text(bytes: &[u8]) -> Parsed<&str> {
-    std::str::from_utf8(bytes).map_err(|bad| {
+/// The text of a file in UTF-8, or else in Latin-1, in which every byte is a letter.
+fn text(bytes: &[u8]) -> Parsed<Cow<'_, str>> {
+    let Err(bad) = std::str::from_utf8(bytes) else { return Ok(String::from_utf8_lossy(bytes)) };
+    if bytes.contains(&0) {
         let place = Place::Line(line_of(bytes, bad.valid_up_to()));
-        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
-    })
+        return Err((place, Problem::Expected { expected: "text", found: "other bytes".into() }));
+    }
+    Ok(bytes.iter().map(|&byte| char::from(byte)).collect())
 }
 
 /// The number of the line, from 1, that holds a byte.

@@ -3,7 +3,7 @@
 use super::{Soup, SurfaceProblem};
 
 /// Corners of a file are one where they are nearer than this part of the surface's diagonal: what single precision leaves.
-const WELD: f64 = 1e-6;
+pub(super) const WELD: f64 = 1e-6;
 /// A surface of fewer triangles encloses nothing.
 const FEWEST: usize = 4;
 
@@ -30,7 +30,8 @@ struct Side {
     upwards: bool,
 }
 
-fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
+/// For each triangle the one across each of its edges.
+pub(super) fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
     let count = soup.triangles.len();
     if count < FEWEST {
         return Err(SurfaceProblem::TooFew { triangles: count });

@@ -65,6 +65,13 @@ impl Groups {
         Groups { of, ..self.clone() }
     }
 
+    /// Puts a triangle into the groups of another one.
+    pub(super) fn copy(&mut self, from: usize, to: usize) {
+        let set = self.set_of(from);
+        self.of.resize(self.of.len().max(to + 1), NONE);
+        self.of[to] = set;
+    }
+
     fn set_of(&self, triangle: usize) -> u32 {
         self.of.get(triangle).copied().unwrap_or(NONE)
     }

@@ -7,6 +7,7 @@ mod closed;
 mod crossing;
 mod error;
 mod groups;
+mod needles;
 mod nested;
 mod of_mesh;
 mod polygon;
@@ -50,8 +51,12 @@ impl Surface {
     /// # Errors
     /// A surface that is open, crosses itself or is inside out, with the triangle and the place in the unit of the triangles.
     pub fn new(soup: Soup, unit: f64) -> Result<Surface, SurfaceProblem> {
-        let (soup, neighbours) = closed::closed(soup)?;
-        crossing::refuse(&soup)?;
+        let (mut soup, mut neighbours) = closed::closed(soup)?;
+        if let Err(crossing) = crossing::refuse(&soup) {
+            // Needles are looked for only then: most surfaces have none.
+            (soup, neighbours) = needles::cut(&soup, &neighbours).ok_or(crossing)??;
+            crossing::refuse(&soup)?;
+        }
         nested::refuse(&soup, &neighbours)?;
         let Soup { points, triangles, groups, .. } = soup;
         let groups = groups.without_empty();

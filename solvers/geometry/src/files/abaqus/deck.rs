@@ -219,7 +219,7 @@ impl Deck {
         let Ok(bytes) = std::fs::read(self.folder.join(path)) else {
             return unread("there is no such file that can be read");
         };
-        let read = text(&bytes).and_then(|text| self.read(text, depth + 1));
+        let read = text(&bytes).and_then(|text| self.read(&text, depth + 1));
         read.map_err(|(place, problem)| {
             (card.place, Problem::Included { file: name.clone(), place, problem: Box::new(problem) })
         })

@@ -19,19 +19,21 @@ pub(super) mod write;
 use std::path::{Path, PathBuf};
 
 use super::content::Content;
-use super::error::{Parsed, Place, Problem};
+use super::error::Parsed;
+use super::text;
 
 pub(super) fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
     let mut deck = deck::Deck::new(&folder);
-    deck.read(text(bytes)?, 0)?;
+    deck.read(&text(bytes)?, 0)?;
     deck.finish()
 }
 
 /// Files below a deck, in the order of their lines.
 pub(super) fn included(file: &Path, folder: &Path, depth: usize) -> Vec<PathBuf> {
     let Ok(bytes) = std::fs::read(file) else { return Vec::new() };
-    let cards = text(&bytes).and_then(cards::cards).unwrap_or_default();
+    let Ok(text) = text(&bytes) else { return Vec::new() };
+    let cards = cards::cards(&text).unwrap_or_default();
     let names = cards.iter().filter(|card| card.keyword == "INCLUDE").filter_map(|card| card.get("INPUT"));
     let mut found = Vec::new();
     for path in names.map(|name| folder.join(name)) {
@@ -42,11 +44,4 @@ pub(super) fn included(file: &Path, folder: &Path, depth: usize) -> Vec<PathBuf>
         }
     }
     found
-}
-
-fn text(bytes: &[u8]) -> Parsed<&str> {
-    std::str::from_utf8(bytes).map_err(|bad| {
-        let place = Place::Line(super::line_of(bytes, bad.valid_up_to()));
-        (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
-    })
 }

@@ -48,6 +48,12 @@ impl Sets {
 
 impl Scope {
     pub(super) fn nodes(&mut self, card: &Card) -> Parsed<()> {
+        let system = card.get("SYSTEM").unwrap_or("R").to_ascii_uppercase();
+        if system != "R" && system != "C" {
+            let help =
+                "write the nodes in x, y, z (SYSTEM=R), or in radius, angle in degrees and z (SYSTEM=C)";
+            return Err((card.place, Problem::Unread { what: format!("*NODE, SYSTEM={system}"), help }));
+        }
         let mut numbers = Vec::new();
         for &(place, line) in &card.data {
             let words = split(line);
@@ -59,6 +65,10 @@ impl Scope {
                     None | Some("") => {}
                     Some(word) => at[d] = real(place, word, "a coordinate")?,
                 }
+            }
+            if system == "C" {
+                let (sin, cos) = at.y.to_radians().sin_cos();
+                at = Point3::new(at.x * cos, at.x * sin, at.z);
             }
             self.content.node(place, number, at)?;
             numbers.push(number);
@@ -103,6 +113,10 @@ impl Scope {
                 self.touch(&words[1..]);
                 continue;
             };
+            if inner_nodes(name, nodes).contains(&(words.len() - 1)) {
+                self.touch(&words.split_off(nodes + 1));
+                self.content.leave_unused_out();
+            }
             if words.len() != nodes + 1 {
                 let (found, expected) = (words.len(), nodes + 1);
                 let kind = name.to_string();
@@ -314,6 +328,11 @@ impl Scope {
         }
         Ok(())
     }
+}
+
+/// Numbers of nodes of an element with incompatible modes that has nodes for these too, behind the eight of its corners.
+fn inner_nodes(name: &str, corners: usize) -> std::ops::RangeInclusive<usize> {
+    if name.eq_ignore_ascii_case("C3D8I") { corners + 1..=corners + 3 } else { 1..=0 }
 }
 
 /// Members of all sets and numbers of all ranges.

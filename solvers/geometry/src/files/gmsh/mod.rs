@@ -31,9 +31,17 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
             String::from_utf8_lossy(&line[..line.len().min(60)]).trim().to_string(),
         ))
     };
-    let (place, found) = next().unwrap_or((Place::Line(1), String::new()));
+    let (mut place, mut found) = next().unwrap_or((Place::Line(1), String::new()));
+    // Other sections, such as $Comments, may stand before.
+    while let Some(name) = found.strip_prefix('$').filter(|_| found != "$MeshFormat" && found != "$NOD") {
+        let end = format!("$End{name}");
+        let Some(_) = std::iter::from_fn(&mut next).find(|(_, line)| line.eq_ignore_ascii_case(&end)) else {
+            return Err((place, Problem::Expected { expected: "$MeshFormat", found }));
+        };
+        (place, found) = next().unwrap_or((place, String::new()));
+    }
     if found == "$NOD" {
-        return text1::parse(super::text(bytes)?);
+        return text1::parse(&super::text(bytes)?);
     }
     if found != "$MeshFormat" {
         return Err((place, Problem::Expected { expected: "$MeshFormat", found }));
@@ -43,7 +51,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     };
     let mut words = found.split_whitespace();
     match (words.next(), words.next()) {
-        (Some(version), Some("0")) if version.starts_with("2.") => text2::parse(super::text(bytes)?),
+        (Some(version), Some("0")) if version.starts_with("2.") => text2::parse(&super::text(bytes)?),
         (Some(version), Some(kind @ ("0" | "1"))) => match version {
             "2.1" | "2.2" | "2" | "4.0" | "4" | "4.1" => sections::parse(bytes, version, kind == "1"),
             _ => Err((place, Problem::Version { found })),

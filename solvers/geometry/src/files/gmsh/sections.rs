@@ -70,7 +70,13 @@ pub(super) fn parse(bytes: &[u8], version: &str, binary: bool) -> Parsed<Content
 
 impl Reader<'_> {
     fn sections(&mut self) -> Parsed<()> {
-        self.scanner.exactly("$MeshFormat")?;
+        let other =
+            |line: &String| line != "$MeshFormat" && line.starts_with('$') && !line.starts_with("$End");
+        let mut first = self.scanner.line();
+        while let Some(line) = first.filter(other) {
+            self.scanner.skip(&line[1..])?;
+            first = self.scanner.line();
+        }
         self.scanner.line();
         if self.binary {
             self.scanner.byte_order()?;

@@ -7,12 +7,12 @@ use super::super::rows::Row;
 use super::KNOWN;
 use super::groups::Names;
 use super::order::element;
-use super::text2::{add, count, read_nodes};
+use super::text2::{add, begin, count, read_nodes};
 
 pub(super) fn parse(text: &str) -> Parsed<Content> {
     let mut lines = Lines::new(text);
     let mut content = Content::default();
-    lines.exactly("$NOD")?;
+    begin(&mut lines, "$NOD")?;
     read_nodes(&mut lines, &mut content, "$ENDNOD")?;
     lines.exactly("$ELM")?;
     let names = Names::default();

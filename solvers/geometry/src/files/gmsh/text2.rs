@@ -14,7 +14,7 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
     let mut content = Content::default();
     let mut names = Names::default();
     let (mut nodes, mut elements) = (false, false);
-    lines.exactly("$MeshFormat")?;
+    begin(&mut lines, "$MeshFormat")?;
     lines.need("the format version")?;
     lines.exactly("$EndMeshFormat")?;
     while let Some(line) = lines.next() {
@@ -45,13 +45,21 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
     Ok(content)
 }
 
-fn skip(lines: &mut Lines, start: &str) -> Parsed<()> {
-    let name = start.trim_start_matches('$');
+/// Goes on behind the line that begins the file's first section, past others such as `$Comments`.
+pub(super) fn begin(lines: &mut Lines, first: &'static str) -> Parsed<()> {
     loop {
-        if lines.need("the end of a section")?.strip_prefix("$End") == Some(name) {
-            return Ok(());
+        match lines.need(first)? {
+            line if line == first => return Ok(()),
+            line if line.starts_with('$') && !line.starts_with("$End") => skip(lines, line)?,
+            line => return lines.fail(Problem::Expected { expected: first, found: line.into() }),
         }
     }
+}
+
+fn skip(lines: &mut Lines, start: &str) -> Parsed<()> {
+    let end = format!("$End{}", start.trim_start_matches('$'));
+    while !lines.need("the end of a section")?.eq_ignore_ascii_case(&end) {}
+    Ok(())
 }
 
 pub(super) fn count(lines: &mut Lines, expected: &'static str) -> Parsed<usize> {

@@ -36,7 +36,8 @@ struct Faces {
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
-    let mut lines = Lines::new(super::super::text(bytes)?);
+    let text = super::super::text(bytes)?;
+    let mut lines = Lines::new(&text);
     let (mut soup, mut faces) = (Soup::default(), Faces::default());
     let (mut groups, mut object) = (Set::default(), Set::default());
     while let Some(line) = lines.next() {

@@ -101,13 +101,14 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
         let Some(end) = bytes[at..].iter().position(|&b| b == b'\n') else {
             return Err((place, Problem::End { expected: "end_header" }));
         };
-        let line = super::super::text(&bytes[at..at + end]).map_err(|(_, problem)| (place, problem))?.trim();
+        let line = super::super::text(&bytes[at..at + end]).map_err(|(_, problem)| (place, problem))?;
+        let line = line.trim();
         at += end + 1;
         let wrong = |expected: &'static str| (place, Problem::Expected { expected, found: line.into() });
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
         match &words[..] {
             ["ply"] | ["comment" | "obj_info", ..] => {}
-            ["format", name, "1.0"] => format = Some(*name),
+            ["format", name, "1.0"] => format = Some(name.to_string()),
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| wrong("a number of elements"))?;
                 // Each has a byte at the least: no memory is taken for more.
@@ -157,9 +158,11 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
         let found = "face first".into();
         return Err((place, Problem::Expected { expected: "element vertex before element face", found }));
     }
-    let values = match format {
+    let values = match format.as_deref() {
         Some("ascii") => {
-            let text = super::super::text(&bytes[at..])?;
+            let found = || "other bytes".into();
+            let text = std::str::from_utf8(&bytes[at..])
+                .map_err(|_| (place, Problem::Expected { expected: "numbers in text", found: found() }))?;
             let lines = text.lines().enumerate();
             let words = lines.flat_map(move |(line, words)| {
                 words.split_ascii_whitespace().map(move |word| (number + 1 + line, word))

@@ -30,7 +30,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     let word = bytes.trim_ascii_start();
     let is_text = word.len() >= 5 && word[..5].eq_ignore_ascii_case(b"solid") && !bytes.contains(&0);
     if is_text {
-        return lines(super::super::text(bytes)?);
+        return lines(&super::super::text(bytes)?);
     }
     let problem = match claimed(bytes) {
         Some(count) => {
@@ -72,8 +72,7 @@ fn lines(text: &str) -> Parsed<Soup> {
     let mut soup = Soup::default();
     let (mut open, mut set) = (false, Set::default());
     while let Some(line) = lines.next() {
-        let words: Vec<String> = line.split_ascii_whitespace().map(str::to_ascii_lowercase).collect();
-        match (words[0].as_str(), open) {
+        match (keyword(line).as_str(), open) {
             ("solid", false) => {
                 open = true;
                 set = soup.groups.set([&line["solid".len()..]]);
@@ -100,10 +99,18 @@ fn lines(text: &str) -> Parsed<Soup> {
     if open { lines.fail(Problem::End { expected: "endsolid" }) } else { Ok(soup) }
 }
 
+/// The first word of a line in small letters; some programs write `end solid` for `endsolid`.
+fn keyword(line: &str) -> String {
+    let mut words = line.split_ascii_whitespace().map(str::to_ascii_lowercase);
+    let first = words.next().unwrap_or_default();
+    if first == "end" { first + &words.next().unwrap_or_default() } else { first }
+}
+
 fn word(lines: &mut Lines, words: &[&str], expected: &'static str) -> Parsed<()> {
     let line = lines.need(expected)?;
     let mut found = line.split_ascii_whitespace();
-    let same = words.iter().all(|word| found.next().is_some_and(|found| found.eq_ignore_ascii_case(word)));
+    let same = words.iter().all(|word| found.next().is_some_and(|found| found.eq_ignore_ascii_case(word)))
+        || words == [keyword(line)];
     if same { Ok(()) } else { lines.fail(Problem::Expected { expected, found: line.into() }) }
 }
 
