@@ -48,6 +48,18 @@ pub(crate) fn points(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> 
     }
 }
 
+/// An (m, k) array of whole numbers from 0 on: numbers of nodes.
+pub(crate) fn numbers(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<u32>> {
+    let largest = f64::from(u32::MAX);
+    match array.iter().position(|n| !(n.fract() == 0.0 && (0.0..=largest).contains(n))) {
+        Some(bad) => {
+            let (row, n) = (bad / array.ncols(), array.iter().nth(bad).copied().unwrap_or(f64::NAN));
+            Err(input(py, &format!("{what}: row {row} names node {n}; give whole numbers from 0 on")))
+        }
+        None => Ok(array.iter().map(|&n| n as u32).collect()),
+    }
+}
+
 /// The fields of an (n, 3) or (steps, n, 3) array.
 pub(crate) fn fields(py: Python<'_>, what: &str, array: ArrayViewD<'_, f64>) -> PyResult<Vec<Vec<Vector3>>> {
     let shape = array.shape().to_vec();

@@ -4,7 +4,7 @@ use cases::scene::{ErrorKind, SceneError};
 use harness::Failure;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyList, PyType};
 
 /// An exception of a class of `tissuebench._errors`, with what is known of its place.
 fn exception(py: Python<'_>, class: &str, message: String, error: Option<&SceneError>) -> PyErr {
@@ -38,11 +38,18 @@ pub(crate) fn not_run(py: Python<'_>, problem: impl ToString) -> PyErr {
     exception(py, "RunError", problem.to_string(), None)
 }
 
-/// All that is wrong with a file: the exception is of the first, with the text of all.
+/// All that is wrong with a file: the exception is of the first, with the text of all, and each is among its `errors`.
 pub(crate) fn of_scene(py: Python<'_>, errors: &[SceneError]) -> PyErr {
+    let class = |invalid: bool| if invalid { "SceneError" } else { "RunError" };
+    let is_invalid = |error: &SceneError| error.kind == ErrorKind::Invalid;
     let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
-    let invalid = errors.iter().any(|error| error.kind == ErrorKind::Invalid);
-    exception(py, if invalid { "SceneError" } else { "RunError" }, text, errors.first())
+    let all = exception(py, class(errors.iter().any(is_invalid)), text, errors.first());
+    let each = |error: &SceneError| exception(py, class(is_invalid(error)), error.to_string(), Some(error));
+    let list = PyList::new(py, errors.iter().map(|error| each(error).into_value(py)));
+    match list.and_then(|list| all.value(py).setattr("_errors", list)) {
+        Ok(()) => all,
+        Err(bad) => bad,
+    }
 }
 
 /// What stopped a run.

@@ -7,6 +7,7 @@ mod columns;
 mod error;
 mod mesh;
 mod problem;
+mod reference;
 mod results;
 mod rows;
 mod run;

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use geometry::CellKind;
 use geometry::files::{self, Format, GmshVersion};
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2};
+use geometry::{CellKind, quality};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Floats2, matrix, points, rows_of};
+use crate::arrays::{Floats2, matrix, numbers, points, rows_of};
 use crate::error::input;
 
 /// Tetrahedra or hexahedra. Positions in metres, nodes of a cell in VTK's order.
@@ -50,22 +50,16 @@ pub(crate) fn cells_of<'py>(py: Python<'py>, mesh: &geometry::Mesh) -> PyResult<
 impl Mesh {
     /// From positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
     #[new]
-    fn new(
-        py: Python<'_>,
-        points: Floats2<'_>,
-        cells: PyArrayLike2<'_, i64, AllowTypeChange>,
-    ) -> PyResult<Mesh> {
+    fn new(py: Python<'_>, points: Floats2<'_>, cells: Floats2<'_>) -> PyResult<Mesh> {
         let (positions, cells) = (self::points(py, "points", points.as_array())?, cells.as_array());
         let kind = CellKind::ALL.into_iter().find(|kind| kind.node_count() == cells.ncols());
         let wrong = || input(py, &format!("cells: have {} nodes each; give 4, 10, 8 or 20", cells.ncols()));
         let kind = kind.ok_or_else(wrong)?;
-        let node = |&node: &i64| {
-            u32::try_from(node)
-                .map_err(|_| input(py, &format!("cells: name node {node}; give 0 to {}", positions.len())))
-        };
-        let nodes = cells.iter().map(node).collect::<PyResult<Vec<u32>>>()?;
+        let nodes = numbers(py, "cells", cells)?;
         let mesh = geometry::Mesh::from_flat(positions, vec![kind; cells.nrows()], nodes);
-        Ok(Mesh { mesh: Arc::new(mesh.map_err(|bad| input(py, &bad.to_string()))?) })
+        let mesh = mesh.map_err(|bad| input(py, &bad.to_string()))?;
+        quality::check(&mesh).map_err(|bad| input(py, &format!("cells: {bad}")))?;
+        Ok(Mesh { mesh: Arc::new(mesh) })
     }
 
     /// From a file; `unit` is that of its numbers.

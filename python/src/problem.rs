@@ -1,18 +1,20 @@
 //! A method's problem for a solver of one's own: its arrays, and a displacement judged in a line.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use cases::scene;
+use geometry::Vector3;
 use harness::run::{Found, Group, Posed, Repeats};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use shape::FixedDof;
 
 use crate::arrays::{Floats, Floats2, fields, points, rows_of};
 use crate::error::{input, of_failure};
 use crate::mesh::{Mesh, cells_of};
+use crate::reference::Referenced;
 use crate::rows::ShapeTable;
 use crate::run::Run;
 use crate::worker::wait;
@@ -23,37 +25,51 @@ pub(crate) struct Problem {
     scene: Arc<scene::Scene>,
     method: String,
     posed: Arc<Posed>,
-    /// With the reference, which is made when something is first compared.
-    group: Mutex<Option<Arc<Group<'static>>>>,
+    reference: Arc<Referenced>,
 }
 
+/// Part of the largest displacement that a prescribed one may be missed by: what a penalty of one's own gives way.
+const OFF_SUPPORTS: f64 = 0.01;
+
 impl Problem {
-    pub(crate) fn new(py: Python<'_>, scene: Arc<scene::Scene>, method: scene::Method) -> PyResult<Problem> {
+    pub(crate) fn new(
+        py: Python<'_>,
+        scene: Arc<scene::Scene>,
+        reference: Arc<Referenced>,
+        method: scene::Method,
+    ) -> PyResult<Problem> {
         let (from, id) = (scene.clone(), method.id.clone());
         let posed = wait(py, None, move |_, _| {
             let group = Group::unreferenced(&from, Repeats::ONCE)?;
             group.pose(&group.scenario(method, 0))
         })?;
         let posed = Arc::new(posed.map_err(|failure| of_failure(py, &failure))?);
-        Ok(Problem { scene, method: id, posed, group: Mutex::default() })
+        Ok(Problem { scene, method: id, posed, reference })
     }
 
-    /// The scene with its reference.
-    fn group(&self, py: Python<'_>) -> PyResult<Arc<Group<'static>>> {
-        if let Some(group) = &*self.group.lock().expect("no thread panicked") {
-            return Ok(group.clone());
+    /// Refuses a displacement that is not that of the supports where they prescribe it.
+    fn on_supports(&self, py: Python<'_>, u: &[Vector3]) -> PyResult<()> {
+        if u.len() != self.posed.nodes().len() {
+            return Ok(()); // The comparison says so.
         }
-        let scene = (*self.scene).clone();
-        let made = wait(py, None, move |watch, _| {
-            let group = Group::watched(Cow::Owned(scene), None, Repeats::ONCE, Some(watch.clone()))?;
-            match group.reference_stalled() {
-                Some(stalled) => Err(stalled.clone()),
-                None => Ok(Arc::new(group)),
-            }
-        })?;
-        let group = made.map_err(|failure| of_failure(py, &failure))?;
-        *self.group.lock().expect("no thread panicked") = Some(group.clone());
-        Ok(group)
+        let missed = |dof: &&FixedDof| (u[dof.node as usize][dof.axis as usize] - dof.value).abs();
+        let Some(worst) = self.posed.fixed().iter().max_by(|a, b| missed(a).total_cmp(&missed(b))) else {
+            return Ok(());
+        };
+        let prescribed = self.posed.fixed().iter().map(|dof| dof.value.abs());
+        let largest = u.iter().map(|u| u.norm()).chain(prescribed).fold(0.0, f64::max);
+        let gap = missed(&worst);
+        if gap > OFF_SUPPORTS * largest {
+            let (node, axis) = (worst.node, ["x", "y", "z"][worst.axis as usize]);
+            let (value, percent) = (worst.value, 100.0 * OFF_SUPPORTS);
+            return Err(input(
+                py,
+                &format!(
+                    "u: node {node} is {gap:e} m along {axis} off the {value:e} m that its support prescribes; at most {percent} % of the largest displacement, {largest:e} m"
+                ),
+            ));
+        }
+        Ok(())
     }
 
     /// Forces of the tools along their ways: numbers, or nodal forces (tools, nodes, 3) that they exert on the body.
@@ -62,8 +78,8 @@ impl Problem {
         match given.ndim() {
             1 => Ok(given.iter().copied().collect()),
             3 => {
-                let along = |(forces, tool): (Vec<geometry::Vector3>, harness::run::PosedTool)| {
-                    forces.iter().sum::<geometry::Vector3>().dot(&tool.along)
+                let along = |(forces, tool): (Vec<Vector3>, harness::run::PosedTool)| {
+                    forces.iter().sum::<Vector3>().dot(&tool.along)
                 };
                 let (count, tools) = (given.shape()[0], self.posed.tools());
                 if count != tools.len() {
@@ -187,16 +203,26 @@ impl Problem {
         seconds: Option<f64>,
         solver: &str,
     ) -> PyResult<Run> {
+        if let Some(seconds) = seconds.filter(|s| !(*s >= 0.0 && s.is_finite())) {
+            return Err(input(py, &format!("seconds: {seconds}; give a finite number from 0 on")));
+        }
+        let fields = fields(py, "u", u.as_array())?;
+        fields.last().map_or(Ok(()), |last| self.on_supports(py, last))?;
         let found = Found {
             solver: solver.into(),
-            fields: fields(py, "u", u.as_array())?,
+            fields,
             pushed: tool_forces.map(|given| self.pushed(py, given)).transpose()?,
             seconds,
         };
-        let (group, posed) = (self.group(py)?, self.posed.clone());
-        let outcome = wait(py, None, move |_, _| group.compare(&posed, found))?;
+        let (reference, posed) = (self.reference.clone(), self.posed.clone());
+        let outcome = wait(py, None, move |watch, _| {
+            reference.with(Repeats::ONCE, watch, |group| group.compare(&posed, found))?
+        })?;
         let outcome = outcome.map_err(|failure| of_failure(py, &failure))?;
-        Ok(Run { outcome: Arc::new(outcome) })
+        if let Some(bad) = outcome.records().iter().find(|record| !record.value.is_finite()) {
+            return Err(input(py, &format!("u: is so large that {} is not finite", bad.quantity)));
+        }
+        Ok(Run { scene: self.scene.clone(), outcome: Arc::new(outcome) })
     }
 
     fn __repr__(&self) -> String {

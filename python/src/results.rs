@@ -14,6 +14,7 @@ use crate::error::{input, not_run, of_failure};
 use crate::run::Run;
 use crate::scene::Ended;
 use crate::table::Table;
+use crate::worker::unforked;
 
 /// Runs of one scene.
 #[pyclass(frozen, module = "tissuebench")]
@@ -51,7 +52,7 @@ impl Results {
     /// A method's run, or its failure.
     pub(crate) fn run(&self, py: Python<'_>, method: &str) -> PyResult<Run> {
         if let Some(outcome) = self.finished().iter().find(|outcome| outcome.identity.method == method) {
-            return Ok(Run { outcome: outcome.clone() });
+            return Ok(Run { scene: self.scene.clone(), outcome: outcome.clone() });
         }
         match self.failed.iter().find(|(id, ..)| id == method) {
             Some((_, failure, _)) => Err(of_failure(py, failure)),
@@ -90,11 +91,16 @@ impl Results {
     }
 }
 
+/// What records tell runs apart by.
+fn id(outcome: &Outcome) -> Option<String> {
+    outcome.records().first().map(|record| record.run.clone())
+}
+
 #[pymethods]
 impl Results {
     #[getter]
     fn runs(&self) -> Vec<Run> {
-        self.finished().into_iter().map(|outcome| Run { outcome }).collect()
+        self.finished().into_iter().map(|outcome| Run { scene: self.scene.clone(), outcome }).collect()
     }
 
     /// Methods without numbers, and why.
@@ -123,12 +129,23 @@ impl Results {
         if case != *other {
             return Err(input(py, &format!("the run is of {other}, the results are of {case}")));
         }
-        self.finished.lock().expect("no thread panicked").push(run.outcome.clone());
+        if run.scene.text() != self.scene.text() {
+            let (a, b) = (run.scene.file(), self.scene.file());
+            return Err(input(py, &format!("the run is of another scene of the name {case} ({a}, {b})")));
+        }
+        let mut finished = self.finished.lock().expect("no thread panicked");
+        if finished.iter().any(|known| id(known) == id(&run.outcome)) {
+            let problem =
+                format!("a run of {} is among the results; give another name of the solver", run.label());
+            return Err(input(py, &problem));
+        }
+        finished.push(run.outcome.clone());
         Ok(())
     }
 
     /// Writes a folder of results with its report.
     fn write(&self, py: Python<'_>, out: PathBuf) -> PyResult<()> {
+        unforked(py)?;
         let written = py.detach(|| {
             reports::write_run(&out, &self.set(case_name(&self.scene)))?;
             reports::render(&out, &out.join("report")).map(|_| ())

@@ -14,6 +14,7 @@ use shape::{GradRows, Rows};
 use crate::arrays::{Floats, Floats2, points, rows_of};
 use crate::error::{input, not_run};
 use crate::mesh::Mesh;
+use crate::worker::{unforked, wait};
 
 type Array1<'py, T> = Bound<'py, PyArray1<T>>;
 
@@ -40,6 +41,7 @@ fn product<'py>(
     length: usize,
     apply: impl Fn(&[Vector3]) -> Vec<Vector3>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    unforked(py)?;
     let shape = field.shape().to_vec();
     if shape.first() != Some(&length) || shape.len() > 2 {
         return Err(input(py, &format!("has the shape {shape:?}; give ({length},) or ({length}, k)")));
@@ -101,6 +103,7 @@ impl ShapeTable {
 
     /// `du_i / dX_j` at the points, (points, 3, 3), of a nodal displacement (nodes, 3).
     fn gradients<'py>(&self, py: Python<'py>, u: Floats2<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        unforked(py)?;
         let rows = self.gradients.as_ref().ok_or_else(|| input(py, "the table has no gradients"))?;
         let u = crate::arrays::vectors(py, "u", u.as_array())?;
         if u.len() != self.rows.node_count() {
@@ -180,7 +183,8 @@ pub(crate) fn transfer(
     let (nodes, targets) =
         (points(py, "nodes", nodes.as_array())?, points(py, "targets", targets.as_array())?);
     let mesh = mesh.map(|mesh| mesh.mesh.clone());
-    let found = py.detach(|| scheme.rows(&nodes, mesh.as_deref(), &targets));
+    let at = targets.clone();
+    let found = wait(py, None, move |_, _| scheme.rows(&nodes, mesh.as_deref(), &at))?;
     let (rows, info) = found.map_err(|bad| not_run(py, bad))?;
     Ok(ShapeTable {
         rows: Arc::new(rows.rows().clone()),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cases::scene::Scene;
 use harness::outcome::Outcome;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
@@ -16,7 +17,19 @@ use crate::table::Table;
 /// What one method came to. All numbers are SI.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Run {
+    pub(crate) scene: Arc<Scene>,
     pub(crate) outcome: Arc<Outcome>,
+}
+
+impl Run {
+    /// The method, and the solver of one's own that solved it.
+    pub(crate) fn label(&self) -> String {
+        let identity = &self.outcome.identity;
+        match &identity.adapter {
+            Some(solver) => format!("{} by {solver}", identity.method),
+            None => identity.method.clone(),
+        }
+    }
 }
 
 #[pymethods]

@@ -1,18 +1,18 @@
 //! Scenes: read, run, and posed to other solvers.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cases::scene::{self, Family};
 use harness::outcome::{Outcome, Unfinished, Watch, provenance};
+use harness::run;
 use harness::run::{Group, Repeats, RunOptions};
-use harness::{Failure, run};
 use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::error::{input, not_run, of_failure, of_scene};
 use crate::problem::Problem;
+use crate::reference::Referenced;
 use crate::results::Results;
 use crate::run::Run;
 use crate::worker::{Reporter, wait};
@@ -24,6 +24,7 @@ const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Scene {
     scene: Arc<scene::Scene>,
+    reference: Arc<Referenced>,
 }
 
 /// What a method came to.
@@ -40,7 +41,11 @@ impl Scene {
     fn of(py: Python<'_>, read: Result<scene::Scene, Vec<scene::SceneError>>) -> PyResult<Scene> {
         let scene = read.map_err(|errors| of_scene(py, &errors))?;
         let ahead = scene.unavailable();
-        if ahead.is_empty() { Ok(Scene { scene: Arc::new(scene) }) } else { Err(of_scene(py, &ahead)) }
+        if !ahead.is_empty() {
+            return Err(of_scene(py, &ahead));
+        }
+        let scene = Arc::new(scene);
+        Ok(Scene { reference: Referenced::new(scene.clone()), scene })
     }
 
     /// A method that this process can run.
@@ -64,27 +69,26 @@ impl Scene {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Results> {
         let machine = provenance::machine();
-        let scene = self.scene.clone();
-        let ended = wait(py, progress, move |watch, reporter| all(&scene, methods, asked, watch, reporter))?;
+        let reference = self.reference.clone();
+        let case = run::case_name(&self.scene);
+        let ended = wait(py, progress, move |watch, reporter| {
+            reporter.send(json!({ "event": "begin", "case": case, "runs": methods.len() }));
+            reference.with(asked.repeats, watch, |group| all(group, &case, methods, asked, watch, reporter))
+        })?;
         let ended = ended.map_err(|failure| of_failure(py, &failure))?;
         Ok(Results::new(self.scene.clone(), machine, ended))
     }
 }
 
-/// Runs methods one after the other, with their reference.
+/// Runs methods one after the other.
 fn all(
-    scene: &scene::Scene,
+    group: &Group,
+    case: &str,
     methods: Vec<scene::Method>,
     asked: Asked,
     watch: &Arc<Watch>,
     reporter: &Reporter,
-) -> Result<Vec<(scene::Method, Ended)>, Failure> {
-    let case = run::case_name(scene);
-    reporter.send(json!({ "event": "begin", "case": case, "runs": methods.len() }));
-    let group = Group::watched(Cow::Borrowed(scene), None, asked.repeats, Some(watch.clone()))?;
-    if let Some(stalled) = group.reference_stalled() {
-        return Err(stalled.clone());
-    }
+) -> Vec<(scene::Method, Ended)> {
     let mut ended = Vec::new();
     for method in methods {
         if watch.is_stopped() {
@@ -98,7 +102,7 @@ fn all(
         });
         ended.push((method, one));
     }
-    Ok(ended)
+    ended
 }
 
 fn asked(once: bool, states: bool, frames: bool) -> Asked {
@@ -160,7 +164,7 @@ impl Scene {
 
     /// A method's problem with its tables, for a solver of one's own.
     fn problem(&self, py: Python<'_>, method: &str) -> PyResult<Problem> {
-        Problem::new(py, self.scene.clone(), self.method(py, method)?)
+        Problem::new(py, self.scene.clone(), self.reference.clone(), self.method(py, method)?)
     }
 
     fn __repr__(&self) -> String {

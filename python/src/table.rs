@@ -16,6 +16,7 @@ use reports::Record;
 
 use crate::columns::batch;
 use crate::error::not_run;
+use crate::worker::wait;
 
 /// Records: one number a row.
 #[pyclass(frozen, module = "tissuebench")]
@@ -95,6 +96,6 @@ impl Table {
 /// The records in a folder of results.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, results: PathBuf) -> PyResult<Table> {
-    let set = py.detach(|| reports::read_run(&results)).map_err(|bad| not_run(py, bad))?;
+    let set = wait(py, None, move |_, _| reports::read_run(&results))?.map_err(|bad| not_run(py, bad))?;
     Table::of(py, &set.records)
 }

@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 use harness::outcome::{LoadStep, Watch};
@@ -34,6 +34,22 @@ impl Reporter {
     }
 }
 
+/// Refuses work in a process that was forked after its parent had worked: the threads of the pool are the parent's, and a wait for
+/// them has no end.
+///
+/// # Errors
+/// That one.
+pub(crate) fn unforked(py: Python<'_>) -> PyResult<()> {
+    static FIRST: OnceLock<u32> = OnceLock::new();
+    let id = std::process::id();
+    if *FIRST.get_or_init(|| id) == id {
+        return Ok(());
+    }
+    let problem = "this process was forked after its parent had used tissuebench, whose threads it does not have; \
+                   start it anew: multiprocessing.get_context(\"spawn\")";
+    Err(not_run(py, problem))
+}
+
 /// Does work that solvers do. `progress` is called with a dictionary for every event, on this thread. A signal, or an exception of
 /// `progress`, ends the wait at once and the work at its next step.
 ///
@@ -44,6 +60,7 @@ pub(crate) fn wait<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Arc<Watch>, &Reporter) -> T + Send + 'static,
 ) -> PyResult<T> {
+    unforked(py)?;
     let (send, notes) = channel();
     let reporter = Reporter(send);
     let steps = reporter.clone();

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import tissuebench as tb
+from conftest import BLOCK
 
 
 def test_a_mesh_goes_to_a_file_and_back(tmp_path):
@@ -26,6 +27,12 @@ def test_a_mesh_goes_to_a_file_and_back(tmp_path):
     assert not (tmp_path / "c.msh").exists() and not (tmp_path / "c.inp").exists()
     with pytest.raises(tb.SceneError, match="names node 9"):
         tb.Mesh(points, [[0, 1, 2, 9]])
+    with pytest.raises(tb.SceneError, match="row 0 names node 0.9"):
+        tb.Mesh(points, cells + 0.9)
+    with pytest.raises(tb.SceneError, match="names node -1"):
+        tb.Mesh(points, [[0, 1, 2, -1]])
+    with pytest.raises(tb.SceneError, match="inverted"):
+        tb.Mesh(points, [[0, 2, 1, 3]])
     with pytest.raises(tb.SceneError, match="5 nodes each"):
         tb.Mesh(points, [[0, 1, 2, 3, 4]])
     with pytest.raises(tb.SceneError, match="unit"):
@@ -119,6 +126,12 @@ def test_a_solver_of_ones_own_is_judged_in_three_lines(block):
     results = block.run_all(["tet4"], once=True)
     results.add(judged)
     assert len(results) == 2
+    with pytest.raises(tb.SceneError, match="hex8 by numpy is among the results"):
+        results.add(judged)
+    other = tb.parse(BLOCK.replace("1 kPa", "2 kPa"), "block.toml").run("hex8")
+    with pytest.raises(tb.SceneError, match="another scene of the name block"):
+        results.add(other)
+    assert len(results) == 2
 
 
 def test_a_displacement_of_our_own_has_our_own_errors(block):
@@ -137,11 +150,21 @@ def test_a_displacement_of_our_own_has_our_own_errors(block):
         (np.zeros((2, 75, 3)), "2 fields"),
         (np.full((75, 3), np.nan), "node 0 is not finite"),
         (np.zeros(75), "shape"),
+        (np.full((75, 3), 1e-3), "is 1e-3 m along [xyz] off the 0e0 m"),
     ],
 )
 def test_what_is_no_displacement_is_refused(block, u, says):
     with pytest.raises(tb.SceneError, match=says):
         block.problem("hex8").compare(u)
+
+
+def test_what_no_folder_of_results_can_hold_is_refused(block):
+    u, problem = block.run("hex8", states=True).displacement, block.problem("hex8")
+    with pytest.raises(tb.Error, match="finite"):
+        problem.compare(u * 1e300)
+    for seconds in [np.nan, np.inf, -1.0]:
+        with pytest.raises(tb.SceneError, match="seconds: "):
+            problem.compare(u, seconds=seconds)
 
 
 def test_contact_forces_of_a_displacement_are_those_of_the_scene(root):

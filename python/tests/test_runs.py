@@ -131,6 +131,99 @@ method = [{ id = "tet4", family = "fem", element = "tet4", size = { cells = [1, 
     assert len(scene.run_all().failures) == 1
 
 
+def test_all_mistakes_of_a_scene_are_on_the_exception():
+    text = 'title = "x"\nbody = { shape = "box", size = ["1 mm", "1 mm", "0 mm"] }\nmaterial = { law = "liner" }\n'
+    with pytest.raises(tb.SceneError) as caught:
+        tb.parse(text, "bad.toml")
+    errors = caught.value.errors
+    assert len(errors) > 1 and {"material.law"} < {error.key for error in errors}
+    assert all(isinstance(error, tb.SceneError) and str(error) in str(caught.value) for error in errors)
+    assert (errors[0].line, errors[0].key) == (caught.value.line, caught.value.key) and errors[0].errors == [errors[0]]
+
+
+def test_the_reference_of_a_scene_is_solved_once():
+    scene, before = tb.parse(PLATE, "plate.toml"), []
+
+    def steps_before_the_start(event):
+        if event["event"] in ("begin", "start", "step"):
+            before.append(event["event"])
+
+    for steps in (2, 0):
+        before.clear()
+        run = scene.run("hex8", states=True, progress=steps_before_the_start)
+        assert before[: steps + 2] == ["begin"] + steps * ["step"] + ["start"], before
+    assert scene.problem("hex8").compare(run.displacement)["rms"] == pytest.approx(run["rms"], rel=1e-9)
+
+
+PLATE = """
+title = "A block under a plate"
+body = { shape = "box", size = ["20 mm", "20 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3 }
+support = [{ on = "z-min", fix = "xyz" }]
+tool = [{ name = "plate", shape = "plate", at = ["0 mm", "0 mm", "20 mm"], along = [0, 0, -1], drive = { closure = "2 mm" }, penalty = "0.5 MPa/mm" }]
+procedure = { kind = "static", steps = 2 }
+reference = { method = "hex20", size = { cells = [2, 2, 2] } }
+method = [
+    { id = "hex8", family = "fem", element = "hex8", size = { cells = [2, 2, 2] } },
+    { id = "hex20", family = "fem", element = "hex20", size = { cells = [1, 1, 1] } },
+]
+"""
+
+
+FORKED = """
+import os, sys
+import numpy as np
+import tissuebench as tb
+exec(open(sys.argv[1]).read())
+def work(scene):
+    errors = []
+    for use in [lambda: scene.run("tet4"), lambda: scene.problem("tet4"), lambda: tb.transfer("nearest", np.zeros((1, 3)), np.zeros((1, 3)))]:
+        try:
+            use()
+        except tb.RunError as error:
+            errors.append(str(error))
+    return errors
+scene = tb.parse(BLOCK, "block.toml")
+scene.run("tet4")
+child = os.fork()
+if child == 0:
+    errors = work(scene)
+    os._exit(0 if len(errors) == 3 and all("forked" in error and "spawn" in error for error in errors) else 1)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), work(scene))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="nothing forks")
+def test_a_forked_child_raises_and_its_parent_goes_on(tmp_path):
+    from conftest import BLOCK
+
+    given = tmp_path / "block.py"
+    given.write_text(f"BLOCK = {BLOCK!r}")
+    done = subprocess.run([sys.executable, "-c", FORKED, given], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "0 []\n", done.stderr
+
+
+def test_ctrl_c_ends_a_transfer_within_a_second():
+    code = """
+import numpy as np
+import tissuebench as tb
+points = np.random.default_rng(1).uniform(size=(6000, 3))
+print("started", flush=True)
+try:
+    tb.transfer("thin-plate", points, points)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    assert program.stdout.readline() == "started\n"
+    time.sleep(0.3)
+    began = time.monotonic()
+    program.send_signal(signal.SIGINT)
+    assert program.stdout.readline() == "interrupted\n"
+    assert time.monotonic() - began < 1
+    program.kill()
+
+
 STUDY = """
 title = "Two patch tests"
 [[run]]

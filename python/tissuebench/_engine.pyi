@@ -44,7 +44,9 @@ class Table:
 class Mesh:
     """Tetrahedra or hexahedra; the nodes of a cell in VTK's order."""
 
-    def __new__(cls, points: ArrayLike, cells: ArrayLike) -> Mesh: ...
+    def __new__(cls, points: ArrayLike, cells: ArrayLike) -> Mesh:
+        """From whole numbers of nodes; a cell that is inverted or flat is refused."""
+
     @staticmethod
     def read(path: Path, unit: str = "mm") -> Mesh: ...
     def write(self, path: Path, unit: str = "mm", version: str | None = None) -> None:
@@ -157,7 +159,9 @@ class Results:
     def __len__(self) -> int: ...
     @property
     def records(self) -> Table: ...
-    def add(self, run: Run) -> None: ...
+    def add(self, run: Run) -> None:
+        """Adds a run of the same scene; one that is there already is refused."""
+
     def write(self, out: Path) -> None:
         """Writes a folder of results with its report."""
 
@@ -207,7 +211,8 @@ class Problem:
         """Compares a displacement, (nodes, 3) at the end or (steps, nodes, 3), with the scene's reference.
 
         `tool_forces` are the forces of the tools along their ways, (tools,), or nodal forces that they exert on the body,
-        (tools, nodes, 3); by the scene's contact law where they are not given.
+        (tools, nodes, 3); by the scene's contact law where they are not given. A displacement that misses what supports prescribe by more
+        than 1 % of the largest is refused.
         """
 
 @final

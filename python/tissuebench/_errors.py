@@ -27,8 +27,15 @@ class Error(Exception):
         help: str | None = None,
     ) -> None:
         super().__init__(message)
+        self._errors: list[Error] = []
         self.file, self.line, self.column, self.key = file, line, column, key
         self.found, self.problem, self.help = found, problem or message, help
+
+
+    @property
+    def errors(self) -> list[Error]:
+        """Everything that is wrong, each with its place; the first of them is this error itself, where it is the only one."""
+        return self._errors or [self]
 
 
 class SceneError(Error, ValueError):

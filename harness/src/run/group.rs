@@ -84,6 +84,11 @@ impl<'a> Group<'a> {
         Ok(group)
     }
 
+    /// Repeats and watch of the runs to come; the reference stays.
+    pub fn follow(&mut self, repeats: Repeats, watch: Option<Arc<Watch>>) {
+        (self.repeats, self.watch) = (repeats, watch);
+    }
+
     /// The scene without its reference: enough for a plan.
     pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
         Group::prepared(Cow::Borrowed(scene), repeats)
