@@ -142,6 +142,16 @@ impl Failure {
         Failure::At(Box::new(Finding { kind, key, problem: problem.into(), help }))
     }
 
+    /// Place of the key that it is about, `file:line`; empty where none is known.
+    pub(crate) fn place(&self) -> String {
+        let error = match self {
+            Failure::Scene(error) => Some(error),
+            Failure::Foreign(foreign) => foreign.at.as_ref(),
+            _ => None,
+        };
+        error.map_or(String::new(), |error| format!("{}:{}", error.file, error.line))
+    }
+
     /// Bad input at a key of a scene.
     pub(crate) fn of_scene(scene: &Scene, kind: ErrorKind, key: &str, problem: &str, help: &str) -> Failure {
         let help = (!help.is_empty()).then_some(help);

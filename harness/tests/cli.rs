@@ -5,9 +5,10 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "dofs",
     "elements",
+    "format",
     "linear_solver",
     "method",
     "metrics",

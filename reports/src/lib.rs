@@ -55,7 +55,7 @@ pub use body::{Body, BodyState, Compared, Faces, Skin, pack};
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
-pub use provenance::{Machine, Program, Provenance, SceneHash};
+pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
 pub use record::{Family, Purpose, Record};
 pub use render::{Rendered, render, render_over_commits};

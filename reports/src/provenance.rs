@@ -1,9 +1,13 @@
 //! By what program, on what machine and from what files the numbers of a run came.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Version of the files in a folder of results. A change that a reader of them would notice raises it.
+pub const FORMAT: u32 = 1;
+
 /// A program, as it was built.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Program {
     /// Version.
     pub version: String,
@@ -29,7 +33,7 @@ impl Program {
 }
 
 /// A machine, as it was when a run began.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Machine {
     /// Processor model.
     pub cpu: String,
@@ -44,20 +48,26 @@ pub struct Machine {
 }
 
 /// By what, where and from what a run's numbers came. Carries no date.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
+    /// Version of the files in this folder; 0 in results from before it was written.
+    #[serde(default)]
+    pub format: u32,
     /// Name of the study's or scene's file that the numbers are of.
     pub source: String,
     /// The program.
     pub program: Program,
     /// The machine.
     pub machine: Machine,
+    /// Keys set in place of the scene's file, `KEY=VALUE` each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
     /// Content hash (BLAKE3, hexadecimal) of each scene file, by scene name, sorted.
     pub scenes: Vec<SceneHash>,
 }
 
 /// The content hash of one scene file.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SceneHash {
     /// Scene (case) name.
     pub case: String,

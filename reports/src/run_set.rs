@@ -1,5 +1,6 @@
 //! Everything that one study leaves behind.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
@@ -9,7 +10,7 @@ use crate::provenance::Provenance;
 use crate::record::{Family, Record};
 
 /// How a check came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// The bound held.
@@ -42,7 +43,7 @@ impl Status {
 }
 
 /// One bound on one number, and whether it held.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Check {
     /// Case name.
     pub case: String,
@@ -58,6 +59,9 @@ pub struct Check {
     pub status: Status,
     /// Why it failed, is known to fail, or wasn't run; empty for a pass.
     pub reason: String,
+    /// Place of the check, `file:line`; empty in results from before 0.2.
+    #[serde(default)]
+    pub at: String,
 }
 
 /// Displacement on a body's surface, for the pictures.
@@ -177,6 +181,9 @@ pub struct Failure {
     /// The adapter of a solver outside this program, with its settings; empty for a run of this program.
     #[serde(default)]
     pub adapter: String,
+    /// Place of the key that it is about, `file:line`; empty where none is known.
+    #[serde(default)]
+    pub at: String,
 }
 
 /// What is to be said against the numbers of a run.

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 use crate::frame;
-use crate::provenance::Provenance;
+use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
 use crate::run_set::RunSet;
 use crate::table::csv_line;
@@ -85,7 +85,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_json(&dir.join("failures.json"), &run.failures)?;
     write_json(&dir.join("warnings.json"), &run.warnings)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
-    let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
+    let mut csv = String::from("case,method,metric,value,bound,status,reason,at\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
         csv.push_str(&csv_line(&[
@@ -96,6 +96,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
             &c.bound,
             c.status.name(),
             &c.reason,
+            &c.at,
         ]));
     }
     write_text(&dir.join("checks.csv"), &csv)?;
@@ -153,6 +154,17 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     }
     if !provenance.exists() {
         return Err(ReportError::NoResults(dir.into()));
+    }
+    // Its version is read before what may have changed with it.
+    #[derive(Deserialize)]
+    struct Version {
+        #[serde(default)]
+        format: u32,
+    }
+    let Version { format } = read_json(&provenance)?;
+    if format > FORMAT {
+        let reason = format!("is of version {format}; this program reads up to {FORMAT}: take a newer one");
+        return Err(ReportError::Content { path: provenance, reason });
     }
     let fields_dir = dir.join("fields");
     let fields = if fields_dir.is_dir() { files_ending(&fields_dir, &["json"])? } else { Vec::new() };

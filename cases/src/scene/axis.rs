@@ -13,17 +13,18 @@
 
 use std::collections::BTreeMap;
 
+use catalogue::Problem;
 use catalogue::metric::{self, Metric};
-use catalogue::{Problem, nearest};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Value;
 
+use super::document::Document;
 use super::error::SceneError;
 use super::expression::Expression;
 use super::model::Scene;
-use super::parse;
 use super::report::Report;
+use super::{resolved, shared};
 
 /// What drives a scene through its values, and what tells whether a result is right.
 #[derive(Clone, Debug)]
@@ -107,34 +108,22 @@ impl Axis {
                 problem.help.as_deref(),
             )]
         };
-        let mut table: Value = match scene.text().parse::<toml::Table>() {
-            Ok(table) => Value::Table(table),
-            Err(bad) => return Err(refuse("", Problem::new(bad.message()))),
-        };
-        if let Some(all) =
-            table.get_mut("method").and_then(Value::as_array_mut).filter(|_| !methods.is_empty())
-        {
-            let named = |method: &Value| {
-                let id = method.get("id").and_then(Value::as_str);
-                id.is_some_and(|id| methods.iter().any(|m| m == id))
-            };
-            all.retain(named);
-        }
+        let filled = self.set.iter().map(|(key, template)| match fill(template, value) {
+            Ok(filled) => Ok((key.as_str(), Some(filled.to_string()))),
+            Err(problem) => Err(refuse(key, problem)),
+        });
+        let filled = filled.collect::<Result<Vec<_>, _>>()?;
+        let mut document = Document::parse(scene.text(), scene.file())?;
+        document.keep(methods);
         // They are of the scene as it is.
-        if let Some(table) = table.as_table_mut() {
-            table.remove("check");
+        document.root.get_mut().remove("check");
+        let left_out = self.unset.iter().map(|key| (key.as_str(), None));
+        let driver = format!("{} along '{}' at {value}", scene.file(), self.name);
+        for (key, value) in left_out.chain(filled.iter().map(|(key, value)| (*key, value.as_deref()))) {
+            document.set(key, value, &driver).map_err(|problem| refuse(key, problem))?;
         }
-        for key in &self.unset {
-            set(&mut table, key, None).map_err(|problem| refuse(key, problem))?;
-        }
-        for (key, template) in &self.set {
-            let filled = fill(template, value).map_err(|problem| refuse(key, problem))?;
-            set(&mut table, key, Some(&filled)).map_err(|problem| refuse(key, problem))?;
-        }
-        let text = table.as_table().map_or(String::new(), toml::Table::to_string);
-        let mut varied = parse(&text, scene.file())?;
-        // Messages name the lines of the file, not of the text made here.
-        varied.origin = scene.origin.with_text(text);
+        let (keys, origin) = shared::keys(document)?;
+        let mut varied = resolved(keys, origin)?;
         varied.varied = Some((self.name.clone(), value));
         Ok(varied)
     }
@@ -172,50 +161,6 @@ fn fill_text(text: &str, x: f64) -> Result<Value, Problem> {
     })
 }
 
-/// Puts a value at a key such as `method[].size.cells[0]`, or removes the key; tables on the way are made where there are none.
-fn set(table: &mut Value, key: &str, value: Option<&Value>) -> Result<(), Problem> {
-    let (head, rest) = match key.find(['.', '[']) {
-        Some(end) => key.split_at(end),
-        None => (key, ""),
-    };
-    if let Some(inside) = head.is_empty().then(|| rest.strip_prefix('[')).flatten() {
-        let (index, behind) =
-            inside.split_once(']').ok_or_else(|| Problem::new("a '[' is never closed").found(key))?;
-        let list = table.as_array_mut().ok_or_else(|| Problem::new("is no list").found(key))?;
-        if index.is_empty() {
-            return list.iter_mut().try_for_each(|item| below(item, behind, value));
-        }
-        let length = list.len();
-        let item = index.parse::<usize>().ok().and_then(|index| list.get_mut(index));
-        let item = item.ok_or_else(|| Problem::new(format!("[{index}] is none of {length}")).found(key))?;
-        return below(item, behind, value);
-    }
-    let here = table.as_table_mut().ok_or_else(|| Problem::new("is no table").found(key))?;
-    if !here.contains_key(head) && rest.starts_with('[') {
-        let near = nearest(head, here.keys().map(String::as_str));
-        let help = near.map_or(String::new(), |near| format!("did you mean '{near}'?"));
-        return Err(Problem::new("is not in the scene").found(head).help(help));
-    }
-    if rest.is_empty() && value.is_none() {
-        here.remove(head);
-        return Ok(());
-    }
-    let slot = here.entry(head.to_string()).or_insert_with(|| Value::Table(toml::Table::new()));
-    below(slot, rest, value)
-}
-
-fn below(slot: &mut Value, rest: &str, value: Option<&Value>) -> Result<(), Problem> {
-    match (rest.strip_prefix('.'), value) {
-        (_, Some(value)) if rest.is_empty() => {
-            *slot = value.clone();
-            Ok(())
-        }
-        (_, None) if rest.is_empty() => Err(Problem::new("is one of a list, which can't be left out")),
-        (Some(key), _) => set(slot, key, value),
-        (None, _) => set(slot, rest, value),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -229,35 +174,5 @@ mod tests {
         assert_eq!(text("{x}{x}"), Value::String("44".into()));
         assert_eq!(text("plain"), Value::String("plain".into()));
         assert!(fill(&Value::String("{x".into()), 4.0).unwrap_err().problem.contains("never closed"));
-    }
-
-    #[test]
-    fn keys_reach_into_lists_and_every_method() {
-        let mut scene =
-            Value::Table("method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 2] }".parse().unwrap());
-        set(&mut scene, "method[].cells", Some(&Value::Integer(3))).unwrap();
-        set(&mut scene, "body.size[1]", Some(&Value::Integer(7))).unwrap();
-        set(&mut scene, "material.poisson", Some(&Value::Float(0.4))).unwrap();
-        let expected = "method = [{ id = 'a', cells = 3 }, { id = 'b', cells = 3 }]\nbody = { size = [1, 7] }\n\
-                        material = { poisson = 0.4 }";
-        assert_eq!(scene, Value::Table(expected.parse().unwrap()));
-        set(&mut scene, "method[].cells", None).unwrap();
-        set(&mut scene, "material", None).unwrap();
-        let expected = "method = [{ id = 'a' }, { id = 'b' }]\nbody = { size = [1, 7] }";
-        assert_eq!(scene, Value::Table(expected.parse().unwrap()));
-        assert!(set(&mut scene, "body.size[0]", None).unwrap_err().problem.contains("of a list"));
-        assert!(
-            set(&mut scene, "body.size[2]", Some(&Value::Integer(7)))
-                .unwrap_err()
-                .problem
-                .contains("none of 2")
-        );
-        assert!(
-            set(&mut scene, "methd[].id", Some(&Value::Integer(7)))
-                .unwrap_err()
-                .help
-                .unwrap()
-                .contains("method")
-        );
     }
 }

@@ -38,11 +38,6 @@ impl Origin {
         &self.text
     }
 
-    /// The same places with another text.
-    pub(crate) fn with_text(&self, text: String) -> Origin {
-        Origin { text, ..self.clone() }
-    }
-
     /// The file that has the value of `key`.
     pub(crate) fn file_of(&self, key: &str) -> &str {
         self.places.get(key).map_or(self.file(), |(place, _)| self.files.name(place.file))

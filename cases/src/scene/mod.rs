@@ -26,6 +26,7 @@ mod purpose;
 mod region;
 mod report;
 mod resolve;
+mod set;
 mod shared;
 mod sources;
 mod study;
@@ -56,17 +57,32 @@ pub use procedure::{
 };
 pub use purpose::{Publication, Purpose};
 pub use region::{Comparison, Region, Relation};
+pub use set::Override;
 pub use study::{Run, Study, load_study, load_study_for, parse_study};
 pub use tool::{Drive, Friction, Tool};
 
 /// Reads the scene in a file. The name in messages is `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
-    parse(&text_of(path)?, &path.display().to_string())
+    load_with(path, &[])
+}
+
+/// The same with some keys set from outside of the file.
+pub fn load_with(path: &Path, overrides: &[Override]) -> Result<Scene, Vec<SceneError>> {
+    parse_with(&text_of(path)?, &path.display().to_string(), overrides)
 }
 
 /// Reads a scene from text. `file` names it in messages; paths in the scene are relative to the folder of `file`.
 pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
-    let (keys, origin) = shared::read(text, file)?;
+    parse_with(text, file, &[])
+}
+
+/// The same with some keys set from outside of the text.
+pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scene, Vec<SceneError>> {
+    let (keys, origin) = shared::read(text, file, overrides)?;
+    resolved(keys, origin)
+}
+
+fn resolved(keys: keys::SceneKeys, origin: Origin) -> Result<Scene, Vec<SceneError>> {
     let mut report = report::Report::new(&origin);
     let scene = resolve::scene(keys, &mut report);
     // Parts that could not be resolved are left out of the scene: what the rest demands of them can't be judged.

@@ -86,6 +86,8 @@ pub struct Check {
     pub methods: Vec<String>,
     /// The bound, in the SI unit of the metric.
     pub bound: Bound,
+    /// Its place, `file:line`.
+    pub at: String,
 }
 
 /// Bound of a metric.

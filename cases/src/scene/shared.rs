@@ -24,6 +24,7 @@ use super::error::{SceneError, unread};
 use super::keys::{MethodKeys, SceneKeys};
 use super::report::{Report, beside, which};
 use super::resolve;
+use super::set::Override;
 use super::sources::Taken;
 use catalogue::Problem;
 
@@ -39,11 +40,16 @@ struct SharedKeys {
     method: Vec<MethodKeys>,
 }
 
-/// Reads a scene with the shared methods that it takes.
-pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+/// Reads a scene with the shared methods that it takes, and with some keys set from outside.
+pub(crate) fn read(
+    text: &str,
+    file: &str,
+    overrides: &[Override],
+) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
     let mut document = Document::parse(text, file)?;
     let Some(from) = document.root.get_ref().get("methods_from") else {
         unshared(&document)?;
+        document.set_all(overrides)?;
         return keys(document);
     };
     let wrong = |problem| vec![document.error(Some(from.span()), "methods_from", problem)];
@@ -62,11 +68,12 @@ pub(crate) fn read(text: &str, file: &str) -> Result<(SceneKeys, Origin), Vec<Sc
     shared.check(&SHARED)?;
     unique(&shared)?;
     take(&mut document, shared)?;
+    document.set_all(overrides)?;
     keys(document)
 }
 
 /// The keys of a scene; or what is wrong with them, and with the values of the parts whose keys are sound.
-fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+pub(crate) fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
     let Err(mut errors) = document.check(&SCENE) else { return document.values() };
     if let Some((parts, origin)) = document.sound(&errors) {
         let mut report = Report::new(&origin);
@@ -112,6 +119,19 @@ fn tables<'a, 't>(document: &'a Document<'t>) -> &'a [Spanned<DeValue<'t>>] {
     match document.root.get_ref().get("method").map(Spanned::get_ref) {
         Some(DeValue::Array(methods)) => methods,
         _ => &[],
+    }
+}
+
+impl Document<'_> {
+    /// Leaves the methods out that are not among these; none where none is named.
+    pub fn keep(&mut self, methods: &[String]) {
+        let Some(all) = self.root.get_mut().get_mut("method").filter(|_| !methods.is_empty()) else { return };
+        let DeValue::Array(list) = all.get_ref() else { return };
+        let named = |method: &&Spanned<DeValue<'_>>| {
+            let id = value(method, "id").and_then(|id| id.get_ref().as_str());
+            id.is_some_and(|id| methods.iter().any(|m| m == id))
+        };
+        *all = Spanned::new(all.span(), DeValue::Array(list.iter().filter(named).cloned().collect()));
     }
 }
 
@@ -208,7 +228,7 @@ fn with<'t>(
 }
 
 /// The same value with all spans moved.
-fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
+pub(crate) fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
     let span = |span: Range<usize>| span.start + base..span.end + base;
     let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
     match value {

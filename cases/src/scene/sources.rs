@@ -1,5 +1,5 @@
-//! The files that a scene is read from: its own, and that of the shared methods it takes. Their texts are one range of byte
-//! offsets, so that a span says which file it is in.
+//! The files that a scene is read from: its own, and that of the shared methods it takes; then values that are set from outside. Their
+//! texts are one range of byte offsets, so that a span says which of them it is in.
 
 use std::ops::Range;
 
@@ -45,6 +45,11 @@ impl<'t> Sources<'t> {
         base
     }
 
+    /// Where the text begins that was added last.
+    pub fn last(&self) -> Place {
+        Place { file: self.texts.len() - 1, line: 1, column: 1 }
+    }
+
     /// Where a span begins; the start of the scene where there is none.
     pub fn place(&self, span: Option<Range<usize>>) -> Place {
         let offset = span.map_or(0, |span| span.start);
@@ -74,6 +79,8 @@ impl<'t> Text<'t> {
 pub(crate) struct Files {
     names: Vec<String>,
     taken: Vec<Taken>,
+    /// How many of the names, from the first, are those of files. The rest name values set from outside.
+    files: usize,
 }
 
 /// A shared method.
@@ -89,13 +96,19 @@ pub(crate) struct Taken {
 
 impl Files {
     pub fn new(file: &str) -> Files {
-        Files { names: vec![file.to_string()], taken: Vec::new() }
+        Files { names: vec![file.to_string()], taken: Vec::new(), files: 1 }
     }
 
     /// Adds the file of shared methods.
     pub fn add(&mut self, file: String, taken: Vec<Taken>) {
         self.names.push(file);
         self.taken = taken;
+        self.files += 1;
+    }
+
+    /// Adds what a value set from outside is called.
+    pub fn add_override(&mut self, name: String) {
+        self.names.push(name);
     }
 
     /// The scene's own file.
@@ -114,7 +127,8 @@ impl Files {
 
     /// An error at a place. One in a shared method has the key that it has in its own file, and says which scene takes it.
     pub fn error(&self, kind: ErrorKind, place: Place, key: &str, problem: Problem) -> SceneError {
-        let taken = self.taken.iter().filter(|_| place.file > 0).find_map(|taken| {
+        let is_file = place.file < self.files;
+        let taken = self.taken.iter().filter(|_| is_file && place.file > 0).find_map(|taken| {
             let rest = key.strip_prefix(&taken.here)?;
             (rest.is_empty() || rest.starts_with('.')).then(|| (format!("{}{rest}", taken.there), taken.line))
         });
@@ -128,8 +142,9 @@ impl Files {
         SceneError {
             kind,
             file: self.names[place.file].clone(),
-            line: place.line,
-            column: place.column,
+            // A value from outside has no lines.
+            line: if is_file { place.line } else { 0 },
+            column: if is_file { place.column } else { 0 },
             key,
             found: problem.found,
             problem: problem.problem,

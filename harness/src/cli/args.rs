@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use cases::scene::Override;
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 use geometry::files::GmshVersion;
 
@@ -55,11 +56,9 @@ pub enum Command {
     Fields(FieldsArgs),
     /// Print the stages a scene needs, those it does not, and why
     Plan {
-        /// The scene file
-        scene: PathBuf,
-        /// Only this method (may be given several times)
-        #[arg(long = "method", value_name = "ID")]
-        methods: Vec<String>,
+        /// What is planned
+        #[command(flatten)]
+        scene: SceneArgs,
         /// Plan what is estimated to take more than twice the memory of this machine or half a day
         #[arg(long)]
         force: bool,
@@ -122,13 +121,16 @@ pub enum Command {
         /// Only this part, such as laws
         what: Option<String>,
     },
-    /// Print the JSON schema of scene files, or of study files
+    /// Print the JSON schema of scene files, of study files, or of what is written for programs
     ///
     /// An editor completes and checks a scene with it: run `tissuebench schema > scene.schema.json`, and begin the scene
     /// with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
     Schema {
-        /// The schema of study files
-        #[arg(long)]
+        /// Of what
+        #[arg(value_enum, default_value_t = SchemaOf::Scene, value_name = "WHAT")]
+        of: SchemaOf,
+        /// The same as `study`
+        #[arg(long, hide = true, conflicts_with = "of")]
         study: bool,
     },
     /// Inspect and convert mesh files
@@ -151,14 +153,27 @@ pub enum Command {
     },
 }
 
+/// A scene and some of its methods.
+#[derive(Args, Clone)]
+pub struct SceneArgs {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub file: PathBuf,
+    /// Only these methods; `*` stands for any text (may be given several times)
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Set a key of the scene in place of the file, such as material.poisson=0.45 or "method[tet4].size.level=3" (may be given several
+    /// times)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<Override>,
+}
+
 /// Arguments of `fields`.
 #[derive(Args)]
 pub struct FieldsArgs {
-    /// The scene file
-    pub scene: PathBuf,
-    /// Only this method (may be given several times)
-    #[arg(long = "method", value_name = "ID")]
-    pub methods: Vec<String>,
+    /// What is run
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Where to put a .pvd file and a folder for each method
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -168,13 +183,14 @@ pub struct FieldsArgs {
 }
 
 /// Arguments of `run`.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct RunArgs {
-    /// The scene file
-    pub scene: PathBuf,
-    /// Only this method (may be given several times)
-    #[arg(long = "method", value_name = "ID")]
-    pub methods: Vec<String>,
+    /// What is run
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Nothing on stderr but errors
+    #[arg(short, long)]
+    pub quiet: bool,
     /// Time each run once; by default runs that take less than a second are repeated, up to five times
     #[arg(long)]
     pub once: bool,
@@ -192,11 +208,9 @@ pub struct RunArgs {
 /// Arguments of `reference`.
 #[derive(Args)]
 pub struct ReferenceArgs {
-    /// The scene file; the last method's values are stored, all methods span the uncertainty
-    pub scene: PathBuf,
-    /// Only this method (may be given several times)
-    #[arg(long = "method", value_name = "ID")]
-    pub methods: Vec<String>,
+    /// What is run; the last method's values are stored, all methods span the uncertainty
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Solve nothing: take the values of this reference of the same scene, made before
     #[arg(long, alias = "told", value_name = "FILE", conflicts_with = "methods")]
     pub from: Option<PathBuf>,
@@ -232,6 +246,9 @@ pub struct ExportArgs {
     /// The method: one of finite elements, or of another solver
     #[arg(long, value_name = "ID")]
     pub method: String,
+    /// Set a key of the scene in place of the file, such as material.poisson=0.45 (may be given several times)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<Override>,
     /// The folder to write
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -269,12 +286,32 @@ pub struct CompareArgs {
     /// Relative difference from which on a number has changed
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-6)]
     pub tolerance: f64,
+    /// Pair runs that differ in this setting too, such as dilation, kernel, size, method or case (may be given several times)
+    #[arg(long, value_name = "SETTING")]
+    pub across: Vec<String>,
     /// Leave times out
     #[arg(long)]
     pub no_times: bool,
     /// What to print on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+}
+
+/// What has a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SchemaOf {
+    /// A scene file
+    Scene,
+    /// A study file
+    Study,
+    /// A line of `run --format json`
+    Run,
+    /// A line of `verify --events`
+    Events,
+    /// checks.json; a row of checks.csv has the same columns
+    Checks,
+    /// provenance.json, with the version of all files beside it
+    Provenance,
 }
 
 /// What `run` prints.

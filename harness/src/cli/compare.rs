@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use reports::RunSet;
-use reports::compare::{Comparison, NumberChange, Numbers, Ratio, Scope, Times};
+use reports::compare::{Comparison, NumberChange, Numbers, Ratio, Scope, Times, across};
 
 use super::args::{CompareArgs, Format};
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
@@ -46,20 +46,22 @@ fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
         return Err(format!("--tolerance {}: is no relative difference; give 0 to below 1", args.tolerance));
     }
     let one = |path: &Path| reports::read_run(path).map_err(|bad| bad.to_string());
-    let pairs: Vec<(RunSet, RunSet)> = args
+    let mut pairs: Vec<(RunSet, RunSet)> = args
         .results
         .chunks(2)
         .map(|two| Ok((one(&two[0])?, one(&two[1])?)))
         .collect::<Result<_, String>>()?;
     for ((before, after), two) in pairs.iter().zip(args.results.chunks(2)) {
         let (a, b) = (&before.provenance.source, &after.provenance.source);
-        if a != b {
+        if a != b && !args.across.iter().any(|setting| setting == "case") {
             let [first, second] = [&two[0], &two[1]].map(|path| path.display());
             return Err(format!(
-                "{first} holds the results of {a}, {second} those of {b}; compare those of one study"
+                "{first} holds the results of {a}, {second} those of {b}; compare those of one study, or those of two scenes by \
+                 --across case"
             ));
         }
     }
+    pairs.iter_mut().try_for_each(|pair| across(pair, &args.across))?;
     Ok(pairs)
 }
 

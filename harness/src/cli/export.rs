@@ -1,12 +1,14 @@
 //! `tissuebench export`: the problem of one method as files that any solver can read.
 
-use crate::cli::args::ExportArgs;
+use crate::cli::args::{ExportArgs, SceneArgs};
 use crate::cli::{affordable_methods, fail, open};
 use crate::run::{Group, Repeats};
 
 /// Writes the folder; returns the exit code.
 pub(super) fn export(args: &ExportArgs) -> u8 {
-    let (scene, chosen) = match open(&args.scene, std::slice::from_ref(&args.method)) {
+    let ExportArgs { scene: file, method, set, .. } = args;
+    let wanted = SceneArgs { file: file.clone(), methods: vec![method.clone()], set: set.clone() };
+    let (scene, chosen) = match open(&wanted) {
         Ok(opened) => opened,
         Err(code) => return code,
     };

@@ -15,7 +15,7 @@ pub(super) const FOLDER: &str = "volumes";
 
 /// Runs the methods and writes their fields; returns the exit code.
 pub(super) fn run(args: &FieldsArgs) -> u8 {
-    let (scene, chosen) = match open(&args.scene, &args.methods) {
+    let (scene, chosen) = match open(&args.scene) {
         Ok(opened) => opened,
         Err(code) => return code,
     };

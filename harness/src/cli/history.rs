@@ -20,6 +20,9 @@ pub enum HistoryAction {
         /// The folder of the history
         #[arg(long, value_name = "DIR", default_value = "history")]
         to: PathBuf,
+        /// What to call them beside their commit, such as v1.2 or "new assembly"
+        #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+        label: String,
     },
     /// Show accuracy and time from commit to commit, and the steps that are outside of noise
     Show(ShowArgs),
@@ -44,8 +47,8 @@ const SHOWN: usize = 5;
 
 pub(super) fn act(action: &HistoryAction) -> u8 {
     let done = match action {
-        HistoryAction::Add { results, to } => {
-            reports::read_run(results).and_then(|set| add(to, &set)).map(|path| {
+        HistoryAction::Add { results, to, label } => {
+            reports::read_run(results).and_then(|set| add(to, &set, label)).map(|path| {
                 println!("{}", path.display());
                 0
             })

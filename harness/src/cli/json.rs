@@ -3,13 +3,20 @@
 use std::collections::BTreeMap;
 
 use geometry::Vector3;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::outcome::{Counters, LoadStep, Metric, Outcome, Plan, Unfinished, Warning};
 
+/// Version of the object. A change that a reader of it would notice raises it.
+const FORMAT: u32 = 1;
+
 /// One run as `tissuebench run --format json` prints it.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub struct RunObject<'a> {
+    /// Version of this object.
+    format: u32,
+    /// Name of the scene: that of its file.
     scene: &'a str,
     method: &'a str,
     /// `ok`; `relaxed` where dynamic relaxation continued from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
@@ -57,13 +64,13 @@ pub struct RunObject<'a> {
     work: Counters,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Number {
     value: f64,
     unit: &'static str,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ToolObject<'a> {
     name: &'a str,
     /// m.
@@ -72,7 +79,7 @@ struct ToolObject<'a> {
     force: [f64; 3],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct SupportObject<'a> {
     /// Where it is, in the words of the scene.
     name: &'a str,
@@ -80,7 +87,7 @@ struct SupportObject<'a> {
     force: [f64; 3],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct MeanObject<'a> {
     /// Where it is, in the words of the scene.
     name: &'a str,
@@ -88,7 +95,7 @@ struct MeanObject<'a> {
     u: [f64; 3],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct StepObject<'a> {
     /// Part of the loading, 0 to 1; of the time in dynamics.
     load: f64,
@@ -123,7 +130,7 @@ fn arrays(vectors: &[Vector3]) -> Vec<[f64; 3]> {
     vectors.iter().map(|&v| v.into()).collect()
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ProbeObject {
     x: [f64; 3],
     u: [f64; 3],
@@ -146,6 +153,7 @@ impl<'a> RunObject<'a> {
             })
         });
         RunObject {
+            format: FORMAT,
             scene: &outcome.identity.case,
             method: &outcome.identity.method,
             status: outcome.status,
@@ -204,6 +212,7 @@ impl<'a> RunObject<'a> {
     /// A run that gave no numbers: what it would have done, and how large it got.
     pub fn failed(scene: &'a str, method: &'a str, run: &'a Unfinished) -> RunObject<'a> {
         RunObject {
+            format: FORMAT,
             scene,
             method,
             status: run.failure.status(),

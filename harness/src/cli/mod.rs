@@ -33,16 +33,19 @@ use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
 use clap::CommandFactory;
 use reports::ReportError;
+use schemars::schema_for;
 
 use crate::Failure;
 use crate::process::leash::leash;
 use crate::scenario::too_large;
 use crate::study::apart::experiment;
 use crate::study::folder::{self, Folder};
+use crate::study::{Line, like};
 use baseline::baseline;
 use claims::claims;
 use compare::compare;
 use export::export;
+use json::RunObject;
 use list::list;
 use merge::merge;
 use plan::plan;
@@ -50,6 +53,8 @@ use reference::reference;
 use run::run;
 use solve::solve;
 use verify::verify;
+
+use args::{SceneArgs, SchemaOf};
 
 pub use args::{Cli, Command};
 
@@ -72,7 +77,7 @@ fn act(cli: Cli) -> u8 {
         Command::Run(args) => run(&args),
         Command::Pick(args) => pick::pick(&args),
         Command::Fields(args) => fields::run(&args),
-        Command::Plan { scene, methods, force } => plan(&scene, &methods, force),
+        Command::Plan { scene, force } => plan(&scene, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Merge(args) => merge(&args),
         Command::Leash(args) => leash(&args),
@@ -80,7 +85,7 @@ fn act(cli: Cli) -> u8 {
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Report { results, out, history } => {
             let out = out.unwrap_or_else(|| results.join("report"));
-            report(&results, &out, history.as_deref())
+            report(&results, &out, history.as_deref(), false)
         }
         Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| unreported(&bad)),
         Command::Reference(args) => match reference(&args) {
@@ -90,9 +95,8 @@ fn act(cli: Cli) -> u8 {
         Command::Export(args) => export(&args),
         Command::Adapter { action } => adapter::act(&action),
         Command::List { what } => list(what.as_deref()),
-        Command::Schema { study } => {
-            let schema = if study { scene::study_schema() } else { scene::schema() };
-            println!("{schema:#}");
+        Command::Schema { of, study } => {
+            println!("{:#}", schema(if study { SchemaOf::Study } else { of }));
             0
         }
         Command::Claims(args) => claims(&args),
@@ -109,6 +113,18 @@ fn act(cli: Cli) -> u8 {
             Ok(()) => 0,
             Err(failure) => fail(&failure),
         },
+    }
+}
+
+/// The JSON schema of an input or output.
+fn schema(of: SchemaOf) -> serde_json::Value {
+    match of {
+        SchemaOf::Scene => scene::schema(),
+        SchemaOf::Study => scene::study_schema(),
+        SchemaOf::Run => schema_for!(RunObject).to_value(),
+        SchemaOf::Events => schema_for!(Line).to_value(),
+        SchemaOf::Checks => schema_for!(Vec<reports::Check>).to_value(),
+        SchemaOf::Provenance => schema_for!(reports::Provenance).to_value(),
     }
 }
 
@@ -166,30 +182,31 @@ fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
     Ok(folder)
 }
 
-/// The scene, and the indices of the methods asked for.
-fn open(path: &Path, methods: &[String]) -> Result<(Scene, Vec<usize>), u8> {
-    let scene = scene::load(path).map_err(|errors| refuse(&errors))?;
+/// The scene, and the indices of the methods asked for in their order.
+fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
+    let scene = scene::load_with(&args.file, &args.set).map_err(|errors| refuse(&errors))?;
+    let chosen = choose(&scene, args)?;
+    Ok((scene, chosen))
+}
+
+/// The indices of the methods asked for, of a scene that can run.
+fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
     let ahead = scene.unavailable();
     if !ahead.is_empty() {
         return Err(refuse(&ahead));
     }
-    let mut chosen = Vec::new();
-    for id in methods {
-        match scene.methods.iter().position(|m| m.id == *id) {
-            Some(index) => chosen.push(index),
-            None => {
-                let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
-                let near = nearest(id, known.iter().copied());
-                let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-                eprintln!("{}: no method '{id}'; it has {}{near}", path.display(), known.join(", "));
-                return Err(2);
-            }
+    let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
+    for id in &args.methods {
+        if !known.iter().any(|name| like(id, name)) {
+            let near = nearest(id, known.iter().copied());
+            let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+            let file = args.file.display();
+            eprintln!("{file}: no method '{id}'; it has {}{near}", known.join(", "));
+            return Err(2);
         }
     }
-    if methods.is_empty() {
-        chosen = (0..scene.methods.len()).collect();
-    }
-    Ok((scene, chosen))
+    let wanted = |name: &str| args.methods.is_empty() || args.methods.iter().any(|id| like(id, name));
+    Ok((0..known.len()).filter(|&index| wanted(known[index])).collect())
 }
 
 /// Refuses what takes more than anyone means to spend, unless it is forced: then it is a warning.
@@ -206,10 +223,12 @@ fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<()
     affordable(&chosen.iter().filter_map(of).collect::<Vec<_>>(), force)
 }
 
-fn report(results: &Path, out: &Path, history: Option<&Path>) -> u8 {
+fn report(results: &Path, out: &Path, history: Option<&Path>, quiet: bool) -> u8 {
     match reports::render_over_commits(results, out, history) {
         Ok(rendered) => {
-            eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
+            if !quiet {
+                eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
+            }
             0
         }
         Err(bad) => unreported(&bad),

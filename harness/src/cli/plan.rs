@@ -1,13 +1,12 @@
 //! `tissuebench plan`: the stages of a scene's methods, without running them.
 
-use std::path::Path;
-
+use crate::cli::args::SceneArgs;
 use crate::cli::{affordable_methods, open, text};
 use crate::run::{Group, Repeats};
 
 /// Prints what each method would do; returns the exit code.
-pub(super) fn plan(path: &Path, methods: &[String], force: bool) -> u8 {
-    let (scene, chosen) = match open(path, methods) {
+pub(super) fn plan(args: &SceneArgs, force: bool) -> u8 {
+    let (scene, chosen) = match open(args) {
         Ok(opened) => opened,
         Err(code) => return code,
     };

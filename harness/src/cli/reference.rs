@@ -11,7 +11,8 @@ use crate::study::make_reference::make;
 
 /// Runs every method of a scene and writes what they agree on.
 pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
-    let (scene, _) = open(&args.scene, &args.methods)?;
+    let (scene, chosen) = open(&args.scene)?;
+    let chosen: Vec<String> = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
     folder::ready_file(&args.out).map_err(|problem| fail(&Failure::Input(problem)))?;
     let text = scene.text().to_string();
     let mesh = geometry::files::read(&args.points, args.unit.metres)
@@ -25,8 +26,7 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let from = args.from.as_ref().map(read).transpose()?;
     let mut used: Vec<String> = match &from {
         Some(from) => from.methods().map(Into::into).collect(),
-        None if args.methods.is_empty() => scene.methods.iter().map(|m| m.id.clone()).collect(),
-        None => args.methods.clone(),
+        None => chosen.clone(),
     };
     // Refused before hours are spent on the methods.
     let mut alongside = Vec::new();
@@ -42,7 +42,7 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     }
     let mut stored = match from {
         Some(from) => from,
-        None => make(&scene, &text, mesh.points(), &args.methods).map_err(|failure| fail(&failure))?,
+        None => make(&scene, &text, mesh.points(), &chosen).map_err(|failure| fail(&failure))?,
     };
     alongside.iter().for_each(|other| stored.widen(other));
     print!("{}", text::reference(&stored));

@@ -1,9 +1,11 @@
 //! `tissuebench run`: one scene by some or all of its methods.
 
 use std::io::IsTerminal;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use cases::scene::{self, Scene};
-use reports::{RunSet, Status};
+use reports::{Machine, RunSet, Status};
 
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
@@ -14,12 +16,14 @@ use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, check, failed, stalled};
 
+/// Time between two lines on what runs.
+const EVERY: Duration = Duration::from_secs(10);
 /// Repeats of a single run's timings.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
 
 /// Runs the scene and reports it; returns the exit code.
 pub(super) fn run(args: &RunArgs) -> u8 {
-    let (scene, chosen) = match open(&args.scene, &args.methods) {
+    let (scene, chosen) = match open(&args.scene) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -27,7 +31,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         return code;
     }
     let machine = provenance::machine();
-    let folder = match args.out.as_ref().map(|out| take(&args.scene, out)).transpose() {
+    let folder = match args.out.as_ref().map(|out| take(&args.scene.file, out)).transpose() {
         Ok(folder) => folder,
         Err(code) => return code,
     };
@@ -36,59 +40,91 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     {
         return unreported(&bad);
     }
-    interrupt::install(args.out.as_deref(), false);
-    let mut made = Made {
-        args,
+    let scene = Arc::new(scene);
+    let made = Arc::new(Mutex::new(Made {
+        now: String::new(),
+        args: args.clone(),
         case: case_name(&scene),
-        scene: &scene,
+        scene: scene.clone(),
+        machine,
+        left: chosen.iter().map(|&index| scene.methods[index].id.clone()).collect(),
         set: RunSet::default(),
         outcomes: Vec::new(),
         code: 0,
-    };
+    }));
+    let shared = made.clone();
+    interrupt::install(move || {
+        if let Ok(mut made) = shared.lock() {
+            made.interrupted();
+            // Nothing is added any more.
+            std::mem::forget(made);
+        }
+    });
+    if !args.quiet && !std::io::stderr().is_terminal() {
+        report_now_and_then(made.clone());
+    }
+    let made = || made.lock().expect("no other thread panics");
+    if scene.reference.is_some() {
+        made().begins("reference".into());
+    }
     let repeats = if args.once { Repeats::ONCE } else { REPEATS };
     let group = match Group::new(&scene, None, repeats) {
         Ok(group) => group,
         Err(failure) => {
             folder.into_iter().for_each(Folder::leave);
-            return made.unreferenced(&chosen, &failure);
+            return made().unreferenced(&chosen, &failure);
         }
     };
     if let Some(failure) = group.reference_stalled() {
-        made.reference_stalled(failure, group.reference_carried());
+        made().reference_stalled(failure, group.reference_carried());
     }
-    for index in chosen {
+    for (count, &index) in (1..).zip(&chosen) {
         let method = &scene.methods[index];
-        if std::io::stderr().is_terminal() {
-            // A static run may take minutes.
-            eprintln!("{} ...", method.id);
-        }
+        made().begins(format!("{} ({count} of {})", method.id, chosen.len()));
         let kept = args.out.is_some();
         let options = RunOptions { picture: kept, states: kept, frames: true, split: None };
         match group.run(&group.scenario(method.clone(), 0), options) {
-            Ok(outcome) => made.finished(method, outcome),
-            Err(unfinished) => made.failed(method, unfinished),
+            Ok(outcome) => made().finished(method, outcome),
+            Err(unfinished) => made().failed(method, unfinished),
         }
     }
-    made.conclude(machine)
+    made().conclude()
+}
+
+/// Writes a line now and then, where no terminal shows what runs.
+fn report_now_and_then(made: Arc<Mutex<Made>>) {
+    let begin = Instant::now();
+    std::thread::spawn(move || {
+        loop {
+            std::thread::sleep(EVERY);
+            let Ok(made) = made.lock() else { return };
+            eprintln!("{} is running, {:.0} s since the start", made.now, begin.elapsed().as_secs_f64());
+        }
+    });
 }
 
 /// What the methods of the scene have left so far.
-struct Made<'a> {
-    args: &'a RunArgs,
+struct Made {
+    /// What is running.
+    now: String,
+    args: RunArgs,
     case: String,
-    scene: &'a Scene,
+    scene: Arc<Scene>,
+    machine: Machine,
+    /// Methods that have not ended yet.
+    left: Vec<String>,
     set: RunSet,
     outcomes: Vec<Outcome>,
     code: u8,
 }
 
-impl Made<'_> {
+impl Made {
     /// No method ran because their reference could not: each says what it would have done.
     fn unreferenced(&self, chosen: &[usize], failure: &Failure) -> u8 {
         if self.args.format == Format::Json {
             for &index in chosen {
                 let method = &self.scene.methods[index];
-                let planned = Group::unreferenced(self.scene, Repeats::ONCE)
+                let planned = Group::unreferenced(&self.scene, Repeats::ONCE)
                     .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
                 let (plan, size) = planned.unwrap_or_default();
                 let unfinished = Unfinished { failure: failure.clone(), plan, size };
@@ -97,6 +133,14 @@ impl Made<'_> {
         }
         eprintln!("{failure} (every method)");
         failure.exit_code()
+    }
+
+    /// Notes what runs now. A terminal shows it at once: a static run may take minutes.
+    fn begins(&mut self, now: String) {
+        if !self.args.quiet && std::io::stderr().is_terminal() {
+            eprintln!("{now} ...");
+        }
+        self.now = now;
     }
 
     fn reference_stalled(&mut self, failure: &Failure, carried: Option<f64>) {
@@ -116,6 +160,7 @@ impl Made<'_> {
     }
 
     fn finished(&mut self, method: &scene::Method, mut outcome: Outcome) {
+        self.left.retain(|id| *id != method.id);
         if self.args.format == Format::Json {
             print_json(&RunObject::finished(&outcome));
         }
@@ -148,6 +193,7 @@ impl Made<'_> {
     }
 
     fn failed(&mut self, method: &scene::Method, unfinished: Unfinished) {
+        self.left.retain(|id| *id != method.id);
         if self.args.format == Format::Json {
             print_json(&RunObject::failed(&self.case, &method.id, &unfinished));
         }
@@ -157,8 +203,27 @@ impl Made<'_> {
         self.code = self.code.max(failure.exit_code());
     }
 
+    /// Prints and writes what is finished; each method that is not becomes one that failed.
+    fn interrupted(&mut self) {
+        eprintln!("tissuebench: interrupted before the end of {}", self.left.join(", "));
+        for id in std::mem::take(&mut self.left) {
+            self.set.failures.push(reports::Failure {
+                case: self.case.clone(),
+                method: id,
+                reason: "interrupted".into(),
+                status: "interrupted".into(),
+                ..Default::default()
+            });
+        }
+        if !self.outcomes.is_empty() {
+            self.conclude();
+        } else if let Some(out) = &self.args.out {
+            eprintln!("tissuebench: no method has ended; {} is incomplete", out.display());
+        }
+    }
+
     /// Prints the table and the checks that do not hold, and writes the folder of results.
-    fn conclude(mut self, machine: reports::Machine) -> u8 {
+    fn conclude(&mut self) -> u8 {
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
             println!("{}", text::outcomes(&self.outcomes));
             print!("{}{}", text::places(&self.outcomes), text::warnings(&self.outcomes));
@@ -168,12 +233,13 @@ impl Made<'_> {
             self.code = self.code.max(1);
         }
         let Some(out) = &self.args.out else { return self.code };
-        self.set.records.extend(study::reference_records(self.scene));
+        self.set.records.extend(study::reference_records(&self.scene));
         let text = self.scene.text().to_string();
-        self.set.provenance = provenance::provenance(machine, &[(self.case, text)]);
-        self.set.provenance.source = folder::source(&self.args.scene);
+        self.set.provenance = provenance::provenance(self.machine.clone(), &[(self.case.clone(), text)]);
+        self.set.provenance.set = self.args.scene.set.iter().map(ToString::to_string).collect();
+        self.set.provenance.source = folder::source(&self.args.scene.file);
         match reports::write_run(out, &self.set) {
-            Ok(()) => self.code.max(report(out, &out.join("report"), None)),
+            Ok(()) => self.code.max(report(out, &out.join("report"), None, self.args.quiet)),
             Err(bad) => unreported(&bad),
         }
     }

@@ -66,7 +66,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if !args.quiet {
         eprintln!("{}: {} runs", path.display(), plan.len());
     }
-    interrupt::install(Some(&args.out), true);
+    interrupt::install(interrupt::resumable(args.out.clone()));
     let mut finished = plan.execute_watched(args, events.as_ref());
     finished.set.provenance.source = folder::source(&path);
     if finished.stored > 0 && !args.quiet {
@@ -113,7 +113,7 @@ pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> 
     let rendered = match written {
         true => 0,
         false => match reports::write_run(out, set) {
-            Ok(()) => report(out, &out.join("report"), history.as_deref()),
+            Ok(()) => report(out, &out.join("report"), history.as_deref(), *quiet),
             Err(bad) => return unreported(&bad),
         },
     };

@@ -3,13 +3,14 @@
 //! plan is not there for a solver to use. What a solver does with its tables (factors, iterations) follows from the procedure,
 //! and is compared with the counters by a test.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Declares the stages and their names.
 macro_rules! stages {
     ($($(#[$meaning:meta])* $stage:ident = $name:literal,)*) => {
         /// A stage that a run may have.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
         pub enum StageName {
             $($(#[$meaning])* #[serde(rename = $name)] $stage,)*
         }
@@ -73,7 +74,7 @@ stages! {
 }
 
 /// One stage of a plan.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Stage {
     /// Name.
     pub stage: StageName,
@@ -84,7 +85,7 @@ pub struct Stage {
 }
 
 /// Stages of a run, in order; each at most once.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Plan {
     stages: Vec<Stage>,

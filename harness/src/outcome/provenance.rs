@@ -1,6 +1,6 @@
 //! Where the numbers come from: the program, fixed when it was built, and the machine, as it is when a run begins.
 
-use reports::{Machine, Program, Provenance, SceneHash};
+use reports::{FORMAT, Machine, Program, Provenance, SceneHash};
 
 /// BLAKE3 of a scene's text, in hexadecimal digits.
 pub fn hash(text: &str) -> String {
@@ -46,7 +46,7 @@ pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
     let mut hashes: Vec<SceneHash> = scenes.iter().map(of).collect();
     hashes.sort_by(|a, b| a.case.cmp(&b.case));
     hashes.dedup();
-    Provenance { source: String::new(), program: program(), machine, scenes: hashes }
+    Provenance { format: FORMAT, program: program(), machine, scenes: hashes, ..Provenance::default() }
 }
 
 /// The title that a scene gives itself.

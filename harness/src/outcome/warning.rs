@@ -1,13 +1,15 @@
 //! What is to be said against the numbers of a run.
 
 use catalogue::warning;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A warning of one run. What is no entry of the catalogue cannot be told.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Warning {
     /// Which.
     #[serde(rename = "code", serialize_with = "code")]
+    #[schemars(with = "String")]
     pub kind: &'static warning::Warning,
     /// What it means here, with its numbers and what would help.
     pub message: String,

@@ -80,6 +80,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Ver
         bound,
         status,
         reason,
+        at: check.at.clone(),
     }
 }
 
@@ -103,7 +104,7 @@ mod tests {
     use super::*;
 
     fn status(bound: Bound, value: Option<f64>) -> Status {
-        let check = Check { metric: &metric::L2, methods: vec![], bound };
+        let check = Check { metric: &metric::L2, methods: vec![], bound, at: String::new() };
         let verdict = judge(&check, "block", "tet4", value);
         assert_eq!(verdict.reason.is_empty(), verdict.status == Status::Pass, "{}", verdict.reason);
         assert!(verdict.value.is_none_or(f64::is_finite));
@@ -157,7 +158,7 @@ mod tests {
     #[test]
     fn a_check_of_a_run_that_failed_was_not_run() {
         let bound = Bound::Within { at_least: None, at_most: Some(1.0) };
-        let check = Check { metric: &metric::L2, methods: vec![], bound };
+        let check = Check { metric: &metric::L2, methods: vec![], bound, at: String::new() };
         let verdict = not_run(&check, "block", "tet4", "no support");
         assert_eq!(
             (verdict.status, verdict.reason.as_str(), verdict.value),

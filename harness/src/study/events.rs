@@ -6,14 +6,17 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// An event.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub(crate) enum Event<'a> {
     /// The study begins.
     Begin {
+        /// Version of the events.
+        format: u32,
         /// Runs to be made.
         runs: usize,
     },
@@ -42,6 +45,18 @@ pub(crate) enum Event<'a> {
     },
 }
 
+/// A line of the file of events.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Line<'a> {
+    /// Seconds since the study began.
+    at: f64,
+    #[serde(flatten)]
+    event: &'a Event<'a>,
+}
+
+/// Version of events. A change that a reader of them would notice raises it.
+const FORMAT: u32 = 1;
+
 /// Where events go.
 pub struct Events {
     out: Mutex<Box<dyn Write + Send>>,
@@ -56,6 +71,11 @@ impl Events {
         Ok(Events::new(out))
     }
 
+    /// Writes the first line: how many runs follow.
+    pub(crate) fn begin(&self, runs: usize) {
+        self.send(&Event::Begin { format: FORMAT, runs });
+    }
+
     /// To whatever takes lines.
     pub fn new(out: Box<dyn Write + Send>) -> Events {
         Events { out: Mutex::new(out), begin: Instant::now() }
@@ -63,13 +83,6 @@ impl Events {
 
     /// Writes one line at once. A reader that has gone away, or a full disk, ends no study.
     pub(crate) fn send(&self, event: &Event) {
-        #[derive(Serialize)]
-        struct Line<'a> {
-            /// Seconds since the study began.
-            at: f64,
-            #[serde(flatten)]
-            event: &'a Event<'a>,
-        }
         let at = (self.begin.elapsed().as_secs_f64() * 1e3).round() / 1e3;
         let Ok(line) = serde_json::to_string(&Line { at, event }) else { return };
         if let Ok(mut out) = self.out.lock() {

@@ -52,7 +52,7 @@ pub(super) fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) ->
 }
 
 /// Whether a name is as the pattern has it, in which `*` stands for any text.
-fn like(pattern: &str, name: &str) -> bool {
+pub(crate) fn like(pattern: &str, name: &str) -> bool {
     let Some((first, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(mut left) = name.strip_prefix(first) else { return false };
     let mut parts: Vec<&str> = rest.split('*').collect();

@@ -45,9 +45,10 @@ use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
 pub use args::{Loudness, VerifyArgs};
-pub(crate) use events::Event;
 pub use events::Events;
+pub(crate) use events::{Event, Line};
 pub use filters::Filters;
+pub(crate) use filters::like;
 pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use summary::RunSummary;
@@ -325,6 +326,9 @@ impl Plan {
                 if offered && !counted && !verdicts.iter().any(known) {
                     failed.push(*code);
                     run.failure = Some(failure.reason.clone());
+                    if !failure.at.is_empty() {
+                        run.at = failure.at.clone();
+                    }
                 }
             }
             runs.push(run);

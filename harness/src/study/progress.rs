@@ -42,7 +42,7 @@ impl<'a> Progress<'a> {
         let by_lines = bar.is_hidden() && loudness == Loudness::Plain;
         let last_line = by_lines.then(|| Mutex::new(Instant::now()));
         if let Some(events) = events {
-            events.send(&Event::Begin { runs });
+            events.begin(runs);
         }
         Progress { bar, last_line, loudness, events }
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cases::scene::Scene;
+use cases::scene::{ErrorKind, Scene};
 use reports::{Check, Record};
 
 use super::task::TaskResult;
@@ -21,6 +21,8 @@ pub struct RunSummary {
     pub label: String,
     /// What one pass took, s.
     pub seconds: f64,
+    /// Its method's place, `file:line`, or that of the key which failed.
+    pub at: String,
     /// Why it has no numbers, or those of a part of its load, where nobody expected that.
     pub failure: Option<String>,
     /// Its checks.
@@ -33,6 +35,13 @@ pub(super) fn seconds(result: &TaskResult) -> f64 {
     result.records.iter().find(total).map_or(0.0, |r| r.value)
 }
 
+/// `file:line` of a method in the scene or in the file that it is taken from.
+fn method_place(scene: &Scene, id: &str) -> String {
+    let index = scene.methods.iter().position(|method| method.id == id).unwrap_or_default();
+    let place = scene.error(ErrorKind::Invalid, &format!("method[{index}]"), "", None);
+    format!("{}:{}", place.file, place.line)
+}
+
 impl Plan {
     /// A run with its checks, before it is known whether anybody expected its failure.
     pub(super) fn summary(&self, task: &Task, result: &TaskResult, checks: &[Check]) -> RunSummary {
@@ -40,6 +49,7 @@ impl Plan {
         RunSummary {
             case: case_name(scene),
             file: file.clone(),
+            at: method_place(scene, &task.method.id),
             label: label(task, &result.records, self.is_one_of_many(task)),
             seconds: seconds(result),
             failure: None,
@@ -57,6 +67,7 @@ impl Plan {
         RunSummary {
             case: check.case.clone(),
             file: self.scenes.iter().find(own).map(|(file, ..)| file.clone()).unwrap_or_default(),
+            at: check.at.clone(),
             label: format!("{} {}", check.method, check.metric),
             seconds: 0.0,
             failure: None,

@@ -61,6 +61,7 @@ pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> FailedRu
         carried: None,
         status: failure.status().into(),
         adapter,
+        at: failure.place(),
     }
 }
 
@@ -73,6 +74,7 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
         carried: outcome.metric("load-carried").filter(|load| *load > 0.0),
         status: outcome.status.into(),
         adapter: outcome.identity.adapter.clone().unwrap_or_default(),
+        at: failure.place(),
     }
 }
 

@@ -63,6 +63,7 @@ pub(super) fn verdicts(axis: &Axis) -> Vec<Verdict> {
     let check = Check {
         metric: &metric::SILENT_WRONG,
         methods: Vec::new(),
+        at: String::new(),
         bound: Bound::Within { at_least: None, at_most: Some(0.0) },
     };
     let each = axis.methods().into_iter().map(|method| {

@@ -39,7 +39,7 @@ fn pages() -> [(&'static str, String); 4] {
     );
     let study = keys(
         "Keys of a study",
-        "Every key of a study file, generated from its schema (`tissuebench schema --study`).",
+        "Every key of a study file, generated from its schema (`tissuebench schema study`).",
         &cases::scene::study_schema(),
     );
     let names = format!(

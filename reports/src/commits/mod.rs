@@ -15,17 +15,17 @@ use crate::error::ReportError;
 use crate::figures::{OVER_COMMITS as TITLE, over_commits};
 use crate::run_set::RunSet;
 
-/// Adds results to a history; returns the file.
+/// Adds results to a history, with what they are called beside their commit; returns the file.
 ///
 /// # Errors
 /// A folder that can't be read or written.
-pub fn add(history: &Path, set: &RunSet) -> Result<PathBuf, ReportError> {
+pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportError> {
     let last = files(history)?.last().map_or(0, |(number, _)| *number);
     let commit: String = set.provenance.program.commit.chars().take(12).collect();
     let path = history.join(format!("{:04}-{commit}.toml", last + 1));
     std::fs::create_dir_all(history)
         .map_err(|source| ReportError::Unwritten { path: history.into(), source })?;
-    Summary::of(set).save(&path)?;
+    Summary { label: label.into(), ..Summary::of(set) }.save(&path)?;
     Ok(path)
 }
 

@@ -19,6 +19,9 @@ use crate::store::write_text;
 pub struct Summary {
     /// Name of the study's or scene's file.
     pub source: String,
+    /// What whoever added them calls them, such as a version; empty where nothing was given.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub label: String,
     /// Checks that did not hold.
     pub checks_failed: usize,
     /// The program.
@@ -98,6 +101,7 @@ impl Summary {
         runs.retain(|_, run| !run.errors.is_empty() || !run.seconds.is_empty());
         Summary {
             source: set.provenance.source.clone(),
+            label: String::new(),
             checks_failed: set
                 .checks
                 .iter()

@@ -30,6 +30,8 @@ pub struct Point {
     pub number: u32,
     /// The commit, with `+` where the source was changed since.
     pub commit: String,
+    /// What the results were called when they were added; empty where nothing was given.
+    pub label: String,
     /// Results added.
     pub results: usize,
     /// Whether the machine was quiet at the start of each; `None` where that is not known.
@@ -56,8 +58,11 @@ impl Trend {
 }
 
 impl Point {
-    /// The commit in twelve digits, with its `+`.
+    /// The label, or the commit in twelve digits with its `+`.
     pub fn name(&self) -> String {
+        if !self.label.is_empty() {
+            return self.label.clone();
+        }
         self.commit.chars().take(12).chain(self.commit.chars().skip(12).filter(|c| *c == '+')).collect()
     }
 
@@ -178,10 +183,17 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
         let commits = &mut found[at].2;
         match commits.last_mut() {
             // Of a changed source nobody knows whether it is the same.
-            Some(last) if !summary.program.dirty && last.commit == summary.program.revision() => {
+            Some(last)
+                if !summary.program.dirty
+                    && last.commit == summary.program.revision()
+                    && last.label == summary.label =>
+            {
                 last.results.push(summary);
             }
-            _ => commits.push(Added { number, commit: summary.program.revision(), results: vec![summary] }),
+            _ => {
+                let (commit, label) = (summary.program.revision(), summary.label.clone());
+                commits.push(Added { number, commit, label, results: vec![summary] });
+            }
         }
     }
     found
@@ -194,6 +206,7 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
 struct Added {
     number: u32,
     commit: String,
+    label: String,
     results: Vec<Summary>,
 }
 
@@ -212,6 +225,7 @@ fn points(commits: &[Added]) -> Vec<Point> {
         Some(Point {
             number: added.number,
             commit: added.commit.clone(),
+            label: added.label.clone(),
             results: added.results.len(),
             quiet: known.map(|quiet| quiet.into_iter().all(|quiet| quiet)),
             runs: newest.runs.len(),

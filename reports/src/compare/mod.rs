@@ -1,11 +1,13 @@
 //! Two results against each other: numbers by a tolerance, times as paired ratios with their confidence.
 //!
-//! Runs are paired by their ids. A time is called only outside noise, which is what the pairs themselves scatter by.
+//! Runs are paired by their ids, or by all but a stated setting. A time is called only outside noise, which is what the pairs themselves scatter by.
 
+mod across;
 mod numbers;
 mod statistics;
 mod times;
 
+pub use across::across;
 pub use numbers::{NumberChange, Numbers};
 pub use times::{Ratio, Scope, Times};
 

@@ -30,6 +30,7 @@ fn csv(trends: &[Trend]) -> String {
         "trend",
         "number",
         "commit",
+        "label",
         "errors over the first",
         "processor seconds over the first",
         "outside of noise",
@@ -40,7 +41,15 @@ fn csv(trends: &[Trend]) -> String {
         let ratio = |ratio: Option<f64>| ratio.map(|ratio| format!("{ratio:e}")).unwrap_or_default();
         let (number, moved) = (point.number.to_string(), point.moved());
         let (errors, times) = (ratio(point.error_ratio), ratio(point.seconds_ratio));
-        out.push_str(&csv_line(&[&trend.label(), &number, &point.commit, &errors, &times, &moved]));
+        out.push_str(&csv_line(&[
+            &trend.label(),
+            &number,
+            &point.commit,
+            &point.label,
+            &errors,
+            &times,
+            &moved,
+        ]));
     }
     out
 }
@@ -77,7 +86,9 @@ fn panel<'a>(
     let longest = trends.iter().max_by_key(|trend| trend.points.len());
     let names: Vec<(f64, String)> = longest.map_or(Vec::new(), |trend| {
         let every = trend.points.len().div_ceil(NAMED).max(1);
-        let name = |point: &Point| point.commit.chars().take(7).collect();
+        // Of a commit seven digits tell it from the others.
+        let digits = |point: &Point| if point.label.is_empty() { 7 } else { 16 };
+        let name = |point: &Point| point.name().chars().take(digits(point)).collect();
         trend.points.iter().enumerate().step_by(every).map(|(at, point)| (at as f64, name(point))).collect()
     });
     let last = longest.map_or(0, |trend| trend.points.len().saturating_sub(1)) as f64;

@@ -339,38 +339,43 @@ fn check(
         bound: bound.into(),
         status,
         reason: reason.into(),
+        at: "study.toml:1".into(),
+    }
+}
+
+/// Where its numbers come from.
+fn provenance() -> Provenance {
+    Provenance {
+        source: "study.toml".into(),
+        set: Vec::new(),
+        format: reports::FORMAT,
+        program: Program {
+            version: "0.1.0".into(),
+            commit: "0123456789ab".into(),
+            dirty: false,
+            rustc: "1.95.0".into(),
+            target: "x86_64-unknown-linux-gnu".into(),
+            features: "fxsr,sse,sse2".into(),
+            profile: "release".into(),
+        },
+        machine: Machine {
+            cpu: "Example CPU <model> & co".into(),
+            instructions: "avx2,fma".into(),
+            threads: 2,
+            load: Some(0.25),
+            quiet: Some(true),
+        },
+        scenes: vec![SceneHash {
+            case: "pure-bending".into(),
+            blake3: "ab".repeat(32),
+            title: "A beam | bent <purely>".into(),
+        }],
     }
 }
 
 /// The whole study.
 pub fn study() -> RunSet {
-    let mut set = RunSet {
-        provenance: Provenance {
-            source: "study.toml".into(),
-            program: Program {
-                version: "0.1.0".into(),
-                commit: "0123456789ab".into(),
-                dirty: false,
-                rustc: "1.95.0".into(),
-                target: "x86_64-unknown-linux-gnu".into(),
-                features: "fxsr,sse,sse2".into(),
-                profile: "release".into(),
-            },
-            machine: Machine {
-                cpu: "Example CPU <model> & co".into(),
-                instructions: "avx2,fma".into(),
-                threads: 2,
-                load: Some(0.25),
-                quiet: Some(true),
-            },
-            scenes: vec![SceneHash {
-                case: "pure-bending".into(),
-                blake3: "ab".repeat(32),
-                title: "A beam | bent <purely>".into(),
-            }],
-        },
-        ..RunSet::default()
-    };
+    let mut set = RunSet { provenance: provenance(), ..RunSet::default() };
     solid(&mut set, "pure-bending", &[0.0, 0.3, 0.45, 0.495, 0.4999], 10e-3);
     solid(&mut set, "cantilever", &[0.3], 8e-3);
     solid(&mut set, "thick-sphere", &[0.3, 0.495], 6e-3);

@@ -1,5 +1,6 @@
 //! What a scene reports, compares with and checks.
 
+use crate::scene::error::ErrorKind;
 use crate::scene::keys::*;
 use crate::scene::output::{Bound, Check, Output, Reference, Repeated, Target, Transfer};
 use crate::scene::report::Report;
@@ -165,7 +166,9 @@ fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
             Bound::Within { at_least, at_most }
         }
     };
-    Some(Check { metric, methods: keys.method.map(names).unwrap_or_default(), bound })
+    let place = report.origin().error(ErrorKind::Invalid, key, Problem::new(""));
+    let at = format!("{}:{}", place.file, place.line);
+    Some(Check { metric, methods: keys.method.map(names).unwrap_or_default(), bound, at })
 }
 
 fn limit(keys: NumberKeys, dimension: Dimension) -> Result<f64, Problem> {

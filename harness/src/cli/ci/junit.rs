@@ -115,6 +115,7 @@ mod tests {
             bound: "at most 1e-1".into(),
             status,
             reason: reason.into(),
+            at: "cases/block.toml:5".into(),
         }
     }
 
@@ -122,6 +123,7 @@ mod tests {
         RunSummary {
             case: "block".into(),
             file: "cases/block.toml".into(),
+            at: "cases/block.toml:3".into(),
             label: label.into(),
             seconds: 0.25,
             failure: failure.map(Into::into),

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::args::Format;
+use crate::cli::args::{Format, SceneArgs};
 
 /// Arguments of `pick`.
 #[derive(Args)]
 pub struct PickArgs {
-    /// The scene file, with a reference
-    pub scene: PathBuf,
+    /// What is searched; the scene needs a reference
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Largest error that will do, such as 3%
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub error: f64,
@@ -21,9 +22,6 @@ pub struct PickArgs {
     /// right by chance: unless this says otherwise, three times the error is allowed of the displacement then
     #[arg(long, value_name = "QUANTITY=PERCENT", value_parser = companion)]
     pub also: Vec<(String, f64)>,
-    /// Only this method (may be given several times)
-    #[arg(long = "method", value_name = "ID")]
-    pub methods: Vec<String>,
     /// Besides the methods of the scene the usual ones that fit it: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg. A scene without methods
     /// has these
     #[arg(long)]

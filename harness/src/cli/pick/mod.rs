@@ -12,7 +12,7 @@ use cases::scene::Scene;
 use serde::Serialize;
 
 use crate::cli::args::Format;
-use crate::cli::{interrupt, refuse, report, take, text, unreported};
+use crate::cli::{choose, interrupt, refuse, report, take, text, unreported};
 use crate::outcome::provenance;
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, folder};
@@ -38,18 +38,18 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         Err(code) => return code,
     };
     if scene.reference.is_none() {
-        let file = args.scene.display();
+        let file = args.scene.file.display();
         return wrong(&format!(
             "{file}: key 'reference': is missing, so that no error is known: add [reference] method = \"...\" with a finer size, \
              exact = \"...\" or record = \"...\""
         ));
     }
     let machine = provenance::machine();
-    let folder = match args.out.as_ref().map(|out| take(&args.scene, out)).transpose() {
+    let folder = match args.out.as_ref().map(|out| take(&args.scene.file, out)).transpose() {
         Ok(folder) => folder,
         Err(code) => return code,
     };
-    interrupt::install(args.out.as_deref(), false);
+    interrupt::install(interrupt::incomplete(args.out.clone()));
     if std::io::stderr().is_terminal() {
         eprintln!("reference ...");
     }
@@ -71,7 +71,7 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         Ok(found) => found,
         Err(bad) => {
             folder.into_iter().for_each(folder::Folder::leave);
-            return wrong(&format!("{}: {bad}", args.scene.display()));
+            return wrong(&format!("{}: {bad}", args.scene.file.display()));
         }
     };
     print(args, &scene, &demand, &found);
@@ -103,31 +103,11 @@ fn demand(args: &PickArgs) -> Result<Demand, String> {
 /// The scene with the methods to try.
 fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
     let (scene, own) = usual::with_usual(&args.scene, args.usual).map_err(|errors| refuse(&errors))?;
-    let ahead = scene.unavailable();
-    if !ahead.is_empty() {
-        return Err(refuse(&ahead));
-    }
     if own == 0 || args.usual {
         let ids: Vec<&str> = scene.methods[own..].iter().map(|m| m.id.as_str()).collect();
         eprintln!("usual methods that fit: {}", ids.join(", "));
     }
-    let mut chosen = Vec::new();
-    for id in &args.methods {
-        match scene.methods.iter().position(|m| m.id == *id) {
-            Some(index) => chosen.push(index),
-            None => {
-                let known: Vec<&str> = scene.methods.iter().map(|m| m.id.as_str()).collect();
-                return Err(wrong(&format!(
-                    "{}: no method '{id}'; it has {}",
-                    args.scene.display(),
-                    known.join(", ")
-                )));
-            }
-        }
-    }
-    if args.methods.is_empty() {
-        chosen = (0..scene.methods.len()).collect();
-    }
+    let chosen = choose(&scene, &args.scene)?;
     Ok((scene, chosen))
 }
 
@@ -248,9 +228,9 @@ fn write(args: &PickArgs, scene: &Scene, mut found: Found, machine: reports::Mac
     found.set.records.extend(study::reference_records(scene));
     let of_scene = (case_name(scene), scene.text().to_string());
     found.set.provenance = provenance::provenance(machine, &[of_scene]);
-    found.set.provenance.source = folder::source(&args.scene);
+    found.set.provenance.source = folder::source(&args.scene.file);
     match reports::write_run(out, &found.set) {
-        Ok(()) => report(out, &out.join("report"), None),
+        Ok(()) => report(out, &out.join("report"), None, false),
         Err(bad) => unreported(&bad),
     }
 }

@@ -1,8 +1,8 @@
 //! The usual methods, of which a scene gets those that fit its body, law, procedure and contact.
 
-use std::path::Path;
-
 use cases::scene::{self, Scene, SceneError};
+
+use crate::cli::args::SceneArgs;
 
 /// Tables of TOML by id. Their size is the start of a ladder.
 const USUAL: [(&str, &str); 6] = [
@@ -23,8 +23,9 @@ const USUAL: [(&str, &str); 6] = [
 
 /// The scene with the usual methods that it can have beside its own, and how many methods are its own. A scene that is wrong for
 /// another reason than that it has no methods is refused as it is.
-pub(super) fn with_usual(path: &Path, always: bool) -> Result<(Scene, usize), Vec<SceneError>> {
-    let own = scene::load(path);
+pub(super) fn with_usual(args: &SceneArgs, always: bool) -> Result<(Scene, usize), Vec<SceneError>> {
+    let path = &args.file;
+    let own = scene::load_with(path, &args.set);
     let bare = own.as_ref().err().is_some_and(|errors| errors.iter().all(|error| error.key == "method"));
     let (text, mut count) = match &own {
         Ok(scene) if always => (scene.text().to_string(), scene.methods.len()),
@@ -42,7 +43,7 @@ pub(super) fn with_usual(path: &Path, always: bool) -> Result<(Scene, usize), Ve
         }
         let Ok(text) = toml::to_string(&with) else { continue };
         // One that the scene has, or cannot have, is left out.
-        if let Ok(scene) = scene::parse(&text, &path.display().to_string())
+        if let Ok(scene) = scene::parse_with(&text, &path.display().to_string(), &args.set)
             && scene.unavailable().is_empty()
         {
             (table, best) = (with, Ok(scene));

@@ -1,0 +1,107 @@
+//! Runs paired although a stated setting is different: the setting is taken out of what names a run.
+
+use std::collections::BTreeMap;
+
+use crate::baseline::run_name;
+use crate::record::Record;
+use crate::run_set::RunSet;
+
+/// Takes a setting out of a record.
+type Clear = fn(&mut Record);
+
+/// What can be stated, by the keys that scenes and records have for it.
+const SETTINGS: [(&str, Clear); 24] = [
+    ("adapter", |r| r.adapter = None),
+    ("basis", |r| r.basis = None),
+    ("case", |r| r.case.clear()),
+    ("dilation", |r| r.dilation = None),
+    ("essential", |r| r.essential = None),
+    ("from", |r| r.from = None),
+    ("gamma", |r| r.gamma = None),
+    ("integration", |r| r.integration = None),
+    ("kernel", |r| r.kernel = None),
+    ("law", |r| r.law = None),
+    ("mass", |r| r.mass = None),
+    ("method", |r| r.method.clear()),
+    ("neighbour_factor", |r| r.neighbour_factor = None),
+    ("neighbourhood", |r| r.neighbourhood = None),
+    ("neighbours", |r| r.neighbours = None),
+    ("poisson", |r| r.poisson = 0.0),
+    ("polynomial", |r| r.polynomial = None),
+    ("power", |r| r.power = None),
+    ("refine", |r| r.refine = None),
+    ("seed", |r| r.seed = 0),
+    ("shape", |r| r.shape = None),
+    ("size", |r| (r.level, r.nodes) = (0, 0)),
+    ("support_scale", |r| r.support_scale = None),
+    ("variant", |r| r.variant.clear()),
+];
+
+/// Names the runs of both results by all but these settings.
+///
+/// # Errors
+/// A word that is no setting; two runs of the same results that differ in nothing else.
+pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), String> {
+    let clears = settings.iter().map(|word| {
+        SETTINGS.iter().find(|(name, _)| name == word).map(|(_, clear)| *clear).ok_or_else(|| {
+            let known: Vec<&str> = SETTINGS.iter().map(|(name, _)| *name).collect();
+            format!("--across {word}: is no setting of a run; take one of {}", known.join(", "))
+        })
+    });
+    let clears: Vec<Clear> = clears.collect::<Result<_, _>>()?;
+    if clears.is_empty() {
+        return Ok(());
+    }
+    for set in [&mut pair.0, &mut pair.1] {
+        let mut owners: BTreeMap<String, (String, String)> = BTreeMap::new();
+        for record in &mut set.records {
+            let (own, name) = (std::mem::take(&mut record.run), run_name(record));
+            clears.iter().for_each(|clear| clear(record));
+            record.run = run_name(record);
+            let first = owners.entry(record.run.clone()).or_insert_with(|| (own.clone(), name.clone()));
+            if first.0 != own {
+                return Err(format!(
+                    "--across {}: '{}' and '{name}' are of the same results and differ in nothing else; leave one of them out",
+                    settings.join(" --across "),
+                    first.1
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::Comparison;
+
+    fn set(runs: &[(&str, &str, f64)]) -> RunSet {
+        let record = |&(method, dilation, value): &(&str, &str, f64)| {
+            let (case, method, dilation) = ("block".into(), method.into(), Some(dilation.into()));
+            Record { case, method, dilation, quantity: "rms".into(), value, ..Record::blank() }.of_its_run()
+        };
+        RunSet { records: runs.iter().map(record).collect(), ..RunSet::default() }
+    }
+
+    #[test]
+    fn runs_that_differ_in_the_stated_setting_are_pairs() {
+        let pair = || (set(&[("a", "standard", 1.0)]), set(&[("a", "nodal-mean", 2.0)]));
+        let plain = Comparison::of(&[pair()], 1e-6, false).numbers;
+        assert_eq!((plain.compared, plain.only_before.len(), plain.only_after.len()), (0, 1, 1));
+        let mut stated = pair();
+        across(&mut stated, &["dilation".into()]).unwrap();
+        let found = Comparison::of(&[stated], 1e-6, false).numbers;
+        assert_eq!((found.compared, found.changes.len()), (1, 1), "{found:?}");
+        assert!(found.only_before.is_empty() && found.only_after.is_empty());
+    }
+
+    #[test]
+    fn a_word_that_is_no_setting_and_runs_that_nothing_else_tells_apart_are_refused() {
+        let mut pair = (set(&[("a", "standard", 1.0), ("a", "nodal-mean", 2.0)]), set(&[]));
+        let bad = across(&mut pair, &["dilatation".into()]).unwrap_err();
+        assert!(bad.contains("is no setting") && bad.contains("dilation"), "{bad}");
+        let bad = across(&mut pair, &["dilation".into()]).unwrap_err();
+        assert!(bad.contains("differ in nothing else"), "{bad}");
+    }
+}
