@@ -5,7 +5,9 @@
 mod instructions;
 mod mutants;
 mod newcomer;
+mod nightly;
 mod python;
+mod skips;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -75,6 +77,13 @@ enum Task {
     /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
     /// run twice or changed
     Survive,
+    /// The checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes of each fuzz target; where
+    /// cargo-deny, cargo-fuzz and a nightly compiler are installed
+    Nightly {
+        /// Minutes for each fuzz target
+        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]
+        minutes: u32,
+    },
     /// Follow the guide's first page in a fresh clone of the last commit, from the install to the picture of an organ: more than ten
     /// minutes fail
     Newcomer,
@@ -115,15 +124,17 @@ fn run(task: Task) -> Result<u8> {
         }
         Task::Book => book(),
         Task::Mutants { names } => mutants::mutants(&root(), &names),
-        Task::Survive => {
-            let test =
-                ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
-            cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
-        }
+        Task::Survive => survive(),
+        Task::Nightly { minutes } => nightly::nightly(&root(), minutes),
         Task::Newcomer => newcomer::newcomer(&root()),
         Task::Python => python::python(&root()),
         Task::Ci => ci(),
     }
+}
+
+fn survive() -> Result<u8> {
+    let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
+    cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
 }
 
 /// Every step in order, stopping at the first that fails.
@@ -169,8 +180,8 @@ fn ci() -> Result<u8> {
 fn page(report: &Path) -> Result<u8> {
     let folder = root().join("reports/page");
     if Command::new("node").arg("--version").output().is_err() {
-        eprintln!("xtask: node is not installed: the page is not tested in a browser");
-        return Ok(0);
+        let why = "node is not installed: the page is not tested in a browser";
+        return skips::skipped(&root(), "node", why);
     }
     let node = |args: &[&std::ffi::OsStr]| -> Result<u8> {
         let done = Command::new("node").args(args).current_dir(&folder).status();
@@ -182,9 +193,11 @@ fn page(report: &Path) -> Result<u8> {
             return Ok(code);
         }
     } else {
-        eprintln!(
-            "xtask: no reports/page/node_modules: the page's script is not built again (`npm ci` there)"
-        );
+        let why = "no reports/page/node_modules: the page's script is not built again (`npm ci` there)";
+        let code = skips::skipped(&root(), "node_modules", why)?;
+        if code != 0 {
+            return Ok(code);
+        }
     }
     node(&["test/page.mjs".as_ref(), report.as_os_str()])
 }
@@ -221,8 +234,7 @@ fn noise(runs: u16) -> Result<u8> {
 }
 
 fn compare_stress(args: &[String]) -> Result<u8> {
-    let own =
-        ["results-stress", "--file", "tests/baseline/stress.toml", "--same-processor"].map(String::from);
+    let own = ["results-stress", "--file", "tests/baseline/stress.toml"].map(String::from);
     tissuebench("baseline", &[&own, args].concat())
 }
 

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 /// What the test needs to be importable; nothing is downloaded.
 const NEEDED: [&str; 3] = ["maturin", "numpy", "pytest"];
 
-/// Builds, installs and tests; 0 where the tools are not there, which is said.
+/// Builds, installs and tests, where the tools are there.
 pub(crate) fn python(root: &Path) -> Result<u8> {
     let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
     let missing = |name: &&str| {
@@ -17,12 +17,12 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     };
     let missing: Vec<&str> = NEEDED.into_iter().filter(missing).collect();
     if !missing.is_empty() {
-        eprintln!(
-            "xtask: the Python module is not tested, as {} can't import {}; PYTHON names another interpreter",
+        let why = format!(
+            "the Python module is not tested, as {} can't import {}; PYTHON names another interpreter",
             python.display(),
             missing.join(", ")
         );
-        return Ok(0);
+        return crate::skips::skipped(root, "maturin", &why);
     }
     let manifest = ["--manifest-path", "python/Cargo.toml"];
     let code = crate::cargo(&[&["fmt", "--check"], &manifest[..]].concat(), &[])?;

@@ -1,0 +1,78 @@
+//! The checks that take hours, for a schedule: listed faults, killed processes, dependencies, and fuzzing.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::skips::skipped;
+
+/// Seconds in a minute.
+const MINUTE: u32 = 60;
+
+/// Runs every check, whatever the others say, with so many minutes for each fuzz target; the worst exit code.
+pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
+    let checks: [(&str, &dyn Fn() -> Result<u8>); 4] = [
+        ("deny", &|| deny(root)),
+        ("mutants", &|| crate::mutants::mutants(root, &[])),
+        ("survive", &crate::survive),
+        ("fuzz", &|| fuzz(root, minutes)),
+    ];
+    let mut worst = 0;
+    for (name, check) in checks {
+        let code = check().unwrap_or_else(|error| {
+            eprintln!("xtask: {name}: {error:#}");
+            3
+        });
+        println!("{name}: {}", if code == 0 { "ok" } else { "FAILED" });
+        worst = worst.max(code);
+    }
+    Ok(worst)
+}
+
+/// Licences, advisories, sources and versions of all dependencies.
+fn deny(root: &Path) -> Result<u8> {
+    if !has("cargo-deny") {
+        return skipped(root, "cargo-deny", "cargo-deny is not installed: the dependencies are not checked");
+    }
+    crate::cargo(&["deny", "--locked", "check"], &[])
+}
+
+/// Every fuzz target for some minutes, on from its corpus; new inputs stay in target/fuzz.
+fn fuzz(root: &Path, minutes: u32) -> Result<u8> {
+    if !has("cargo-fuzz") {
+        return skipped(root, "cargo-fuzz", "cargo-fuzz is not installed: the readers are not fuzzed");
+    }
+    let mut targets: Vec<_> = std::fs::read_dir(root.join("fuzz/engine/fuzz_targets"))?
+        .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_os_string()))
+        .collect();
+    targets.sort();
+    let time = format!("-max_total_time={}", MINUTE * minutes);
+    let mut worst = 0;
+    for target in &targets {
+        let (new, known) = (root.join("target/fuzz").join(target), root.join("fuzz/corpus").join(target));
+        std::fs::create_dir_all(&new)?;
+        // The pinned toolchain is not the one that instruments.
+        let mut command = Command::new("rustup");
+        command.args([
+            "run",
+            "nightly",
+            "cargo",
+            "fuzz",
+            "run",
+            "--fuzz-dir",
+            "fuzz/engine",
+            "--sanitizer",
+            "none",
+        ]);
+        command.arg(target).args([new, known]);
+        command.args(["--", "-dict=fuzz/words.dict", "-max_len=16000", &time]).current_dir(root);
+        worst = worst.max(crate::code_of(command.status().context("could not start rustup")?));
+    }
+    Ok(worst)
+}
+
+fn has(program: impl AsRef<OsStr>) -> bool {
+    Command::new(program).arg("--version").output().is_ok()
+}
