@@ -170,6 +170,8 @@ pub struct MeshFile {
     pub path: PathBuf,
     /// Metres per unit of its numbers.
     pub unit: f64,
+    /// Whether pieces of the mesh are joined where their faces coincide.
+    pub join: bool,
 }
 
 /// A cloud that follows an error.

@@ -361,6 +361,9 @@ pub struct ConvertArgs {
     /// Leave nodes out that no element and no set names, which are refused otherwise
     #[arg(long)]
     pub drop_unused: bool,
+    /// Join pieces whose faces coincide but share no nodes
+    #[arg(long)]
+    pub join: bool,
     /// Version of Gmsh's format for a .msh file: 2.2 (the default, which most programs read) or 4.1
     #[arg(long, value_name = "2.2|4.1", value_parser = gmsh_version)]
     pub version: Option<GmshVersion>,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use geometry::files::{Format, GmshVersion};
 use geometry::generate::converted;
-use geometry::{CellKind, Mesh, files, quality};
+use geometry::{CellKind, Mesh, files, pieces, quality};
 
 use super::mesh_info::info;
 use crate::Failure;
@@ -27,7 +27,7 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
 }
 
 fn convert(args: &ConvertArgs) -> Result<(), Failure> {
-    let ConvertArgs { from, to, element, drop_unused, version } = args;
+    let ConvertArgs { from, to, element, drop_unused, join, version } = args;
     let format = format(to, *version)?;
     let read = if *drop_unused { files::read_without_unused } else { files::read };
     let mesh = read(from, MILLIMETRE).map_err(input)?;
@@ -37,14 +37,31 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     if real(from) == real(to) {
         return Err(input(format!("{}: is the file that is read; give another name", to.display())));
     }
+    let (mesh, joined) = if *join { joined(mesh, from)? } else { (mesh, String::new()) };
     let mesh = match element.as_deref() {
         None => mesh,
         Some(name) => into(mesh, name)?,
     };
     files::write_as(&mesh, to, MILLIMETRE, format).map_err(input)?;
     let boundary = if format == Format::Stl { "the boundary of " } else { "" };
-    println!("{}: {boundary}{} nodes, {} cells", to.display(), mesh.points().len(), mesh.cell_count());
+    println!(
+        "{}: {boundary}{} nodes, {} cells{joined}",
+        to.display(),
+        mesh.points().len(),
+        mesh.cell_count()
+    );
     Ok(())
+}
+
+/// The mesh with its pieces joined, and what to print of that.
+fn joined(mesh: Mesh, from: &Path) -> Result<(Mesh, String), Failure> {
+    let count = pieces::count(&mesh);
+    let Some((mesh, faces)) = pieces::join(&mesh) else {
+        let problem =
+            format!("{}: --join finds no faces of two pieces that coincide ({count} pieces)", from.display());
+        return Err(input(problem));
+    };
+    Ok((mesh, format!("; {count} pieces joined at {faces} faces")))
 }
 
 /// The format to write; a version is one of Gmsh's.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use geometry::files::Row;
 use geometry::quality::CellShape;
-use geometry::{CellKind, Facet, Mesh, Point3, Surface, Vector3, files, quality};
+use geometry::{CellKind, Facet, Mesh, Point3, Surface, Vector3, files, pieces, quality};
 use serde_json::{Value, json};
 
 use super::args::{Format, LengthUnit};
@@ -85,6 +85,8 @@ struct Found<'a> {
     worst: Vec<usize>,
     low: Point3,
     high: Point3,
+    /// How many there are, and faces of different ones that coincide.
+    pieces: [usize; 2],
 }
 
 impl Found<'_> {
@@ -95,7 +97,8 @@ impl Found<'_> {
         let first = mesh.points()[0];
         let (low, high) =
             mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
-        Found { mesh, rows, shapes, worst, low, high }
+        let pieces = [pieces::count(mesh), pieces::coincident(mesh)];
+        Found { mesh, rows, shapes, worst, low, high, pieces }
     }
 
     fn volume(&self) -> f64 {
@@ -117,6 +120,13 @@ impl Found<'_> {
             (region.1, region.2) = (region.1 + 1, region.2 + shape.volume);
         }
         found
+    }
+
+    /// Pieces without a node in common, if there are several, with the faces at which they can be joined.
+    fn apart(&self) -> Option<String> {
+        let [count, faces] = self.pieces;
+        let join = if faces > 0 { " (join = true in a scene's body, or mesh convert --join)" } else { "" };
+        (count > 1).then(|| format!("{count} pieces without a node in common, {faces} faces coincide{join}"))
     }
 
     /// Faces and area (m^2) of each named surface.
@@ -145,6 +155,9 @@ impl Found<'_> {
                 if at == 0 { "regions" } else { "" },
                 &format!("{name}: {cells} cells, {} cm^3", cubed(volume)),
             );
+        }
+        if let Some(line) = self.apart() {
+            row("pieces", &line);
         }
         let surfaces = self.surfaces();
         if surfaces.is_empty() {
@@ -206,7 +219,7 @@ impl Found<'_> {
         let worst: Vec<Value> = worst.collect();
         json!({
             "file": file, "kind": "mesh", "nodes": self.mesh.points().len(), "cells": self.mesh.cell_count(),
-            "kinds": kinds, "regions": regions, "surfaces": surfaces, "extent_m": extent_json(self.low, self.high),
+            "kinds": kinds, "pieces": self.pieces[0], "coincident_faces": self.pieces[1], "regions": regions, "surfaces": surfaces, "extent_m": extent_json(self.low, self.high),
             "unit": unit.name, "unit_guess": guess((self.high - self.low).amax(), unit), "volume_m3": self.volume(),
             "angles_degrees": self.angles(), "aspects": bins, "worst": worst,
         })

@@ -9,7 +9,7 @@ use geometry::generate::{
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
-use geometry::{CellKind, Mesh, Point3, files, quality};
+use geometry::{CellKind, Mesh, Point3, files, pieces, quality};
 
 use super::expected::{self, narrowest};
 use super::file_body::{self, Fill};
@@ -50,7 +50,8 @@ pub(super) fn unchecked(
     jitter: Option<Jitter>,
 ) -> Result<Mesh, Failure> {
     if let Size::File(file) = size {
-        return from_file(file, kind);
+        let join = matches!(body, Body::File(of_body) if of_body.join);
+        return from_file(&MeshFile { join, ..file.clone() }, kind);
     }
     if let Body::File(file) = body {
         return inside(file, kind, size, jitter);
@@ -242,10 +243,20 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
     Ok(best)
 }
 
-/// A mesh file as it is.
+/// A mesh file as it is, its pieces joined where the scene asks for that.
 pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
-    files::read(&file.path, file.unit)
-        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), files::READ))
+    let mesh = files::read(&file.path, file.unit)
+        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), files::READ))?;
+    let pieces = if file.join { pieces::count(&mesh) } else { 1 };
+    if pieces == 1 {
+        return Ok(mesh);
+    }
+    pieces::join(&mesh).map(|(mesh, _)| mesh).ok_or_else(|| {
+        let problem =
+            format!("joins nothing: of {pieces} pieces of {} no faces coincide", file.path.display());
+        let help = "leave it out, or mesh the parts with the same faces where they touch";
+        Failure::input(Key::Scene("body.join".into()), problem, help)
+    })
 }
 
 /// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.

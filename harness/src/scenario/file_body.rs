@@ -40,7 +40,7 @@ impl Fill {
 }
 
 /// A file as it was when it was read.
-type Known = (PathBuf, u64, u64, Option<SystemTime>);
+type Known = (PathBuf, u64, bool, u64, Option<SystemTime>);
 
 /// Files that were read: each method asks for the body, and to search a surface for crossings takes as long as to read it.
 static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mutex::default);
@@ -49,7 +49,7 @@ static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mute
 pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
     let about = std::fs::metadata(&file.path).ok();
     let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
-    let known = (file.path.clone(), file.unit.to_bits(), length, modified);
+    let known = (file.path.clone(), file.unit.to_bits(), file.join, length, modified);
     if let Some(body) = READ.lock().unwrap_or_else(PoisonError::into_inner).get(&known) {
         return Ok(body.clone());
     }

@@ -2,7 +2,7 @@
 
 use cases::scene::{self, Body, Scene, Size};
 use catalogue::warning;
-use geometry::{Mesh, quality};
+use geometry::{Mesh, pieces, quality};
 
 use super::file_body;
 use crate::discretise::place::{self, tolerance};
@@ -23,20 +23,24 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     }
     found.extend(scene.regions.iter().enumerate().filter_map(|(index, region)| cut(index, region, mesh)));
     found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
-    found.extend(apart(scene, mesh));
+    found.extend(apart(mesh));
     found.extend(other_volume(&scene.body, method, mesh));
     found
 }
 
-/// Contact is between a body and tools: what a tool presses against another piece of the body goes through that.
-fn apart(scene: &Scene, mesh: &Mesh) -> Option<Warning> {
-    let pieces = if scene.tools.is_empty() { 1 } else { quality::pieces(mesh) };
-    (pieces > 1).then(|| {
-        let message = format!(
-            "the body is in {pieces} pieces without a node in common, which do not feel each other: hold each by a support, or join them in \
-             the mesh"
-        );
-        Warning::new(&warning::PIECES_APART, pieces as f64, "body", message)
+/// Contact is between a body and tools: a piece feels nothing of another, even where their faces coincide.
+fn apart(mesh: &Mesh) -> Option<Warning> {
+    let count = pieces::count(mesh);
+    (count > 1).then(|| {
+        let help = match pieces::coincident(mesh) {
+            0 => "no faces coincide: hold each by a support, or mesh them as one".to_string(),
+            faces => format!(
+                "{faces} faces coincide: join them (body = {{ shape = \"file\", ..., join = true }}, or tissuebench mesh convert --join)"
+            ),
+        };
+        let message =
+            format!("is in {count} pieces without a node in common, which do not feel each other; {help}");
+        Warning::new(&warning::PIECES_APART, count as f64, "body", message)
     })
 }
 

@@ -42,7 +42,7 @@ impl Extent {
 /// Refuses the mesh of a file that is another body than the scene's, or the same in another unit of length.
 pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let of_body = match body {
-        Body::File(of_body) if of_body == file => return Ok(()),
+        Body::File(of_body) if (&of_body.path, of_body.unit) == (&file.path, file.unit) => return Ok(()),
         Body::File(of_body) if !files::is_surface(&of_body.path) => {
             body::read(of_body, Key::Scene("body.path".into()))?
         }
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn a_body_of_the_same_outline_is_known_by_its_volume() {
         let cube = Body::Box { min: [-0.02; 3], max: [0.02; 3] };
-        let file = MeshFile { path: "ball.msh".into(), unit: 1.0 };
+        let file = MeshFile { path: "ball.msh".into(), unit: 1.0, join: false };
         let ball = ball_mesh(CellKind::Hex8, 0.02, 8).unwrap();
         let wrong = check(&cube, &file, &ball).unwrap_err().to_string();
         assert!(wrong.contains("64.0000 cm^3"), "{wrong}");

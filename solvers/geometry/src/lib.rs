@@ -22,6 +22,7 @@ pub mod files;
 pub mod generate;
 mod locate;
 mod mesh;
+pub mod pieces;
 pub mod quadrature;
 pub mod quality;
 mod random;

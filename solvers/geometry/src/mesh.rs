@@ -270,6 +270,12 @@ impl Mesh {
         nodes
     }
 
+    /// The same cells, regions and groups over other nodes; `number` gives the new number of an old node.
+    pub(crate) fn renumbered(&self, points: Vec<Point3>, number: impl Fn(u32) -> u32) -> Mesh {
+        let nodes = self.nodes.iter().map(|&node| number(node)).collect();
+        Mesh { points, nodes, boundary: Default::default(), ..self.clone() }
+    }
+
     /// The same topology at other positions (one per node).
     pub fn moved(&self, map: impl Fn(&Point3) -> Point3) -> Result<Mesh, MeshError> {
         let points: Vec<Point3> = self.points.iter().map(map).collect();

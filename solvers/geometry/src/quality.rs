@@ -126,33 +126,6 @@ pub fn shapes(mesh: &Mesh) -> Vec<CellShape> {
     volumes(mesh).into_iter().enumerate().map(shape).collect()
 }
 
-/// Number of pieces of a mesh that have no node in common.
-pub fn pieces(mesh: &Mesh) -> usize {
-    let mut root: Vec<usize> = (0..mesh.points().len()).collect();
-    let mut find = |mut at: usize, joined: Option<usize>| {
-        while root[at] != at {
-            root[at] = root[root[at]];
-            at = root[at];
-        }
-        if let Some(to) = joined {
-            root[at] = to;
-        }
-        at
-    };
-    for cell in 0..mesh.cell_count() {
-        let nodes = mesh.cell(cell);
-        let first = find(nodes[0] as usize, None);
-        for &node in &nodes[1..] {
-            find(node as usize, Some(first));
-        }
-    }
-    let used = (0..mesh.cell_count()).flat_map(|cell| mesh.cell(cell));
-    let mut roots: Vec<usize> = used.map(|&node| find(node as usize, None)).collect();
-    roots.sort_unstable();
-    roots.dedup();
-    roots.len()
-}
-
 /// Volume of every cell (m^3), curved cells included; negative where a cell is inverted.
 pub fn volumes(mesh: &Mesh) -> Vec<f64> {
     let probes = CellKind::ALL.map(probe_points);

@@ -116,6 +116,9 @@ pub(crate) enum BodyKeys {
         path: String,
         /// Unit of the numbers in the file
         unit: Unit<Length>,
+        /// Join pieces of meshes of this body whose faces coincide but share no nodes, also those of methods
+        #[serde(default)]
+        join: bool,
     },
 }
 

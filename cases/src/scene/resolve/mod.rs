@@ -16,6 +16,7 @@ use super::units::{Dim, Q};
 use super::validate::surfaces;
 use catalogue::Problem;
 use condition::{load, place, support};
+use geometry::files::is_surface;
 use material::material;
 use method::method;
 pub(crate) use method::{essential, integration, jitter, size};
@@ -127,7 +128,7 @@ pub(super) fn mesh_file(path: &str, unit: f64, key: &str, report: &mut Report) -
         );
         report.add(key, Problem::new("can't be found").help(help));
     }
-    MeshFile { path, unit }
+    MeshFile { path, unit, join: false }
 }
 
 fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
@@ -172,6 +173,11 @@ fn body(keys: BodyKeys, report: &mut Report) -> Option<Body> {
             report.require(half || !mildly_graded, "body.mildly_graded", "is for the half alone", help);
             Body::Kidney { half, mildly_graded }
         }
-        BodyKeys::File { path, unit } => Body::File(mesh_file(&path, unit.0, "body.path", report)),
+        BodyKeys::File { path, unit, join } => {
+            let file = mesh_file(&path, unit.0, "body.path", report);
+            let help = "leave it out: a closed surface has no nodes to join";
+            report.require(!join || !is_surface(&file.path), "body.join", "is for meshes", help);
+            Body::File(MeshFile { join, ..file })
+        }
     })
 }
