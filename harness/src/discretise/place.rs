@@ -81,8 +81,35 @@ pub fn extent(mesh: &Mesh) -> String {
 
 /// What acts at `key` on a place of nothing.
 pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
+    let tolerance = tolerance(mesh);
+    let inside = matches!(place, Place::Where(_)) && mesh.points().iter().any(|x| holds(place, x, tolerance));
+    if inside {
+        let problem =
+            "touches no outer face of the body: nodes lie there, but inside, where a wall has two sides";
+        return Failure::input(self::key(place, key), problem, "give a place on the surface");
+    }
     let help = format!("{}; check the signs and the unit", extent(mesh));
     Failure::input(self::key(place, key), "touches nothing of the body", &help)
+}
+
+/// Refuses faces between two cells for what acts at `key` along the outward normal: a wall inside the body has two sides.
+pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(), Failure> {
+    let Place::On(names) = place else { return Ok(()) };
+    let boundary = mesh.boundary();
+    let inside = faces.iter().filter(|facet| boundary.binary_search(facet).is_err()).count();
+    if inside == 0 {
+        return Ok(());
+    }
+    let problem = format!(
+        "acts along the outward normal, but {inside} of the {} faces of {} lie between two cells: a wall inside the body has two sides",
+        faces.len(),
+        names.join(", ")
+    );
+    Err(Failure::input(
+        self::key(place, key),
+        problem,
+        "give a traction, which has a direction of its own, or outer faces",
+    ))
 }
 
 /// The facets that the place of what acts at `key` names (`surface` is the whole boundary of any mesh), or an error
@@ -127,8 +154,7 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     let tolerance = tolerance(mesh);
     let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
     for facet in facets(key, place, mesh)? {
-        let (corners, count) = corners(mesh, facet);
-        let corners = &corners[..count];
+        let corners = corners(mesh, facet);
         let sum = corners.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords);
         let centre = Point3::from(sum / corners.len() as f64);
         if holds(place, &centre, tolerance) && corners.iter().all(|p| holds(place, p, tolerance)) {
@@ -161,14 +187,10 @@ pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
     Err(Failure::input(self::key(place, key), problem, help))
 }
 
-/// Corners of a facet, and how many they are: three or four.
-fn corners(mesh: &Mesh, facet: Facet) -> ([Point3; 4], usize) {
+/// Corners of a facet: three or four.
+pub fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-    let mut corners = [Point3::origin(); 4];
-    for (corner, node) in corners.iter_mut().zip(mesh.facet_nodes(facet).take(count)) {
-        *corner = mesh.points()[node as usize];
-    }
-    (corners, count)
+    mesh.facet_nodes(facet).take(count).map(|node| mesh.points()[node as usize]).collect()
 }
 
 /// How far `x` is on the side that a comparison keeps, m; above its value for an equality.

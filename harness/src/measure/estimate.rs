@@ -12,6 +12,7 @@ use shape::{Matrix3, Point3, Rows, Vector3};
 
 use super::Solved;
 use super::own_stress::OwnStress;
+use crate::discretise::place;
 
 /// `s = [xx, yy, zz, xy, yz, zx]` of the fit's constant and of its slopes along x, y, z per patch size.
 type Fit = SMatrix<f64, 4, 6>;
@@ -19,8 +20,8 @@ type Fit = SMatrix<f64, 4, 6>;
 /// Added to the slopes' part of the normal matrix, over its constant's: what lies in a plane has no slope across it.
 const RIDGE: f64 = 1e-8;
 
-/// Energy that is rounding, over that of the displacement gradient taken as a strain: a rigid motion has no more, and no stress
-/// to tell.
+/// Energy that is rounding, over that of the largest displacement taken as a strain across the body: a rigid motion has no more, and
+/// no stress to tell. In free fall the gradients themselves are rounding.
 const ROUNDING: f64 = 1e-20;
 
 /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1; `None` without stress, and of
@@ -40,6 +41,9 @@ pub(super) fn estimated_error(run: &Solved) -> Option<f64> {
         weights: volume.rows.weights(),
         stress: &stress,
     };
+    let largest = solution.u.iter().map(|u| u.norm_squared()).fold(0.0, f64::max);
+    let (low, high) = place::bounds(method.mesh());
+    let as_strain = largest / (high - low).norm_squared();
     let (mut own, mut off, mut scale) = (0.0, 0.0, 0.0);
     for (at, material) in setup.materials.iter().enumerate() {
         let inside: Vec<usize> = (0..stress.len()).filter(|&q| region(q) == at).collect();
@@ -47,7 +51,7 @@ pub(super) fn estimated_error(run: &Solved) -> Option<f64> {
         for (&q, smooth) in inside.iter().zip(&smooth) {
             own += points.weights[q] * energy(material, &stress[q]);
             off += points.weights[q] * energy(material, &(smooth - stress[q]));
-            scale += points.weights[q] * material.mu() * gradients[q].norm_squared();
+            scale += points.weights[q] * material.mu() * (gradients[q].norm_squared() + as_strain);
         }
     }
     (own > ROUNDING * scale).then(|| (off / (own + off)).sqrt())

@@ -40,6 +40,9 @@ struct Covered {
 #[derive(Clone, Copy, Default)]
 struct Sums([f64; 3]);
 
+/// Part of the stress, as a displacement across the body, and of the displacement, as a stress, that is rounding of the other.
+const ROUNDING: f64 = 1e-12;
+
 /// What is known of one surface.
 struct OnSurface {
     name: String,
@@ -48,6 +51,8 @@ struct OnSurface {
     turn: f64,
     displacement: Sums,
     traction: Sums,
+    /// Sums of squares of the exact displacement and traction, along all axes.
+    all: [f64; 2],
 }
 
 impl Sums {
@@ -80,27 +85,41 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     let each = surfaces(mesh).into_iter();
     let each = each.map(|(name, facets)| OnSurface::new(name, run, exact, &facets, [&held, &loaded]));
     let each: Vec<OnSurface> = each.collect::<Result<_, _>>()?;
-    let of_kind =
-        [misfit(&each, "displacement", |s| &s.displacement), misfit(&each, "traction", |s| &s.traction)];
+    // What compares with zero is relative to the largest of the body: a support that holds one axis of a plane has exactly none.
+    let largest = |k: usize| each.iter().map(|s| (s.all[k] / s.area).sqrt()).fold(0.0, f64::max);
+    let (low, high) = place::bounds(mesh);
+    let stiffness = setup.materials.iter().map(|m| m.young()).fold(0.0, f64::max) / (high - low).norm();
+    let (u, t) = (largest(0), largest(1));
+    let of_kind = [
+        misfit(&each, "displacement", u.max(ROUNDING * t / stiffness), |s| &s.displacement),
+        misfit(&each, "traction", t.max(ROUNDING * u * stiffness), |s| &s.traction),
+    ];
     Ok(of_kind.into_iter().flatten().max_by(|a, b| a.relative.total_cmp(&b.relative)))
 }
 
 /// The worst of one kind, `None` where all of it is zero.
-fn misfit(each: &[OnSurface], what: &'static str, of: impl Fn(&OnSurface) -> &Sums) -> Option<Misfit> {
+fn misfit(
+    each: &[OnSurface],
+    what: &'static str,
+    largest: f64,
+    of: impl Fn(&OnSurface) -> &Sums,
+) -> Option<Misfit> {
     let mean = |surface: &OnSurface| of(surface).0.map(|sum| (sum / surface.area).sqrt());
-    let scale = each.iter().flat_map(|s| mean(s).into_iter().take(2)).fold(0.0, f64::max);
+    let scale = each.iter().flat_map(|s| mean(s).into_iter().take(2)).fold(largest, f64::max);
     let worst = each.iter().max_by(|a, b| mean(a)[2].total_cmp(&mean(b)[2]))?;
     let [scene, exact, off] = mean(worst);
     let (surface, turn) = (worst.name.clone(), worst.turn);
     (scale > 0.0).then(|| Misfit { relative: off / scale, turn, surface, what, sizes: [scene, exact] })
 }
 
-/// The named surfaces of a mesh, and the rest of its boundary.
+/// The named surfaces of a mesh, and the rest of its boundary; no walls inside.
 fn surfaces(mesh: &Mesh) -> Vec<(String, Vec<Facet>)> {
-    let mut rest: HashSet<Facet> = mesh.boundary().into_iter().collect();
+    let outer: HashSet<Facet> = mesh.boundary().into_iter().collect();
+    let mut rest = outer.clone();
     let mut all = Vec::new();
     for name in mesh.group_names() {
-        let facets: Vec<Facet> = mesh.group(name).unwrap_or_default().to_vec();
+        let named = mesh.group(name).unwrap_or_default().iter().copied();
+        let facets: Vec<Facet> = named.filter(|facet| outer.contains(facet)).collect();
         rest.retain(|facet| !facets.contains(facet));
         all.push((name.to_string(), facets));
     }
@@ -125,10 +144,12 @@ impl OnSurface {
         let area = surface.weights().iter().sum();
         let turn = turn(run.method.mesh(), facets, &surface);
         let (displacement, traction) = (Sums::default(), Sums::default());
-        let mut sums = OnSurface { name, area, turn, displacement, traction };
+        let mut sums = OnSurface { name, area, turn, displacement, traction, all: [0.0; 2] };
         for (q, &w) in surface.weights().iter().enumerate() {
             let (facet, x, n) = (&facets[q / points_each], &surface.points()[q], &surface.normals()[q]);
             let (u, t) = (exact.displacement(x), exact.traction(x, n));
+            sums.all[0] += w * u.norm_squared();
+            sums.all[1] += w * t.norm_squared();
             let applied = applied(run.setup, loaded, facet, x, n).map_err(Failure::Run)?;
             for axis in 0..3 {
                 let mut supports = run.setup.supports.iter().zip(held);

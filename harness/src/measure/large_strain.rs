@@ -1,29 +1,33 @@
-//! Where a law of small strain is strained beyond what it is for.
+//! Strains and rotations beyond what a law of small strain is for.
 
-use geometry::Point3;
+use geometry::{Matrix3, Point3, Vector3};
 use material::Material as _;
 
 use super::Solved;
 
 /// Principal strain from which on it is: the stretches of linear and true strain then differ by a twentieth of the strain.
 pub(super) const LARGE: f64 = 0.1;
+/// Rotation (rad) from which on it is: a turn of a rigid body by `w` is a false strain of `w^2 / 2`, here 2 %.
+pub(super) const TURNED: f64 = 0.2;
 
 /// Of an eigenvalue and of the norm.
 const ROUNDING: f64 = 1e-12;
 
-/// The largest principal strain of laws of small strain.
-pub(super) struct LargestStrain {
-    /// In stretch or compression, a number above 0.
-    pub strain: f64,
+/// The largest of one kind in the body.
+#[derive(Default)]
+pub(super) struct Largest {
+    /// A number above 0: a principal strain in stretch or compression, or an angle in rad.
+    pub value: f64,
     /// The integration point, m.
     pub at: Point3,
-    /// Share of the volume where it is above [`LARGE`].
+    /// Share of the volume where it is above its limit.
     pub share: f64,
 }
 
-/// Over all integration points; `None` where no law is one of small strain. An exact solution of the linear equations states
-/// the small strain itself: against that the numbers are right at any strain.
-pub(super) fn largest(run: &Solved) -> Option<LargestStrain> {
+/// The largest principal strain and the largest rotation of laws of small strain, over all integration points; `None` where no law
+/// is one. An exact solution of the linear equations states the small strain itself: against that the numbers are right at any
+/// strain.
+pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     let Solved { setup, prepared, solution, .. } = *run;
     let small = |q: usize| {
         let region = prepared.volume.region.get(q).map_or(0, |&region| usize::from(region));
@@ -33,21 +37,34 @@ pub(super) fn largest(run: &Solved) -> Option<LargestStrain> {
         return None;
     }
     let rows = &prepared.volume.rows;
-    let (mut found, mut beyond): (Option<(f64, usize)>, f64) = (None, 0.0);
+    let [mut strain, mut turn] = [Largest::default(), Largest::default()];
+    let mut met = false;
     for (q, h) in rows.at().displacement_gradients(&solution.u).iter().enumerate().filter(|(q, _)| small(*q))
     {
+        met = true;
+        let (at, weight) = (&rows.points()[q], rows.weights()[q]);
+        turn.add(rotation(h), TURNED, at, weight);
         let tensor = (h + h.transpose()) * 0.5;
-        let most = found.map_or(-1.0, |(most, _)| most);
         // No principal strain is larger than the norm, which is a tenth of the work: few points need more.
-        if tensor.norm() * (1.0 + ROUNDING) < most.min(LARGE) {
-            continue;
+        if tensor.norm() * (1.0 + ROUNDING) >= strain.value.min(LARGE) {
+            strain.add(tensor.symmetric_eigenvalues().amax(), LARGE, at, weight);
         }
-        let strain = tensor.symmetric_eigenvalues().amax();
-        if strain > most {
-            found = Some((strain, q));
-        }
-        beyond += if strain > LARGE { rows.weights()[q] } else { 0.0 };
     }
-    let share = beyond / rows.weights().iter().sum::<f64>();
-    found.map(|(strain, q)| LargestStrain { strain, at: rows.points()[q], share })
+    let volume: f64 = rows.weights().iter().sum();
+    [&mut strain, &mut turn].into_iter().for_each(|each| each.share /= volume);
+    met.then_some([strain, turn])
+}
+
+/// The small rotation of a displacement gradient, half its curl, rad.
+fn rotation(h: &Matrix3) -> f64 {
+    0.5 * Vector3::new(h.m32 - h.m23, h.m13 - h.m31, h.m21 - h.m12).norm()
+}
+
+impl Largest {
+    fn add(&mut self, value: f64, limit: f64, at: &Point3, weight: f64) {
+        if value > self.value {
+            (self.value, self.at) = (value, *at);
+        }
+        self.share += if value > limit { weight } else { 0.0 };
+    }
 }

@@ -1,8 +1,10 @@
 //! What a finished run is compared with and what it is like: errors, maxima, energies, counts, probes.
 
+mod dead_pressure;
 mod displacement;
 mod estimate;
 mod exact_fit;
+mod few_cells;
 mod large_strain;
 pub(crate) mod mean_pressure;
 mod modes;
@@ -10,6 +12,7 @@ pub(crate) mod norms;
 mod over_time;
 mod own_stress;
 mod patch;
+mod penetration;
 mod picture;
 mod places;
 mod probe_history;

@@ -1,18 +1,21 @@
 //! Modes of free vibration, and how they compare with exact ones.
 
 use cases::exact::Vibrations;
-use catalogue::metric;
+use catalogue::{metric, warning};
 use geometry::{Point3, Vector3};
 
 use super::Solved;
 use crate::Failure;
-use crate::outcome::{Metric, push};
+use crate::outcome::{Metric, Warning, push};
 use crate::procedure::Vibration;
 
 /// Part of the lowest exact frequency below which a mode is a spurious slow one.
 const SLOW: f64 = 0.9;
 /// Part of the frequency of a shear wave across the body below which a mode is rigid: rounding leaves 1e-6.
 const RIGID: f64 = 1e-3;
+/// Part of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a cantilever 1000 times as long as thick
+/// has 1e-8.
+const NO_ENERGY: f64 = 1e-9;
 /// Multiple of the exact frequency up to which its mode is looked for.
 const FAST: f64 = 1.5;
 /// Share of its displacement that a mode must have in the exact ones to be taken for one of them.
@@ -23,6 +26,7 @@ pub(crate) struct Modes {
     pub(crate) metrics: Vec<Metric>,
     pub(crate) dofs: usize,
     pub(crate) modes: Vec<Vec<Metric>>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// Counts, and comparisons with the exact vibrations if the scene names some.
@@ -77,7 +81,23 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         }
         metrics
     });
-    Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs })
+    let warnings = without_energy(modes).into_iter().collect();
+    Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs, warnings })
+}
+
+/// Modes of frequency zero that are no rigid motions of the body.
+fn without_energy(modes: &statics::Modes) -> Option<Warning> {
+    let still = modes.squared.iter().filter(|&&square| square < NO_ENERGY * modes.scale).count();
+    let excess = still.saturating_sub(modes.rigid);
+    (excess > 0).then(|| {
+        let message = format!(
+            "{}{excess} modes strain the body without energy, beside its {} rigid motions: their frequency of 0 is the method's, not the \
+             body's. Take full integration, more points, or more cells across",
+            if modes.are_all() { "" } else { "at least " },
+            modes.rigid
+        );
+        Warning::new(&warning::ZERO_ENERGY_MODES, excess as f64, "method", message)
+    })
 }
 
 /// Of each mode the share in the span of the exact ones of one frequency, the squared cosine in L2 over the body; and how many

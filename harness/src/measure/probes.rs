@@ -2,7 +2,7 @@
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::{Mesh, Point3};
+use geometry::{Mesh, Point3, Vector3};
 use shape::Matrix3;
 
 use super::Solved;
@@ -66,16 +66,20 @@ pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Fail
     Ok(each.map(|(((&x, u), stress), &(_, outside))| Probe { x, u, stress, outside }).collect())
 }
 
-/// Errors of probes against an exact solution.
-pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &dyn Exact) {
+/// Part of the largest displacement up to which an exact one is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Errors of probes against an exact solution; `u` is the displacement of all nodes, m.
+pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &dyn Exact, u: &[Vector3]) {
+    let least = ROUNDING * u.iter().map(Vector3::norm).fold(0.0, f64::max);
     let Some(first) = probes.first() else { return };
     let e = exact.displacement(&first.x);
-    if e.norm() > 0.0 {
+    if e.norm() > least {
         push(metrics, &metric::TIP, first.u.dot(&e) / e.norm_squared());
     }
     let error = |p: &Probe| {
         let e = exact.displacement(&p.x);
-        (e.norm() > 0.0).then(|| (p.u - e).norm() / e.norm())
+        (e.norm() > least).then(|| (p.u - e).norm() / e.norm())
     };
     if let Some(worst) = probes.iter().filter_map(error).reduce(f64::max) {
         push(metrics, &metric::PROBE_ERROR, worst);

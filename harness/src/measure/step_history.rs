@@ -35,10 +35,11 @@ pub(crate) fn report(
         }
     }
     if let Some(reference) = request.reference {
+        let largest = Largest::of(&reference.steps);
         for step in &mut steps {
             let same = |other: &&LoadStep| (other.load - step.load).abs() < 1e-9;
             if let Some(of_reference) = reference.steps.iter().find(same) {
-                step.against = against(step, of_reference);
+                step.against = against(step, of_reference, &largest);
             }
         }
         if let (Some(end), None, true) = (steps.last(), failure, reference.finished) {
@@ -54,12 +55,31 @@ pub(crate) fn report(
     Ok(steps)
 }
 
+/// Part of the largest value of the reference's path up to which one is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Largest values of a path.
+struct Largest {
+    /// Of any tool, N.
+    force: f64,
+    /// Strain energy, J.
+    energy: f64,
+}
+
+impl Largest {
+    fn of(steps: &[LoadStep]) -> Largest {
+        let forces = steps.iter().flat_map(|step| &step.tools).map(|tool| tool.pushed.abs());
+        let energies = steps.iter().filter_map(|step| step.strain_energy);
+        Largest { force: forces.fold(0.0, f64::max), energy: energies.fold(0.0, f64::max) }
+    }
+}
+
 /// Errors of one step against the reference's at the same part of the load: of every tool's force and of the strain energy,
 /// relative, and the largest of the displacements at the probes.
-fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
+fn against(step: &LoadStep, reference: &LoadStep, largest: &Largest) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
-        if other.pushed != 0.0 {
+        if other.pushed.abs() > ROUNDING * largest.force {
             push_numbered(
                 &mut metrics,
                 &metric::TOOL_FORCE_ERROR,
@@ -68,7 +88,8 @@ fn against(step: &LoadStep, reference: &LoadStep) -> Vec<Metric> {
             );
         }
     }
-    if let (Some(energy), Some(other)) = (step.strain_energy, reference.strain_energy.filter(|e| *e > 0.0)) {
+    let known = reference.strain_energy.filter(|energy| *energy > ROUNDING * largest.energy);
+    if let (Some(energy), Some(other)) = (step.strain_energy, known) {
         push(&mut metrics, &metric::STRAIN_ENERGY_ERROR, (energy / other - 1.0).abs());
     }
     let distances = step.probes.iter().zip(&reference.probes).map(|(u, v)| (u - v).norm());

@@ -2,12 +2,15 @@
 
 use cases::scene::Procedure;
 use catalogue::{metric, warning};
+use geometry::Point3;
 
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
-use super::{Solved, exact_fit, large_strain};
+use super::penetration::{self, narrowest};
+use super::{Solved, dead_pressure, exact_fit, few_cells, large_strain};
+use crate::Failure;
 use crate::adapter;
-use crate::discretise::Essential;
+use crate::discretise::{Essential, place};
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
 /// Of the norm of the stress. On the cases with an exact solution the estimate is 0.5 to 0.95 of the true error where a mesh is
@@ -25,10 +28,12 @@ const LEAK: f64 = 0.1;
 const MISFIT: f64 = 0.01;
 /// Of the gradient of a linear field.
 const UNBALANCED: f64 = 0.05;
-/// Of the largest displacement.
+/// Of the largest displacement, and of the body's size.
 const ROUNDING: f64 = 1e-12;
 /// Of the body's narrowest extent.
 const DEEP: f64 = 0.01;
+/// Of the largest kinetic energy.
+const AT_REST: f64 = 1e-3;
 /// Of the largest displacement, in one step.
 const LONG_STEP: f64 = 0.01;
 /// Certain digits of the largest displacement. Two or three more are right as a rule, and as many fewer of strains, which then hold
@@ -44,7 +49,7 @@ pub(crate) fn warnings(
     metrics: &[Metric],
     probes: &[Probe],
     last: Option<&LoadStep>,
-) -> Vec<Warning> {
+) -> Result<Vec<Warning>, Failure> {
     let mut found = Vec::new();
     found.extend(probes.iter().enumerate().filter_map(|(index, probe)| outside(index, probe)));
     found.extend(blended(run));
@@ -52,20 +57,24 @@ pub(crate) fn warnings(
     found.extend(unbalanced(run));
     found.extend(another_problem(run));
     let value = |entry: &metric::Metric| metrics.iter().find(|m| m.entry == entry).map(|m| m.value);
-    found.extend(long_step(value(&metric::STEP_ERROR), value(&metric::MAX)));
-    found.extend(giving(value(&metric::SUPPORT_GAP), value(&metric::MAX)));
-    found.extend(leaking(run, value(&metric::MAX), value(&metric::STRAIN_ENERGY)));
+    let largest = largest_displacement(run);
+    found.extend(long_step(run, value(&metric::STEP_ERROR), largest));
+    found.extend(giving(value(&metric::SUPPORT_GAP), largest));
+    found.extend(leaking(run, largest, value(&metric::STRAIN_ENERGY)));
     found.extend(value(&metric::NITSCHE_FACTOR_NEEDED).and_then(|needed| bare_factor(run, needed)));
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
     found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
     found.extend(inside(run));
+    found.extend(penetration::warnings(run));
+    found.extend(dead_pressure::warnings(run)?);
+    found.extend(few_cells::warning(run, metrics)?);
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
     found.extend(rough_stress(value(&metric::ESTIMATED_ERROR)));
-    found
+    Ok(found)
 }
 
 fn unchecked(run: &Solved) -> Option<Warning> {
@@ -145,8 +154,21 @@ fn another_problem(run: &Solved) -> Option<Warning> {
     Some(Warning::new(&warning::EXACT_MISFIT, misfit.relative, "reference.exact", message))
 }
 
-fn long_step(error: Option<f64>, largest: Option<f64>) -> Option<Warning> {
-    let relative = error? / largest.filter(|u| *u > 0.0)?;
+/// Largest nodal displacement of all recorded states (m), no less than what is rounding of the body's size.
+fn largest_displacement(run: &Solved) -> f64 {
+    let recorded = run.solution.history.iter().flat_map(|history| &history.fields).chain([&run.solution.u]);
+    let (low, high) = place::bounds(run.method.mesh());
+    recorded.flatten().map(|u| u.norm()).fold(ROUNDING * (high - low).norm(), f64::max)
+}
+
+fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> {
+    let error = error?;
+    let relative = error / largest;
+    // A jolt that has died away leaves the body where it comes to rest.
+    let (low, high) = place::bounds(run.method.mesh());
+    if is_at_rest(run) && error < DEEP * (high - low).min() {
+        return None;
+    }
     (relative > LONG_STEP).then(|| {
         let message = format!(
             "the estimated error of one time step is {:.2} % of the largest displacement: take shorter steps, or give \
@@ -157,8 +179,17 @@ fn long_step(error: Option<f64>, largest: Option<f64>) -> Option<Warning> {
     })
 }
 
-fn giving(gap: Option<f64>, largest: Option<f64>) -> Option<Warning> {
-    let relative = gap? / largest.filter(|u| *u > 0.0)?;
+/// Whether a motion has lost its kinetic energy at the end.
+fn is_at_rest(run: &Solved) -> bool {
+    let Some(history) = &run.solution.history else { return true };
+    let kinetic =
+        |step: &LoadStep| step.more.iter().find(|m| *m.entry == metric::KINETIC_ENERGY).map(|m| m.value);
+    let most = history.steps.iter().filter_map(kinetic).fold(0.0, f64::max);
+    kinetic(&history.last).is_some_and(|last| last < AT_REST * most)
+}
+
+fn giving(gap: Option<f64>, largest: f64) -> Option<Warning> {
+    let relative = gap? / largest;
     (relative > GIVING_SUPPORT).then(|| {
         let message = format!(
             "a support held weakly is off by {:.2} % of the largest displacement: take a larger factor, or another way to hold it",
@@ -171,9 +202,9 @@ fn giving(gap: Option<f64>, largest: Option<f64>) -> Option<Warning> {
 /// The energy that the body lacks for what a support lets pass: of the strain `gap A / V`, with the modulus `K + 4 mu / 3` of
 /// one that is not free sideways. The stress of nearly incompressible tissue, and of a flat body, is wrong long before the
 /// displacement.
-fn leaking(run: &Solved, largest: Option<f64>, energy: Option<f64>) -> Option<Warning> {
+fn leaking(run: &Solved, largest: f64, energy: Option<f64>) -> Option<Warning> {
     let [gap, area] = run.prepared.support_gap(&run.solution.u)?;
-    let (largest, energy) = (largest?, energy.filter(|e| *e > 0.0)?);
+    let energy = energy.filter(|e| *e > 0.0)?;
     // A rigid motion has a gap and an energy of rounding.
     if gap < ROUNDING * largest {
         return None;
@@ -230,11 +261,10 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
 /// Tools that stand in the undeformed body: an interference that is meant is small beside it.
 fn inside(run: &Solved) -> Vec<Warning> {
     let points = run.prepared.contact_points();
-    let extents = (0..3).map(|axis| {
-        let along = || points.iter().map(|x| x[axis]);
-        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-    });
-    let narrowest = extents.fold(f64::INFINITY, f64::min);
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let narrowest = narrowest(points);
     let each = run.setup.tools.iter().enumerate().filter_map(|(index, placed)| {
         let depth = -points.iter().map(|x| placed.tool.gap(0.0, x)).fold(f64::INFINITY, f64::min);
         let message = || {
@@ -273,17 +303,33 @@ fn few_digits(digits: f64) -> Option<Warning> {
     })
 }
 
-fn large_strain(run: &Solved) -> Option<Warning> {
-    let found = large_strain::largest(run).filter(|found| found.strain > large_strain::LARGE)?;
-    let [x, y, z] = [found.at.x, found.at.y, found.at.z].map(|x| 1e3 * x);
-    let message = format!(
-        "strains by {:.1} % at ({x:.2}, {y:.2}, {z:.2}) mm, and by more than {:.0} % in {:.2} % of the volume, which a law of small \
-         strain is not for: take one of large strain (law = \"neo-hookean\", kind = \"static\")",
-        100.0 * found.strain,
-        100.0 * large_strain::LARGE,
-        100.0 * found.share
-    );
-    Some(Warning::new(&warning::LARGE_STRAIN, found.strain, "material.law", message))
+fn large_strain(run: &Solved) -> Vec<Warning> {
+    let Some([strain, turn]) = large_strain::largest(run) else { return Vec::new() };
+    let place = |x: &Point3| format!("({:.2}, {:.2}, {:.2}) mm", 1e3 * x.x, 1e3 * x.y, 1e3 * x.z);
+    let help = "take one of large strain (law = \"neo-hookean\", kind = \"static\")";
+    let strained = (strain.value > large_strain::LARGE).then(|| {
+        let message = format!(
+            "strains by {:.1} % at {}, and by more than {:.0} % in {:.2} % of the volume, which a law of small strain is not for: {help}",
+            100.0 * strain.value,
+            place(&strain.at),
+            100.0 * large_strain::LARGE,
+            100.0 * strain.share
+        );
+        Warning::new(&warning::LARGE_STRAIN, strain.value, "material.law", message)
+    });
+    let turned = (turn.value > large_strain::TURNED).then(|| {
+        let message = format!(
+            "turns by {:.3} rad at {}, and by more than {} rad in {:.2} % of the volume, which a law of small strain takes for a strain \
+             of {:.1} %: {help}",
+            turn.value,
+            place(&turn.at),
+            large_strain::TURNED,
+            100.0 * turn.share,
+            50.0 * turn.value * turn.value
+        );
+        Warning::new(&warning::LARGE_ROTATION, turn.value, "material.law", message)
+    });
+    strained.into_iter().chain(turned).collect()
 }
 
 fn rough_stress(estimate: Option<f64>) -> Option<Warning> {

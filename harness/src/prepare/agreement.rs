@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use geometry::Mesh;
+use geometry::{Mesh, Vector3};
 
 use super::at;
 use crate::Failure;
@@ -11,25 +11,33 @@ use crate::discretise::place;
 use crate::error::Key;
 use crate::scenario::setup::Support;
 
-/// Differences of prescribed values up to this part of the larger are rounding.
+/// Differences of prescribed values up to this part of the largest one, or of the body's size, are rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Refuses supports that prescribe different values at a vertex of the mesh.
 pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
-    // By vertex and axis: the support and its value, m.
-    let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
-    for (index, support) in supports.iter().enumerate() {
+    let values = |support: &Support| -> Result<Vec<(u32, Vector3)>, Failure> {
         let vertices = place::nodes(&support.key, &support.place, mesh)?;
         let points: Vec<_> = vertices.iter().map(|&vertex| mesh.points()[vertex as usize]).collect();
-        for (vertex, (x, value)) in vertices.into_iter().zip(points.iter().zip(at(support, &points)?)) {
+        let values = at(support, &points)?;
+        Ok(vertices.into_iter().zip(values).collect())
+    };
+    let values: Vec<_> = supports.iter().map(values).collect::<Result<_, _>>()?;
+    let (low, high) = place::bounds(mesh);
+    let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold((high - low).norm(), f64::max);
+    // By vertex and axis: the support and its value, m.
+    let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
+    for (index, (support, values)) in supports.iter().zip(values).enumerate() {
+        for (vertex, value) in values {
             for axis in (0..3).filter(|&axis| support.axes[axis]) {
                 let second = value[axis];
                 let &mut (other, first) = prescribed.entry((vertex, axis)).or_insert((index, second));
-                if (first - second).abs() > ROUNDING * first.abs().max(second.abs()) {
+                if (first - second).abs() > ROUNDING * largest {
                     let axis = ["x", "y", "z"][axis];
+                    let x = &mesh.points()[vertex as usize];
                     let [x, y, z] = [x.x, x.y, x.z].map(|x| 1e3 * x);
                     let problem = format!(
-                        "prescribes {:.6} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} prescribes {:.6} mm",
+                        "prescribes {:.6e} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} prescribes {:.6e} mm",
                         1e3 * second,
                         supports[other].key,
                         1e3 * first

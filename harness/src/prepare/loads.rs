@@ -4,10 +4,11 @@ use fem::SurfaceRule;
 use geometry::{Facet, Vector3, quadrature};
 use shape::{RowSource, SurfaceRows};
 
+use super::reach::loaded;
 use super::{Prepared, not_finite};
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::discretise::place::{self, CutTriangle};
+use crate::discretise::place::CutTriangle;
 use crate::scenario::setup::{self, Applied};
 
 /// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
@@ -27,17 +28,14 @@ impl Prepared {
             self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
             return Ok(());
         }
-        let patch = place::patch(&load.key, &load.place, method.mesh())?;
-        if patch.whole.is_empty() && patch.cut.is_empty() {
-            return Err(place::empty(&load.key, &load.place, method.mesh()));
-        }
+        let patch = loaded(load, method.mesh())?;
         if !patch.whole.is_empty() {
-            let loaded = match (load.varies, self.is_smoothed_by_centres()?) {
+            let table = match (load.varies, self.is_smoothed_by_centres()?) {
                 (false, _) => at_points(load, self.source.surface(&patch.whole)?)?,
                 (true, false) => at_points(load, self.source.field_surface(&patch.whole)?)?,
                 (true, true) => self.by_means(load, &patch.whole)?,
             };
-            self.surfaces.push(loaded);
+            self.surfaces.push(table);
         }
         if !patch.cut.is_empty() {
             self.surfaces.push(at_points(load, cut_surface(&*self.source, &patch.cut)?)?);

@@ -9,6 +9,8 @@ mod support_forces;
 mod support_gap;
 mod touch;
 
+use std::collections::HashMap;
+
 use cases::scene::ConstraintRows;
 use contact::ContactSurface;
 use fem::SurfaceRule;
@@ -248,12 +250,15 @@ impl Prepared {
     /// Constrains the body as all supports say.
     fn constrain(&mut self, method: &Discretisation, supports: &[Support]) -> Result<(), Failure> {
         agreement::check(supports, method.mesh())?;
+        let mut first = HashMap::new();
         for support in supports {
             let from = self.conditions();
             match &method.essential {
-                Essential::Nodal => self.constrain_nodes(method.mesh(), support, |vertex| vertex)?,
+                Essential::Nodal => {
+                    self.constrain_nodes(method.mesh(), support, &mut first, |vertex| vertex)?;
+                }
                 Essential::Coupling(coupled) => {
-                    self.constrain_nodes(method.mesh(), support, |vertex| coupled.node(vertex))?;
+                    self.constrain_nodes(method.mesh(), support, &mut first, |vertex| coupled.node(vertex))?;
                 }
                 _ => self.constrain_cloud(method, support)?,
             }
@@ -262,11 +267,13 @@ impl Prepared {
         Ok(())
     }
 
-    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node.
+    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node. Of values that differ by rounding the
+    /// first stays.
     fn constrain_nodes(
         &mut self,
         mesh: &Mesh,
         support: &Support,
+        first: &mut HashMap<(u32, usize), f64>,
         node: impl Fn(u32) -> u32,
     ) -> Result<(), Failure> {
         let vertices = place::nodes(&support.key, &support.place, mesh)?;
@@ -277,7 +284,8 @@ impl Prepared {
             let value =
                 (support.value)(&mesh.points()[vertex as usize]).map_err(not_finite(&support.key, "move"))?;
             for axis in (0..3).filter(|&a| support.axes[a]) {
-                self.fixed.push(FixedDof { node: node(vertex), axis: axis as u8, value: value[axis] });
+                let value = *first.entry((vertex, axis)).or_insert(value[axis]);
+                self.fixed.push(FixedDof { node: node(vertex), axis: axis as u8, value });
             }
         }
         Ok(())
@@ -319,6 +327,7 @@ impl Prepared {
             }
             Essential::Nitsche(gamma) => {
                 if !patch.whole.is_empty() {
+                    place::outer(&support.key, &support.place, method.mesh(), &patch.whole)?;
                     let flux = self.source.flux(&patch.whole)?;
                     let trace = self.source.trace(&patch.whole)?;
                     // A trace has the gradients of the volume in their place.

@@ -1,21 +1,18 @@
 //! Whether every support and load of a scene touches the body, before any table is filled.
 
-use geometry::{Point3, quadrature};
+use geometry::{Mesh, Point3, quadrature};
 
 use crate::Failure;
 use crate::discretise::place::{self, Patch, Place, tolerance};
 use crate::discretise::{Discretisation, Essential};
-use crate::scenario::setup::{Applied, Setup, Support};
+use crate::scenario::setup::{Applied, Load, Setup, Support};
 
 /// Fails as a run would on the first support or load whose place is empty or names a surface that the mesh does not
 /// have. A plan needs no more: filling the tables to find out costs a thousand times as much.
 pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     let mesh = method.mesh();
     for load in setup.loads.iter().filter(|load| !matches!(load.applied, Applied::Body(_))) {
-        let patch = place::patch(&load.key, &load.place, mesh)?;
-        if patch.whole.is_empty() && patch.cut.is_empty() {
-            return Err(place::empty(&load.key, &load.place, mesh));
-        }
+        loaded(load, mesh)?;
     }
     for support in &setup.supports {
         let held_somewhere = match method.essential {
@@ -24,6 +21,9 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
             }
             _ => {
                 let patch = place::patch(&support.key, &support.place, mesh)?;
+                if matches!(method.essential, Essential::Nitsche(_)) {
+                    place::outer(&support.key, &support.place, mesh, &patch.whole)?;
+                }
                 !patch.whole.is_empty() || holds_inside(method, support, &patch)
             }
         };
@@ -32,6 +32,18 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The faces that a load acts on.
+pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
+    let patch = place::patch(&load.key, &load.place, mesh)?;
+    if patch.whole.is_empty() && patch.cut.is_empty() {
+        return Err(place::empty(&load.key, &load.place, mesh));
+    }
+    if load.along_normal {
+        place::outer(&load.key, &load.place, mesh, &patch.whole)?;
+    }
+    Ok(patch)
 }
 
 /// Whether one of the points at which a cloud is constrained inside its volume lies in the place.

@@ -204,8 +204,7 @@ fn stiffest(setup: &Setup) -> f64 {
 
 /// Prescribed degrees of freedom, with their displacement (m) at the end. Supports that meet agree: `prepare` refuses others.
 pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), f64> {
-    // Of values that differ by rounding the first stays.
-    prepared.fixed().iter().rev().map(|fixed| ((fixed.node, fixed.axis), fixed.value)).collect()
+    prepared.fixed().iter().map(|fixed| ((fixed.node, fixed.axis), fixed.value)).collect()
 }
 
 /// Smallest volume ratio of all quadrature points.

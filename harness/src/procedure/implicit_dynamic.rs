@@ -150,12 +150,20 @@ fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
     metrics
 }
 
-/// Largest energy that the balance lacks or has too much, over the largest of its terms so far.
+/// Of the largest energy.
+const ROUNDING: f64 = 1e-9;
+
+/// Largest energy that the balance lacks or has too much, over the largest of its terms so far. What is rounding of the largest of the
+/// whole motion does not count.
 fn drift(steps: &[TimeStep]) -> f64 {
-    let (mut drift, mut scale) = (0.0f64, 0.0f64);
-    for TimeStep { energy, .. } in steps {
+    let largest = |TimeStep { energy, .. }: &TimeStep| {
         let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];
-        scale = terms.iter().fold(scale, |scale, term| scale.max(term.abs()));
+        terms.iter().fold(0.0f64, |largest, term| largest.max(term.abs()))
+    };
+    let (mut drift, mut scale) = (0.0f64, ROUNDING * steps.iter().map(largest).fold(0.0, f64::max));
+    for step in steps {
+        let energy = &step.energy;
+        scale = scale.max(largest(step));
         if scale > 0.0 {
             drift = drift.max(energy.lost().abs() / scale);
         }

@@ -177,6 +177,7 @@ fn unloaded(outcome: &mut Outcome, run: &measure::Solved) -> Result<(), Failure>
     if let Some(vibration) = &run.solution.vibration {
         let found = report_modes(run, vibration)?;
         (outcome.metrics, outcome.modes, outcome.size.dofs) = (found.metrics, found.modes, found.dofs as u64);
+        outcome.warnings = found.warnings;
     }
     of_tables(&mut outcome.metrics, run.prepared);
     Ok(())
@@ -205,14 +206,14 @@ fn loaded(
     outcome.metrics.extend(over_time);
     outcome.probes = probes(run, request.probes)?;
     if let Some(exact) = &setup.exact {
-        probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref());
+        probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }
     // A path that ended early is compared with the reference step by step, not at its end, and has no loop.
     let whole = solution.is_whole();
     if outcome.plan.runs(StageName::Schemes) {
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
     }
-    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes, outcome.last.as_ref());
+    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }

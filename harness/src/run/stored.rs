@@ -109,6 +109,9 @@ pub struct StoredTool {
     pub high: f64,
 }
 
+/// Part of the largest coordinate by which probes may differ.
+const SAME: f64 = 1e-7;
+
 impl Stored {
     /// Ids of the methods whose solutions it is made of.
     pub fn methods(&self) -> impl Iterator<Item = &str> {
@@ -187,7 +190,8 @@ impl Stored {
         // The message has the file's name as the value of the key.
         let stored = Stored::parsed(path).map_err(|problem| wrong(problem, remake))?;
         let probes = &scene.output.probes;
-        let far = |(a, b): (&[f64; 3], &[f64; 3])| (Point3::from(*a) - Point3::from(*b)).norm() > 1e-9;
+        let size = probes.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+        let far = |(a, b): (&[f64; 3], &[f64; 3])| (Point3::from(*a) - Point3::from(*b)).norm() > SAME * size;
         if stored.probes.len() != probes.len() || stored.probes.iter().zip(probes).any(far) {
             return Err(wrong(
                 "was made for other probes".into(),

@@ -126,7 +126,15 @@ impl Scenario<'_> {
                     }
                 };
                 let varies = load.kind.varies();
-                Ok(Load { key: format!("load[{index}]"), place: load.place.clone(), applied, varies })
+                let along_normal =
+                    matches!(load.kind, LoadKind::Pressure(_) | LoadKind::Traction(VectorField::Exact));
+                Ok(Load {
+                    key: format!("load[{index}]"),
+                    place: load.place.clone(),
+                    applied,
+                    varies,
+                    along_normal,
+                })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Setup {

@@ -49,6 +49,8 @@ pub struct Load {
     pub applied: Applied,
     /// Whether it is another one from point to point.
     pub varies: bool,
+    /// Whether it goes by the outward normal.
+    pub along_normal: bool,
 }
 
 /// Everything that does not depend on the method.

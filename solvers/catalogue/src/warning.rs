@@ -66,13 +66,23 @@ warnings! {
     LARGE_STRAIN: "large-strain", None,
         "a law of small strain strains by more than 10 %, where a law of large strain gives other numbers; the largest principal \
          strain at the integration points";
+    LARGE_ROTATION: "large-rotation", None,
+        "a law of small strain, or the linear procedure, turns by more than 0.2 rad, which it takes for a strain; the largest rotation \
+         at the integration points, rad";
+    DEAD_PRESSURE: "dead-pressure", None,
+        "a pressure keeps the direction and the area of the undeformed faces, which turn by more than 10 degrees or change their area \
+         by more than 10 %; the largest change of a face's directed area over its area";
     NODES_DIFFER: "nodes-differ", None,
         "a mesh has more than 10 % more or fewer nodes than the scene asks for, as sizes of cells come in steps; nodes got over asked";
     VOLUME_DIFFERS: "volume-differs", None,
         "a mesh made inside a surface has 5 % less or more volume than that encloses, as parts thinner than its cells are left out; volume \
          got over enclosed";
     PIECES_APART: "pieces-apart", None,
-        "the body is in pieces without a node in common, and tools press it: pieces do not feel each other; how many there are";
+        "the body is in pieces without a node in common, which do not feel each other, also where their faces coincide; how many there \
+         are";
+    DEEP_PENETRATION: "deep-penetration", None,
+        "a tool sinks into the surface by more than 5 % of the way that the tools close, as the penalty is too small; the penetration \
+         over that way";
     TOOL_UNTOUCHED: "tool-untouched", None,
         "a tool of a static path touches nothing at the end, where its force is 0; no number";
     TOOL_INSIDE: "tool-inside", Length,
@@ -81,6 +91,12 @@ warnings! {
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
         "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
+    ZERO_ENERGY_MODES: "zero-energy-modes", None,
+        "modes of vibration strain the body without energy, which its supports do not leave free: the frequency of 0 is the \
+         method's own; how many";
+    FEW_CELLS: "few-cells", None,
+        "fewer than three cells lie across what bends or is pressed, along its displacement, quadratic ones counted twice; how many, \
+         the median by strain energy";
     FEW_DIGITS: "few-digits", None,
         "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
     ESTIMATED_ERROR: "estimated-error", None,

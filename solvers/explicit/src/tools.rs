@@ -337,8 +337,8 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Closure (m) of the first touch, to 1e-9 m; infinite if the tool passes by. The distance to a point changes by no more than
-/// the way gone, so going on by the gap never goes too far.
+/// Closure (m) of the first touch, to 1e-9 m or a millionth of the way to the body's far side; infinite if the tool passes by. The
+/// distance to a point changes by no more than the way gone, so going on by the gap never goes too far.
 fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
     let points = surface.rows().points();
     if points.is_empty() {
@@ -347,10 +347,11 @@ fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
     // Beyond the body's far side, where the tool's origin stands past every point, there is nothing left to touch.
     let ahead = |x: &Point3| (x - tool.place(0.0)).dot(&tool.along());
     let far = (0..points.len()).map(|q| ahead(&surface.position(q, u))).fold(0.0, f64::max);
+    let near = 1e-9f64.min(1e-6 * far);
     let mut closure = 0.0;
     for _ in 0..10_000 {
         let gap = surface.gap(tool, closure, u);
-        if gap < 1e-9 {
+        if gap <= near {
             return closure;
         }
         closure += gap;

@@ -31,8 +31,9 @@ pub(crate) struct Block {
 pub(crate) fn blocks(rows: &[Row], dofs: usize) -> Result<(Vec<Block>, usize), SolveError> {
     let mut blocks = Vec::new();
     let mut dropped = 0;
+    let largest = rows.iter().map(|row| row.value.abs()).fold(0.0, f64::max);
     for members in connected(rows, dofs) {
-        let block = solve(rows, members, &mut dropped)?;
+        let block = solve(rows, members, largest, &mut dropped)?;
         blocks.extend((!block.pivots.is_empty()).then_some(block));
     }
     Ok((blocks, dropped))
@@ -67,7 +68,13 @@ fn connected(rows: &[Row], dofs: usize) -> Vec<Vec<usize>> {
     members
 }
 
-fn solve(rows: &[Row], members: Vec<usize>, dropped: &mut usize) -> Result<Block, SolveError> {
+/// Eliminates the rows of one block; `prescribed` is the largest value of all rows, to which rounding is relative.
+fn solve(
+    rows: &[Row],
+    members: Vec<usize>,
+    prescribed: f64,
+    dropped: &mut usize,
+) -> Result<Block, SolveError> {
     let mut dofs: Vec<usize> = members.iter().flat_map(|&r| rows[r].terms.iter().map(|t| t.0)).collect();
     dofs.sort_unstable();
     dofs.dedup();
@@ -101,7 +108,7 @@ fn solve(rows: &[Row], members: Vec<usize>, dropped: &mut usize) -> Result<Block
     let kept: Vec<usize> = (0..m).filter(|&r| pivot_of[r].is_some()).collect();
     for r in (0..m).filter(|&r| pivot_of[r].is_none()) {
         let terms = || members.iter().zip(&table[r * width + n..]).map(|(&k, e)| e * rows[k].value);
-        let (gap, size) = terms().fold((0.0, 0.0f64), |(sum, size), t| (sum + t, size.max(t.abs())));
+        let (gap, size) = terms().fold((0.0, prescribed), |(sum, size), t| (sum + t, size.max(t.abs())));
         if gap.abs() > DEPENDENT * size {
             return Err(SolveError::Dependent { row: members[r], gap });
         }

@@ -9,12 +9,13 @@
 
 use std::f64::consts::PI;
 
-use algebra::{AlgebraError, FactorError, Symmetric, eigen};
+use algebra::{AlgebraError, Connectivity, FactorError, Symmetric, eigen};
 use shape::Vector3;
 
 use crate::body::check_len;
 use crate::problem::{Assembled, assemble_free};
 use crate::reduction::Reduction;
+use crate::rigid::free_motions;
 use crate::{LinearProblem, Mass, SolveError};
 
 /// Unknowns up to which all modes are found by a dense decomposition, which takes 8 s of them; beyond, the lowest alone.
@@ -40,6 +41,8 @@ pub struct Modes {
     /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above. 0 where not all
     /// modes were looked for.
     pub massless: usize,
+    /// Rigid motions that the supports leave free, modes of frequency zero; further ones strain the body without energy.
+    pub rigid: usize,
     /// Unknowns of the body.
     pub dofs: usize,
 }
@@ -78,6 +81,10 @@ pub fn lowest_modes(problem: &LinearProblem, mass: &Mass, count: usize) -> Resul
 fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<Modes, SolveError> {
     check_len("nodes of the mass", mass.node_count(), problem.body.nodes.len())?;
     let assembled = assemble_free(problem)?;
+    let table = problem.body.volume.at().rows();
+    let points = Connectivity { offsets: table.offsets(), nodes: table.nodes(), seen_by: &[] };
+    let (prescribed, rows) = (&assembled.prescribed, &assembled.rows);
+    let rigid = free_motions(&problem.body, points, prescribed, rows, problem.weak);
     let constrained: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
     let reduction = Reduction::new(&constrained, &assembled.rows)?;
     let (k, m) = (reduction.matrix(&assembled.stiffness), reduction.matrix(&mass.matrix()));
@@ -114,7 +121,7 @@ fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<M
         shapes.push(shape);
     }
     let massless = eigen.values.len() - squared.len();
-    Ok(Modes { squared, shapes, scale: shift, residual, massless, dofs: k.dim() })
+    Ok(Modes { squared, shapes, scale: shift, residual, massless, rigid, dofs: k.dim() })
 }
 
 /// Nitsche's stabilisation is the first to blame.

@@ -93,15 +93,7 @@ pub(crate) fn check(
     rows: &[Row],
     weak: &[WeakSupport],
 ) -> Result<(), SolveError> {
-    check_rows(body.nodes, points, rows, |add| {
-        add_prescribed(prescribed, add);
-        for r in rows {
-            add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
-        }
-        for support in weak {
-            add_surface(support.flux.at().rows(), support.axes, add);
-        }
-    })
+    check_rows(body.nodes, points, rows, |add| add_all(prescribed, rows, weak, add))
 }
 
 /// The rows of prescribed degrees of freedom.
@@ -128,6 +120,65 @@ pub(crate) fn check_rows(
     joints: &[Row],
     supports: impl FnOnce(AddRow),
 ) -> Result<(), SolveError> {
+    let Motions { pieces, clusters, free } = motions(positions, points, joints, supports);
+    for (members, free) in clusters.iter().zip(free) {
+        // The piece that moves most is the one to name.
+        let motion = |place: usize| free.iter().map(|v| v.rows(6 * place, 6).norm_squared()).sum::<f64>();
+        if let Some(place) = (0..members.len()).rev().max_by(|&a, &b| motion(a).total_cmp(&motion(b))) {
+            if free.is_empty() {
+                continue;
+            }
+            let piece = &pieces[members[place]];
+            let null = DMatrix::from_fn(6, free.len(), |i, j| free[j][6 * place + i]);
+            let modes = name(&null);
+            let nodes = positions.len();
+            return Err(SolveError::RigidMotion {
+                modes,
+                node: piece.first,
+                piece_nodes: piece.count,
+                nodes,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Number of rigid motions that the supports of an assembled body leave free.
+pub(crate) fn free_motions(
+    body: &Body,
+    points: Connectivity,
+    prescribed: &[Option<f64>],
+    rows: &[Row],
+    weak: &[WeakSupport],
+) -> usize {
+    let motions = motions(body.nodes, points, rows, |add| add_all(prescribed, rows, weak, add));
+    motions.free.iter().map(Vec::len).sum()
+}
+
+/// The rows of all supports of a linear problem.
+fn add_all(prescribed: &[Option<f64>], rows: &[Row], weak: &[WeakSupport], add: AddRow) {
+    add_prescribed(prescribed, add);
+    for r in rows {
+        add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
+    }
+    for support in weak {
+        add_surface(support.flux.at().rows(), support.axes, add);
+    }
+}
+
+/// Pieces, clusters of them, and the free motions of each cluster.
+struct Motions {
+    pieces: Vec<Piece>,
+    clusters: Vec<Vec<usize>>,
+    free: Vec<Vec<DVector<f64>>>,
+}
+
+fn motions(
+    positions: &[Point3],
+    points: Connectivity,
+    joints: &[Row],
+    supports: impl FnOnce(AddRow),
+) -> Motions {
     let (pieces, piece_of, clusters) = pieces(positions, points, joints);
     // Gram matrix of the support rows over each cluster's modes.
     let mut gram: Vec<DMatrix<f64>> =
@@ -165,33 +216,15 @@ pub(crate) fn check_rows(
         }
     };
     supports(&mut add);
-    for (members, gram) in clusters.iter().zip(gram) {
+    let free = gram.into_iter().map(|gram| {
         let eigen = SymmetricEigen::new(gram);
         let limit = FREE * eigen.eigenvalues.max();
         // `!(e > limit)`: no support at all gives 0 > 0.
-        let free: Vec<DVector<f64>> = (0..eigen.eigenvalues.len())
-            .filter(|&k| !(eigen.eigenvalues[k] > limit))
-            .map(|k| eigen.eigenvectors.column(k).into_owned())
-            .collect();
-        // The piece that moves most is the one to name.
-        let motion = |place: usize| free.iter().map(|v| v.rows(6 * place, 6).norm_squared()).sum::<f64>();
-        if let Some(place) = (0..members.len()).rev().max_by(|&a, &b| motion(a).total_cmp(&motion(b))) {
-            if free.is_empty() {
-                continue;
-            }
-            let piece = &pieces[members[place]];
-            let null = DMatrix::from_fn(6, free.len(), |i, j| free[j][6 * place + i]);
-            let modes = name(&null);
-            let nodes = positions.len();
-            return Err(SolveError::RigidMotion {
-                modes,
-                node: piece.first,
-                piece_nodes: piece.count,
-                nodes,
-            });
-        }
-    }
-    Ok(())
+        let free = (0..eigen.eigenvalues.len()).filter(|&k| !(eigen.eigenvalues[k] > limit));
+        free.map(|k| eigen.eigenvectors.column(k).into_owned()).collect()
+    });
+    let free = free.collect();
+    Motions { pieces, clusters, free }
 }
 
 /// Belongs to no piece: a node that no point sees. It is constrained along all axes (or was refused as an orphan).

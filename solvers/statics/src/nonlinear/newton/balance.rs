@@ -1,12 +1,28 @@
 //! Forces in a state, and how far they and the constrained degrees of freedom are from where they are to be.
 
 use contact::Contacts;
+use material::Material as _;
 use shape::Vector3;
 
 use super::{Newton, State};
 use crate::nonlinear::error::{StaticError, Worst};
 use crate::nonlinear::in_time::{Ended, Scales};
-use crate::nonlinear::solid::Internal;
+use crate::nonlinear::solid::{Internal, Solid};
+
+/// Of the force that a node's own displacement makes.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// `sum of w (lambda + 2 mu) |grad N|^2` of each node, N/m.
+pub(super) fn stiffness(solid: &Solid) -> Vec<f64> {
+    let mut sums = vec![0.0; solid.node_count()];
+    for (q, w) in solid.volume.weights().iter().enumerate() {
+        let law = solid.law(q);
+        let modulus = law.lambda() + 2.0 * law.mu();
+        let (nodes, grads) = solid.volume.row(q);
+        nodes.iter().zip(grads).for_each(|(&node, g)| sums[node as usize] += w * modulus * g.norm_squared());
+    }
+    sums
+}
 
 /// Forces in a trial state.
 pub(super) struct Balance {
@@ -51,12 +67,17 @@ impl Newton<'_> {
         }
     }
 
-    /// Relative residual: forces on free degrees of freedom, volumes of the pressures, forces of driven tools.
-    pub(super) fn residual(&self, balance: &Balance, time: f64) -> f64 {
+    /// Relative residual in a state of displacement `u`: forces on free degrees of freedom, volumes of the pressures, forces of driven
+    /// tools. Forces are relative to no less than what rounding of the displacement leaves of them: a body that moves as a whole has
+    /// no others.
+    pub(super) fn residual(&self, balance: &Balance, u: &[Vector3], time: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let scale = if balance.scale > 0.0 { balance.scale } else { 1.0 };
+        let squares = self.stiffness.iter().zip(u).map(|(k, u)| k * k * u.norm_squared());
+        let rounding = ROUNDING * squares.sum::<f64>().sqrt();
+        let scale = balance.scale.max(rounding / self.params.tolerance);
+        let scale = if scale > 0.0 { scale } else { 1.0 };
         let mut residual = norm(forces) / scale;
         residual = residual.max(norm(volumes) / self.volume);
         for (k, lacking) in self.lacking(balance, time).into_iter().enumerate() {

@@ -16,7 +16,7 @@ use algebra::{Curvature, Factor, Symbolic};
 use contact::{ContactCounts, ContactHistory as History, Drive, ToolState};
 use shape::Vector3;
 
-use self::balance::Balance;
+use self::balance::{Balance, stiffness};
 pub(crate) use self::passage::shortest_travel;
 use self::tangent::Direction;
 use crate::body::check_len;
@@ -106,6 +106,8 @@ pub(crate) struct Newton<'a> {
     counts: ContactCounts,
     work: StaticWork,
     volume: f64,
+    /// Stiffness of each node against a displacement of its own where the body is undeformed, N/m.
+    stiffness: Vec<f64>,
     terms: Option<TimeTerms>,
     ended: Option<Ended>,
     /// Force of the nodal supports at the end of the last step, N.
@@ -244,6 +246,7 @@ impl<'a> Newton<'a> {
             counts: ContactCounts::default(),
             work: StaticWork::default(),
             volume,
+            stiffness: stiffness(&problem.solid),
             terms: None,
             ended: None,
             reaction: Vec::new(),
@@ -422,7 +425,7 @@ impl<'a> Newton<'a> {
         let mut last = self.kept.take().filter(|_| self.descent == Descent::Nearest);
         loop {
             let prescribed_move = self.prescribed_move(state, time);
-            let residual = self.residual(&balance, time);
+            let residual = self.residual(&balance, &state.u, time);
             let settled = prescribed_move.is_none() && residual <= self.params.tolerance;
             if settled {
                 if let Some(unproven) = last.as_mut().filter(|last| !last.proven) {

@@ -1,0 +1,84 @@
+//! Faces under pressure that turn or stretch: the pressure keeps the direction and the area of the undeformed ones.
+
+use catalogue::warning;
+use geometry::{Point3, Vector3};
+
+use super::Solved;
+use crate::Failure;
+use crate::discretise::place::{self, Patch};
+use crate::outcome::Warning;
+use crate::scenario::setup::{Applied, Load, ScalarField};
+
+/// Angle (degrees) of a face and relative change of its area from which on pressure on the deformed wall is another load.
+const TURN: f64 = 10.0;
+const STRETCH: f64 = 0.1;
+
+/// How far the faces of a load move.
+#[derive(Default)]
+struct Dead {
+    /// Largest angle of a face to its undeformed one, degrees.
+    turn: f64,
+    /// Largest relative change of the area of a face, with its sign.
+    stretch: f64,
+    /// Largest change of a directed area over the area.
+    change: f64,
+}
+
+/// Warns of pressures whose faces turn or stretch beyond the limits in any recorded state. An exact solution states which load it
+/// is of.
+pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
+    let mut found = Vec::new();
+    for load in run.setup.loads.iter().filter(|_| run.setup.exact.is_none()) {
+        let Applied::Pressure(pressure) = &load.applied else { continue };
+        let Dead { turn, stretch, change } = dead(run, load, pressure)?;
+        if turn > TURN || stretch.abs() > STRETCH {
+            let message = format!(
+                "acts along the normals and on the areas of the undeformed faces, which turn by up to {turn:.1} degrees and change their \
+                 area by up to {:+.1} %: a pressure on the deformed wall is another load. Give a traction where a force that keeps \
+                 its direction is meant",
+                100.0 * stretch
+            );
+            let key = format!("{}.pressure", load.key);
+            found.push(Warning::new(&warning::DEAD_PRESSURE, change, key, message));
+        }
+    }
+    Ok(found)
+}
+
+fn dead(run: &Solved, load: &Load, pressure: &ScalarField) -> Result<Dead, Failure> {
+    let Solved { method, prepared, solution, .. } = *run;
+    let Patch { whole, cut } = place::patch(&load.key, &load.place, method.mesh())?;
+    let whole = whole.into_iter().map(|facet| place::corners(method.mesh(), facet));
+    let faces = whole.chain(cut.into_iter().map(|triangle| triangle.corners.to_vec()));
+    let acts = |face: &Vec<Point3>| face.iter().any(|x| pressure(x).is_ok_and(|p| p != 0.0));
+    let faces: Vec<Vec<Point3>> = faces.filter(acts).collect();
+    let points: Vec<Point3> = faces.iter().flatten().copied().collect();
+    let (rows, _) = prepared.source.at_points(&points)?;
+    let recorded = solution.history.iter().flat_map(|history| &history.fields);
+    let mut dead = Dead::default();
+    for field in recorded.chain([&solution.u]) {
+        let moved = rows.rows().apply(field);
+        let mut moved = points.iter().zip(&moved).map(|(x, u)| x + u);
+        for face in &faces {
+            let now: Vec<Point3> = moved.by_ref().take(face.len()).collect();
+            dead.add(directed_area(face), directed_area(&now));
+        }
+    }
+    Ok(dead)
+}
+
+impl Dead {
+    fn add(&mut self, before: Vector3, now: Vector3) {
+        let stretch = now.norm() / before.norm() - 1.0;
+        if stretch.abs() > self.stretch.abs() {
+            self.stretch = stretch;
+        }
+        self.turn = self.turn.max(before.angle(&now).to_degrees());
+        self.change = self.change.max((now - before).norm() / before.norm());
+    }
+}
+
+/// Area (m^2) times normal of a face, as triangles from its first corner.
+fn directed_area(corners: &[Point3]) -> Vector3 {
+    corners[1..].windows(2).map(|pair| (pair[0] - corners[0]).cross(&(pair[1] - corners[0])) / 2.0).sum()
+}

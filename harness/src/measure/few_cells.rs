@@ -1,0 +1,162 @@
+//! Bodies with fewer than three cells across what bends or is pressed.
+
+use catalogue::{metric, warning};
+use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
+
+use super::Solved;
+use crate::Failure;
+use crate::discretise::place::{self, Patch};
+use crate::outcome::{Metric, Warning};
+
+/// Cells across below which it is told: three, less what cells that lie askew look wider.
+const FEW: f64 = 2.5;
+/// Jump of the stress below which few cells follow it: it is even, or linear as in a beam of quadratic cells. Few cells see less of their
+/// own error than many, and are told from a smaller jump on than those.
+const EVEN: f64 = 0.15;
+/// Places that are looked at.
+const PLACES: usize = 64;
+/// Cosine of the angle between a face's normal and an axis from which on a support along the axis makes it a plane of symmetry.
+const ALONG: f64 = 0.999;
+
+/// A flat piece of the surface.
+struct Triangle {
+    corners: [Point3; 3],
+    /// Unit normal.
+    normal: Vector3,
+    /// Whether the body goes on beyond it as its mirror image.
+    mirror: bool,
+}
+
+/// Warns if half of the strain energy is where the body has fewer than three cells between its two sides. They are counted along
+/// the displacement, which is across a body that bends or is pressed, and along one that is stretched or sheared. Errors against
+/// an exact solution need no such guess.
+pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
+    let jump = metrics.iter().find(|m| *m.entry == metric::ESTIMATED_ERROR).map(|m| m.value);
+    if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {
+        return Ok(None);
+    }
+    let surface = surface(run)?;
+    let gradients = run.prepared.volume.rows.at().displacement_gradients(&run.solution.u);
+    let mut counts: Vec<(f64, usize)> =
+        by_energy(run, &gradients).into_iter().map(|q| (cells_across(run, &surface, q), q)).collect();
+    counts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(&(cells, q)) = counts.get(counts.len() / 2) else { return Ok(None) };
+    Ok((cells < FEW).then(|| {
+        let [x, y, z] = [0, 1, 2].map(|a| 1e3 * run.prepared.volume.rows.points()[q][a]);
+        let below = counts.iter().filter(|(cells, _)| *cells < FEW).count();
+        let message = format!(
+            "half of the strain energy is where the body has no more than {cells:.1} cells across along its displacement (quadratic ones \
+             count twice), as at ({x:.2}, {y:.2}, {z:.2}) mm, and {:.0} % of it where it has fewer than three: forces and displacements \
+             may be far off; take smaller cells",
+            100.0 * below as f64 / counts.len() as f64
+        );
+        Warning::new(&warning::FEW_CELLS, cells, "method", message)
+    }))
+}
+
+/// Integration points that stand for equal shares of the strain energy.
+fn by_energy(run: &Solved, gradients: &[Matrix3]) -> Vec<usize> {
+    let volume = &run.prepared.volume;
+    let energy = gradients.iter().enumerate().map(|(q, h)| {
+        let strain = (h + h.transpose() + h.transpose() * h) * 0.5;
+        let region = volume.region.get(q).map_or(0, |&region| usize::from(region));
+        volume.rows.weights()[q] * run.setup.materials[region].mu() * strain.norm_squared()
+    });
+    let sums: Vec<f64> = energy
+        .scan(0.0, |sum, e| {
+            *sum += e;
+            Some(*sum)
+        })
+        .collect();
+    let all = sums.last().copied().unwrap_or(0.0);
+    if !(all > 0.0 && all.is_finite()) {
+        return Vec::new();
+    }
+    let at = |k: usize| all * (k as f64 + 0.5) / PLACES as f64;
+    (0..PLACES).map(|k| sums.partition_point(|&sum| sum < at(k)).min(sums.len() - 1)).collect()
+}
+
+/// Cells between the two sides of the body along the displacement of an integration point; infinite where it does not move, or
+/// between two planes of symmetry.
+fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
+    let rows = &run.prepared.volume.rows;
+    let (nodes, values) = rows.rows().row(q);
+    let u: Vector3 =
+        nodes.iter().zip(values).map(|(&node, &value)| run.solution.u[node as usize] * value).sum();
+    let Some(along) = u.try_normalize(0.0) else { return f64::INFINITY };
+    let x = &rows.points()[q];
+    let (Some(ahead), Some(behind)) = (hit(surface, x, along), hit(surface, x, -along)) else {
+        return f64::INFINITY;
+    };
+    let length = match (ahead.1.mirror, behind.1.mirror) {
+        (true, true) => return f64::INFINITY,
+        (false, false) => ahead.0 + behind.0,
+        _ => 2.0 * (ahead.0 + behind.0),
+    };
+    let across =
+        |triangle: &Triangle| length * along.dot(&triangle.normal).abs() / size(run, nodes, &triangle.normal);
+    [ahead.1, behind.1]
+        .into_iter()
+        .filter(|triangle| !triangle.mirror)
+        .map(across)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Extent (m) along a direction of the cell of these nodes, half of it where it is quadratic; the spacing of the nodes of a cloud.
+fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
+    if !run.method.interpolates {
+        return run.prepared.spacing;
+    }
+    let at = || nodes.iter().map(|&node| run.method.nodes()[node as usize].coords.dot(along));
+    let extent = at().fold(f64::NEG_INFINITY, f64::max) - at().fold(f64::INFINITY, f64::min);
+    if matches!(run.method.mesh().kind(0), CellKind::Tet10 | CellKind::Hex20) { extent / 2.0 } else { extent }
+}
+
+/// The nearest triangle from a point inside along a direction, and how far it is, m.
+fn hit<'a>(surface: &'a [Triangle], x: &Point3, along: Vector3) -> Option<(f64, &'a Triangle)> {
+    let met = surface.iter().filter_map(|triangle| Some((triangle.distance(x, &along)?, triangle)));
+    met.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+impl Triangle {
+    /// Distance along a direction (Moeller & Trumbore 1997); `None` beside it or behind.
+    fn distance(&self, x: &Point3, along: &Vector3) -> Option<f64> {
+        let [a, b, c] = &self.corners;
+        let (e, f, s) = (b - a, c - a, x - a);
+        let (p, r) = (along.cross(&f), s.cross(&e));
+        let det = e.dot(&p);
+        let (v, w, t) = (s.dot(&p) / det, along.dot(&r) / det, f.dot(&r) / det);
+        // A NaN, of a triangle along the direction, is beside it.
+        (v >= 0.0 && w >= 0.0 && v + w <= 1.0 && t >= 0.0).then_some(t)
+    }
+}
+
+/// The surface of the body in triangles.
+fn surface(run: &Solved) -> Result<Vec<Triangle>, Failure> {
+    let mesh = run.method.mesh();
+    let mut mirrors: Vec<(Facet, usize)> = Vec::new();
+    for support in &run.setup.supports {
+        let [Some(axis), None] = [0, 1].map(|k| (0..3).filter(|&a| support.axes[a]).nth(k)) else { continue };
+        let Patch { whole, .. } = place::patch(&support.key, &support.place, mesh)?;
+        let still = |facet: &Facet| {
+            place::corners(mesh, *facet).iter().all(|x| (support.value)(x).is_ok_and(|u| u[axis] == 0.0))
+        };
+        mirrors.extend(whole.into_iter().filter(still).map(|facet| (facet, axis)));
+    }
+    mirrors.sort_unstable();
+    let mut triangles = Vec::new();
+    for facet in mesh.boundary() {
+        let corners = place::corners(mesh, facet);
+        for k in 1..corners.len() - 1 {
+            let corners = [corners[0], corners[k], corners[k + 1]];
+            let Some(normal) = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0)
+            else {
+                continue;
+            };
+            let held =
+                |axis: usize| normal[axis].abs() > ALONG && mirrors.binary_search(&(facet, axis)).is_ok();
+            triangles.push(Triangle { corners, normal, mirror: (0..3).any(held) });
+        }
+    }
+    Ok(triangles)
+}

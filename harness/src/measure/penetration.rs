@@ -1,0 +1,63 @@
+//! Tools that sink into the surface, which a small penalty lets them.
+
+use catalogue::warning;
+use geometry::Point3;
+
+use super::Solved;
+use crate::outcome::{LoadStep, Warning};
+
+/// Part of the way that the tools close.
+const DEEP: f64 = 0.05;
+/// Part of that way to which a larger penalty is to bring it.
+const GOOD: f64 = 0.01;
+
+/// Warns of tools that sink in so deep in any recorded state that their force is another. The way that tools close counts from the
+/// gaps that they start with, for all together: what one presses may lean on the next. A tool that sinks in deeper than that is a
+/// floor, on which loads press the body: it is compared with the body's narrowest extent.
+pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
+    let (points, tools) = (run.prepared.contact_points(), &run.setup.tools);
+    let Some(history) = run.solution.history.as_ref().filter(|_| !points.is_empty()) else {
+        return Vec::new();
+    };
+    let gap = |index: usize| {
+        points.iter().map(|x| tools[index].tool.gap(0.0, x)).fold(f64::INFINITY, f64::min).max(0.0)
+    };
+    let gaps: Vec<f64> = (0..tools.len()).map(gap).collect();
+    let steps = || history.steps.iter().chain([&history.last]);
+    let closed = |step: &LoadStep| -> f64 {
+        step.tools.iter().zip(&gaps).map(|(tool, gap)| (tool.closure - gap).max(0.0)).sum()
+    };
+    let closed = steps().map(closed).fold(0.0, f64::max);
+    let each = tools.iter().enumerate().filter_map(|(index, placed)| {
+        let of_tool = steps().filter_map(|step| step.tools.get(index));
+        let deepest = of_tool.map(|tool| tool.penetration).fold(0.0, f64::max);
+        let floor = deepest > closed;
+        let way = if floor { narrowest(points) } else { closed };
+        let part = deepest / way;
+        (part > DEEP).then(|| {
+            let of = if floor { "of the body's narrowest extent" } else { "that the tools close" };
+            let penalty = placed.tool.law().penalty();
+            let enough = penalty * part / (1.0 - part).max(DEEP) / GOOD;
+            let message = format!(
+                "sinks {:.4} mm into the surface, {:.1} % of the {:.4} mm {of}, as its penalty of {:.3e} MPa/mm is too small: forces and \
+                 displacements are off by as much; about {:.1e} MPa/mm leave 1 %",
+                1e3 * deepest,
+                100.0 * part,
+                1e3 * way,
+                1e-9 * penalty,
+                1e-9 * enough
+            );
+            Warning::new(&warning::DEEP_PENETRATION, part, format!("tool[{index}].penalty"), message)
+        })
+    });
+    each.collect()
+}
+
+/// Smallest extent along an axis, m.
+pub(super) fn narrowest(points: &[Point3]) -> f64 {
+    let extents = (0..3).map(|axis| {
+        let along = || points.iter().map(|x| x[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    });
+    extents.fold(f64::INFINITY, f64::min)
+}
