@@ -68,6 +68,8 @@ pub struct Run {
     pub axis: Option<Axis>,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
+    /// Whether the quick tier plays the loops of its scene too.
+    pub loops: bool,
     /// Words to choose it by.
     pub tags: Vec<String>,
     /// What must hold, beside the scene's own checks.
@@ -140,6 +142,9 @@ pub(crate) struct RunKeys {
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
+    /// The quick tier plays the scene's loops (`output.repeated`) of this run too, which it leaves out otherwise
+    #[serde(default)]
+    pub loops: bool,
     /// Words to choose the run by: `tissuebench verify --tag WORD`, and `--not WORD` to leave it out
     #[serde(default)]
     pub tags: Vec<String>,
@@ -247,6 +252,7 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
         seeds: keys.seeds.into(),
         axis: keys.axis.and_then(|keys| axis(keys, &at("axis"), report)),
         quick: keys.quick,
+        loops: keys.loops,
         tags: keys.tags,
         checks: checks(keys.check, &at("check"), report),
     }

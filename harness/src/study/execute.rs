@@ -187,7 +187,8 @@ impl Plan {
     fn options(&self, task: &Task, args: &VerifyArgs) -> RunOptions {
         let split = self.tables(task).find_map(|run| run.split);
         // Clouds of many seeds are of one kind: one loop is enough for them all.
-        let frames = !args.quick && !self.is_one_of_many(task);
+        let played = !args.quick || self.tables(task).any(|run| run.quick && run.loops);
+        let frames = played && !self.is_one_of_many(task);
         RunOptions { picture: task.picture, states: false, frames, split }
     }
 
