@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::text::significant;
+
 /// Below this no error is called twice as large as another: there rounding decides.
 const ROUNDING: f64 = 1e-6;
 
@@ -84,7 +86,39 @@ impl Verdict {
     }
 }
 
+/// Errors that part the classes of a map, below that from which a result is wrong.
+const CLASSES: [f64; 2] = [0.01, 0.05];
+
 impl Axis {
+    /// What the colours of a map stand for: classes of error that is not wrong, the best first, then the ways of being wrong.
+    pub(crate) fn classes(&self) -> Vec<String> {
+        let ends = self.ends();
+        let per_cent = |e: f64| significant(100.0 * e, 1 + usize::from(e >= 0.1));
+        let mut out = vec![format!("below {} %", per_cent(ends[0]))];
+        out.extend(ends.windows(2).map(|w| format!("{} to {} %", per_cent(w[0]), per_cent(w[1]))));
+        out.extend([Verdict::Warned, Verdict::Refused, Verdict::Silent].map(|v| v.name().into()));
+        out
+    }
+
+    /// The class of a trial, by its place in [`classes`](Self::classes).
+    pub(crate) fn class(&self, trial: &Trial) -> usize {
+        let ends = self.ends();
+        match self.verdict(trial) {
+            Verdict::Holds | Verdict::Bends => {
+                let error = trial.error.unwrap_or(0.0);
+                ends.iter().position(|end| error < *end).unwrap_or(ends.len() - 1)
+            }
+            Verdict::Warned => ends.len(),
+            Verdict::Refused => ends.len() + 1,
+            Verdict::Silent => ends.len() + 2,
+        }
+    }
+
+    /// The upper end of each class of error that is not wrong.
+    fn ends(&self) -> Vec<f64> {
+        CLASSES.into_iter().filter(|end| *end < self.wrong).chain([self.wrong]).collect()
+    }
+
     /// Methods, in the order of their first trial.
     pub fn methods(&self) -> Vec<&str> {
         let mut out: Vec<&str> = Vec::new();
@@ -181,6 +215,22 @@ mod tests {
             (Some(2.0), Some(3.0))
         );
         assert_eq!(axis.first("a", Verdict::Bends, false), None);
+    }
+
+    #[test]
+    fn a_class_is_that_of_the_error_and_not_of_the_error_at_the_base() {
+        let axis = axis(&[
+            (Some(0.14), &[]),
+            (Some(0.23), &[]),
+            (Some(0.001), &[]),
+            (Some(0.004), &[]),
+            (None, &[]),
+        ]);
+        let named: Vec<String> = axis.trials.iter().map(|t| axis.classes()[axis.class(t)].clone()).collect();
+        assert_eq!(named, ["5 to 25 %", "5 to 25 %", "below 1 %", "below 1 %", "refused"]);
+        let strict = Axis { wrong: 0.05, ..axis };
+        assert_eq!(strict.classes()[..3], ["below 1 %", "1 to 5 %", "wrong, warned"]);
+        assert_eq!(strict.classes()[strict.class(&strict.trials[0])], "wrong, silent");
     }
 
     #[test]

@@ -11,9 +11,13 @@ pub struct Body {
     pub points: String,
     /// Faces by their number of nodes.
     pub faces: Vec<Faces>,
-    /// Where the displacement at the end is compared with the reference or the exact solution.
+    /// How far each point is from where the reference or the exact solution has it at the end, metres, packed; empty where neither is
+    /// known.
     #[serde(default)]
-    pub compared: Option<Compared>,
+    pub off: String,
+    /// What a cut through the body shows; `None` where that was left out.
+    #[serde(default)]
+    pub inside: Option<Inside>,
     /// Nodes of a cloud at the end, metres, packed; empty for elements, whose nodes their faces show.
     #[serde(default)]
     pub cloud: String,
@@ -25,19 +29,30 @@ pub struct Body {
     pub left_out: usize,
 }
 
-/// A displacement beside what it is compared with.
+/// The cells of a body, with its points that are on no face.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Compared {
-    /// Where the reference or the exact solution has each point at the end, metres, packed.
+pub struct Inside {
+    /// Coordinates of these points in the reference configuration, metres, packed.
     pub points: String,
-    /// How far the body has it from there, metres, packed.
-    pub off: String,
+    /// Cells by their number of nodes (4, 8, 10 or 20), of the points on faces and then these.
+    pub cells: Vec<Faces>,
+    /// At each state of the body.
+    pub states: Vec<InsideState>,
 }
 
-/// Faces of one kind.
+/// Points that are on no face at a state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct InsideState {
+    /// Displacement of each, metres, packed.
+    pub u: String,
+    /// As those of the points on faces.
+    pub values: Option<[String; 3]>,
+}
+
+/// Faces, or cells, of one kind.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Faces {
-    /// Nodes of each: 3, 4, 6 or 8, corners first, then the middles of edges.
+    /// Nodes of each: 3, 4, 6 or 8 of faces, corners first, then the middles of edges.
     pub nodes: usize,
     /// Their points, packed.
     pub indices: String,
@@ -69,8 +84,8 @@ pub struct BodyState {
     /// How deep the deepest point of the body lies within a tool, metres: contact does not act there.
     #[serde(default)]
     pub deepest_node: f64,
-    /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation gradient of the cell behind
-    /// each face, packed, where they are known.
+    /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation gradient at each point, packed,
+    /// where they are known.
     pub values: Option<[String; 3]>,
 }
 

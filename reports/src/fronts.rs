@@ -2,8 +2,9 @@
 
 use crate::order::ROUNDING;
 use crate::select::Run;
+use crate::text::significant;
 
-/// Relative errors below this count as it: what is exact to rounding would squeeze all others into a corner.
+/// Relative errors below this are drawn at it: what is exact to rounding would squeeze all others into a corner.
 pub(crate) const FLOOR: f64 = 1e-6;
 
 /// What a user wants right.
@@ -145,8 +146,13 @@ pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64
 /// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
 const CHANCE: f64 = 3.0;
 
-/// The error that a page asks for at first.
-pub(crate) const WANTED: f64 = 0.01;
+/// The error that a page asks for at first, unless no run reaches it, and that tables of the cheapest runs are for.
+pub(crate) const WANTED: f64 = 0.05;
+
+/// [`WANTED`] in words.
+pub(crate) fn wanted() -> String {
+    format!("{} %", significant(100.0 * WANTED, 1))
+}
 
 /// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger.
 /// Within what is asked for, a run answers if this is.
@@ -154,6 +160,9 @@ pub(crate) fn counts(run: &Run, question: &Question, displacement: Option<&str>,
     let companion = displacement.filter(|_| question.scalar).and_then(|quantity| worst(run, quantity));
     error.max(companion.unwrap_or(0.0) / CHANCE)
 }
+
+/// Fewest runs that have a front: of one or two it would say nothing that their markers do not.
+pub(crate) const FRONT: usize = 3;
 
 /// The runs that no other beats in both time and error, by rising time.
 pub(crate) fn pareto<T>(runs: impl IntoIterator<Item = T>, at: impl Fn(&T) -> (f64, f64)) -> Vec<T> {
@@ -209,6 +218,7 @@ pub(crate) mod tests {
     pub(crate) fn run(is: (&str, Family), nodes: u64, seconds: f64, errors: &[(&str, f64)]) -> Vec<Record> {
         let of = ("jaws", is.0, is.1);
         let mut records = vec![record(of, nodes, ("time", "total:median"), seconds)];
+        records.push(record(of, nodes, ("tool-force", ""), 1.0));
         records.extend(errors.iter().map(|(name, value)| record(of, nodes, (name, ""), *value)));
         records
     }

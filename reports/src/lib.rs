@@ -49,9 +49,10 @@ mod store;
 mod table;
 mod tables;
 mod text;
+mod within;
 
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
-pub use body::{Body, BodyState, Compared, Faces, Skin, pack};
+pub use body::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};

@@ -2,7 +2,8 @@
 //!
 //! The colour and the marker are those of its name, the dash and the filling those of its family; other people's solvers have a colour
 //! each and the marker of the element. What the table does not have goes by the
-//! beginning of its name, as `efg-gauss-lumped` by `efg-gauss`, and by a hash of the rest.
+//! beginning of its name, as `efg-gauss-lumped` by `efg-gauss`, and by a hash of the rest. Two labels of one figure never look alike:
+//! [`distinct`] gives the one that is less known another marker or shade.
 
 use crate::record::Family;
 
@@ -118,6 +119,43 @@ impl Look {
     }
 }
 
+/// Parts of white in a colour: its own first.
+const SHADES: [f64; 4] = [0.0, 0.35, -0.3, 0.6];
+
+impl Look {
+    /// The `k`-th other look of the same family: first with other markers, then in another shade. The look itself is the 0-th.
+    fn other(self, k: usize) -> Look {
+        let shade = SHADES[k / MARKERS.len() % SHADES.len()];
+        let mixed = |c: u8| match shade < 0.0 {
+            true => f64::from(c) * (1.0 + shade),
+            false => f64::from(c) + shade * (255.0 - f64::from(c)),
+        };
+        Look {
+            colour: self.colour.map(|c| mixed(c) as u8),
+            marker: (self.marker + k) % MARKERS.len(),
+            ..self
+        }
+    }
+}
+
+/// Looks of labels, no two the same of labels that are drawn `together`.
+///
+/// A name of the table keeps its look before one that goes by its beginning, and an earlier name of the table before a later one.
+pub(crate) fn distinct(labels: &[(String, Family)], together: impl Fn(usize, usize) -> bool) -> Vec<Look> {
+    let known = |label: &str| KNOWN.iter().position(|entry| entry.0 == label).unwrap_or(KNOWN.len());
+    let mut order: Vec<usize> = (0..labels.len()).collect();
+    order.sort_by_key(|&i| (known(&labels[i].0), &labels[i].0));
+    let mut looks: Vec<Option<Look>> = vec![None; labels.len()];
+    for &i in &order {
+        let own = Look::of(&labels[i].0, labels[i].1);
+        let taken: Vec<Look> =
+            (0..labels.len()).filter(|&j| together(i, j)).filter_map(|j| looks[j]).collect();
+        let all = MARKERS.len() * SHADES.len();
+        looks[i] = (0..all).map(|k| own.other(k)).find(|look| !taken.contains(look)).or(Some(own));
+    }
+    looks.into_iter().flatten().collect()
+}
+
 /// The colour of a solver.
 fn solver(name: &str) -> u32 {
     let known = SOLVERS.into_iter().find(|entry| entry.0 == name);
@@ -151,6 +189,22 @@ mod tests {
                 assert!(aliases || !comparable || (a.1, a.2) != (b.1, b.2), "{} {}", a.0, b.0);
             }
         }
+    }
+
+    #[test]
+    fn no_two_labels_drawn_together_look_alike() {
+        // Both kinds of integration, and four support scales, once had one look.
+        let names =
+            ["efg", "efg-gauss", "efg (integration gauss-1)", "efg (integration gauss-4)", "cubic-spline"];
+        let scales = ["efg-gauss-1.2", "efg-gauss-2.0", "efg-gauss-2.5", "efg-flat", "efg-separate"];
+        let labels: Vec<_> = names.iter().chain(&scales).map(|n| (n.to_string(), Family::Efg)).collect();
+        let looks = distinct(&labels, |_, _| true);
+        for i in 0..looks.len() {
+            assert!(looks[..i].iter().all(|look| *look != looks[i]), "{}", labels[i].0);
+        }
+        // The first name of the table has its own look, and so has every label that shares no figure with another.
+        assert_eq!(looks[0], Look::of("efg", Family::Efg));
+        assert_eq!(distinct(&labels, |_, _| false)[3], Look::of(&labels[3].0, Family::Efg));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Published comparisons, number by number with its place, so that ours can stand beside them.
 
 use crate::record::{Family, Purpose, Record};
+use crate::select::Run;
 
 /// A published comparison of finite elements with clouds.
 pub(crate) struct Publication {
@@ -24,6 +25,17 @@ impl Publication {
     /// The published number of a quantity, SI.
     pub(crate) fn number(&self, family: Family, quantity: &str) -> Option<f64> {
         self.numbers.iter().find(|p| p.family == family && p.quantity == quantity).map(|p| p.value)
+    }
+}
+
+impl Published {
+    /// Whether a run does what the number is of.
+    ///
+    /// The published times of a solution are of contact with jaws, those of finite elements of explicit dynamics: a linear scene
+    /// with given loads has nothing to set against them.
+    pub(crate) fn is_of(&self, run: &Run) -> bool {
+        let solves = self.quantity == "total" || self.quantity.contains("solve");
+        !solves || (run.has_contact() && (self.family != Family::Fem || run.value("time-steps").is_some()))
     }
 }
 

@@ -55,6 +55,11 @@ impl<'a> Run<'a> {
         self.value("load-carried").is_none_or(|load| load > 0.999_999)
     }
 
+    /// Whether tools touch its body.
+    pub(crate) fn has_contact(&self) -> bool {
+        self.records.iter().any(|r| r.quantity == "tool-force")
+    }
+
     /// Whether the others are compared with it: it differs by nothing from itself. An exact solution is no run.
     pub(crate) fn is_reference(&self) -> bool {
         self.value("relative-rms") == Some(0.0) && self.value("l2").is_none()

@@ -203,16 +203,22 @@ fn findings_state_what_the_records_hold() {
     let page = inside(&render(dir.path(), dir.path()).unwrap().page);
     let found = page["findings"].to_string();
     for sentence in [
-        "For the displacement it takes 0.014 to 0.39 times as long, down to an error of 17.9 % (no EFG run is more accurate; the best FEM run has 3.00 %).",
         "pure-bending: from ν = 0 to 0.495, at the middle size, the relative L2 error more than doubles with tet4",
         "pure-bending: tet4, 0.622 % to 15.6 %",
-        // 3.20 ms against 23 s, and 0.56 * 8 ms against 10 s.
+        // 3.20 ms against 23 s.
         "preparing EFG takes 3.20 ms here and 23.0 s in the publication, 7200 times as long",
-        "solving EFG takes 4.48 ms here and 10.0 s in the publication, 2200 times as long",
         "from linear: thin-plate has the smallest error (rounding only), nearest the largest (0.90 mm RMS); inverse distance, the published scheme, has 0.50 mm RMS.",
         "patch-displacement: 3 of 4 methods reproduce the displacement within 10⁻¹². efg-gauss does not: its relative error is 0.0014.",
     ] {
         assert!(found.contains(sentence), "{sentence}\n{found}");
+    }
+    // A linear scene without contact has no time to set against the published contact.
+    for unlike in [
+        "kidney-paper: the fastest EFG run is compared",
+        "the whole FE run (about 2 h) takes",
+        "solving EFG takes",
+    ] {
+        assert!(!found.contains(unlike), "{unlike}\n{found}");
     }
     let counts = &page["counts"];
     assert_eq!(

@@ -8,6 +8,8 @@ import { duration, digits, linearTicks, logTicks, percent, tick, whole } from ".
 
 export interface Point {
   label: number; x: number; y: number; run: number | null;
+  /** The number itself, where it is drawn at another. */
+  exact?: number;
   /** Half width of an uncertainty of x. */
   spread?: number | null;
   /** Where a thin line upward ends. */
@@ -80,7 +82,7 @@ function said(point: Point, chart: Chart): string {
   const nodes = run === null ? "" : `\n${whole(page.runs.nodes[run])} nodes`;
   const around = point.spread ? ` ± ${duration(point.spread, 2)}` : "";
   const short = (axis: Axis) => axisName(axis).split(/[,[]/)[0].trim();
-  return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.y)}`;
+  return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.exact ?? point.y)}`;
 }
 
 /** A description of the run below the plot, with its numbers and where its records are. */

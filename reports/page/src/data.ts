@@ -23,7 +23,7 @@ export interface Table { name: string; title: string; caption: string; note: str
 
 export interface StabilityMap {
   case: string; name: string; unit: string; judge: string; base: string; wrong: number; values: string[]; methods: string[];
-  cells: [number, number, string, number | null, string][];
+  classes: string[]; cells: [number, number, string, number | null, string, number][];
 }
 
 export interface Picture { name: string; case: string; title: string; caption: string; svg: string }
@@ -57,6 +57,7 @@ export interface Page {
   runs: Runs;
   deadlines: [string, string, number][];
   wanted: number;
+  floor: number;
   asks: Ask[];
   plots: PlotData[];
   pictures: Picture[];

@@ -4,10 +4,11 @@ import * as Plot from "@observablehq/plot";
 import { legend, put, type Chart, type Point } from "./chart";
 import { look, name, page, type Ask } from "./data";
 import { h, select } from "./dom";
-import { change, isOff, listen, state, toggle } from "./state";
+import { change, isOff, listen, state, toggle, WITHIN } from "./state";
 import { duration, percent, whole } from "./text";
 
-const WITHIN = [0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.003, 0.001];
+/** Fewest runs that have a front. */
+const FRONT = 3;
 
 export const asked = (): Ask | undefined =>
   page.asks.find((a) => a.case === state.case && a.what === state.what && a.repeated === (state.clock === "loop") && !a.kernels);
@@ -15,7 +16,7 @@ export const asked = (): Ask | undefined =>
 /** The points of a question, a line for each method that is not switched off. */
 export function lines(ask: Ask, off: (label: string) => boolean = isOff): Point[][] {
   const points = (line: Ask["lines"][number]) => line.seconds.map((x, i) =>
-    ({ label: line.label, x, y: line.error[i], run: line.run[i], spread: line.spread[i], counts: line.counts[i] }));
+    ({ label: line.label, x, y: Math.max(line.error[i], page.floor), exact: line.error[i], run: line.run[i], spread: line.spread[i], counts: Math.max(line.counts[i], page.floor) }));
   return ask.lines.filter((line) => !off(name(line.label))).map(points);
 }
 
@@ -36,7 +37,7 @@ export function answer(ask: Ask, all: Point[][], error: number): string {
     const nearest = all.flat().sort((a, b) => a.counts! - b.counts!)[0];
     if (!nearest) return `${what}: every method is switched off.`;
     const chance = nearest.counts! > nearest.y ? `, but as ${percent(nearest.counts!)} by its displacement` : "";
-    return `${what}: no run reaches it. Nearest is ${name(nearest.label)}, ${run(nearest)}, with ${percent(nearest.y)}${chance}.`;
+    return `${what}: no run reaches it. Nearest is ${name(nearest.label)}, ${run(nearest)}, with ${percent(nearest.exact!)}${chance}.`;
   }
   const [best, next] = found;
   const other = found.find((p) => meshfree(p) !== meshfree(best));
@@ -65,7 +66,7 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
   const all = lines(ask, off);
   const times = all.flat().map((p) => p.x);
   const near = ask.repeated ? page.deadlines.filter((d) => d[2] > Math.min(...times) / 10 && d[2] < Math.max(...times) * 10) : [];
-  const stairs = best(all);
+  const stairs = times.length < FRONT ? [] : best(all);
   const found = error === null ? [] : within(all, error).slice(0, 1);
   return {
     title: `${ask.what} of ${ask.title}: run time against error`,
@@ -130,7 +131,8 @@ export function question(place: HTMLElement) {
     chips.replaceChildren(legend(ask.lines.map((l) => l.label), isOff, toggle));
     const chance = lucky(all, error);
     note.textContent = [
-      "A line for each method through its sizes; the grey staircase is the front: no run is both faster and more accurate.",
+      "A line for each method through its sizes; "
+        + (all.flat().length < FRONT ? "of fewer than three runs no front is drawn." : "the grey staircase is the front: no run is both faster and more accurate."),
       ask.lines.some((l) => l.spread.some((s) => s)) && "Bars: half of the repeats lie within.",
       ask.scalar && "A single number can be right by chance: a thin line leads up to a third of the displacement's error, and a run counts as that.",
       chance.length && `Right by chance, not counted at ${percent(error, 1)}: ${[...new Set(chance.map((p) => name(p.label)))].join(", ")}.`,

@@ -10,7 +10,7 @@ import { map, mapKey, tally } from "./map";
 import type { Body } from "./solid";
 import { address, change, fits, isOff, listen, state, toggle } from "./state";
 import { rowsLeft, sheet } from "./table";
-import { list, plural, slug, whole } from "./text";
+import { list, percent, plural, slug, whole } from "./text";
 
 declare global {
   interface Window { showBodies?: (place: HTMLElement, bodies: Body[]) => void }
@@ -200,6 +200,15 @@ function locks(): HTMLElement | null {
     topic ? bullets(topic[1]) : null, h("div", { class: "figures" }, ...plots.map(show)));
 }
 
+/** Which method is cheapest: a row for each, a column for each case, and their profile. */
+function cheapest(): HTMLElement | null {
+  const rows = table("within");
+  if (!rows) return null;
+  const plots = page.plots.filter((p) => p.figure === "profile");
+  return section("within", `Which method is cheapest within ${percent(page.wanted, 1)}`, tableSection(rows, true),
+    plots.length ? h("div", { class: "figures" }, ...plots.map(plotted)) : null);
+}
+
 function tableSection(table: Table, open = false): HTMLElement {
   const count = h("span", { class: "soft small" });
   const say = () => {
@@ -259,13 +268,14 @@ function build() {
   const topics = page.findings.filter(([title]) => title !== "Locking");
   const claims = topics.filter(([title]) => /claim|Published/.test(title));
   const others = topics.filter((t) => !claims.includes(t));
-  const rest = page.tables.filter((t) => !["solvers", "failed-runs", "checks", "warnings", "over-commits"].includes(t.name));
+  const rest = page.tables.filter((t) => !["solvers", "failed-runs", "checks", "warnings", "over-commits", "within"].includes(t.name));
   const parts: (HTMLElement | null)[] = [
+    cheapest(),
     section("cases", "Cases", ...page.cases.map(caseSection)),
     locks(),
-    page.maps.length ? section("stability", "Where methods bend and break", mapKey(), ...page.maps.map((m) =>
+    page.maps.length ? section("stability", "Where methods bend and break", ...page.maps.map((m) =>
       keep(folded([h("b", {}, m.case), `, ${m.name} `, h("span", { class: "soft small" }, tally(m))], `map-${slug(`${m.case} ${m.name}`)}`, false, (body) => body.append(
-        h("p", { class: "soft small" }, `Numbers: ${m.judge} in per cent. A method bends where it is twice that at ${m.base}; from ${100 * m.wrong} % on it is wrong.`), map(m))),
+        h("p", { class: "soft small" }, `Numbers: ${m.judge} in per cent, colours: its classes. A method bends where it is twice that at ${m.base} or more; from ${100 * m.wrong} % on it is wrong.`), mapKey(m), map(m))),
       () => ofCase(m.case) && fits(`${m.case} ${m.name}`, state.find)))) : null,
     solvers(),
     claims.length ? section("claims", "Published claims", ...claims.map(([, all]) => bullets(all))) : null,

@@ -13,7 +13,10 @@ function number(error: number | null): string {
   return e < 1e-3 ? "0" : e >= 1e4 ? ">9999" : e >= 100 ? e.toFixed(0) : digits(e, 2);
 }
 
-const kind = (verdict: string) => `v${VERDICTS.indexOf(verdict)}`;
+/** Ways of being wrong or none come last among the classes; what is not wrong has the colours of its error. */
+const BAD = 3;
+const kind = (of: StabilityMap, place: number) =>
+  (place < of.classes.length - BAD ? `good${of.classes.length - BAD - 1 - place}` : `bad${place - of.classes.length + BAD}`);
 
 export function map(of: StabilityMap): HTMLElement {
   const made = h("div", { class: "map" });
@@ -22,10 +25,10 @@ export function map(of: StabilityMap): HTMLElement {
     const cell = (row: number, column: number) => {
       const found = of.cells.find((c) => c[0] === row && c[1] === column);
       if (!found) return h("td", {});
-      const [, , verdict, error, why] = found;
+      const [, , verdict, error, why, place] = found;
       const text = `${of.methods[row]} at ${of.values[column]}${of.unit && ` ${of.unit}`}: ${verdict}${error === null ? "" : `, ${of.judge.replace(" [1]", "")} ${number(error)} %`}${why && `. ${why}`}`;
       const tell = () => (about.textContent = text);
-      return h("td", { class: kind(verdict), title: text, pointerenter: tell, click: tell }, number(error));
+      return h("td", { class: `${kind(of, place)} ${verdict}`, title: text, pointerenter: tell, click: tell }, number(error));
     };
     const rows = of.methods.map((method, row) => (fits(method, state.method)
       ? h("tr", {}, h("th", { scope: "row" }, method), ...of.values.map((_, column) => cell(row, column))) : null));
@@ -40,9 +43,9 @@ export function map(of: StabilityMap): HTMLElement {
   return made;
 }
 
-/** What the colours mean. */
-export const mapKey = (): HTMLElement =>
-  h("p", { class: "mapkey small" }, ...VERDICTS.map((verdict) => h("span", { class: kind(verdict) }, verdict)));
+/** What the colours of a map mean. */
+export const mapKey = (of: StabilityMap): HTMLElement => h("p", { class: "mapkey small" },
+  ...of.classes.map((name, place) => h("span", { class: kind(of, place) }, name)), h("b", {}, "bold"), " it bends");
 
 /** How many of a map's trials came out each way, worst first. */
 export function tally(of: StabilityMap): string {

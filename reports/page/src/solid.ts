@@ -1,11 +1,12 @@
 // Bodies in three dimensions: turned, zoomed, cut, two of them under one camera. Evaluated when a reader first asks for one.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, IcosahedronGeometry, InstancedMesh,
-  LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Plane, Scene, Vector3,
-  WebGLRenderer,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, IcosahedronGeometry,
+  InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Plane,
+  Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { face } from "./cut";
 import { h, select } from "./dom";
 import { digits } from "./text";
 
@@ -15,28 +16,23 @@ export interface Body {
   tools: { points: string; quads: string; along: [number, number, number] }[];
   states: { time: number; u: string; closures: number[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
-  /** Where the end is compared with the reference or the exact solution, and how far off it is there. */
-  compared: { points: string; off: string } | null;
+  /** How far each point is from the reference or the exact solution at the end; empty where neither is known. */
+  off: string;
+  /** Cells, and points on no face at the same states: what a cut shows. */
+  inside: { points: string; cells: { nodes: number; indices: string }[]; states: { u: string; values: [string, string, string] | null }[] } | null;
   /** Nodes of a cloud at the end. */
   cloud: string;
   /** The method whose points and faces it has, which come with that one. */
   like?: string;
   /** The method whose tools it has. */
   tools_like?: string;
-  /** The method whose places of comparison it has. */
-  compared_like?: string;
   /** On the first body of a case: methods whose bodies had no room. */
   without?: string[];
 }
 
 const bytes = (text: string): ArrayBuffer => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 const floats = (text: string) => new Float32Array(bytes(text));
-/** Places with a value each. */
-function joined(of: { points: string; off: string } | null): Float32Array {
-  if (!of) return new Float32Array();
-  const [points, off] = [floats(of.points), floats(of.off)];
-  return Float32Array.from({ length: 4 * off.length }, (_, k) => (k % 4 < 3 ? points[3 * Math.floor(k / 4) + (k % 4)] : off[Math.floor(k / 4)]));
-}
+const joined = (a: Float32Array, b: Float32Array) => Float32Array.from([...a, ...b]);
 const whole = (text: string) => new Uint32Array(bytes(text));
 
 /** Points of a face to a side: a curved one is drawn in so many straight pieces. */
@@ -87,12 +83,16 @@ const FIELDS: [string, string, string, number][] = [
   ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
 ];
 
-// Viridis (van der Walt and Smith, 2015), and blue over white to red (ColorBrewer).
-const RISING = ["#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725"];
-const SIGNED = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
+// From pale to dark, so that most of a body is bright: after ColorBrewer's yellow, green and blue; and blue over white to red (ColorBrewer).
+const RISING = ["#fdf6c9", "#dcecb2", "#a5d8b5", "#5fbcc0", "#3494c2", "#3f64b0", "#552b8c"];
+const SIGNED = ["#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b"];
+const isSigned = (field: string) => field === "p" || field === "j";
+/** The part of the values, at each end of a scale, that has the colour of the end. */
+const CLIPPED = 0.02;
 
-/** Fields of points apart from the surface, which is then seen through. */
-const OF_POINTS = "de";
+/** The field of points apart from the surface, which is then seen through. */
+const OF_POINTS = "d";
+const GREY = new Color(0xb0b0b0);
 const DOT = new Color(0x101010);
 const NODE = new Color(0xd6604d);
 
@@ -107,14 +107,22 @@ class Solid {
   private readonly tools = new Group();
   private readonly points: InstancedMesh;
   private readonly cloud: Float32Array;
-  private readonly compared: Float32Array;
+  private readonly cells: { nodes: number; indices: Uint32Array }[];
+  private readonly cap = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ vertexColors: true, side: DoubleSide }));
+  private readonly skin: Mesh;
+  /** Of the state shown: places of the nodes, and the field at them. */
+  private places = new Float32Array();
+  private field: Float32Array | null = null;
+  /** The field at the corners of what is drawn. */
+  private readonly drawn = { skin: new Float32Array(), cap: new Float32Array() };
   readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   readonly wire = new LineBasicMaterial({ color: 0x101010, transparent: true, opacity: 0.3 });
   readonly dots = new MeshBasicMaterial();
 
   /** `grain`: radius of a contact point. */
   constructor(readonly body: Body, grain: number) {
-    this.reference = floats(body.points);
+    this.reference = joined(floats(body.points), floats(body.inside?.points ?? ""));
+    this.cells = (body.inside?.cells ?? []).map((c) => ({ nodes: c.nodes, indices: whole(c.indices) }));
     this.faces = body.faces.map((f) => ({ indices: whole(f.indices), nodes: f.nodes, pattern: pattern(f.nodes) }));
     const triangles: number[] = [];
     const edges: number[] = [];
@@ -129,14 +137,15 @@ class Solid {
     this.surface.setAttribute("position", places).setAttribute("color", new BufferAttribute(new Float32Array(3 * first), 3)).setIndex(triangles);
     this.lines.setAttribute("position", places).setIndex(edges);
     this.edges = new LineSegments(this.lines, this.wire);
-    const light = new DirectionalLight(0xffffff, 1.7);
-    light.position.set(1, 1.5, 2);
-    const back = new DirectionalLight(0xffffff, 0.7);
-    back.position.set(-2, -1, -1.5);
-    this.scene.add(new AmbientLight(0xffffff, 1.6), light, back, new Mesh(this.surface, this.material), this.edges, this.tools);
+    const light = new DirectionalLight(0xffffff, 1.1);
+    light.position.set(1.5, -0.7, 2);
+    const back = new DirectionalLight(0xffffff, 0.6);
+    back.position.set(-1.5, 1, -0.5);
+    this.skin = new Mesh(this.surface, this.material);
+    this.drawn.skin = new Float32Array(first);
+    this.scene.add(new AmbientLight(0xffffff, 2.3), light, back, this.skin, this.cap, this.edges, this.tools);
     this.cloud = floats(body.cloud);
-    this.compared = joined(body.compared);
-    const most = Math.max(this.compared.length / 4, ...body.states.map((_, k) => this.touching(k).length / 4)) + this.cloud.length / 3;
+    const most = Math.max(...body.states.map((_, k) => this.touching(k).length / 4)) + this.cloud.length / 3;
     this.points = new InstancedMesh(new IcosahedronGeometry(grain, 1), this.dots, most);
     this.points.frustumCulled = false;
     this.scene.add(this.points);
@@ -161,67 +170,67 @@ class Solid {
     return floats(this.body.states[state].touching);
   }
 
-  /** The same of a field of points: the comparison is of the end. */
-  marked(field: string, state: number): Float32Array {
-    if (field !== "e") return this.touching(state);
-    return this.isEnd(state) ? this.compared : new Float32Array();
-  }
-
   isEnd(state: number): boolean {
     return state === this.body.states.length - 1;
   }
 
-  depths(field: string, state: number): Float32Array {
-    return this.marked(field, state).filter((_, k) => k % 4 === 3);
+  depths(state: number): Float32Array {
+    return this.touching(state).filter((_, k) => k % 4 === 3);
   }
 
-  /** Values of a field at a state: of each node, or of each face; none of what the body itself does not have. */
-  values(field: string, state: number): { each: Float32Array; ofNodes: boolean } | null {
-    const at = this.body.states[state];
-    if (OF_POINTS.includes(field)) return null;
+  private moved(state: number): Float32Array {
+    return joined(floats(this.body.states[state].u), floats(this.body.inside?.states[state]?.u ?? ""));
+  }
+
+  /** The field at each node at a state, on the surface and then inside; none of what the body itself does not have. */
+  values(field: string, state: number): Float32Array | null {
+    const { body } = this;
+    if (field === OF_POINTS) return null;
+    if (field === "e") return body.off && this.isEnd(state) ? floats(body.off) : null;
     if (field === "u") {
-      const u = floats(at.u);
-      const size = new Float32Array(u.length / 3);
-      for (let k = 0; k < size.length; k++) size[k] = Math.hypot(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
-      return { each: size, ofNodes: true };
+      const u = this.moved(state);
+      return Float32Array.from({ length: u.length / 3 }, (_, k) => Math.hypot(u[3 * k], u[3 * k + 1], u[3 * k + 2]));
     }
-    return at.values && { each: floats(at.values["pmj".indexOf(field)]), ofNodes: false };
+    const of = (values: [string, string, string] | null | undefined) => floats(values?.["pmj".indexOf(field)] ?? "");
+    const own = of(body.states[state].values);
+    // Results of an earlier version have a value for each face.
+    return 3 * own.length === floats(body.points).length ? joined(own, of(body.inside?.states[state]?.values)) : null;
   }
 
   /** Moves the body to a state, in colours of a field. */
   show(field: string, state: number, colour: (value: number) => Color, view: { mesh: boolean; dots: boolean; cloud: boolean }) {
-    const u = floats(this.body.states[state].u);
-    const values = this.values(field, state);
+    const u = this.moved(state);
+    this.places = this.reference.map((x, k) => x + u[k]);
+    this.field = this.values(field, state);
     const places = this.surface.getAttribute("position").array as Float32Array;
     const colours = this.surface.getAttribute("color").array as Float32Array;
-    let [at, face] = [0, 0];
-    const grey = new Color(0xb0b0b0);
+    let at = 0;
     for (const { indices, nodes, pattern } of this.faces)
-      for (let start = 0; start < indices.length; start += nodes, face++)
+      for (let start = 0; start < indices.length; start += nodes)
         for (const weights of pattern.weights) {
           let value = 0;
           const place = [0, 0, 0];
           for (let k = 0; k < nodes; k++) {
             const node = indices[start + k];
-            for (let axis = 0; axis < 3; axis++) place[axis] += weights[k] * (this.reference[3 * node + axis] + u[3 * node + axis]);
-            if (values?.ofNodes) value += weights[k] * values.each[node];
+            for (let axis = 0; axis < 3; axis++) place[axis] += weights[k] * this.places[3 * node + axis];
+            value += weights[k] * (this.field?.[node] ?? NaN);
           }
-          if (values && !values.ofNodes) value = values.each[face];
-          const c = values ? colour(value) : grey;
-          places.set(place, at);
-          colours.set([c.r, c.g, c.b], at);
-          at += 3;
+          const c = Number.isNaN(value) ? GREY : colour(value);
+          places.set(place, 3 * at);
+          colours.set([c.r, c.g, c.b], 3 * at);
+          this.drawn.skin[at++] = value;
         }
     this.surface.getAttribute("position").needsUpdate = this.surface.getAttribute("color").needsUpdate = true;
     this.surface.computeVertexNormals();
+    this.surface.computeBoundingSphere();
     this.edges.visible = view.mesh;
-    const ofPoints = OF_POINTS.includes(field);
+    const ofPoints = field === OF_POINTS;
     const cloud = view.cloud && this.isEnd(state) ? this.cloud : new Float32Array();
     // What is marked is within the body, or between it and a tool.
     this.material.transparent = ofPoints || cloud.length > 0;
     this.material.opacity = this.material.transparent ? 0.3 : 1;
     this.material.depthWrite = !this.material.transparent;
-    const marked = ofPoints || view.dots ? this.marked(field, state) : new Float32Array();
+    const marked = ofPoints || view.dots ? this.touching(state) : new Float32Array();
     let count = 0;
     const mark = (x: number, y: number, z: number, c: Color) => {
       this.points.setMatrixAt(count, new Matrix4().setPosition(x, y, z));
@@ -237,6 +246,35 @@ class Solid {
       tool.position.set(x, y, z);
     });
   }
+
+  get cutTriangles(): number {
+    return this.drawn.cap.length / 3;
+  }
+
+  get hasInside(): boolean {
+    return this.cells.length > 0;
+  }
+
+  /** Closes the body where a plane across an axis cuts it, in colours of the field inside; opens it again for an axis below 0. */
+  slice(axis: number, at: number, colour: (value: number) => Color) {
+    const { points, values } = axis < 0 ? { points: [], values: [] } : face(this.cells, this.places, this.field, axis, at);
+    this.drawn.cap = Float32Array.from(values);
+    const colours = values.flatMap((value) => { const c = Number.isNaN(value) ? GREY : colour(value); return [c.r, c.g, c.b]; });
+    this.cap.geometry.dispose();
+    this.cap.geometry = new BufferGeometry();
+    this.cap.geometry.setAttribute("position", new Float32BufferAttribute(points, 3)).setAttribute("color", new Float32BufferAttribute(colours, 3));
+    this.cap.visible = points.length > 0 && !this.material.transparent;
+  }
+
+  /** The nearest place that a ray meets and the field there, of what `isSeen`. */
+  met(ray: Raycaster, isSeen: (place: Vector3) => boolean): { place: Vector3; value: number } | null {
+    const found = ray.intersectObjects(this.cap.visible ? [this.skin, this.cap] : [this.skin], false)
+      .find((hit) => hit.object === this.cap || isSeen(hit.point));
+    if (!found?.face || !found.barycoord) return null;
+    const values = found.object === this.cap ? this.drawn.cap : this.drawn.skin;
+    const { face: { a, b, c }, barycoord: { x, y, z } } = found;
+    return { place: found.point, value: x * values[a] + y * values[b] + z * values[c] };
+  }
 }
 
 /** Puts the bodies of a case into a place. */
@@ -244,8 +282,9 @@ export function show(place: HTMLElement, packed: Body[]) {
   const of = (method: string | undefined, body: Body) => packed.find((b) => b.method === method) ?? body;
   const bodies = packed.map((b) => {
     const { points, faces } = of(b.like, b);
-    const compared = b.compared && { ...b.compared, points: of(b.compared_like, b).compared!.points };
-    return { ...b, points, faces, compared, tools: of(b.tools_like, b).tools };
+    const shared = of(b.like, b).inside;
+    const inside = b.inside && shared && { ...b.inside, points: shared.points, cells: shared.cells };
+    return { ...b, points, faces, inside, tools: of(b.tools_like, b).tools };
   });
   const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -256,17 +295,20 @@ export function show(place: HTMLElement, packed: Body[]) {
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "The deformed body: drag or use the arrow keys to turn it");
   const camera = new PerspectiveCamera(28, 1, 1e-4, 100);
+  // As in the scene, z is up.
+  camera.up.set(0, 0, 1);
   const controls = new OrbitControls(camera, canvas);
   const plane = new Plane(new Vector3(-1, 0, 0), 0);
-  const box = { low: new Vector3(Infinity, Infinity, Infinity), high: new Vector3(-Infinity, -Infinity, -Infinity) };
+  const low = new Vector3(Infinity, Infinity, Infinity);
+  const high = new Vector3(-Infinity, -Infinity, -Infinity);
   const points = floats(bodies[0].points);
   for (let k = 0; k < points.length; k += 3) {
     const p = new Vector3(points[k], points[k + 1], points[k + 2]);
-    box.low.min(p);
-    box.high.max(p);
+    low.min(p);
+    high.max(p);
   }
-  const middle = box.low.clone().add(box.high).multiplyScalar(0.5);
-  const size = box.high.clone().sub(box.low).length();
+  const middle = low.clone().add(high).multiplyScalar(0.5);
+  const size = high.clone().sub(low).length();
   const made = new Map<string, Solid>();
   const solid = (method: string) => {
     if (!made.has(method)) made.set(method, new Solid(bodies.find((b) => b.method === method)!, 0.006 * size));
@@ -274,60 +316,66 @@ export function show(place: HTMLElement, packed: Body[]) {
   };
   // Curved faces first: they show what this view is for.
   const best = [...bodies].sort((a, b) => Math.max(...b.faces.map((f) => f.nodes)) - Math.max(...a.faces.map((f) => f.nodes)));
-  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: true, cloud: false };
+  const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: false, cloud: false };
   const shown = () => [view.left, view.right].filter(Boolean).map(solid);
   const stateOf = (s: Solid) => Math.round(view.part * (s.body.states.length - 1));
 
   const bar = h("div", { class: "scale" });
+  const here = h("span", { class: "here", "aria-live": "polite" });
   const said = h("p", { class: "soft small" });
   const label = h("span", { class: "small" });
 
-  function range(): [number, number] {
-    let [low, high] = [Infinity, -Infinity];
-    if (OF_POINTS.includes(view.field)) return [0, Math.max(...shown().flatMap((s) => [...s.depths(view.field, stateOf(s))]), 0) || 1];
+  /** Ends of the scale; and whether values lie beyond them. */
+  function range(): { low: number; high: number; clipped: boolean } {
+    if (view.field === OF_POINTS) return { low: 0, high: Math.max(...shown().flatMap((s) => [...s.depths(stateOf(s))]), 0) || 1, clipped: false };
+    let [low, high, most, least] = [Infinity, -Infinity, -Infinity, Infinity];
     for (const s of shown()) {
-      const values = s.values(view.field, stateOf(s));
-      if (!values) continue;
-      // What lies beyond 1 and 99 per cent has the colour of the end.
-      const sorted = values.each.slice().sort();
-      const edge = values.ofNodes ? 0 : Math.floor(0.01 * sorted.length);
-      [low, high] = [Math.min(low, sorted[edge]), Math.max(high, sorted[sorted.length - 1 - edge])];
+      const sorted = s.values(view.field, stateOf(s))?.slice().sort();
+      if (!sorted?.length) continue;
+      const last = sorted.length - 1;
+      [low, high] = [Math.min(low, sorted[Math.floor(CLIPPED * last)]), Math.max(high, sorted[Math.ceil((1 - CLIPPED) * last)])];
+      [least, most] = [Math.min(least, sorted[0]), Math.max(most, sorted[last])];
     }
-    if (!(high >= low)) return [0, 1];
-    if (view.field === "p") return [-Math.max(-low, high), Math.max(-low, high)];
-    if (view.field === "j") { const off = Math.max(Math.abs(low - 1), Math.abs(high - 1), 1e-6); return [1 - off, 1 + off]; }
-    return [0, high || 1];
+    if (!(high >= low)) return { low: 0, high: 1, clipped: false };
+    const middle = view.field === "j" ? 1 : 0;
+    const off = Math.max(middle - low, high - middle, view.field === "j" ? 1e-6 : 0) || 1;
+    low = isSigned(view.field) ? middle - off : 0;
+    high = middle + off;
+    return { low, high, clipped: most > high || (isSigned(view.field) && least < low) };
   }
 
-  const isKnown = (s: Solid) => view.field === "d" || (view.field === "e" ? s.marked("e", stateOf(s)).length > 0 : !!s.values(view.field, stateOf(s)));
+  const isKnown = (s: Solid) => view.field === OF_POINTS || !!s.values(view.field, stateOf(s));
 
-  /** What is marked: where contact acts and how deep the body is in a tool there and at its nodes, or where it is compared. */
+  /** Where contact acts, and how deep the body is in a tool there and at its nodes. */
   function marks(s: Solid): string {
-    const [at, depths] = [s.body.states[stateOf(s)], s.depths("d", stateOf(s))];
-    if (view.field === "e") return s.marked("e", stateOf(s)).length ? "Points stand where the reference or the exact solution has them. " : "";
+    const [at, depths] = [s.body.states[stateOf(s)], s.depths(stateOf(s))];
     if (!depths.length) return "";
     const mm = (metres: number) => `${digits(1e3 * metres, 2)} mm`;
-    return `Contact acts at the ${depths.length} points${view.dots || view.field === "d" ? " marked" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
+    return `Contact acts at the ${depths.length} points${view.dots || view.field === OF_POINTS ? " marked" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
       + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} in. ` : "no node is in one. ");
   }
 
+  let scale = { low: 0, high: 1, clipped: false };
+  const mixed = new Color();
+  const ramps = [RISING, SIGNED].map((ramp) => ramp.map((c) => new Color(c)));
+  const colour = (value: number) => {
+    const table = ramps[Number(isSigned(view.field))];
+    const at = Math.min(0.9999, Math.max(0, (value - scale.low) / (scale.high - scale.low || 1))) * (table.length - 1);
+    return mixed.copy(table[Math.floor(at)]).lerp(table[Math.floor(at) + 1], at % 1);
+  };
+
   function update() {
-    const [low, high] = range();
-    const table = (view.field === "p" || view.field === "j" ? SIGNED : RISING).map((c) => new Color(c));
-    const mixed = new Color();
-    const colour = (value: number) => {
-      const at = Math.min(0.9999, Math.max(0, (value - low) / (high - low || 1))) * (table.length - 1);
-      return mixed.copy(table[Math.floor(at)]).lerp(table[Math.floor(at) + 1], at % 1);
-    };
+    scale = range();
     for (const s of shown()) {
       s.show(view.field, stateOf(s), colour, view);
       s.material.clippingPlanes = s.wire.clippingPlanes = s.dots.clippingPlanes = view.axis ? [plane] : [];
     }
-    const [, name, unit, scale] = FIELDS.find((f) => f[0] === view.field)!;
-    const css = (view.field === "p" || view.field === "j" ? SIGNED : RISING).join(",");
+    cut();
+    const [, name, unit, times] = FIELDS.find((f) => f[0] === view.field)!;
     const gradient = h("span", { class: "ramp" });
-    gradient.style.background = `linear-gradient(to right,${css})`;
-    bar.replaceChildren(h("span", {}, `${name}: ${digits(low * scale, 3)}`), gradient, h("span", {}, `${digits(high * scale, 3)} ${unit}`));
+    gradient.style.background = `linear-gradient(to right,${(isSigned(view.field) ? SIGNED : RISING).join(",")})`;
+    bar.replaceChildren(h("span", {}, `${name}: ${digits(scale.low * times, 3)}`), gradient,
+      h("span", {}, `${digits(scale.high * times, 3)} ${unit}${scale.clipped ? ", 2 % beyond" : ""}`), here);
     const first = solid(view.left);
     const state = first.body.states[stateOf(first)];
     label.textContent = first.body.states.length > 1 ? `state ${stateOf(first) + 1} of ${first.body.states.length}, at ${digits(state.time, 3)}` : "";
@@ -336,6 +384,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
       + [...new Set(shown().map(marks))].join("")
       + (shown().some((s) => !isKnown(s)) ? "Grey: the field is not known at this state. " : "")
+      + (view.axis && shown().some((s) => !s.hasInside) ? `The inside of ${shown().filter((s) => !s.hasInside).map((s) => s.body.method).join(" and ")} is not kept. ` : "")
       + (lost.length ? `Left out to keep the page small: ${lost.join(", ")}.` : "");
     canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
     draw();
@@ -357,22 +406,38 @@ export function show(place: HTMLElement, packed: Body[]) {
 
   function home() {
     controls.target.copy(middle);
-    // Tools, where there are any, are seen from the side.
-    const tool = bodies[0].tools[0];
-    const along = tool ? new Vector3(...tool.along) : new Vector3(0, 0, 1);
-    const up = new Vector3(0, Math.abs(along.y) > 0.9 ? 0 : 1, Math.abs(along.y) > 0.9 ? 1 : 0);
-    const side = tool ? along.clone().cross(up).normalize() : new Vector3(0.5, 0.2, 1).normalize();
-    camera.up.copy(up);
-    camera.position.copy(middle).addScaledVector(side, 2 * size).addScaledVector(up, 0.4 * size).addScaledVector(along, 0.4 * size);
+    // The longer side of the body is seen, and tools from the side.
+    const up = new Vector3(0, 0, 1);
+    const tool = new Vector3(...(bodies[0].tools[0]?.along ?? [0, 0, 1])).setZ(0);
+    const across = tool.length() > 0.5 ? tool : high.x - low.x > high.y - low.y ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
+    const side = across.clone().normalize().cross(up);
+    // A narrow window needs more distance.
+    const away = 1.6 * Math.max(1, 1.25 / camera.aspect);
+    camera.position.copy(middle).addScaledVector(side, away * size).addScaledVector(across, 0.5 * size).addScaledVector(up, 0.5 * size);
     camera.near = 0.01 * size;
     camera.far = 20 * size;
     controls.update();
   }
   function cut() {
     const k = "xyz".indexOf(view.axis);
-    if (k < 0) return;
-    const normal = new Vector3().setComponent(k, -1);
-    plane.set(normal, box.low.getComponent(k) + view.cut * (box.high.getComponent(k) - box.low.getComponent(k)));
+    const at = k < 0 ? 0 : low.getComponent(k) + view.cut * (high.getComponent(k) - low.getComponent(k));
+    if (k >= 0) plane.set(new Vector3().setComponent(k, -1), at);
+    for (const s of shown()) s.slice(k, at, colour);
+    canvas.dataset.cut = String(shown().reduce((n, s) => n + s.cutTriangles, 0));
+  }
+
+  /** Writes the field under the pointer. */
+  function point(event: PointerEvent) {
+    const box = canvas.getBoundingClientRect();
+    const sides = shown();
+    const part = (sides.length * (event.clientX - box.left)) / box.width;
+    const s = sides[Math.min(sides.length - 1, Math.floor(part))];
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(2 * (part % 1) - 1, 1 - (2 * (event.clientY - box.top)) / box.height), camera);
+    const met = s.met(ray, (place) => !view.axis || plane.distanceToPoint(place) >= 0);
+    const [, , unit, times] = FIELDS.find((f) => f[0] === view.field)!;
+    here.textContent = met && Number.isFinite(met.value)
+      ? `${digits(met.value * times, 3)} ${unit} at ${met.place.toArray().map((x) => digits(1e3 * x, 3)).join(", ")} mm` : "";
   }
 
   const methods: [string, string][] = bodies.map((b) => [b.method, b.title]);
@@ -385,7 +450,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     return h("label", { class: "small" }, box, ` ${name}`);
   };
   const has = (field: string) =>
-    field === "u" || (field === "d" ? touched : bodies.some((b) => (field === "e" ? b.compared : b.states.some((s) => s.values))));
+    field === "u" || (field === OF_POINTS ? touched : bodies.some((b) => (field === "e" ? b.off : b.states.some((s) => s.values))));
   const touched = bodies.some((b) => b.states.some((s) => s.touching));
   place.replaceChildren(
     h("div", { class: "toolbar" },
@@ -396,15 +461,17 @@ export function show(place: HTMLElement, packed: Body[]) {
       select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
       depth,
       check("mesh", true, (on) => { view.mesh = on; }),
-      ...(touched ? [check("contact points", true, (on) => { view.dots = on; })] : []),
+      ...(touched ? [check("contact points", false, (on) => { view.dots = on; })] : []),
       ...(bodies.some((b) => b.cloud) ? [check("nodes of clouds", false, (on) => { view.cloud = on; })] : []),
       h("button", { type: "button", class: "quiet", click: () => { home(); draw(); } }, "reset view")),
     canvas, bar, said);
   controls.listenToKeyEvents(canvas);
   controls.addEventListener("change", draw);
+  canvas.addEventListener("pointermove", point);
   new ResizeObserver(draw).observe(place);
-  home();
   update();
+  home();
+  draw();
 }
 
 Object.assign(window, { showBodies: show });

@@ -13,6 +13,9 @@ export interface State {
   at: string;
 }
 
+/** Errors to choose from, falling. */
+export const WITHIN = [0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.003, 0.001];
+
 const first = [...page.asks].filter((a) => !a.kernels).sort((a, b) => compare(b.rank, a.rank))[0];
 
 function compare(a: (boolean | number)[], b: (boolean | number)[]): number {
@@ -20,8 +23,14 @@ function compare(a: (boolean | number)[], b: (boolean | number)[]): number {
   return k < 0 ? 0 : Number(a[k]) - Number(b[k]);
 }
 
+/** The error that a page asks for at first: the least from the wanted one on that any run of the first question is within. */
+function opening(): number {
+  const counts = first?.lines.flatMap((l) => l.counts) ?? [];
+  return WITHIN.filter((error) => error >= page.wanted && counts.some((c) => c <= error)).pop() ?? page.wanted;
+}
+
 const usual: State = {
-  case: first?.case ?? "", what: first?.what ?? "", within: String(page.wanted), clock: "once", only: "", method: "", find: "", off: "", at: "",
+  case: first?.case ?? "", what: first?.what ?? "", within: String(opening()), clock: "once", only: "", method: "", find: "", off: "", at: "",
 };
 
 export const state: State = { ...usual };

@@ -6,7 +6,7 @@ use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use super::{Data, Figure, PAGE, continued, paged};
 use crate::asks::{Ask, Line, Timed, asks};
-use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, Question, pareto};
+use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, FRONT, Question, pareto};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
 use crate::select::Run;
@@ -40,8 +40,8 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
         name: paged(&format!("{name}{}", question.ending), page),
         title: continued(&format!("{title}: {}", question.name), page),
         caption: format!(
-            "{time} against the relative error of the {}, a line for each method through its sizes; the grey staircase is the Pareto front: \
-             no run drawn is both faster and more accurate",
+            "{time} against the relative error of the {}, a line for each method through its sizes; the grey staircase is the Pareto front \
+             of three runs or more: no run drawn is both faster and more accurate",
             question.name
         ),
         canvas: multiples(contents, &styles, &note(question, clock, panels)),
@@ -74,8 +74,12 @@ fn all(lines: &[Line]) -> impl Iterator<Item = &Timed> {
     lines.iter().flat_map(|line| &line.runs)
 }
 
+fn has_front(lines: &[Line]) -> bool {
+    all(lines).count() >= FRONT
+}
+
 fn y_axis(panel: &Ask) -> Axis {
-    let errors = all(&panel.lines).map(|r| r.error);
+    let errors = all(&panel.lines).map(|r| r.error.max(FLOOR));
     Axis::log(&label(panel.error), decade(errors.collect()).into_iter())
 }
 
@@ -100,9 +104,9 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
         x,
         y: y_axis(panel),
         plot: Box::new(move |canvas, panel| {
-            let at = |r: &Timed| panel.at(scale * r.seconds, r.error);
-            let counted = |r: &Timed| panel.at(scale * r.seconds, r.counts.min(panel.y.high()));
-            let best = pareto(all(lines), |r| (r.seconds, r.counts));
+            let at = |r: &Timed| panel.at(scale * r.seconds, r.error.max(FLOOR));
+            let counted = |r: &Timed| panel.at(scale * r.seconds, r.counts.clamp(FLOOR, panel.y.high()));
+            let best = pareto(all(lines).filter(|_| has_front(lines)), |r| (r.seconds, r.counts.max(FLOOR)));
             front(canvas, panel, &best.iter().map(|r| counted(r)).collect::<Vec<_>>());
             if shows_percent(&panel.y) {
                 let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, PERCENT));
@@ -175,7 +179,11 @@ fn decade(mut errors: Vec<f64>) -> Vec<f64> {
 }
 
 fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
-    let mut note = "Grey staircase: Pareto front. Down and to the left is better.".to_string();
+    let mut note = String::new();
+    if panels.iter().any(|panel| has_front(&panel.lines)) {
+        note += "Grey staircase: Pareto front. ";
+    }
+    note += "Down and to the left is better.";
     if panels.iter().any(|panel| shows_percent(&y_axis(panel))) {
         note += " Dashed: an error of 1 %.";
     }

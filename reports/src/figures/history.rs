@@ -1,4 +1,4 @@
-//! What happens while a tool closes, its force over the closure and where the energy is over time; and how frequencies go
+//! What happens while a tool closes, its force over the closure and over time and where the energy is; and how frequencies go
 //! wrong from mode to mode.
 
 use super::axes::Axis;
@@ -6,7 +6,7 @@ use super::canvas::{Canvas, Colour};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Data, Figure, PAGE, continued, paged};
-use crate::history::{band, curve};
+use crate::history::{band, between, curve, reference};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::record::Family;
 use crate::select::{Run, by_case, labels, series};
@@ -27,10 +27,8 @@ const ENERGIES: [(&str, &str); 9] = [
     ("scheme-dissipation", "lost in the scheme"),
 ];
 
-/// Names and units of both axes.
-type Axes = (&'static str, &'static str);
-
-/// Tool force over closure: one panel per case, the finest run of every method, the reference with its uncertainty.
+/// Tool force of the finest run of every method: over the closure, over time where that went on, and minus the reference's at the
+/// same closure with its uncertainty.
 pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
@@ -38,21 +36,45 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
         // The reference lies below what is compared with it.
         all.sort_by_key(|s| s.is().family != Family::Reference);
         let names = labels(all.iter().map(|s| s.is()));
-        let lines = all.iter().zip(names).map(|(s, name)| {
-            let run = s.finest();
-            let points = curve(run, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
-            let around = band(run, "closure", "tool-force").into_iter().map(|b| (b.0 * 1e3, b.1, b.2));
-            Curve { band: around.collect(), ..line(name, run, points.collect()) }
-        });
-        panels.push((case[0].is.case.clone(), String::new(), lines.filter(drawn).collect()));
+        let each = |x: &str, scale: f64| -> Vec<Curve> {
+            let lines = all.iter().zip(&names).map(|(s, name)| {
+                let run = s.finest();
+                let points = curve(run, x, "tool-force").into_iter().map(|p| (p.0 * scale, p.1));
+                let around = band(run, x, "tool-force").into_iter().map(|b| (b.0 * scale, b.1, b.2));
+                Curve { band: around.collect(), ..line(name.clone(), run, points.collect()) }
+            });
+            lines.filter(drawn).collect()
+        };
+        let closing = each("closure", 1e3);
+        let off = against(case, &closing);
+        let is = &case[0].is.case;
+        panels.push(Pane::new(is, "", ("closure [mm]", "tool force [N]"), closing));
+        panels.push(Pane::new(is, ", over time", ("time [s]", "tool force [N]"), each("time", 1.0)));
+        panels.push(Pane::new(is, ", minus the reference", ("closure [mm]", "difference of force [N]"), off));
     }
     figures(
         "tool-force",
-        "Tool force against closure",
-        "Force on the tool while it closes, the finest run of each method",
-        ("closure [mm]", "tool force [N]"),
+        "Tool force",
+        "Force on the tool while it closes, the finest run of each method: over the closure, over time where the scene has one, and minus that \
+         of the reference at the same closure",
         panels,
     )
+}
+
+/// Forces over the closure minus that of the reference, which is left with its uncertainty around nothing.
+fn against(case: &[Run], closing: &[Curve]) -> Vec<Curve> {
+    let Some(known) = reference(case) else { return Vec::new() };
+    let scaled = curve(known, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
+    let force: Vec<(f64, f64)> = scaled.collect();
+    let minus = |x: f64, value: f64| Some(value - between(&force, x)?);
+    let off = closing.iter().map(|line| Curve {
+        points: line.points.iter().filter_map(|p| Some((p.0, minus(p.0, p.1)?))).collect(),
+        band: line.band.iter().filter_map(|b| Some((b.0, minus(b.0, b.1)?, minus(b.0, b.2)?))).collect(),
+        ..line.clone()
+    });
+    let off: Vec<Curve> = off.filter(drawn).collect();
+    // The reference alone differs from nothing.
+    if off.iter().all(|line| line.points.iter().all(|p| p.1 == 0.0)) { Vec::new() } else { off }
 }
 
 /// Energies over time: one panel for the finest run of every method that recorded them.
@@ -69,14 +91,14 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
             });
             // What stays nothing has no line: it would only lie on the axis.
             let lines = lines.filter(drawn).filter(|l| l.points.iter().any(|p| p.1 != 0.0));
-            panels.push((s.is().case.clone(), format!(", {name}"), lines.collect()));
+            let of = format!(", {name}");
+            panels.push(Pane::new(&s.is().case, &of, ("time [s]", "energy [mJ]"), lines.collect()));
         }
     }
     figures(
         "energy-time",
         "Energy over time",
         "Where the energy is at every step, the finest run of each method; the work of the loads is the sum of the others where none is lost",
-        ("time [s]", "energy [mJ]"),
         panels,
     )
 }
@@ -94,7 +116,13 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
                 let points = curve(s.finest(), "mode", "omega-ratio");
                 line(name, s.finest(), points)
             });
-            panels.push((case[0].is.case.clone(), format!(", {mass} mass"), lines.filter(drawn).collect()));
+            let axes = ("mode [1]", "computed over exact frequency [1]");
+            panels.push(Pane::new(
+                &case[0].is.case,
+                &format!(", {mass} mass"),
+                axes,
+                lines.filter(drawn).collect(),
+            ));
         }
     }
     figures(
@@ -102,7 +130,6 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
         "Frequency spectrum",
         "Computed over exact frequency of the lowest modes in order, the finest run of each method; a spurious slow mode lies near zero and \
          shifts all others",
-        ("mode [1]", "computed over exact frequency [1]"),
         panels,
     )
 }
@@ -116,18 +143,31 @@ fn drawn(line: &Curve) -> bool {
     line.points.len() > 1
 }
 
-/// Case, what follows it in the title, and lines.
-type Paned = (String, String, Vec<Curve>);
+/// What a panel shows.
+struct Pane {
+    case: String,
+    /// What follows the case in the title.
+    of: String,
+    /// Names and units of both axes.
+    axes: (&'static str, &'static str),
+    curves: Vec<Curve>,
+}
 
-fn figures(name: &str, title: &str, caption: &str, axes: Axes, panels: Vec<Paned>) -> Vec<Figure> {
-    let plotted = |(case, of, curves): Paned| Plot {
+impl Pane {
+    fn new(case: &str, of: &str, axes: (&'static str, &'static str), curves: Vec<Curve>) -> Pane {
+        Pane { case: case.into(), of: of.into(), axes, curves }
+    }
+}
+
+fn figures(name: &str, title: &str, caption: &str, panels: Vec<Pane>) -> Vec<Figure> {
+    let plotted = |Pane { case, of, axes, curves }: Pane| Plot {
         title: format!("{case}{of}"),
         case,
         x: Scale::linear(axes.0),
         y: Scale::linear(axes.1),
         curves,
     };
-    let plots: Vec<Plot> = panels.into_iter().filter(|p| !p.2.is_empty()).map(plotted).collect();
+    let plots: Vec<Plot> = panels.into_iter().filter(|p| !p.curves.is_empty()).map(plotted).collect();
     let page = |(page, plots): (usize, &[Plot])| Figure {
         name: paged(name, page),
         title: continued(title, page),

@@ -14,6 +14,7 @@ mod locking;
 mod over_commits;
 mod pdf;
 mod pixels;
+mod profile;
 mod section;
 mod silhouette;
 mod stability;
@@ -74,6 +75,7 @@ struct Pictured {
 pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
     let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
+    figures.extend(profile::figure(&solved));
     figures.extend(stability::maps(&set.axes));
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));

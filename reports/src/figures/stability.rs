@@ -20,7 +20,8 @@ pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
         name: format!("stability-{}-{}", slug(&axis.case), slug(&axis.name)),
         title: format!("Where methods bend and break: {}, {}", axis.case, axis.name),
         caption: format!(
-            "Numbers: {} in per cent. A method bends where it is twice as large as at {}; from {} % on it is wrong",
+            "Numbers: {} in per cent; colours: its classes. Bold: twice as large as at {} or more, where a method bends; from {} % on it \
+             is wrong",
             label(&axis.judge),
             value(axis, axis.base),
             significant(100.0 * axis.wrong, 2),
@@ -36,14 +37,15 @@ fn value(axis: &Axis, v: f64) -> String {
     if axis.unit.is_empty() { short(v) } else { format!("{} {}", short(v), axis.unit) }
 }
 
-fn colour(verdict: Verdict) -> Colour {
-    match verdict {
-        Verdict::Holds => [0xcf, 0xe6, 0xf5],
-        Verdict::Bends => [0xf7, 0xe0, 0x9a],
-        Verdict::Warned => [0xf0, 0xa2, 0x4a],
-        Verdict::Refused => [0xd8, 0xd8, 0xd8],
-        Verdict::Silent => [0xa5, 0x0f, 0x15],
-    }
+/// Colours of results that are wrong or none: warned, refused, silent.
+const BAD: [Colour; 3] = [[0xf0, 0xa2, 0x4a], [0xd8, 0xd8, 0xd8], [0xa5, 0x0f, 0x15]];
+/// Colours of results that are not wrong, the best last.
+const GOOD: [Colour; 3] = [[0xf7, 0xec, 0xb0], [0xd4, 0xe7, 0xf2], [0xa4, 0xcc, 0xe3]];
+
+/// The colour of a class, by its place among so many.
+fn colour(class: usize, classes: usize) -> Colour {
+    let good = classes - BAD.len();
+    if class < good { GOOD[good - 1 - class] } else { BAD[class - good] }
 }
 
 fn csv(axis: &Axis) -> String {
@@ -67,7 +69,7 @@ fn draw(axis: &Axis) -> Canvas {
     let left = 12.0 + methods.iter().map(|m| text_width(m, TEXT)).fold(40.0, f64::max).min(200.0);
     let width = (WIDTH - left - 6.0) / axis.values.len() as f64;
     let bottom = TOP + ROW * methods.len() as f64;
-    let key = [Verdict::Holds, Verdict::Bends, Verdict::Warned, Verdict::Refused, Verdict::Silent];
+    let key = axis.classes();
     let notes = wrapped(&note(axis), WIDTH - 20.0);
     let mut canvas = Canvas::new(WIDTH, bottom + 34.0 + 12.0 * notes.len() as f64);
     let unit = if axis.unit.is_empty() { "1" } else { &axis.unit };
@@ -80,11 +82,13 @@ fn draw(axis: &Axis) -> Canvas {
         for (row, method) in methods.iter().enumerate() {
             let y = TOP + ROW * row as f64;
             if let Some(trial) = axis.trial(method, v) {
-                let verdict = axis.verdict(trial);
-                fill(&mut canvas, (x, y, width - 1.0, ROW - 1.0), colour(verdict));
-                let ink = if verdict == Verdict::Silent { WHITE_INK } else { BLACK_INK };
+                fill(&mut canvas, (x, y, width - 1.0, ROW - 1.0), colour(axis.class(trial), key.len()));
                 let at = (x + width / 2.0, y + ROW / 2.0);
-                canvas.text(at, &number(trial), TEXT - 1.0, ink, Anchor::Middle);
+                match axis.verdict(trial) {
+                    Verdict::Silent => canvas.text(at, &number(trial), TEXT - 1.0, WHITE_INK, Anchor::Middle),
+                    Verdict::Bends => canvas.bold(at, &number(trial), TEXT - 1.0, Anchor::Middle),
+                    _ => canvas.text(at, &number(trial), TEXT - 1.0, BLACK_INK, Anchor::Middle),
+                }
             }
         }
     }
@@ -93,10 +97,10 @@ fn draw(axis: &Axis) -> Canvas {
         canvas.text(at, method, TEXT, BLACK_INK, Anchor::End);
     }
     let mut x = 12.0;
-    for verdict in key {
-        fill(&mut canvas, (x, bottom + 10.0, 12.0, 10.0), colour(verdict));
-        canvas.text((x + 16.0, bottom + 15.0), verdict.name(), TEXT, BLACK_INK, Anchor::Start);
-        x += 34.0 + text_width(verdict.name(), TEXT);
+    for (class, name) in key.iter().enumerate() {
+        fill(&mut canvas, (x, bottom + 10.0, 12.0, 10.0), colour(class, key.len()));
+        canvas.text((x + 16.0, bottom + 15.0), name, TEXT, BLACK_INK, Anchor::Start);
+        x += 34.0 + text_width(name, TEXT);
     }
     for (i, line) in notes.iter().enumerate() {
         canvas.text((12.0, bottom + 34.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
@@ -106,7 +110,7 @@ fn draw(axis: &Axis) -> Canvas {
 
 fn note(axis: &Axis) -> String {
     format!(
-        "Numbers: {} in per cent. Bends: twice that at {} or more. Wrong: {} % or more.",
+        "Numbers: {} in per cent. Bold: twice that at {} or more (it bends). Wrong: {} % or more.",
         label(&axis.judge),
         value(axis, axis.base),
         significant(100.0 * axis.wrong, 2),

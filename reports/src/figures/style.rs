@@ -2,7 +2,7 @@
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, text_width};
-use crate::look::Look;
+use crate::look::{Look, distinct};
 use crate::record::Family;
 
 /// The look of one label.
@@ -12,15 +12,16 @@ pub(crate) struct Style {
     pub(crate) look: Look,
 }
 
-/// Styles of labels, each once, in the order given.
+/// Styles of labels, each once, in the order given; no two look alike.
 pub(crate) fn styles(labels: &[(String, Family)]) -> Vec<Style> {
-    let mut out: Vec<Style> = Vec::new();
+    let mut once: Vec<(String, Family)> = Vec::new();
     for (label, family) in labels {
-        if out.iter().all(|s| &s.label != label) {
-            out.push(Style { label: label.clone(), look: Look::of(label, *family) });
+        if once.iter().all(|known| &known.0 != label) {
+            once.push((label.clone(), *family));
         }
     }
-    out
+    let looks = distinct(&once, |_, _| true);
+    once.into_iter().zip(looks).map(|((label, _), look)| Style { label, look }).collect()
 }
 
 /// The style of a label.

@@ -1,4 +1,6 @@
 //! The publication's claim, that EFG is about as accurate as finite elements at a small part of their cost, against the cases that test it.
+//!
+//! The claim is of contact with jaws: a case without contact says nothing about it.
 
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, point};
@@ -13,7 +15,7 @@ type Point = (f64, f64);
 /// One sentence per case that tests a publication and whose errors are known.
 pub(super) fn claim(runs: &[Run]) -> Vec<String> {
     let claim = |(case, group): (String, &[Run])| {
-        let publication = tested(group[0].is)?;
+        let publication = tested(group[0].is).filter(|_| group.iter().any(Run::has_contact))?;
         let share = seconds(publication, Family::Efg) / seconds(publication, Family::Fem);
         Some(format!("{case}: {}", verdict(group, share)?))
     };
@@ -119,7 +121,7 @@ impl Matched {
 #[cfg(test)]
 mod tests {
     use super::{Matched, claim, seconds};
-    use crate::fronts::tests::run;
+    use crate::fronts::tests::{record, run};
     use crate::published::tested;
     use crate::record::{Family, Record};
     use crate::select::runs;
@@ -172,6 +174,28 @@ mod tests {
             ),
             "{coarse}"
         );
+    }
+
+    #[test]
+    fn a_scene_without_contact_is_not_set_against_two_hours_of_it() {
+        let mut records = run(("tet4", Family::Fem), 1331, 0.02, &[("relative-rms", 0.2)]);
+        records.extend(run(("efg", Family::Efg), 83, 0.01, &[("relative-rms", 0.2)]));
+        let times = |records: &[Record]| {
+            let runs = runs(records);
+            let paper = tested(&records[0]).unwrap();
+            let of = |quantity| paper.numbers.iter().find(move |p| p.quantity == quantity).unwrap();
+            (
+                claim(&runs).len(),
+                ["total", "prepare", "max-x"].map(|q| runs.iter().any(|run| of(q).is_of(run))),
+            )
+        };
+        // Contact, but quasi-static: the two hours were of explicit dynamics.
+        assert_eq!(times(&records), (1, [false, true, true]));
+        let is = ("jaws", "tet4", Family::Fem);
+        let explicit = [&records[..], &[record(is, 1331, ("time-steps", ""), 37000.0)]].concat();
+        assert_eq!(times(&explicit), (1, [true, true, true]));
+        records.retain(|r| r.quantity != "tool-force");
+        assert_eq!(times(&records), (0, [false, true, true]));
     }
 
     #[test]

@@ -63,4 +63,9 @@ impl AskView {
             lines: ask.lines.iter().map(&mut line).collect(),
         }
     }
+
+    /// The labels of its lines.
+    pub(super) fn labels(&self) -> Vec<usize> {
+        self.lines.iter().map(|line| line.label).collect()
+    }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::body::{Body, BodyState};
+use crate::body::{Body, BodyState, Faces};
 use crate::error::ReportError;
 use crate::run_set::SurfaceField;
 use crate::select::Run;
@@ -26,9 +26,6 @@ struct BodyView<'a> {
     /// The method of an earlier body with the same tools.
     #[serde(skip_serializing_if = "Option::is_none")]
     tools_like: Option<&'a str>,
-    /// The method of an earlier body that is compared at the same points.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    compared_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
     /// Which of a method's sizes are of one kind.
@@ -41,25 +38,37 @@ struct BodyView<'a> {
 
 impl BodyView<'_> {
     fn size(&self) -> usize {
-        let Body { points, faces, compared, cloud, tools, states, .. } = &self.body;
-        let compared = compared.as_ref().map_or(0, |c| c.points.len() + c.off.len());
-        let fixed =
-            points.len() + compared + cloud.len() + faces.iter().map(|f| f.indices.len()).sum::<usize>();
+        let Body { points, faces, off, cloud, tools, states, .. } = &self.body;
+        let fixed = points.len() + off.len() + cloud.len() + of_faces(faces);
         let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
-        fixed + tools + states.iter().map(of_state).sum::<usize>()
+        fixed + tools + states.iter().map(of_state).sum::<usize>() + self.inside()
+    }
+
+    /// The part of it that only a cut shows.
+    fn inside(&self) -> usize {
+        self.body.inside.as_ref().map_or(0, |inside| {
+            let states = inside.states.iter().map(|s| s.u.len() + of_values(&s.values));
+            inside.points.len() + of_faces(&inside.cells) + states.sum::<usize>()
+        })
     }
 
     /// Its size with its last state alone.
     fn least(&self) -> usize {
         let states = &self.body.states;
-        self.size() - states[..states.len() - 1].iter().map(of_state).sum::<usize>()
+        self.size() - self.inside() - states[..states.len() - 1].iter().map(of_state).sum::<usize>()
     }
 }
 
 fn of_state(state: &BodyState) -> usize {
-    state.u.len()
-        + state.touching.len()
-        + state.values.as_ref().map_or(0, |values| values.iter().map(String::len).sum())
+    state.u.len() + state.touching.len() + of_values(&state.values)
+}
+
+fn of_values(values: &Option<[String; 3]>) -> usize {
+    values.as_ref().map_or(0, |values| values.iter().map(String::len).sum())
+}
+
+fn of_faces(faces: &[Faces]) -> usize {
+    faces.iter().map(|f| f.indices.len()).sum()
 }
 
 /// The elements; nothing for results without bodies.
@@ -75,7 +84,6 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
                 title: &f.title,
                 like: None,
                 tools_like: None,
-                compared_like: None,
                 body: view(f)?,
                 series: run.map_or(&f.method, |run| &run.is.series),
                 without: Vec::new(),
@@ -105,7 +113,7 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
-/// Methods on one mesh have one surface, and all methods of a scene its tools and the points where they are compared: only the first of them in a case keeps these.
+/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a case keeps these.
 fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
@@ -115,31 +123,30 @@ fn share(bodies: &mut [BodyView]) {
         };
         let like = first(|a, b| a.points == b.points && a.faces == b.faces);
         let tools_like = first(|a, b| !a.tools.is_empty() && a.tools == b.tools);
-        let compared_like =
-            first(|a, b| matches!((&a.compared, &b.compared), (Some(a), Some(b)) if a.points == b.points));
-        if let (Some(_), Some(compared)) = (compared_like, &mut own.body.compared) {
-            compared.points.clear();
-        }
         if like.is_some() {
             own.body.points.clear();
             own.body.faces.clear();
+            // One surface, one mesh.
+            if let Some(inside) = &mut own.body.inside {
+                inside.points.clear();
+                inside.cells.clear();
+            }
         }
         if tools_like.is_some() {
             own.body.tools.clear();
         }
-        (own.like, own.tools_like, own.compared_like) = (like, tools_like, compared_like);
+        (own.like, own.tools_like) = (like, tools_like);
     }
 }
 
-/// Takes out large bodies that have a coarser sibling, then states of the largest bodies, all but the last, until all have room; then
-/// the largest bodies.
+/// Takes out large bodies that have a coarser sibling, then what only a cut shows of the largest, then states of the largest bodies,
+/// all but the last, until all have room; then the largest bodies.
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
         let others = |b: &BodyView, is: &dyn Fn(&BodyView) -> bool| {
             bodies.iter().any(|o| o.case == b.case && o.method != b.method && is(o))
         };
-        let needed =
-            |b: &BodyView| others(b, &|o| [o.like, o.tools_like, o.compared_like].contains(&Some(b.method)));
+        let needed = |b: &BodyView| others(b, &|o| [o.like, o.tools_like].contains(&Some(b.method)));
         let can_go = |b: &BodyView| {
             b.least() as f64 > LARGE * room as f64
                 && others(b, &|o| o.series == b.series && o.least() < b.least())
@@ -149,16 +156,23 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
             taken.max_by_key(|(k, b)| (b.size(), std::cmp::Reverse(*k))).map(|(k, _)| k)
         };
         let large = largest(&|b| !needed(b) && can_go(b));
+        let inner = bodies.iter().enumerate().filter(|(_, b)| b.inside() > 0);
+        let inner = inner.max_by_key(|(k, b)| (b.inside(), std::cmp::Reverse(*k))).map(|(k, _)| k);
         let (moving, any) = (largest(&|b| b.body.states.len() > 1), largest(&|b| !needed(b)));
-        match (large, moving, any) {
-            (None, Some(k), _) => {
+        match (large, inner, moving, any) {
+            (None, Some(k), _, _) => {
+                let (case, method) = (bodies[k].case, bodies[k].like.unwrap_or(bodies[k].method));
+                let alike = |b: &&mut BodyView| b.case == case && b.like.unwrap_or(b.method) == method;
+                bodies.iter_mut().filter(alike).for_each(|b| b.body.inside = None);
+            }
+            (None, None, Some(k), _) => {
                 let body = &mut bodies[k].body;
                 let gone = body.states.len() - 1;
                 body.states.drain(..gone);
                 body.left_out += gone;
             }
-            (Some(k), _, _) | (None, None, Some(k)) => drop(bodies.remove(k)),
-            (None, None, None) => break,
+            (Some(k), ..) | (None, None, None, Some(k)) => drop(bodies.remove(k)),
+            (None, None, None, None) => break,
         }
     }
 }
@@ -166,7 +180,7 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::pack;
+    use crate::body::{Inside, InsideState, pack};
 
     fn body_view(case: &'static str, method: &'static str, body: Body) -> BodyView<'static> {
         BodyView {
@@ -175,7 +189,6 @@ mod tests {
             title: "",
             like: None,
             tools_like: None,
-            compared_like: None,
             body,
             series: method,
             without: Vec::new(),
@@ -208,6 +221,29 @@ mod tests {
         all.iter_mut().for_each(|b| b.series = "one");
         fit(&mut all, 3839);
         assert_eq!(all.iter().map(|b| (b.method, b.body.states.len())).collect::<Vec<_>>(), [("coarse", 3)]);
+    }
+
+    #[test]
+    fn what_only_a_cut_shows_goes_first_and_with_all_that_share_it() {
+        let view = |method: &'static str| {
+            let inside = Inside {
+                points: pack(vec![0f32; 300]),
+                states: vec![InsideState::default()],
+                ..Inside::default()
+            };
+            let states = vec![BodyState::default()];
+            body_view(
+                "a",
+                method,
+                Body { points: pack(vec![0f32; 3]), states, inside: Some(inside), ..Body::default() },
+            )
+        };
+        let mut all = vec![view("tet4"), view("tet4-nodal")];
+        share(&mut all);
+        assert_eq!((all[0].inside(), all[1].inside()), (1600, 0));
+        fit(&mut all, 1000);
+        assert_eq!(all.len(), 2);
+        assert!(all.iter().all(|b| b.body.inside.is_none()));
     }
 
     #[test]

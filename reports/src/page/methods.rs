@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
-use crate::look::{Look, MARKERS};
+use crate::look::{Look, MARKERS, distinct};
 use crate::record::Family;
 use crate::select::{Run, by_material, labels};
 
@@ -16,6 +16,19 @@ pub(super) struct LookView {
     dash: &'static [f64],
     open: bool,
     family: Family,
+}
+
+impl LookView {
+    fn new(look: Look, family: Family) -> LookView {
+        let [red, green, blue] = look.colour;
+        LookView {
+            colour: format!("#{red:02x}{green:02x}{blue:02x}"),
+            marker: MARKERS[look.marker],
+            dash: look.dash,
+            open: look.open,
+            family,
+        }
+    }
 }
 
 /// What is known of each run, a column for each.
@@ -42,8 +55,7 @@ const ERRORS: [&str; 7] =
 
 /// Gathers what is named.
 pub(super) struct Methods {
-    looks: BTreeMap<String, LookView>,
-    labels: Vec<String>,
+    labels: Vec<(String, Family)>,
     runs: RunColumns,
     index: HashMap<String, usize>,
 }
@@ -51,8 +63,7 @@ pub(super) struct Methods {
 impl Methods {
     /// With the runs that may be named.
     pub(super) fn new(runs: &[Run]) -> Methods {
-        let (looks, names) = (BTreeMap::new(), Vec::new());
-        let mut all = Methods { looks, labels: names, runs: RunColumns::default(), index: HashMap::new() };
+        let mut all = Methods { labels: Vec::new(), runs: RunColumns::default(), index: HashMap::new() };
         for group in by_material(runs) {
             for (run, label) in group.iter().zip(labels(group.iter().map(|r| r.is))) {
                 all.push(run, &label);
@@ -86,21 +97,10 @@ impl Methods {
         }
     }
 
-    /// The number of a label; its look is kept with it.
+    /// The number of a label.
     pub(super) fn label(&mut self, label: &str, family: Family) -> usize {
-        self.looks.entry(label.into()).or_insert_with(|| {
-            let look = Look::of(label, family);
-            let [red, green, blue] = look.colour;
-            LookView {
-                colour: format!("#{red:02x}{green:02x}{blue:02x}"),
-                marker: MARKERS[look.marker],
-                dash: look.dash,
-                open: look.open,
-                family,
-            }
-        });
-        self.labels.iter().position(|l| l == label).unwrap_or_else(|| {
-            self.labels.push(label.into());
+        self.labels.iter().position(|l| l.0 == label).unwrap_or_else(|| {
+            self.labels.push((label.into(), family));
             self.labels.len() - 1
         })
     }
@@ -110,7 +110,17 @@ impl Methods {
         self.index.get(id).copied()
     }
 
-    pub(super) fn into_parts(self) -> (BTreeMap<String, LookView>, Vec<String>, RunColumns) {
-        (self.looks, self.labels, self.runs)
+    /// Looks, labels and runs; labels of one of the `figures` look different from each other.
+    pub(super) fn into_parts(
+        self,
+        figures: &[Vec<usize>],
+    ) -> (BTreeMap<String, LookView>, Vec<String>, RunColumns) {
+        let together = |i: usize, j: usize| figures.iter().any(|f| f.contains(&i) && f.contains(&j));
+        let looks = distinct(&self.labels, together);
+        let view = |((label, family), look): (&(String, Family), Look)| {
+            (label.clone(), LookView::new(look, *family))
+        };
+        let looks = self.labels.iter().zip(looks).map(view).collect();
+        (looks, self.labels.into_iter().map(|l| l.0).collect(), self.runs)
     }
 }

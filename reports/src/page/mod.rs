@@ -16,7 +16,7 @@ use crate::commits::Trend;
 use crate::error::ReportError;
 use crate::figures::{Data, Figure};
 use crate::findings;
-use crate::fronts::{DEADLINES, WANTED};
+use crate::fronts::{DEADLINES, FLOOR, WANTED};
 use crate::plot::{Plot, Scale};
 use crate::provenance::{Machine, Program, SceneHash};
 use crate::record::Purpose;
@@ -59,6 +59,8 @@ struct PageData<'a> {
     deadlines: Vec<(&'static str, &'static str, f64)>,
     /// The error that is asked for at first.
     wanted: f64,
+    /// Errors below it are drawn at it.
+    floor: f64,
     asks: Vec<AskView>,
     plots: Vec<PlotView>,
     pictures: Vec<PictureView<'a>>,
@@ -131,12 +133,14 @@ pub(crate) fn html(
 ) -> Result<String, ReportError> {
     let solved = solved(runs);
     let mut methods = Methods::new(&solved);
-    let asks = asks(&solved).iter().map(|ask| AskView::new(ask, &mut methods)).collect();
+    let asks: Vec<AskView> = asks(&solved).iter().map(|ask| AskView::new(ask, &mut methods)).collect();
     let (plots, pictures) = views(figures, &mut methods);
     let trends = trends.iter().map(|trend| TrendView::new(trend, &mut methods)).collect();
     let maps: Vec<MapView> = set.axes.iter().map(MapView::new).collect();
     let runs_made = runs.len() + clouds.iter().map(|group| group.len() - 1).sum::<usize>();
-    let (looks, labels, runs_shown) = methods.into_parts();
+    let mut drawn: Vec<Vec<usize>> = asks.iter().map(AskView::labels).collect();
+    drawn.extend(plots.iter().map(|plot| plot.curves.iter().map(|c| c.label).collect()));
+    let (looks, labels, runs_shown) = methods.into_parts(&drawn);
     let data = PageData {
         source: &set.provenance.source,
         program: &set.provenance.program,
@@ -150,6 +154,7 @@ pub(crate) fn html(
         runs: runs_shown,
         deadlines: DEADLINES.iter().map(|d| (d.name, d.what, d.seconds)).collect(),
         wanted: WANTED,
+        floor: FLOOR,
         asks,
         plots,
         pictures,

@@ -67,8 +67,10 @@ pub(super) struct MapView<'a> {
     wrong: f64,
     values: Vec<String>,
     methods: Vec<&'a str>,
-    /// `(method, value, verdict, error, why)`; the first two by number.
-    cells: Vec<(usize, usize, &'static str, Option<f64>, String)>,
+    /// What the colours stand for.
+    classes: Vec<String>,
+    /// `(method, value, verdict, error, why, class)`; the first two and the last by number.
+    cells: Vec<(usize, usize, &'static str, Option<f64>, String, usize)>,
 }
 
 impl<'a> MapView<'a> {
@@ -79,7 +81,7 @@ impl<'a> MapView<'a> {
             let column = axis.values.iter().position(|v| *v == trial.value)?;
             let why = if trial.reason.is_empty() { trial.warnings.join(", ") } else { trial.reason.clone() };
             let error = trial.error.filter(|e| e.is_finite());
-            Some((row, column, axis.verdict(trial).name(), error, why))
+            Some((row, column, axis.verdict(trial).name(), error, why, axis.class(trial)))
         };
         MapView {
             case: &axis.case,
@@ -88,6 +90,7 @@ impl<'a> MapView<'a> {
             judge: label(&axis.judge),
             base: short(axis.base),
             wrong: axis.wrong,
+            classes: axis.classes(),
             values: axis.values.iter().map(|v| short(*v)).collect(),
             cells: axis.trials.iter().filter_map(cell).collect(),
             methods,

@@ -1,6 +1,6 @@
 //! Tool force against closure, step by step, beside the reference and its uncertainty.
 
-use crate::history::{band, curve, reference};
+use crate::history::{band, between, curve, reference};
 use crate::record::Family;
 use crate::select::{Run, by_material, labels, series};
 use crate::table::Column::{Number, Words};
@@ -61,30 +61,4 @@ pub(super) fn force_closure(runs: &[Run]) -> Table {
         }
     }
     table
-}
-
-/// A line of points at `x`, straight between them; nothing beyond its ends.
-fn between(line: &[(f64, f64)], x: f64) -> Option<f64> {
-    // Two methods told to close by the same way end a rounding error apart.
-    let near = |a: f64| (a - x).abs() <= 1e-9 * x.abs();
-    if let Some(met) = line.iter().find(|p| near(p.0)) {
-        return Some(met.1);
-    }
-    let ends = line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&x))?;
-    Some(ends[0].1 + (x - ends[0].0) / (ends[1].0 - ends[0].0) * (ends[1].1 - ends[0].1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::between;
-
-    #[test]
-    fn a_line_is_straight_between_its_points_and_ends_with_them() {
-        let line = [(0.0, 0.0), (1.0, 2.0), (2.0, 6.0)];
-        assert_eq!([0.5, 1.0, 1.5].map(|x| between(&line, x)), [Some(1.0), Some(2.0), Some(4.0)]);
-        assert_eq!(
-            (between(&line, 2.0 + 1e-12), between(&line, 2.1), between(&[], 1.0)),
-            (Some(6.0), None, None)
-        );
-    }
 }

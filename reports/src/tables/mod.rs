@@ -18,6 +18,7 @@ mod solvers;
 mod stability;
 mod timing;
 mod transfer;
+mod within;
 
 pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
 pub(crate) use published::{
@@ -33,6 +34,7 @@ use crate::table::Table;
 /// Every table with at least one row, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend]) -> Vec<Table> {
     let tables = [
+        within::within(runs),
         stability::stability(set),
         errors::relative(runs),
         errors::rms(runs),

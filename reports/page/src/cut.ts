@@ -1,0 +1,98 @@
+// The face of a cut: where a plane across an axis meets the cells of a body, with the field there.
+
+/** A cell drawn as tetrahedra: the weights of its nodes at their corners, and which corners make one. */
+interface Pattern { weights: number[][]; tetrahedra: number[][] }
+
+/** Pieces along the edge of a curved cell. */
+const PIECES = 4;
+
+// Corners of a small cube by bits (x, y, z), cut along its diagonal.
+const KUHN = [[0, 1, 3, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 6, 7]];
+const CORNERS = [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
+const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+// A quadratic tetrahedron by its own nodes: one at each corner, four around the line between two opposite edges.
+const TEN = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]];
+
+/** Shape functions of a hexahedron at a place between -1 and 1. */
+function hexahedron(nodes: number, at: number[]): number[] {
+  const corner = (c: number[]) => c.reduce((product, x, k) => product * (1 + x * at[k]), 1 / 8);
+  if (nodes === 8) return CORNERS.map(corner);
+  const middle = ([a, b]: number[]) => [0, 1, 2].reduce((product, k) => {
+    const x = (CORNERS[a][k] + CORNERS[b][k]) / 2;
+    return product * (x ? 1 + x * at[k] : 1 - at[k] * at[k]);
+  }, 1 / 4);
+  return [...CORNERS.map((c) => corner(c) * (c.reduce((sum, x, k) => sum + x * at[k], 0) - 2)), ...EDGES.map(middle)];
+}
+
+function pattern(nodes: number): Pattern {
+  if (nodes === 4 || nodes === 10) {
+    const own = Array.from({ length: nodes }, (_, i) => Array.from({ length: nodes }, (_, k) => Number(i === k)));
+    return { weights: own, tetrahedra: nodes === 4 ? [[0, 1, 2, 3]] : TEN };
+  }
+  const n = nodes === 8 ? 1 : PIECES;
+  const out: Pattern = { weights: [], tetrahedra: [] };
+  const place = (i: number, j: number, k: number) => (k * (n + 1) + j) * (n + 1) + i;
+  for (let k = 0; k <= n; k++)
+    for (let j = 0; j <= n; j++)
+      for (let i = 0; i <= n; i++) {
+        out.weights.push(hexahedron(nodes, [i, j, k].map((x) => (2 * x) / n - 1)));
+        if (i < n && j < n && k < n)
+          for (const four of KUHN) out.tetrahedra.push(four.map((c) => place(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))));
+      }
+  return out;
+}
+
+const patterns = new Map<number, Pattern>();
+
+/** Triangles of a cut, their corners' coordinates in turn, and the field at each corner. */
+export interface Face { points: number[]; values: number[] }
+
+/** The face of a cut at a coordinate along an axis; `places` and `values` are those of the nodes. */
+export function face(
+  cells: { nodes: number; indices: Uint32Array }[], places: Float32Array, values: Float32Array | null, axis: number, at: number,
+): Face {
+  const out: Face = { points: [], values: [] };
+  for (const { nodes, indices } of cells) {
+    if (!patterns.has(nodes)) patterns.set(nodes, pattern(nodes));
+    const { weights, tetrahedra } = patterns.get(nodes)!;
+    for (let start = 0; start < indices.length; start += nodes) {
+      let [low, high] = [Infinity, -Infinity];
+      for (let k = 0; k < nodes; k++) {
+        const x = places[3 * indices[start + k] + axis];
+        [low, high] = [Math.min(low, x), Math.max(high, x)];
+      }
+      // A curved edge may reach a little beyond its nodes.
+      const beyond = nodes > 8 ? 0.15 * (high - low) : 0;
+      if (at < low - beyond || at > high + beyond) continue;
+      const corners = weights.map((row) => {
+        const corner = [0, 0, 0, 0];
+        row.forEach((w, k) => {
+          const node = indices[start + k];
+          if (w) for (let c = 0; c < 4; c++) corner[c] += w * (c < 3 ? places[3 * node + c] : values ? values[node] : NaN);
+        });
+        return corner;
+      });
+      for (const four of tetrahedra) tetrahedron(four.map((k) => corners[k]), axis, at, out);
+    }
+  }
+  return out;
+}
+
+/** Where a plane meets a tetrahedron: nothing, a triangle or two. */
+function tetrahedron(corners: number[][], axis: number, at: number, out: Face) {
+  const below = corners.filter((c) => c[axis] < at);
+  const above = corners.filter((c) => c[axis] >= at);
+  const between = (a: number[], b: number[]) => {
+    const part = (at - a[axis]) / (b[axis] - a[axis]);
+    return a.map((x, k) => x + part * (b[k] - x));
+  };
+  const triangle = (...all: number[][]) => {
+    for (const [x, y, z, value] of all) { out.points.push(x, y, z); out.values.push(value); }
+  };
+  if (below.length === 2) {
+    const [a, b, c, d] = [between(below[0], above[0]), between(below[0], above[1]), between(below[1], above[1]), between(below[1], above[0])];
+    triangle(a, b, c);
+    triangle(a, c, d);
+  } else if (below.length === 1) triangle(...above.map((c) => between(below[0], c)));
+  else if (below.length === 3) triangle(...below.map((c) => between(c, above[0])));
+}

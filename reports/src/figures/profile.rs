@@ -1,0 +1,96 @@
+//! The performance profile: on which part of its cases a method is within an error, in how many times the least time of any method.
+
+use super::axes::Axis;
+use super::grid::{Content, multiples};
+use super::style::{find, styles};
+use super::{Data, Figure};
+use crate::fronts::wanted;
+use crate::plot::{self, Curve, Plot, Scale};
+use crate::select::Run;
+use crate::within::{methods, problems, ratios};
+
+/// Fewest cases that a method has a profile over.
+const CASES: usize = 3;
+
+/// One panel over all cases; none where no method was run on enough of them.
+pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
+    let problems = problems(runs);
+    let all: Vec<Curve> = methods(&problems)
+        .into_iter()
+        .filter_map(|(label, family)| {
+            let (ratios, of) = ratios(&problems, &label);
+            let points = stairs(&ratios, of);
+            (of >= CASES && !ratios.is_empty()).then(|| Curve::new(label, family, points, Vec::new()))
+        })
+        .collect();
+    let last = all.iter().flat_map(|c| &c.points).map(|p| p.0).fold(1.0, f64::max);
+    let mut curves = all;
+    for curve in &mut curves {
+        // Its last share holds to the end of the axis.
+        curve.points.extend(
+            curve.points.last().map(|p| (last, p.1)).filter(|p| p.0 > curve.points[curve.points.len() - 1].0),
+        );
+    }
+    if curves.is_empty() {
+        return None;
+    }
+    let plot = Plot {
+        case: String::new(),
+        title: format!("Within {}", wanted()),
+        x: Scale::log("time over that of the fastest method [1]"),
+        y: Scale::linear("share of its cases [1]"),
+        curves,
+    };
+    let styles = styles(&plot::labels(std::slice::from_ref(&plot)));
+    let content = content(&plot, &styles);
+    let note = format!(
+        "Of methods that were run on {CASES} or more of the cases that any method reaches. Up and to the left is better."
+    );
+    Some(Figure {
+        name: "profile".into(),
+        title: format!("Performance profile: within {}", wanted()),
+        caption: format!(
+            "Share of the cases of each method on which it is within {} of the tool force, or of the displacement where no force is known, in at \
+             most so many times the time of the fastest method there (Dolan and More 2002)",
+            wanted()
+        ),
+        canvas: multiples(vec![content], &styles, &note),
+        data: Data::Plots(vec![plot]),
+    })
+}
+
+/// Both corners of every step up.
+fn stairs(ratios: &[f64], of: usize) -> Vec<(f64, f64)> {
+    let share = |solved: usize| solved as f64 / of as f64;
+    let corners =
+        ratios.iter().enumerate().flat_map(|(k, &ratio)| [(ratio, share(k)), (ratio, share(k + 1))]);
+    corners.collect()
+}
+
+fn content<'a>(plot: &'a Plot, styles: &'a [super::style::Style]) -> Content<'a> {
+    let points = || plot.curves.iter().flat_map(|c| &c.points);
+    Content {
+        title: plot.title.clone(),
+        x: Axis::log(&plot.x.label, points().map(|p| p.0)),
+        y: Axis::linear(&plot.y.label, points().map(|p| p.1).chain([1.0]), true),
+        plot: Box::new(move |canvas, panel| {
+            for curve in &plot.curves {
+                let Some(style) = find(styles, &curve.label) else { continue };
+                let at: Vec<_> = curve.points.iter().map(|p| panel.at(p.0, p.1)).collect();
+                canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
+                // The upper corner of each step.
+                at.iter().skip(1).step_by(2).for_each(|corner| style.mark(canvas, *corner));
+            }
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stairs;
+
+    #[test]
+    fn a_profile_rises_at_each_case_that_is_reached() {
+        assert_eq!(stairs(&[1.0, 3.0], 4), [(1.0, 0.0), (1.0, 0.25), (3.0, 0.25), (3.0, 0.5)]);
+    }
+}

@@ -1,0 +1,40 @@
+//! The least time within an error: a row for each method, a column for each case.
+
+use crate::fronts::wanted;
+use crate::select::{Run, solved};
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+use crate::within::{methods, problems, ratios};
+
+/// Every method on every case where it was run.
+pub(super) fn within(runs: &[Run]) -> Table {
+    let problems = problems(&solved(runs));
+    let heads: Vec<String> = problems.iter().map(|p| format!("{} [s]", p.title)).collect();
+    let mut header = vec![("method", Words), ("reached", Words)];
+    header.extend(heads.iter().map(|head| (head.as_str(), Number)));
+    let within = wanted();
+    let mut table = Table::new(
+        "within",
+        &format!("Cheapest within {within}"),
+        &format!(
+            "Run time of the cheapest run of each method within {within} of the tool force of each case, or of its displacement where no force is \
+             known; a force counts as a third of the displacement's error where that is larger. Reached: on how many of the cases that any \
+             method reaches and that it was run on"
+        ),
+        &header,
+    );
+    for (label, _) in methods(&problems) {
+        let (reached, of) = ratios(&problems, &label);
+        let reached = format!("{} of {of}", reached.len());
+        let mut row = vec![Cell::Text(&label), Cell::Text(&reached)];
+        row.extend(problems.iter().map(|problem| {
+            match problem.methods.iter().find(|m| m.label == label).map(|m| m.seconds) {
+                None => Cell::Digits(None, 3),
+                Some(None) => Cell::Named("not reached", f64::INFINITY),
+                Some(seconds) => Cell::Digits(seconds, 3),
+            }
+        }));
+        table.row(&row);
+    }
+    table
+}
