@@ -170,6 +170,28 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
     assert!(warned(&bent("traction = [\"0 Pa\", \"0 Pa\", \"-3 Pa\"]"), "dead-pressure").is_none());
 }
 
+/// A column 20 times as long as wide, clamped at both ends, buckles at a strain of `pi^2 / 3 (w / L)^2` = 0.8 %; a block does not.
+#[test]
+fn a_straight_path_of_a_column_beyond_its_critical_load_is_told() {
+    let pressed = |height: u32, closure: &str| {
+        run(&format!(
+            r#"title = "A column"
+body = {{ shape = "box", size = ["2 mm", "2 mm", "{height} mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3 }}
+support = [{{ on = "z-min", fix = "xyz" }}, {{ on = "z-max", move = ["0 mm", "0 mm", "-{closure} mm"] }}]
+procedure = {{ kind = "static", steps = 4 }}
+method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = [1, 1, {}] }} }}]
+"#,
+            (height / 2).min(16)
+        ))
+    };
+    let column = pressed(40, "1.6");
+    let (load, key) = warned(&column, "stability-lost").unwrap_or_else(|| panic!("{column:?}"));
+    assert!((0.0..=0.5).contains(&load) && key == "procedure", "{load} {key}");
+    assert!(warned(&pressed(40, "0.2"), "stability-lost").is_none());
+    assert!(warned(&pressed(4, "0.4"), "stability-lost").is_none());
+}
+
 fn cantilever(law: &str, procedure: &str, shear: &str) -> String {
     format!(
         r#"title = "A slender cantilever"

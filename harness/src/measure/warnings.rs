@@ -66,6 +66,7 @@ pub(crate) fn warnings(
     found.extend(last.into_iter().flat_map(few_carriers));
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
     found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
+    found.extend(value(&metric::LIMIT_LOAD).filter(|_| run.solution.is_whole()).map(unstable));
     found.extend(inside(run));
     found.extend(penetration::warnings(run));
     found.extend(dead_pressure::warnings(run)?);
@@ -244,6 +245,15 @@ fn folded(smallest: f64) -> Option<Warning> {
         );
         Warning::new(&warning::FOLDED, smallest, "", message)
     })
+}
+
+fn unstable(load: f64) -> Warning {
+    let message = format!(
+        "the body loses its stability after {:.2} % of the load: beyond that it has several equilibria, and small differences of meshes and \
+         methods decide which one a run follows. Compare up to there (limit-load), or give the body the imperfection that is meant",
+        100.0 * load
+    );
+    Warning::new(&warning::STABILITY_LOST, load, "procedure", message)
 }
 
 fn few_carriers(step: &LoadStep) -> Vec<Warning> {

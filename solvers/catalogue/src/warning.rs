@@ -91,6 +91,9 @@ warnings! {
         "time steps are too long: the estimated error of one step over the largest displacement";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
         "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
+    STABILITY_LOST: "stability-lost", None,
+        "the body loses its stability on a path that goes on: beyond that there are several equilibria, of which the mesh chooses one; \
+         the part of the load at the last stable step";
     ZERO_ENERGY_MODES: "zero-energy-modes", None,
         "modes of vibration strain the body without energy, which its supports do not leave free: the frequency of 0 is the \
          method's own; how many";
