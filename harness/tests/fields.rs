@@ -178,8 +178,7 @@ fn vtk_and_meshio_open_the_files() {
     let python = std::env::var("TISSUEBENCH_PYTHON").unwrap_or_else(|_| "python3".into());
     let has = Command::new(&python).args(["-c", "import vtk, meshio"]).output();
     if !has.is_ok_and(|done| done.status.success()) {
-        eprintln!("skipped: {python} has no vtk and meshio");
-        return;
+        return common::skipped("vtk", &format!("{python} has no vtk and meshio"));
     }
     let dir = TempDir::new().unwrap();
     fields(&dir, UNDER_A_BALL);

@@ -271,9 +271,6 @@ pub struct BaselineArgs {
     /// The results are a part of the study: runs that are not in them are not missing
     #[arg(long)]
     pub part: bool,
-    /// Compare nothing where the baseline is of another kind of processor: beyond where a method breaks, last digits decide
-    #[arg(long)]
-    pub same_processor: bool,
 }
 
 /// Arguments of `compare`.
