@@ -134,6 +134,50 @@ fn every_misbehaviour_has_its_status() {
     }
 }
 
+/// An adapter that is a script in bash, run on the block.
+#[cfg(target_os = "linux")]
+fn bash(dir: &TempDir, script: &str, more: &str) -> Done {
+    let name = "adapters/bash";
+    assert_eq!(tissuebench(dir, &["adapter", "copy", "dummy", name]).code, 0);
+    let file = dir.path().join(name).join("adapter.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let own = text.lines().find(|line| line.starts_with("run = ")).unwrap();
+    let words = "\"{tissuebench}\", \"{problem}\", \"{answer}\"";
+    let other_run = format!("run = [\"bash\", \"-c\", '''{script}''', {words}]");
+    std::fs::write(&file, text.replace(own, &other_run)).unwrap();
+    write(dir, "block.toml", &BLOCK.replace("OTHERS", &other("other", "bash", more)));
+    let done = tissuebench(dir, &["run", "block.toml", "--once", "--method", "other", "--out", "results"]);
+    std::fs::remove_dir_all(dir.path().join(name)).unwrap();
+    done
+}
+
+/// The limit is of all processes together: two with 100 MB each are above 150 MB, and one is not.
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_is_limited_for_all_processes_together() {
+    let dir = tempfile::tempdir().unwrap();
+    let take = "{ head -c 100000000 /dev/zero; sleep 2; } | tail -c 100000000 > /dev/null & ";
+    let done = bash(&dir, &format!("{take}{take}wait"), ", memory_limit = \"150 MB\"");
+    assert_fails(&done, 3, "out of memory: ended with");
+    let done = bash(&dir, &format!("{take}wait"), ", memory_limit = \"150 MB\"");
+    assert_fails(&done, 3, "ended without result.json");
+}
+
+/// Half a second of a processor that a child of a child had counts as the solver's.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_time_of_children_counts() {
+    let dir = tempfile::tempdir().unwrap();
+    let ticks = "read -ra s < /proc/self/stat; [ $((s[13] + s[14])) -lt 50 ]";
+    let spend = format!("(bash -c \"while {ticks}; do :; done\"); ").replace('$', "\\$");
+    let done = bash(&dir, &format!("{spend}\"$0\" solve \"$1\" \"$2\""), "");
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let set = reports::read_run(&dir.path().join("results")).unwrap();
+    let of = |r: &&reports::Record| r.quantity == "cpu-time" && r.phase == "solve" && r.statistic == "median";
+    let seconds = set.records.iter().find(of).expect("seconds of processors").value;
+    assert!((0.49..5.0).contains(&seconds), "{seconds}");
+}
+
 #[test]
 fn wrong_numbers_are_measured_and_children_end() {
     let dir = tempfile::tempdir().unwrap();
@@ -425,7 +469,7 @@ fn installed_solvers_pass_their_check() {
         let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         match output.status.code() {
             Some(0) => assert!(stdout.contains(&format!("{name}: ")), "{stdout}"),
-            Some(3) if stderr.contains("which is not installed") => println!("skipped: {}", stderr.trim()),
+            Some(3) if stderr.contains("which is not installed") => common::skipped(name, stderr.trim()),
             code => panic!("{name} ended with {code:?}:\n{stdout}{stderr}"),
         }
     }

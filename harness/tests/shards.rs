@@ -69,7 +69,9 @@ fn shares_are_joined_to_the_results_of_one_run() {
     let mut together = BTreeSet::new();
     for k in 1..=3 {
         let out = inside(&dir, &format!("share{k}"));
-        let done = tissuebench(&["verify", &study, "--shard", &format!("{k}/3"), "--out", &out]);
+        // The third on another machine, as far as its threads say.
+        let (shard, threads) = (format!("{k}/3"), if k == 3 { "2" } else { "1" });
+        let done = tissuebench(&["verify", &study, "--shard", &shard, "--threads", threads, "--out", &out]);
         assert_eq!(done.code, 0, "{}", done.stderr);
         let runs = runs(&results(&out));
         assert!(!runs.is_empty() && runs.is_disjoint(&together), "each run is in one share");
@@ -87,11 +89,30 @@ fn shares_are_joined_to_the_results_of_one_run() {
     assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");
     let done = merge(&[three, one, two]);
     assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(done.stderr.contains("times are of 2 kinds of machines"), "{}", done.stderr);
     assert!(exact(&results(&out)) == exact(&whole));
     // Its runs are stored like those of one run.
     assert_eq!(tissuebench(&["verify", &study, "--resume", "--out", &out]).code, 0);
     let (again, joined) = (results(&out), results(&out));
     assert!(again.records == joined.records);
+}
+
+/// The costliest run is dealt first: the others fill the other share, whatever their order in the study.
+#[test]
+fn the_costliest_run_has_a_share_of_its_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = cases("pure-bending.toml");
+    let run = |method: &str, level: u32| {
+        format!("[[run]]\nscene = '{scene}'\nmethods = [\"{method}\"]\nlevels = [{level}]\n")
+    };
+    let runs = [run("hex8-mean", 1), run("tet4", 2), run("hex8", 4), run("tet10", 1)].concat();
+    let study = write(&dir, "study.toml", &format!("title = \"Costs\"\n{runs}"));
+    let share = |k: &str| {
+        let listed = tissuebench(&["verify", &study, "--shard", k, "--list"]).stdout;
+        listed.lines().filter(|line| line.contains("pure-bending")).map(String::from).collect::<Vec<_>>()
+    };
+    let (one, two) = (share("1/2"), share("2/2"));
+    assert!(one.len() == 1 && one[0].contains("hex8 level 4") && two.len() == 3, "{one:?} {two:?}");
 }
 
 #[test]

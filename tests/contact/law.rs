@@ -1,8 +1,11 @@
 //! The pointwise law: a friction block of one point, consistent tangents, rigid motions, refusals.
 
 use contact::{
-    Capsule, ContactError, ContactLaw, Cylinder, Plate, RoundedBox, Slip, Sphere, Tool, ToolShape,
+    Capsule, ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Cylinder, Plate,
+    RoundedBox, Slip, Sphere, Tool, ToolShape,
 };
+use geometry::CellKind;
+use integration::block::Block;
 use integration::tools::{SHAPES, differences, kink, rotation, vector};
 use proptest::prelude::*;
 use shape::{Matrix3, Point3, Vector3};
@@ -296,4 +299,32 @@ fn a_tool_can_be_turned_to_any_axis() {
         assert!((turn * Vector3::z() - axis).norm() < 1e-15);
         assert!((turn.determinant() - 1.0).abs() < 1e-15);
     }
+}
+
+/// A block 0.1 mm below a plate rises by 0.2 mm and goes 40 um along: it touches half way, and friction sees half of the 40 um.
+#[test]
+fn friction_begins_at_the_touch() {
+    let block = Block::new(CellKind::Hex8, [1, 1, 1]);
+    let rows = block.surface(&["z-max"]);
+    let surface = ContactSurface::new(&rows);
+    let at = Point3::new(0.02, 0.015, 0.0201);
+    let shape = ToolShape::Plate(Plate);
+    let plate = Tool::new(shape, at, Tool::turned_to(&-Vector3::z()), -Vector3::z(), coulomb()).unwrap();
+    let all = |u: Vector3| vec![u; block.mesh.points().len()];
+    let mut history = ContactHistory::new(&plate, rows.points().len());
+    history.commit_all(None, &surface, &plate, 0.0, &all(Vector3::zeros()));
+    let found = |u: Vector3| {
+        surface.evaluate(&plate, 0.0, &all(u), &history, &mut ContactCounts::default()).unwrap().unwrap()
+    };
+    let u = Vector3::new(4e-5, 0.0, 2e-4);
+    let contacts = found(u);
+    let expected = Vector3::new(-STICK * 2e-5, 0.0, -PENALTY * 1e-4);
+    assert_eq!(contacts.points().len(), rows.points().len());
+    for traction in contacts.tractions() {
+        assert!((traction - expected).norm() < 1e-9 * expected.norm(), "{traction}");
+    }
+    // The touch comes earlier on a way that goes deeper: the tangent has that, too.
+    let slopes = differences(1e-9, |step| found(u + step).tractions()[0]);
+    let miss = (slopes - contacts.stiffness()[0]).norm() / slopes.norm();
+    assert!(miss < 1e-5, "{miss:e} {slopes} {}", contacts.stiffness()[0]);
 }

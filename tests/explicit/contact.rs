@@ -273,6 +273,14 @@ fn what_cannot_go_on_is_named() {
         matches!(error, ExplicitError::LightTool { tool: 0, critical, .. } if critical < 2.0 * dt),
         "{error}"
     );
+    // The tool's own critical step has to be twice the step or more; here it is one and a half.
+    let ExplicitError::LightTool { critical, .. } = error else { panic!("{error}") };
+    let mass = moving.mass * (1.5 * dt / critical).powi(2);
+    let error = ends(MovingTool { mass, ..moving }, dt).unwrap_err();
+    assert!(
+        matches!(error, ExplicitError::LightTool { critical, .. } if critical > dt && critical < 2.0 * dt),
+        "{error}"
+    );
     let error = ends(MovingTool { mass: 0.0, ..moving }, dt).unwrap_err();
     assert!(matches!(error, ExplicitError::BadParameter { what: "mass of a tool driven by force", .. }));
     let error = ends(MovingTool { over: f64::NAN, ..moving }, dt).unwrap_err();

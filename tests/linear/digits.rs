@@ -179,3 +179,21 @@ fn a_free_body_is_refused_however_small_what_moves_it() {
         assert!(end.is_err(), "{end:?}");
     }
 }
+
+/// `A^-1 = I + c v v^T` with `v` across the vector of ones and the first axis: all that the rounds of the estimate look along is 1.
+/// The norm of the inverse is that of a column, `1 + 4 c`.
+#[test]
+fn what_the_rounds_of_the_estimate_do_not_see_its_last_vector_does() {
+    let (c, v) = (1e6, [0.0, 1.0, -1.0, 1.0, -1.0]);
+    let entry = |i: usize, j: usize| f64::from(u8::from(i == j)) - c / (1.0 + 4.0 * c) * v[i] * v[j];
+    let matrix = Symmetric {
+        offsets: (0..=5).map(|j| j * (j + 1) / 2).collect(),
+        rows: (0..5).flat_map(|j| 0..=j).collect(),
+        values: (0..5).flat_map(|j| (0..=j).map(move |i| entry(i, j)).collect::<Vec<_>>()).collect(),
+        multipliers: 5,
+        vertices: (0..=5).collect(),
+    };
+    let exact = matrix.norm() * (1.0 + 4.0 * c);
+    let found = factor(matrix, DENSE_LIMIT).unwrap().condition().unwrap();
+    assert!(found > exact / 3.0 && found < exact * (1.0 + 1e-6), "{found} for {exact}");
+}

@@ -167,9 +167,9 @@ mod tests {
         let data: Vec<u8> =
             [0f32, 10.0, 1.0, 11.0, 2.0, 12.0].into_iter().flat_map(f32::to_le_bytes).collect();
         assert_eq!(file(head, &data).unwrap().values, [0.0, 1.0, 2.0, 10.0, 11.0, 12.0]);
-        let whole: Vec<u8> = (0..6i32).flat_map(i32::to_le_bytes).collect();
+        let whole: Vec<u8> = (-3..3i32).flat_map(i32::to_le_bytes).collect();
         let head = "{'descr': '<i4', 'fortran_order': False, 'shape': (6,), }\n";
-        assert_eq!(file(head, &whole).unwrap().values, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(file(head, &whole).unwrap().values, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0]);
     }
 
     #[test]

@@ -207,6 +207,23 @@ mod tests {
     }
 
     #[test]
+    fn shares_of_two_machines_are_joined_and_of_two_builds_are_not() {
+        let dir = tempfile::tempdir().unwrap();
+        let (program, machine) = (Program::default(), Machine::default());
+        let other_machine = Machine { cpu: "another".into(), ..machine.clone() };
+        let other_program = Program { commit: "another".into(), ..program.clone() };
+        let mut share = Share::default();
+        let mut take = |name: &str, program: &Program, machine: &Machine| {
+            let folder = dir.path().join(name);
+            store(&folder, program, machine).save("key", &TaskResult::default()).unwrap();
+            share.take(&folder, "key").unwrap().map(|_| ())
+        };
+        assert!(take("one", &program, &machine).is_ok() && take("two", &program, &other_machine).is_ok());
+        assert!(take("three", &other_program, &machine).unwrap_err().contains("another build"));
+        assert_eq!(share.machines.len(), 2);
+    }
+
+    #[test]
     fn a_task_is_claimed_once_and_free_again_after_its_holder() {
         let dir = tempfile::tempdir().unwrap();
         let store = store(dir.path(), &Program::default(), &Machine::default());

@@ -318,6 +318,23 @@ mod tests {
     }
 
     #[test]
+    fn an_error_that_grows_from_nothing_is_worse_and_rounding_is_not() {
+        let all = [1e-16, 4e-16, 1e-3].map(|error| results(&error.to_string(), 8, 0.1, error));
+        let found = trends((1..).zip(all).collect());
+        let steps = found[0].points.iter().filter_map(|point| point.step.as_ref());
+        assert_eq!(steps.map(|step| step.worse.len()).collect::<Vec<_>>(), [0, 8]);
+    }
+
+    #[test]
+    fn changed_sources_are_never_the_same() {
+        let mut changed = results("a", 8, 0.1, 1e-3);
+        changed.program.dirty = true;
+        let found = trends((1..).zip([changed.clone(), changed]).collect());
+        let points: Vec<_> = found[0].points.iter().map(|point| (point.name(), point.results)).collect();
+        assert_eq!(points, [("a+".to_string(), 1), ("a+".to_string(), 1)]);
+    }
+
+    #[test]
     fn runs_that_come_and_go_are_counted() {
         let found = trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect());
         let step = found[0].points[1].step.as_ref().unwrap();

@@ -157,6 +157,13 @@ mod tests {
     }
 
     #[test]
+    fn a_small_number_beside_a_large_one_changes_above_rounding() {
+        let at = |small: f64| set(&[("a", "max-z", None, 1.0), ("a", "max-x", None, small)]);
+        let changes = |small: f64| Numbers::of(&at(1e-3), &at(small), 1e-6).changes.len();
+        assert_eq!((changes(1e-3 + 5e-10), changes(1e-3 + 2e-9), changes(1e-3 + 1e-7)), (0, 1, 1));
+    }
+
+    #[test]
     fn what_is_missing_is_named() {
         let before = set(&[("a", "rms", None, 1.0), ("a", "max-z", None, 1.0)]);
         let after = set(&[("a", "rms", None, 1.0), ("b", "rms", None, 1.0)]);

@@ -106,6 +106,30 @@ fn regions_are_numbered_by_whole_numbers_of_any_type() {
     assert_eq!(whole.region_names(), ["region-7", "region-8"]);
 }
 
+/// Arrays of a surface as raw bytes at the end of the file; -1 is no surface, of any signed type.
+#[test]
+fn raw_whole_numbers_keep_their_sign() {
+    for (kind, size) in [("Int8", 1), ("Int16", 2), ("Int32", 4), ("Int64", 8)] {
+        let read = |second: i64| {
+            let array =
+                format!("<DataArray type=\"{kind}\" Name=\"material\" format=\"appended\" offset=\"0\"/>");
+            let text = vtu(&array).replace(
+                "<VTKFile type=\"UnstructuredGrid\">",
+                "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt32\">",
+            );
+            let (head, _) = text.split_once("</VTKFile>").unwrap();
+            let number = |n: i64| n.to_le_bytes()[..size].to_vec();
+            let bytes = [&(2 * size as u32).to_le_bytes()[..], &number(3), &number(second)].concat();
+            let end = &b"</AppendedData></VTKFile>"[..];
+            read(&[head.as_bytes(), b"<AppendedData encoding=\"raw\">_", &bytes, end].concat())
+        };
+        assert_eq!(read(100).unwrap().region_names(), ["region-3", "region-100"], "{kind}");
+        let negative = read(-100);
+        let says = negative.as_ref().map_or_else(Clone::clone, |mesh| format!("{:?}", mesh.region_names()));
+        assert!(says.contains("-100"), "{kind}: {says}");
+    }
+}
+
 #[test]
 fn two_arrays_of_materials_have_to_agree() {
     let both =

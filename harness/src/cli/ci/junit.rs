@@ -153,6 +153,21 @@ mod tests {
         assert_eq!(text.matches("<testcase ").count(), 4);
     }
 
+    /// Of a run that ended with an error only the error counts; a run whose checks could not be asked is skipped.
+    #[test]
+    fn what_is_wrong_counts_once() {
+        let runs = [
+            run("tet4", None, vec![check(Status::Fail, "high"), check(Status::Fail, "low")]),
+            run("tet10", None, vec![check(Status::Fail, "high")]),
+            run("hex8", Some("no support"), vec![check(Status::Fail, "no number")]),
+            run("efg", None, vec![check(Status::NotRun, "no number")]),
+        ];
+        let text = junit("verify.toml", &runs);
+        let counts = "tests=\"4\" failures=\"2\" errors=\"1\" skipped=\"1\"";
+        assert_eq!(text.matches(counts).count(), 2, "{text}");
+        assert_eq!((text.matches("<failure ").count(), text.matches("<skipped ").count()), (4, 1), "{text}");
+    }
+
     #[test]
     fn what_xml_does_not_have_is_left_out() {
         assert_eq!(escaped("a\u{0}\u{1b}[1m\nb"), "a  [1m&#10;b");

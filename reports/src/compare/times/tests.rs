@@ -121,6 +121,23 @@ fn one_phase_of_one_run_that_takes_twice_as_long_is_called() {
     assert_eq!(times.called.iter().filter(named).filter(|r| r.ratio > 1.5).count(), 2, "{:?}", times.called);
 }
 
+/// Twice as long at its shortest, but no longer than the longest before: another program can make that.
+#[test]
+fn repeats_that_overlap_are_not_called() {
+    let with = |seed: u64, times: [f64; 3]| {
+        let mut set = results(seed, same);
+        let of_phase = |r: &&mut Record| r.run == "beam tet10 2" && r.phase == "solve";
+        set.records.iter_mut().filter(of_phase).zip(times).for_each(|(r, time)| r.value = time);
+        set
+    };
+    let called = |after: [f64; 3]| {
+        let times = Times::of(&[(with(1, [0.1, 0.3, 0.3]), with(2, after))]);
+        let of_phase = |r: &&Ratio| r.scope == Scope::Run && r.name.starts_with("beam tet10 level 2 ");
+        times.called.iter().filter(of_phase).filter(|r| r.name.ends_with("solve")).count()
+    };
+    assert_eq!((called([0.2, 0.22, 0.24]), called([0.4, 0.42, 0.44])), (0, 1));
+}
+
 /// Of three repeats of 2 ms one other program can disturb all.
 #[test]
 fn of_one_pair_a_short_phase_is_not_called_by_itself() {
