@@ -92,6 +92,36 @@ fn forces_and_pressures_drive_to_the_closure_that_carries_them() {
     assert!((closures[0] / closures[1] - 1.0).abs() < 1e-6 && closures[0] > 0.5e-3, "{closures:?}");
 }
 
+#[test]
+fn slender_columns_go_on_past_their_critical_load() {
+    // The elastica of a column held at its foot, 60 degrees at its end: P over the critical load pi^2 EI / (4 L^2), and how far the
+    // end goes aside and down over L (Timoshenko and Gere 1961, table 2-4).
+    let (load, aside, down) = (1.1517, 0.5932, 0.2590);
+    for (length, cells) in [(0.4, 25), (0.6, 30)] {
+        let critical = std::f64::consts::PI.powi(2) * 1e6 / (12.0 * 4.0 * length * length) * 1e-4;
+        let down_by = critical * load;
+        let scene = format!(
+            r#"title = "A slender column"
+body = {{ shape = "box", size = ["10 mm", "10 mm", "{length} m"] }}
+material = {{ law = "saint-venant-kirchhoff", young = "1 MPa", poisson = 0.0 }}
+support = [{{ on = "z-min", fix = "xyz" }}]
+load = [{{ on = "z-max", traction = ["{} Pa", "0 Pa", "-{down_by} Pa"] }}]
+procedure = {{ kind = "static", steps = 20, iterations = 40 }}
+output = {{ probes = [["5 mm", "5 mm", "{length} m"]] }}
+method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = [1, 1, {cells}] }} }}]
+"#,
+            1e-4 * down_by
+        );
+        let dir = tempfile::tempdir().unwrap();
+        let done = tissuebench(&["run", &write(&dir, "column.toml", &scene), "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let steps = objects(&done.stdout)[0]["steps"].clone();
+        let end = &steps.as_array().unwrap().last().unwrap()["probes"][0];
+        let [x, z] = [0, 2].map(|axis| end[axis].as_f64().unwrap() / length);
+        assert!((x / aside - 1.0).abs() < 0.01 && (-z / down - 1.0).abs() < 0.02, "{length} m: {x} {z}");
+    }
+}
+
 /// St. Venant-Kirchhoff never carries more than 0.19 E in compression: 0.3 E is out of its reach.
 const BEYOND: &str = r#"title = "More than the law carries"
 body = { shape = "box", size = ["10 mm", "10 mm", "10 mm"] }
