@@ -13,6 +13,7 @@ use contact::{
 };
 use fem::SurfaceRule;
 use geometry::CellKind;
+use geometry::quadrature::Parts;
 use integration::model::*;
 use material::{Law, NeoHookean};
 use shape::{FixedDof, Matrix3, Point3, Vector3};
@@ -39,7 +40,7 @@ impl Pressed {
         let model = Model::block(METHOD, cells);
         let fixed = model.hold(&["z-min"], &[0, 1, 2], |_| Vector3::zeros());
         let boundary = model.mesh.boundary();
-        let parts = vec![parts; boundary.len()];
+        let parts = vec![Parts::Inside(parts); boundary.len()];
         let rows = fem::divided_surface_rows(&model.mesh, &boundary, &SurfaceRule::STANDARD, &parts).unwrap();
         let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.3).unwrap());
         let touch = ContactLaw::frictionless(5e9).unwrap();

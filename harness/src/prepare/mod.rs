@@ -5,6 +5,7 @@ mod loads;
 mod means;
 mod nodal_patch;
 pub(crate) mod reach;
+mod sharp;
 mod support_forces;
 mod support_gap;
 mod touch;

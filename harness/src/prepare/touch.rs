@@ -2,9 +2,11 @@
 
 use cases::scene::ErrorKind;
 use contact::{ContactSurface, Outline, Tool};
+use geometry::quadrature::Parts;
 use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::{PointRows, RowSource, SurfaceRows};
 
+use super::sharp;
 use crate::Failure;
 use crate::error::Key;
 use crate::scenario::PlacedTool;
@@ -16,6 +18,9 @@ const FREE: f64 = 0.95;
 const AIM: f64 = 0.5;
 /// Points that dividing faces may add: as many as a large mesh has.
 const MOST: usize = 500_000;
+
+/// Parts along each edge of a face that has contact points at its corners and on its edges.
+const AT_CORNERS: usize = 4;
 
 /// Points on a part of a face, about.
 const POINTS: usize = 4;
@@ -40,9 +45,11 @@ impl Touch {
         let passed: Vec<Facet> = passed.collect();
         let (outline, triangles) = (source.outline(&passed)?, triangles(mesh, &passed));
         let (mut parts, mut added) = (vec![1; facets.len()], 0usize);
+        let mut sharp = vec![false; facets.len()];
         for (index, set) in tools.iter().enumerate() {
             outside(&surface, index, &set.tool)?;
             let half = set.tool.half_breadth();
+            sharp::mark(mesh, &facets, |facet| passes(mesh, facet, &set.tool), &set.tool, &mut sharp);
             for (k, &facet) in facets.iter().enumerate().filter(|(_, facet)| passes(mesh, **facet, &set.tool))
             {
                 // Points go by facets: those of this one are near there.
@@ -55,8 +62,13 @@ impl Touch {
                 }
             }
         }
-        if parts.iter().any(|parts| *parts > 1) {
-            surface = source.contact_surface(&parts)?;
+        let points = parts.into_iter().zip(sharp).map(|(parts, sharp)| match sharp {
+            true => Parts::Corners(parts.max(AT_CORNERS)),
+            false => Parts::Inside(parts),
+        });
+        let points: Vec<Parts> = points.collect();
+        if points.iter().any(|parts| *parts != Parts::WHOLE) {
+            surface = source.contact_surface(&points)?;
         }
         Ok(Touch { surface, outline, triangles })
     }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // each test file uses its share
 
+pub mod blocks;
+
 use std::path::Path;
 use std::process::Command;
 

@@ -2,7 +2,7 @@
 //! three corners alone, not on the side it is seen from nor on the order of its corners, and that is what makes the
 //! integration constraint hold to rounding.
 
-use geometry::quadrature::{self, Rule};
+use geometry::quadrature::{self, Parts, Rule};
 use geometry::{CellKind, Facet, Mesh};
 use shape::{FluxRows, Point3, SurfaceRows, Vector3};
 
@@ -28,14 +28,13 @@ pub fn surface_rows(
     divided_surface_rows(approximation, background, facets, face_points, &[])
 }
 
-/// As [`surface_rows`], with the points on each of `parts` x `parts` parts of a facet: one number for each, or none for whole
-/// facets.
+/// As [`surface_rows`], with the points on parts of the facets: parts for each, or none for whole facets.
 pub(crate) fn divided_surface_rows(
     approximation: &Approximation,
     background: &Mesh,
     facets: &[Facet],
     face_points: usize,
-    parts: &[usize],
+    parts: &[Parts],
 ) -> Result<(SurfaceRows, MlsInfo), EfgError> {
     let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points, parts)?;
     let (at, info) = approximation.point_rows(&points)?;
@@ -85,12 +84,12 @@ fn facet_points(
     mesh: &Mesh,
     facets: &[Facet],
     face_points: usize,
-    parts: &[usize],
+    parts: &[Parts],
 ) -> Result<FacetPoints, EfgError> {
     let mut out = FacetPoints { points: Vec::new(), weights: Vec::new(), normals: Vec::new() };
     let (mut triangle, mut quadrilateral) = (None, None);
     for (k, &facet) in facets.iter().enumerate() {
-        let divided = parts.get(k).copied().filter(|parts| *parts > 1);
+        let divided = parts.get(k).copied().filter(|parts| *parts != Parts::WHOLE);
         let (cell, kind) = (facet.cell as usize, mesh.kind(facet.cell as usize));
         match kind {
             CellKind::Tet4 => {
@@ -98,7 +97,7 @@ fn facet_points(
                     Some(rule) => rule,
                     None => triangle_rule(face_points)?,
                 };
-                let parts = divided.map(|parts| quadrature::divided_tri(&rule, parts));
+                let parts = divided.map(|parts| parts.tri(&rule));
                 on_triangle(mesh, facet, parts.as_ref().unwrap_or(&rule), &mut out)?;
                 triangle = Some(rule);
             }
@@ -107,7 +106,7 @@ fn facet_points(
                     Some(rule) => rule,
                     None => quadrilateral_rule(face_points)?,
                 };
-                let parts = divided.map(|parts| quadrature::divided_quad(&rule, parts));
+                let parts = divided.map(|parts| parts.quad(&rule));
                 on_quadrilateral(mesh, facet, parts.as_ref().unwrap_or(&rule), &mut out)?;
                 quadrilateral = Some(rule);
             }

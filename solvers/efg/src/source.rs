@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use catalogue::metric::{self, Metric};
+use geometry::quadrature::Parts;
 use geometry::shapes::Shape;
 use geometry::{Cloud, Facet, Mesh};
 use shape::{
@@ -234,7 +235,7 @@ impl RowSource for CloudSource {
 
     /// Smoothed gradients want their own face points: a block of smoothed cells between two plates came out 3 % too wide with
     /// three contact points on faces of one.
-    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError> {
+    fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError> {
         let points = self.integration.smoothed_face_points().unwrap_or(CONTACT_POINTS);
         let facets = self.background.boundary();
         Ok(divided_surface_rows(&self.approximation, &self.background, &facets, points, parts)?.0)

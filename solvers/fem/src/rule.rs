@@ -1,6 +1,6 @@
 //! Which quadrature each kind of cell and face uses, by name or by number of points.
 
-use geometry::quadrature::{self, Rule, TET_RULES, TRI_RULES};
+use geometry::quadrature::{self, Parts, Rule, TET_RULES, TRI_RULES};
 use geometry::{CellKind, FaceKind};
 
 use crate::FemError;
@@ -108,11 +108,10 @@ impl SurfaceRule {
         }
     }
 
-    /// The same on each of `parts` x `parts` parts of a face.
-    pub(crate) fn divided(&self, kind: FaceKind, parts: usize) -> Result<Rule<2>, FemError> {
+    /// The same on parts of a face.
+    pub(crate) fn divided(&self, kind: FaceKind, parts: Parts) -> Result<Rule<2>, FemError> {
         let whole = self.rule(kind)?;
-        let divide = if is_triangle(kind) { quadrature::divided_tri } else { quadrature::divided_quad };
-        Ok(if parts > 1 { divide(&whole, parts) } else { whole })
+        Ok(if is_triangle(kind) { parts.tri(&whole) } else { parts.quad(&whole) })
     }
 
     fn number(&self, kind: FaceKind) -> usize {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use geometry::quadrature::Parts;
 use geometry::{FaceKind, Facet, Mesh};
 use shape::{
     Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
@@ -81,17 +82,17 @@ impl RowSource for Elements {
     /// 3.4 % farther off, and is 0.05 % now.
     fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
         let parts = |facet: &Facet| match self.mesh.kind(facet.cell as usize).face_kind() {
-            FaceKind::Tri6 => 4,
-            _ => 1,
+            FaceKind::Tri6 => Parts::Inside(4),
+            _ => Parts::WHOLE,
         };
-        let parts: Vec<usize> = facets.iter().map(parts).collect();
+        let parts: Vec<Parts> = facets.iter().map(parts).collect();
         Ok(divided_surface_rows(&self.mesh, facets, &SurfaceRule::FINE, &parts)?)
     }
 
     /// 3 points per linear triangle and 2 x 2 per quadrilateral (on a kidney of 1331 nodes between two jaws, more change the
     /// force by 0.1 %), 16 and 5 x 5 per quadratic face (with 3 x 3 on hex20 of 3519 nodes the force was 1.1 % lower where the
     /// jaw's edge crosses the faces).
-    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError> {
+    fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError> {
         let quadratic = self.mesh.uniform_kind().is_some_and(|kind| kind.order() == 2);
         let rule = if quadratic { SurfaceRule::FINE } else { SurfaceRule::STANDARD };
         Ok(divided_surface_rows(&self.mesh, &self.mesh.boundary(), &rule, parts)?)

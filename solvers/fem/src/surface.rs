@@ -1,6 +1,6 @@
 //! Surface quadrature rows of facets: values only for loads, values and gradients for Nitsche's method.
 
-use geometry::quadrature::Rule;
+use geometry::quadrature::{Parts, Rule};
 use geometry::{CellKind, FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows};
 
@@ -17,20 +17,19 @@ pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result
     divided_surface_rows(mesh, facets, rule, &[])
 }
 
-/// As [`surface_rows`], with the rule on each of `parts` x `parts` parts of a facet: one number for each, or none for whole
-/// facets.
+/// As [`surface_rows`], with points on parts of the facets: parts for each, or none for whole facets.
 pub fn divided_surface_rows(
     mesh: &Mesh,
     facets: &[Facet],
     rule: &SurfaceRule,
-    parts: &[usize],
+    parts: &[Parts],
 ) -> Result<SurfaceRows, FemError> {
     let rules = rules(rule)?;
     let mut table = Table::new();
     for (k, &facet) in facets.iter().enumerate() {
         let kind = check(mesh, facet)?.face_kind();
         let divided = match parts.get(k) {
-            Some(&parts) if parts > 1 => Some(rule.divided(kind, parts)?),
+            Some(&parts) if parts != Parts::WHOLE => Some(rule.divided(kind, parts)?),
             _ => None,
         };
         let rule = divided.as_ref().unwrap_or(&rules[kind as usize]);

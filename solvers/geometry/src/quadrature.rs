@@ -8,7 +8,7 @@ mod divided;
 mod gauss;
 mod simplex;
 
-pub use divided::{divided_quad, divided_tri};
+pub use divided::Parts;
 pub use gauss::{gauss_legendre, hex, quad};
 pub use simplex::{TET_RULES, TRI_RULES, tet, tri};
 

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use catalogue::metric::Metric;
+use geometry::quadrature::Parts;
 use geometry::{Facet, Mesh};
 
 use crate::{
@@ -77,9 +78,9 @@ pub trait RowSource: Send + Sync {
         self.surface(facets)
     }
 
-    /// Values on the whole outer boundary, where tools may touch, with the points on each of `parts` x `parts` parts of a facet:
-    /// one number for each facet of the boundary, or none for whole facets.
-    fn contact_surface(&self, parts: &[usize]) -> Result<SurfaceRows, SourceError>;
+    /// Values on the whole outer boundary, where tools may touch, with the points on parts of the facets: parts for each facet of the
+    /// boundary, or none for whole facets.
+    fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError>;
 
     /// Values at the nodes of facets in ascending order, then at the middle of each; they carry no quadrature, but tell where the
     /// boundary is.

@@ -2,8 +2,60 @@
 
 use super::Rule;
 
+/// The equal parts, n along each edge, that a face's points lie on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parts {
+    /// Each part has the points of the rule, which lie inside.
+    Inside(usize),
+    /// Each part has its corners, those of the face and places on its edges among them.
+    Corners(usize),
+}
+
+impl Parts {
+    /// The face as it is.
+    pub const WHOLE: Parts = Parts::Inside(1);
+
+    /// The points on a triangle, of a rule for the whole.
+    pub fn tri(self, rule: &Rule<2>) -> Rule<2> {
+        match self {
+            Parts::Inside(1) => rule.clone(),
+            Parts::Inside(parts) => divided_tri(rule, parts),
+            Parts::Corners(parts) => corners(parts, |i, j| {
+                let on_edges = [i == 0, j == 0, i + j == parts].into_iter().filter(|on| *on).count();
+                // Corners of one, three or six of the triangles, each of which gives a third.
+                let around = [6.0, 3.0, 1.0].get(on_edges).filter(|_| i + j <= parts)?;
+                Some(([i, j].map(|k| k as f64 / parts as f64), around / 6.0))
+            }),
+        }
+    }
+
+    /// The points on a square, of a rule for the whole.
+    pub fn quad(self, rule: &Rule<2>) -> Rule<2> {
+        match self {
+            Parts::Inside(1) => rule.clone(),
+            Parts::Inside(parts) => divided_quad(rule, parts),
+            Parts::Corners(parts) => corners(parts, |i, j| {
+                let around = |k: usize| if k == 0 || k == parts { 1.0 } else { 2.0 };
+                Some(([i, j].map(|k| 2.0 * k as f64 / parts as f64 - 1.0), around(i) * around(j)))
+            }),
+        }
+    }
+}
+
+/// Points on a lattice of `parts` steps each way, of weights over the square of the step.
+fn corners(parts: usize, at: impl Fn(usize, usize) -> Option<([f64; 2], f64)>) -> Rule<2> {
+    let mut out = Rule { points: Vec::new(), weights: Vec::new() };
+    for (j, i) in (0..=parts).flat_map(|j| (0..=parts).map(move |i| (j, i))) {
+        if let Some((point, weight)) = at(i, j) {
+            out.points.push(point);
+            out.weights.push(weight / (parts * parts) as f64);
+        }
+    }
+    out
+}
+
 /// The rule on each of the `parts` x `parts` triangles into which equal steps along its edges divide the triangle.
-pub fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
+fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
     let step = 1.0 / parts as f64;
     let mut out = Rule { points: Vec::new(), weights: Vec::new() };
     for row in 0..parts {
@@ -20,7 +72,7 @@ pub fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
 }
 
 /// The rule on each of the `parts` x `parts` squares into which equal steps along its edges divide the square.
-pub fn divided_quad(rule: &Rule<2>, parts: usize) -> Rule<2> {
+fn divided_quad(rule: &Rule<2>, parts: usize) -> Rule<2> {
     let step = 1.0 / parts as f64;
     let mut out = Rule { points: Vec::new(), weights: Vec::new() };
     for row in 0..parts {
@@ -42,6 +94,22 @@ fn push(rule: &Rule<2>, origin: [f64; 2], scale: f64, out: &mut Rule<2>) {
 mod tests {
     use super::*;
     use crate::quadrature::{quad, tri};
+
+    #[test]
+    fn corners_of_parts_integrate_linear_fields() {
+        for parts in 1..5 {
+            let Rule { points, weights } = Parts::Corners(parts).tri(&tri(3).unwrap());
+            assert_eq!(points.len(), (parts + 1) * (parts + 2) / 2);
+            assert!([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].iter().all(|corner| points.contains(corner)));
+            let sum = |axis: usize| points.iter().zip(&weights).map(|(p, w)| w * p[axis]).sum::<f64>();
+            assert!((weights.iter().sum::<f64>() - 0.5).abs() < 1e-15, "{parts}");
+            assert!((0..2).all(|axis| (sum(axis) - 1.0 / 6.0).abs() < 1e-15), "{parts}");
+            let Rule { points, weights } = Parts::Corners(parts).quad(&quad(2));
+            assert!(points.len() == (parts + 1).pow(2) && points.contains(&[1.0, -1.0]));
+            let sum: f64 = points.iter().zip(&weights).map(|([x, y], w)| w * (1.0 + x) * (1.0 + y)).sum();
+            assert!((sum - 4.0).abs() < 1e-14, "{parts}: {sum}");
+        }
+    }
 
     /// `x^a y^b` over the triangle is `a! b! / (a + b + 2)!`.
     #[test]

@@ -1,0 +1,111 @@
+//! Corners and edges of the body that a tool meets before it comes near the faces around them.
+//!
+//! The contact points of a face lie inside it. A tool that comes down on the tip of a pyramid would stand far in the body before it
+//! touched the first: there the faces have points at their corners and on their edges.
+
+use std::collections::BTreeMap;
+
+use contact::Tool;
+use geometry::{Facet, Mesh, Point3, Vector3};
+
+use crate::discretise::place;
+
+/// Faces whose normals have a larger product are no edge.
+const FLAT: f64 = 0.8;
+/// Slope, seen from the tool, from which the faces around a place fall away from it.
+const SLOPE: f64 = 0.35;
+/// Part of the way to a face's middle at which its slope is taken.
+const INWARD: f64 = 0.25;
+/// Places on an edge, over its length.
+const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+/// Steps to the tool, and what is left of the way, over the size of the body.
+const STEPS: usize = 60;
+const REACHED: f64 = 1e-9;
+
+/// A face with its corners, their middle and its unit normal.
+struct Face {
+    corners: Vec<u32>,
+    middle: Point3,
+    normal: Vector3,
+}
+
+/// Marks the facets around corners and edges that the tool meets first, of those that it passes.
+pub(super) fn mark(
+    mesh: &Mesh,
+    facets: &[Facet],
+    passes: impl Fn(Facet) -> bool,
+    tool: &Tool,
+    sharp: &mut [bool],
+) {
+    let faces: Vec<Face> = facets.iter().map(|&facet| face(mesh, facet)).collect();
+    let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (k, face) in faces.iter().enumerate().filter(|(k, _)| passes(facets[*k])) {
+        face.corners.iter().for_each(|&corner| around.entry(corner).or_default().push(k));
+    }
+    let (low, high) = place::bounds(mesh);
+    let way = |x: &Point3| way(tool, x, (high - low).norm());
+    let first = |x: &Point3, edge: Option<Vector3>, owners: &[usize]| {
+        let bent = |&a: &usize| owners.iter().any(|&b| faces[a].normal.dot(&faces[b].normal) < FLAT);
+        if !owners.iter().any(bent) {
+            return false;
+        }
+        let Some(met) = way(x) else { return false };
+        owners.iter().all(|&k| {
+            let inward = faces[k].middle - x;
+            let inward = INWARD * (inward - edge.map_or(Vector3::zeros(), |edge| edge * edge.dot(&inward)));
+            way(&(x + inward)).is_none_or(|later| later - met > SLOPE * inward.norm())
+        })
+    };
+    let at = |node: u32| mesh.points()[node as usize];
+    for (&corner, owners) in &around {
+        if first(&at(corner), None, owners) {
+            owners.iter().for_each(|&k| sharp[k] = true);
+        }
+        // Each edge at its lower corner.
+        let edges = owners.iter().flat_map(|&k| beside(&faces[k].corners, corner));
+        let mut ends: Vec<u32> = edges.filter(|&end| end > corner).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        for end in ends {
+            let owners: Vec<usize> = owners.iter().copied().filter(|k| around[&end].contains(k)).collect();
+            let (from, along) = (at(corner), at(end) - at(corner));
+            let places = PLACES.map(|part| from + along * part);
+            if places.iter().any(|x| first(x, Some(along.normalize()), &owners)) {
+                owners.iter().for_each(|&k| sharp[k] = true);
+            }
+        }
+    }
+}
+
+fn face(mesh: &Mesh, facet: Facet) -> Face {
+    let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
+    let corners: Vec<u32> = mesh.facet_nodes(facet).take(count).collect();
+    let at: Vec<Vector3> = corners.iter().map(|&node| mesh.points()[node as usize].coords).collect();
+    let normal = (at[2] - at[0]).cross(&(at[count - 1] - at[1]));
+    let middle = Point3::from(at.iter().sum::<Vector3>() / count as f64);
+    Face { corners, middle, normal: normal.try_normalize(0.0).unwrap_or_default() }
+}
+
+/// The two corners of a face on either side of one of them.
+fn beside(corners: &[u32], corner: u32) -> [u32; 2] {
+    let n = corners.len();
+    let k = corners.iter().position(|&c| c == corner).unwrap_or(0);
+    [corners[(k + 1) % n], corners[(k + n - 1) % n]]
+}
+
+/// Closure (m) at which a tool meets a place of a body of that size (m), which stays where it is; `None` where it passes by.
+fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
+    let (mut closure, farthest) = (0.0, tool.gap(0.0, x) + 2.0 * size);
+    for _ in 0..STEPS {
+        let gap = tool.gap(closure, x);
+        if gap <= REACHED * size {
+            return Some(closure);
+        }
+        // Nothing of the tool is nearer than the gap.
+        closure += gap;
+        if closure > farthest {
+            return None;
+        }
+    }
+    None
+}
