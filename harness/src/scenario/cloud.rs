@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cases::scene::{self, ErrorKind};
 use efg::{CloudSource, Functions, Integration};
 use geometry::shapes::Shape;
-use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, files};
+use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, files, locate};
 
 use super::discretise::dilation;
 use super::{Scenario, body, cloud_file, file_body, grading};
@@ -71,6 +71,9 @@ impl Scenario<'_> {
     pub(super) fn cloud(&self, efg: &scene::Efg) -> Result<Discretisation, Failure> {
         let shape = self.shape_for(efg)?;
         let Placed { cloud, background, cells } = self.placed(efg, shape.as_ref())?;
+        if efg.background.is_some() || !matches!(efg.cloud, scene::Cloud::Mesh { .. }) {
+            in_background(&cloud, &background)?;
+        }
         let refine = match (&efg.cloud, &shape) {
             (scene::Cloud::Refined { seed, refine, .. }, Some(shape)) => {
                 Some((*refine, *seed, shape.clone()))
@@ -281,6 +284,36 @@ impl CloudMethod {
         };
         format!("{functions} at {points}{coupled}")
     }
+}
+
+/// Refuses nodes that lie beyond the cells to integrate over by more than their spacing: no cell would hold them. Coarse cells leave
+/// out thin parts of a body.
+fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
+    let key = || Key::Method("background");
+    let found = locate(background, &cloud.points)
+        .map_err(|bad| Failure::input(key(), format!("can't be compared with the nodes: {bad}"), ""))?;
+    let lost = |&node: &usize| found[node].outside > cloud.spacing[node];
+    let lost: Vec<usize> = (0..found.len()).filter(lost).collect();
+    let Some(&farthest) = lost.iter().max_by(|&&a, &&b| found[a].outside.total_cmp(&found[b].outside)) else {
+        return Ok(());
+    };
+    let at = cloud.points[farthest].coords * 1e3;
+    let problem = format!(
+        "has no cells around {} of {} nodes; the farthest, at ({:.4}, {:.4}, {:.4}) mm, is {:.4} mm away from all cells: they leave out \
+         thin parts of the body",
+        lost.len(),
+        found.len(),
+        at.x,
+        at.y,
+        at.z,
+        1e3 * found[farthest].outside
+    );
+    Err(Failure::at(
+        ErrorKind::NotRun,
+        key(),
+        problem,
+        "finer cells: background = { nodes = .. } or { spacing = .. }",
+    ))
 }
 
 /// Where the points of a rule lie.

@@ -1,18 +1,17 @@
 //! The approximation over a cloud: which neighbours, and which fit.
 
+mod fill;
 mod ladder;
 
-use std::cmp::Reverse;
-
 use geometry::Mesh;
-use lanes::{LANES, LanePath, on_path};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
 use crate::buckets::Buckets;
-use crate::coupling::{Coupling, Layer, border_vertices, joined};
+use crate::coupling::{Coupling, Layer, border_vertices};
+use crate::gaps::{Detour, Gaps};
 use crate::info::{Outcome, Tally};
-use crate::max_entropy::{CUT, Neighbours, NoPoint};
+use crate::max_entropy::{CUT, Neighbours};
 use crate::mls::{Ball, Group};
 use crate::row_list::{RowList, sample_step};
 use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
@@ -24,10 +23,6 @@ const CHUNK: usize = 128;
 const SMALL: usize = 16 * CHUNK;
 /// Rows sum to one within this; those of sound supports do within 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
-/// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand on the other side of
-/// a point have given way, and a row of that number sums to one within 1e-10. Elsewhere medians are 10 to 100.
-const MOST_CONDITION: f64 = 1e5;
-
 /// Shape functions over a cloud of nodes, each with a support radius of its own: by moving least squares or of maximum
 /// entropy.
 ///
@@ -47,7 +42,12 @@ pub struct Approximation {
     coupling: Option<Coupling>,
     /// Region of each node of the cloud, where a node counts in its own region alone; empty where it counts everywhere.
     regions: Vec<u16>,
+    /// The gaps of the body that supports would reach across, if there are any.
+    gaps: Option<Gaps>,
 }
+
+/// Makes the cells of the background that points are in, where these are known: only a body with gaps needs them.
+pub(crate) type Cells<'a> = Option<&'a dyn Fn() -> Vec<u32>>;
 
 /// What the shape functions are.
 enum Functions {
@@ -75,6 +75,9 @@ struct Chunk {
     neighbours: Neighbours,
     /// What finite elements have at each point; empty without any.
     layers: Vec<Layer>,
+    /// The cell of each point, and the detour of every neighbour; empty in a body without gaps.
+    cells: Vec<u32>,
+    detours: Vec<Detour>,
 }
 
 impl Approximation {
@@ -129,7 +132,16 @@ impl Approximation {
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&balls);
         let (ellipsoids, regions) = (Vec::new(), Vec::new());
-        Ok(Approximation { nodes, balls, ellipsoids, functions, buckets, coupling: None, regions })
+        Ok(Approximation {
+            nodes,
+            balls,
+            ellipsoids,
+            functions,
+            buckets,
+            coupling: None,
+            regions,
+            gaps: None,
+        })
     }
 
     /// As [`Approximation::new`], with supports that follow the cloud, one per node.
@@ -157,6 +169,13 @@ impl Approximation {
             other => other,
         };
         Ok(Approximation { functions, ..self })
+    }
+
+    /// With supports that reach through the body only, whose cells of tet4 these are: not across its slits, nor from one of its
+    /// pieces to another. Supports of a body that is convex stay as they are. Comes before [`Approximation::coupled`].
+    pub fn within(self, background: &Mesh) -> Result<Approximation, EfgError> {
+        let gaps = Gaps::find(&self, background)?;
+        Ok(Approximation { gaps, ..self })
     }
 
     /// Coupled to linear finite elements at the listed vertices of a mesh of tet4 (ascending), which become nodes after those of the
@@ -191,10 +210,20 @@ impl Approximation {
             return Err(EfgError::TooFewNodes { found: nodes.len(), needed: Basis::Linear.terms() });
         }
         let buckets = Buckets::new(&balls);
+        let gaps = self.gaps.map(|gaps| gaps.of_nodes(kept.iter().map(|&(n, _)| n)));
         let regions =
             if by_region { kept.into_iter().map(|(_, region)| region).collect() } else { Vec::new() };
         nodes.extend(vertices.iter().map(|&v| background.points()[v as usize]));
-        Ok(Approximation { nodes, balls, ellipsoids, buckets, coupling: Some(coupling), regions, ..self })
+        Ok(Approximation {
+            nodes,
+            balls,
+            ellipsoids,
+            buckets,
+            coupling: Some(coupling),
+            regions,
+            gaps,
+            ..self
+        })
     }
 
     /// As [`Approximation::coupled`], with the [vertices of borders](crate::border_vertices) between regions of the background
@@ -217,24 +246,51 @@ impl Approximation {
         self.balls.get(node).map_or(0.0, |ball| ball.radius)
     }
 
+    /// The largest support radius, m.
+    pub(crate) fn widest(&self) -> f64 {
+        self.balls.iter().map(|ball| ball.radius).fold(0.0, f64::max)
+    }
+
     /// Values at points; nodes of a row by ascending index.
     pub fn point_rows(&self, points: &[Point3]) -> Result<(PointRows, MlsInfo), EfgError> {
-        let (rows, _, info) = self.table::<false>(points)?;
-        Ok((PointRows::new(points.to_vec(), rows)?, info))
+        self.point_rows_in(points.to_vec(), None)
+    }
+
+    /// As [`Approximation::point_rows`], of points whose cells of the background may be known.
+    pub(crate) fn point_rows_in(
+        &self,
+        points: Vec<Point3>,
+        cells: Cells,
+    ) -> Result<(PointRows, MlsInfo), EfgError> {
+        let (rows, _, info) = self.table::<false>(&points, cells)?;
+        Ok((PointRows::new(points, rows)?, info))
     }
 
     /// Values and gradients (1/m) at points; nodes of a row by ascending index.
     pub fn grad_rows(&self, points: &[Point3]) -> Result<(GradRows, MlsInfo), EfgError> {
-        self.grad_rows_at(points.to_vec())
+        self.grad_rows_in(points.to_vec(), None)
     }
 
-    /// As [`Approximation::grad_rows`], of points that are kept.
-    pub(crate) fn grad_rows_at(&self, points: Vec<Point3>) -> Result<(GradRows, MlsInfo), EfgError> {
-        let (rows, grads, info) = self.table::<true>(&points)?;
+    /// As [`Approximation::grad_rows`], of points whose cells of the background may be known.
+    pub(crate) fn grad_rows_in(
+        &self,
+        points: Vec<Point3>,
+        cells: Cells,
+    ) -> Result<(GradRows, MlsInfo), EfgError> {
+        let (rows, grads, info) = self.table::<true>(&points, cells)?;
         Ok((GradRows::new(points, rows, grads)?, info))
     }
 
-    fn table<const GRAD: bool>(&self, points: &[Point3]) -> Result<(Rows, Vec<Vector3>, MlsInfo), EfgError> {
+    fn table<const GRAD: bool>(
+        &self,
+        points: &[Point3],
+        cells: Cells,
+    ) -> Result<(Rows, Vec<Vector3>, MlsInfo), EfgError> {
+        let cells = match (&self.gaps, cells) {
+            (None, _) => Vec::new(),
+            (Some(_), Some(known)) => known(),
+            (Some(gaps), None) => gaps.cells(points, &self.nodes)?,
+        };
         // In waves that reuse their buffers: all chunks at once would touch twice the memory, and in a single call
         // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave. One joins the table while
         // the next is filled: joining is a quarter of the work, and one thread's.
@@ -258,8 +314,9 @@ impl Approximation {
             chunks.iter().for_each(|chunk| rows.append(&chunk.rows));
         };
         let (mut next, mut filled) = (Vec::new(), Vec::new());
-        for wave in points.chunks(wave) {
-            let mut fill = || self.fill_wave::<GRAD>(wave, &mut next);
+        for (number, part) in points.chunks(wave).enumerate() {
+            let cells = cells.get(number * wave..).unwrap_or_default();
+            let mut fill = || self.fill_wave::<GRAD>(part, cells, &mut next);
             // Beside the first there is nothing to join; a batch of one chunk then never leaves the calling thread.
             let done = if filled.is_empty() { fill() } else { rayon::join(fill, || join(&mut filled)).0 };
             done?;
@@ -271,14 +328,19 @@ impl Approximation {
         Ok((rows, grads, tally.info()))
     }
 
-    /// Fills one chunk for every so many points, or tells the first that fails.
+    /// Fills one chunk for every so many points, or tells the first that fails. There may be more cells than points, or none.
     fn fill_wave<const GRAD: bool>(
         &self,
         points: &[Point3],
+        cells: &[u32],
         chunks: &mut Vec<Chunk>,
     ) -> Result<(), EfgError> {
         let parts = points.par_chunks(CHUNK);
         chunks.resize_with(parts.len(), Chunk::default);
+        for (chunk, cells) in chunks.iter_mut().zip(cells.chunks(CHUNK)) {
+            chunk.cells.clear();
+            chunk.cells.extend_from_slice(cells);
+        }
         if let [chunk] = &mut chunks[..] {
             return self.fill::<GRAD>(points, chunk);
         }
@@ -333,160 +395,16 @@ impl Approximation {
 
     /// Distance of a point from a node over what the node's support reaches in its direction.
     fn relative(&self, node: u32, x: &Point3) -> f64 {
-        let e = self.nodes[node as usize] - x;
+        self.length(node, &(self.nodes[node as usize] - x))
+    }
+
+    /// Length of an offset (m) over what the support of a node reaches in its direction.
+    pub(crate) fn length(&self, node: u32, e: &Vector3) -> f64 {
         match self.ellipsoids.get(node as usize) {
-            Some(ellipsoid) => ellipsoid.square(e.into()).max(0.0).sqrt(),
+            Some(ellipsoid) => ellipsoid.square((*e).into()).max(0.0).sqrt(),
             None => e.norm() / self.balls[node as usize].radius,
         }
     }
-
-    /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off on
-    /// purpose: it would change last bits from machine to machine.
-    fn fill<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        let Some(coupling) = &self.coupling else { return self.fill_own::<GRAD>(points, chunk) };
-        coupling.layers(points, &mut chunk.layers)?;
-        self.fill_own::<GRAD>(points, chunk)?;
-        let Chunk { rows, outcomes, layers, .. } = chunk;
-        *rows = joined::<GRAD>(rows, layers, self.balls.len());
-        outcomes.iter_mut().enumerate().for_each(|(q, of)| of.neighbours = rows.range(q).len() as u32);
-        Ok(())
-    }
-
-    /// Rows of the cloud's own functions.
-    fn fill_own<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        match GRAD {
-            true => fill_gradients(LanePath::best(), self, points, chunk),
-            false => fill_values(LanePath::best(), self, points, chunk),
-        }
-    }
-
-    #[inline(always)]
-    fn fill_plain<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
-        let Chunk { rows, outcomes, order, group, neighbours, layers } = chunk;
-        rows.offsets.truncate(1);
-        rows.nodes.clear();
-        let full = |q: usize| layers.get(q).is_some_and(Layer::is_full);
-        for (q, x) in points.iter().enumerate() {
-            if full(q) {
-                rows.close();
-            } else {
-                self.find(x, layers.get(q), rows);
-            }
-        }
-        // What is left there is written over.
-        rows.values.resize(rows.nodes.len(), 0.0);
-        rows.grads.resize(if GRAD { rows.nodes.len() } else { 0 }, Vector3::zeros());
-        let fit = match &self.functions {
-            Functions::MovingLeastSquares(fit) => *fit,
-            Functions::MaximumEntropy(beta) => {
-                return self.fill_by_entropy::<GRAD>(points, beta, rows, outcomes, neighbours);
-            }
-        };
-        order.clear();
-        order.extend(0..points.len() as u32);
-        order.sort_unstable_by_key(|&q| (Reverse(rows.range(q as usize).len()), q));
-        outcomes.clear();
-        outcomes.resize(points.len(), Outcome::default());
-        let mut failed = false;
-        for together in order.chunks(LANES) {
-            let nodes = |q: usize| &rows.nodes[rows.range(q)];
-            let together_with = together.iter().map(|&q| (&points[q as usize], nodes(q as usize)));
-            group.load(together_with, &self.balls, &self.ellipsoids, 1.0);
-            for (lane, &q) in together.iter().enumerate() {
-                layers.get(q as usize).into_iter().for_each(|layer| group.aim(lane, &layer.moments));
-            }
-            let conditions = self.fit::<GRAD>(&fit, group);
-            for (lane, &q) in together.iter().enumerate() {
-                let range = rows.range(q as usize);
-                let outcome = &mut outcomes[q as usize];
-                outcome.neighbours = range.len() as u32;
-                // An infinite condition marks a point for the ladder.
-                let condition = match layers.get(q as usize) {
-                    Some(layer) if layer.is_full() => Some(1.0),
-                    Some(layer) if !layer.is_empty() => conditions[lane].filter(|&c| c < MOST_CONDITION),
-                    _ => conditions[lane],
-                };
-                outcome.condition = condition.unwrap_or(f64::INFINITY);
-                failed |= condition.is_none();
-                let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };
-                group.store(lane, &mut rows.values[range], grads);
-            }
-        }
-        if failed { self.mend::<GRAD>(points, &fit, chunk) } else { Ok(()) }
-    }
-
-    /// Rows of maximum entropy, one point after another.
-    #[inline(always)]
-    fn fill_by_entropy<const GRAD: bool>(
-        &self,
-        points: &[Point3],
-        beta: &[f64],
-        rows: &mut RowList,
-        outcomes: &mut Vec<Outcome>,
-        neighbours: &mut Neighbours,
-    ) -> Result<(), EfgError> {
-        outcomes.clear();
-        for (q, x) in points.iter().enumerate() {
-            let range = rows.range(q);
-            let nodes = &rows.nodes[range.clone()];
-            let near = nodes.iter().map(|&n| (Vector3::from(self.balls[n as usize].at), beta[n as usize]));
-            let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };
-            let condition = neighbours
-                .evaluate::<GRAD>(x, near, &mut rows.values[range.clone()], grads)
-                .map_err(|NoPoint { iterations, gap }| EfgError::OutsideHull {
-                    point: *x,
-                    found: range.len(),
-                    gap,
-                    iterations,
-                })?;
-            outcomes.push(Outcome { neighbours: range.len() as u32, condition, ..Outcome::default() });
-        }
-        Ok(())
-    }
-
-    /// Condition numbers of a group's fits, `None` where a fit failed or cannot be.
-    #[inline(always)]
-    fn fit<const GRAD: bool>(&self, fit: &LeastSquares, group: &mut Group) -> [Option<f64>; LANES] {
-        let &LeastSquares { kernel, basis, mu } = fit;
-        let mut conditions = match basis {
-            Basis::Linear => group.fit::<4, 10, 10, GRAD>(kernel, mu),
-            Basis::Quadratic => group.fit::<10, 35, 20, GRAD>(kernel, mu),
-        };
-        for (lane, condition) in conditions.iter_mut().enumerate() {
-            if mu == 0.0 && group.count(lane) < basis.terms() {
-                *condition = None;
-            }
-        }
-        conditions
-    }
-}
-
-on_path! {
-    /// Values of the own functions at some points, in wide registers.
-    fn fill_values(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_values_in
-}
-
-#[inline(always)]
-fn fill_values_in<const FMA: bool>(
-    of: &Approximation,
-    points: &[Point3],
-    chunk: &mut Chunk,
-) -> Result<(), EfgError> {
-    of.fill_plain::<false>(points, chunk)
-}
-
-on_path! {
-    /// Values and gradients of the own functions at some points, in wide registers.
-    fn fill_gradients(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_gradients_in
-}
-
-#[inline(always)]
-fn fill_gradients_in<const FMA: bool>(
-    of: &Approximation,
-    points: &[Point3],
-    chunk: &mut Chunk,
-) -> Result<(), EfgError> {
-    of.fill_plain::<true>(points, chunk)
 }
 
 #[cfg(test)]

@@ -54,12 +54,12 @@ impl CellRows {
         Ok((rows, info))
     }
 
-    /// The rows of the cells, and values at points beside them.
+    /// The rows of the cells, and values at points beside them, each with a cell that it is in.
     pub fn with<const P: usize>(
         approximation: &Approximation,
         mesh: &Mesh,
         face_points: usize,
-        beside: &[Point3],
+        beside: &[(Point3, u32)],
     ) -> Result<(CellRows, Beside, MlsInfo), EfgError> {
         let rule = triangle_rule(face_points)?;
         let count = mesh.cell_count();
@@ -84,8 +84,13 @@ impl CellRows {
         }
         let first_inner = points.len();
         points.extend_from_slice(&inner);
-        points.extend_from_slice(beside);
-        let (at, info) = approximation.point_rows(&points)?;
+        points.extend(beside.iter().map(|(at, _)| *at));
+        let cells = || {
+            let of_faces = faces.cell.iter().flat_map(|&cell| std::iter::repeat_n(cell, rule.len()));
+            let of_cells = (0..P * count).map(|q| (q / P) as u32);
+            of_faces.chain(of_cells).chain(beside.iter().map(|(_, cell)| *cell)).collect()
+        };
+        let (at, info) = approximation.point_rows_in(points, Some(&cells))?;
         let areas: Vec<Vector3> = faces.corners.iter().map(|&c| vector_area(mesh, c)).collect();
         let parts = Parts::<P> { mesh, faces, areas, rule, at, first_inner, volumes, basis: volume_basis() };
 
@@ -287,6 +292,8 @@ fn solve_moments<const P: usize>(moments: [Vector3; P]) -> [Vector3; P] {
 struct Faces {
     /// Canonical corners of each face.
     corners: Vec<[u32; 3]>,
+    /// A cell of each.
+    cell: Vec<u32>,
     /// The four faces of each cell, and -1 where the cell's outward normal opposes the canonical one.
     of_cell: Vec<[(u32, f64); 4]>,
 }
@@ -302,13 +309,15 @@ fn faces(mesh: &Mesh) -> Faces {
     }
     all.sort_unstable();
     let mut corners: Vec<[u32; 3]> = Vec::with_capacity(all.len() / 2);
+    let mut first = Vec::with_capacity(all.len() / 2);
     let mut of_cell = vec![[(0, 1.0); 4]; mesh.cell_count()];
     for (triangle, cell, face, turned) in all {
         if corners.last() != Some(&triangle) {
             corners.push(triangle);
+            first.push(cell);
         }
         let sign = if turned { -1.0 } else { 1.0 };
         of_cell[cell as usize][face as usize] = (corners.len() as u32 - 1, sign);
     }
-    Faces { corners, of_cell }
+    Faces { corners, cell: first, of_cell }
 }

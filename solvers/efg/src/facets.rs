@@ -11,6 +11,7 @@ use crate::{Approximation, EfgError, MlsInfo};
 /// Points, weights (m^2) and outward unit normals on a list of facets.
 struct FacetPoints {
     points: Vec<Point3>,
+    cells: Vec<u32>,
     weights: Vec<f64>,
     normals: Vec<Vector3>,
 }
@@ -36,8 +37,9 @@ pub(crate) fn divided_surface_rows(
     face_points: usize,
     parts: &[Parts],
 ) -> Result<(SurfaceRows, MlsInfo), EfgError> {
-    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points, parts)?;
-    let (at, info) = approximation.point_rows(&points)?;
+    let FacetPoints { points, cells, weights, normals } =
+        facet_points(background, facets, face_points, parts)?;
+    let (at, info) = approximation.point_rows_in(points, Some(&|| cells.clone()))?;
     Ok((SurfaceRows::new(at, weights, normals)?, info))
 }
 
@@ -49,8 +51,8 @@ pub fn flux_rows(
     facets: &[Facet],
     face_points: usize,
 ) -> Result<(FluxRows, MlsInfo), EfgError> {
-    let FacetPoints { points, weights, normals } = facet_points(background, facets, face_points, &[])?;
-    let (at, info) = approximation.grad_rows(&points)?;
+    let FacetPoints { points, cells, weights, normals } = facet_points(background, facets, face_points, &[])?;
+    let (at, info) = approximation.grad_rows_in(points, Some(&|| cells.clone()))?;
     Ok((FluxRows::new(at, weights, normals)?, info))
 }
 
@@ -86,7 +88,8 @@ fn facet_points(
     face_points: usize,
     parts: &[Parts],
 ) -> Result<FacetPoints, EfgError> {
-    let mut out = FacetPoints { points: Vec::new(), weights: Vec::new(), normals: Vec::new() };
+    let mut out =
+        FacetPoints { points: Vec::new(), cells: Vec::new(), weights: Vec::new(), normals: Vec::new() };
     let (mut triangle, mut quadrilateral) = (None, None);
     for (k, &facet) in facets.iter().enumerate() {
         let divided = parts.get(k).copied().filter(|parts| *parts != Parts::WHOLE);
@@ -112,6 +115,7 @@ fn facet_points(
             }
             _ => return Err(EfgError::CellKind { cell, kind, what: "a boundary", allowed: "tet4 and hex8" }),
         }
+        out.cells.resize(out.points.len(), facet.cell);
     }
     Ok(out)
 }

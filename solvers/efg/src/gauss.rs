@@ -36,7 +36,9 @@ pub fn gauss_rows(
             None => unreachable!("the rule was set above"),
         }
     }
-    let (at, info) = approximation.grad_rows_at(points)?;
+    let cells =
+        || (0..points_per_cell * background.cell_count()).map(|q| (q / points_per_cell) as u32).collect();
+    let (at, info) = approximation.grad_rows_in(points, Some(&cells))?;
     Ok((VolumeRows::new(at, weights)?, info))
 }
 

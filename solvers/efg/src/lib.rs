@@ -26,6 +26,7 @@ mod ellipsoid;
 mod error;
 mod exp;
 mod facets;
+mod gaps;
 mod gauss;
 mod grid;
 mod info;

@@ -15,6 +15,7 @@ use lanes::{LANES, Lanes};
 use shape::{Matrix3, Point3, Vector3};
 
 use crate::exp::exp;
+use crate::gaps::Detour;
 
 /// Nodes count up to the distance at which `exp(-beta r^2)` has fallen to this: 2.8 spacings with `gamma = 1.8`.
 pub(crate) const CUT: f64 = 1e-6;
@@ -49,6 +50,8 @@ pub(crate) struct Neighbours {
     weight: Vec<Lanes>,
     /// Unit of length, m.
     scale: f64,
+    /// Nodes with a detour: which, its length (m) and how that grows with the point.
+    bent: Vec<(usize, f64, Vector3)>,
 }
 
 /// `lambda` and the moments there.
@@ -73,6 +76,13 @@ pub(crate) struct NoPoint {
 }
 
 impl Neighbours {
+    /// Sets the detours of the nodes of the next point, over their support radii: none, or one for each.
+    pub(crate) fn bend(&mut self, detours: &[Detour], radius: impl Fn(usize) -> f64) {
+        self.bent.clear();
+        let bent = detours.iter().enumerate().filter(|(_, detour)| detour.longer > 0.0);
+        self.bent.extend(bent.map(|(k, detour)| (k, detour.longer * radius(k), detour.slope * radius(k))));
+    }
+
     /// Values, and gradients (1/m) if `grads` has room, of the nodes at `x`; the condition of `J` in the 1-norm.
     #[inline(always)]
     pub(crate) fn evaluate<const GRAD: bool>(
@@ -126,11 +136,26 @@ impl Neighbours {
             self.beta[g][l] = beta / mean;
             self.prior[g][l] = -self.beta[g][l] * r.norm_squared();
         }
+        for &(k, longer, _) in &self.bent {
+            let (g, l) = (k / LANES, k % LANES);
+            let distance = self.distance(k) + longer * inverse;
+            self.prior[g][l] = -self.beta[g][l] * distance * distance;
+        }
         for k in self.count..groups * LANES {
             let (g, l) = (k / LANES, k % LANES);
             (0..3).for_each(|axis| self.offset[g][axis][l] = 0.0);
             (self.beta[g][l], self.prior[g][l]) = (0.0, NEVER);
         }
+    }
+
+    /// Straight distance of a node, in units of `scale`.
+    fn distance(&self, node: usize) -> f64 {
+        self.vector(node).norm()
+    }
+
+    /// `r_a` of a node, in units of `scale`.
+    fn vector(&self, node: usize) -> Vector3 {
+        Vector3::from_fn(|axis, _| self.offset[node / LANES][axis][node % LANES])
     }
 
     /// Weights and moments at `lambda`.
@@ -222,7 +247,7 @@ impl Neighbours {
     /// no more.
     #[cold]
     fn face(&mut self, state: &State, span: &Matrix3) -> Option<Matrix3> {
-        let offset = |k: usize| Vector3::from_fn(|axis, _| self.offset[k / LANES][axis][k % LANES]);
+        let offset = |k: usize| self.vector(k);
         let weight = |k: usize| self.weight[k / LANES][k % LANES];
         let mut spread = Matrix3::zeros();
         for k in (0..self.count).filter(|&k| weight(k) >= SIGNIFICANT) {
@@ -253,6 +278,10 @@ impl Neighbours {
     #[inline(always)]
     fn gradients(&self, state: &State, grads: &mut [Vector3]) -> Option<()> {
         let inverse = state.spread.try_inverse()?;
+        if !self.bent.is_empty() {
+            self.bent_gradients(state, &inverse, grads);
+            return Some(());
+        }
         // sum w beta r and sum w beta r r^T.
         let mut sums = [[0.0; LANES]; 9];
         for (([x, y, z], weight), beta) in self.offset.iter().zip(&self.weight).zip(&self.beta) {
@@ -288,6 +317,25 @@ impl Neighbours {
             }
         }
         Some(())
+    }
+
+    /// Gradients where `s_a` is not along `r_a`: with a detour `d_a` it is `-2 beta_a (|r_a| + d_a) grad (|r_a| + d_a)`.
+    #[cold]
+    fn bent_gradients(&self, state: &State, inverse: &Matrix3, grads: &mut [Vector3]) {
+        let mut slopes: Vec<Vector3> =
+            (0..self.count).map(|k| self.vector(k) * (-2.0 * self.beta[k / LANES][k % LANES])).collect();
+        for &(k, longer, slope) in &self.bent {
+            let distance = self.distance(k) + longer / self.scale;
+            let along = self.vector(k).try_normalize(0.0).unwrap_or_default() + slope;
+            slopes[k] = along * (-2.0 * self.beta[k / LANES][k % LANES] * distance);
+        }
+        let part = |k: usize| self.weight[k / LANES][k % LANES] / state.total;
+        let mean: Vector3 = (0..self.count).map(|k| slopes[k] * part(k)).sum();
+        let change: Matrix3 = (0..self.count).map(|k| self.vector(k) * slopes[k].transpose() * part(k)).sum();
+        let turned = (Matrix3::identity() + change).transpose() * inverse;
+        for (k, grad) in grads.iter_mut().enumerate() {
+            *grad = (slopes[k] - mean - turned * self.vector(k)) * (part(k) / self.scale);
+        }
     }
 }
 

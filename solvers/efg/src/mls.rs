@@ -5,6 +5,8 @@
 //! with `A_,a c0` summed as a vector. Source: Belytschko, Krongauz, Organ, Fleming and Krysl (1996), in local coordinates.
 //! Shape functions that leave a part of their [`Moments`] to others have these for `e0` and their slopes for `e_a/s`.
 
+mod distances;
+
 use lanes::{LANES, Lanes};
 use shape::{Point3, Vector3};
 
@@ -146,39 +148,6 @@ impl Group {
         self.stretched = !ellipsoids.is_empty();
         if self.stretched {
             self.stretch(points, ellipsoids, enlargement);
-        }
-    }
-
-    /// Relative distances and their directions in the metrics of ellipsoids.
-    #[inline(always)]
-    fn stretch<'a>(
-        &mut self,
-        points: impl Iterator<Item = (&'a Point3, &'a [u32])>,
-        ellipsoids: &[Ellipsoid],
-        enlargement: f64,
-    ) {
-        let longest = self.longest();
-        self.normal.resize(longest, [[0.0; LANES]; 3]);
-        let shrunk = 1.0 / (enlargement * enlargement);
-        for (l, (_, nodes)) in points.enumerate() {
-            for ((&node, offset), normal) in nodes.iter().zip(&self.offset).zip(&mut self.normal) {
-                let along = ellipsoids[node as usize].normal([offset[0][l], offset[1][l], offset[2][l]]);
-                for axis in 0..3 {
-                    normal[axis][l] = along[axis] * shrunk;
-                }
-            }
-        }
-        for k in 0..longest {
-            let ([x, y, z], [nx, ny, nz]) = (self.offset[k], self.normal[k]);
-            let (mut inverse, mut q) = ([0.0; LANES], [0.0; LANES]);
-            for l in 0..LANES {
-                let square = nx[l] * x[l] + ny[l] * y[l] + nz[l] * z[l];
-                let root = square.max(0.0).sqrt();
-                let at_node = !(root > 0.0);
-                inverse[l] = if at_node { 0.0 } else { 1.0 } / if at_node { 1.0 } else { root };
-                q[l] = root.min(1.0);
-            }
-            (self.chain[k], self.relative[k]) = (inverse, q);
         }
     }
 

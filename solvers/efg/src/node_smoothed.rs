@@ -44,7 +44,9 @@ pub fn node_smoothed_rows(
     check(stabilisation)?;
     let domains = Domains::new(background);
     let at: Vec<Point3> = domains.vertices.iter().map(|&v| background.points()[v as usize]).collect();
-    let (cells, beside, info) = CellRows::with::<1>(approximation, background, face_points, &at)?;
+    let placed: Vec<(Point3, u32)> =
+        at.iter().enumerate().map(|(domain, at)| (*at, domains.cells(domain)[0])).collect();
+    let (cells, beside, info) = CellRows::with::<1>(approximation, background, face_points, &placed)?;
     let nodes = approximation.nodes().len();
     let sums = || Sum::<1>::new(nodes);
     let work = |sum: &mut Sum<1>, chunk: &[usize]| {

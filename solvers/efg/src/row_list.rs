@@ -64,6 +64,13 @@ impl RowList {
         self.offsets.push(self.nodes.len());
     }
 
+    /// Ends the last row at an entry before its end.
+    pub fn shorten_last(&mut self, end: usize) {
+        self.nodes.truncate(end);
+        self.offsets.pop();
+        self.close();
+    }
+
     /// Entries of a table of so many rows by those of these few, and two standard errors of that where lengths scatter by a
     /// third: 0.5 % of a large table.
     pub fn expected_entries(&self, rows: usize) -> usize {

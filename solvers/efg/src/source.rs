@@ -145,7 +145,7 @@ impl CloudSource {
         by_region: bool,
         integration: Integration,
     ) -> Result<CloudSource, EfgError> {
-        let mut approximation = functions.over(cloud, followed)?;
+        let mut approximation = functions.over(cloud, followed)?.within(&background)?;
         if let Some(vertices) = coupled {
             approximation = match by_region {
                 true => approximation.coupled_by_region(&background, vertices)?,
@@ -249,9 +249,17 @@ impl RowSource for CloudSource {
             let count = nodes.len() as f64;
             Point3::from(nodes.map(|node| at(node).coords / count).sum::<Vector3>())
         };
-        let vertices = mesh.facet_group_nodes(facets).into_iter().map(at);
-        let points: Vec<Point3> = vertices.chain(facets.iter().map(middle)).collect();
-        Ok(self.approximation.point_rows(&points)?.0)
+        let nodes = mesh.facet_group_nodes(facets);
+        let points: Vec<Point3> =
+            nodes.iter().map(|&node| at(node)).chain(facets.iter().map(middle)).collect();
+        let cells = || {
+            let mut of_nodes = vec![0; mesh.points().len()];
+            facets
+                .iter()
+                .for_each(|&f| mesh.facet_nodes(f).for_each(|node| of_nodes[node as usize] = f.cell));
+            nodes.iter().map(|&node| of_nodes[node as usize]).chain(facets.iter().map(|f| f.cell)).collect()
+        };
+        Ok(self.approximation.point_rows_in(points, Some(&cells))?.0)
     }
 
     /// Those of the smoothing, so that the integration constraint holds to rounding.

@@ -4,6 +4,7 @@ use shape::{Point3, Vector3};
 
 use super::{Approximation, Chunk, LeastSquares};
 use crate::coupling::Layer;
+use crate::gaps::Detour;
 use crate::info::Outcome;
 use crate::mls::{Group, Moments};
 use crate::row_list::RowList;
@@ -39,8 +40,8 @@ impl Approximation {
                 rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
                 rows.close();
             } else {
-                let layer = chunk.layers.get(q);
-                chunk.outcomes[q] = self.climb::<GRAD>(x, layer, fit, &mut chunk.group, rows)?;
+                let (layer, cell) = (chunk.layers.get(q), chunk.cells.get(q).copied());
+                chunk.outcomes[q] = self.climb::<GRAD>(x, layer, cell, fit, &mut chunk.group, rows)?;
             }
         }
         Ok(())
@@ -51,20 +52,31 @@ impl Approximation {
         &self,
         x: &Point3,
         layer: Option<&Layer>,
+        cell: Option<u32>,
         asked: &LeastSquares,
         group: &mut Group,
         rows: &mut RowList,
     ) -> Result<Outcome, EfgError> {
         let needed = asked.basis.terms();
         let counts = |node: &u32| layer.is_none_or(|layer| self.counts_in(*node, layer));
-        let enlargement = self.enlargement(x, 2 * needed, counts);
-        let covers = |&node: &u32| match self.ellipsoids.is_empty() {
+        let detours = self.detours(x, cell);
+        let relative = |node: u32| match detours.get(node as usize) {
+            Some(longer) => self.relative(node, x) + longer / self.radius(node as usize),
+            None => self.relative(node, x),
+        };
+        let enlargement = enlargement(relative, (0..self.balls.len() as u32).filter(counts), 2 * needed);
+        let covers = |&node: &u32| match self.ellipsoids.is_empty() && detours.is_empty() {
             true => self.balls[node as usize].covers(x, enlargement),
-            false => self.relative(node, x) < enlargement,
+            false => relative(node) < enlargement,
         };
         let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(counts).filter(covers).collect();
         let found = nodes.len();
         group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
+        if !detours.is_empty() {
+            let longer = |&node: &u32| detours[node as usize] / (self.radius(node as usize) * enlargement);
+            let detour = |node| Detour { longer: longer(node), slope: Vector3::zeros() };
+            group.bend(std::iter::once(&nodes.iter().map(detour).collect::<Vec<_>>()[..]));
+        }
         let moments = layer.map_or(Moments::COMPLETE, |layer| layer.moments);
         group.aim(0, &moments);
         let rungs: &[(Basis, f64)] = match asked.basis {
@@ -122,12 +134,18 @@ impl Approximation {
         left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
     }
 
-    /// Factor on all support radii by which `count` nodes of those that count (all, if there are fewer) cover `x` comfortably.
-    fn enlargement(&self, x: &Point3, count: usize, counts: impl Fn(&u32) -> bool) -> f64 {
-        let all = (0..self.balls.len() as u32).filter(counts);
-        let mut ratios: Vec<f64> = all.map(|node| self.relative(node, x)).collect();
-        let Some(last) = count.min(ratios.len()).checked_sub(1) else { return 1.0 };
-        let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
-        (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)
+    /// What the ways through the body from a point to all nodes are longer by than the straight ones, m; empty in a body without gaps.
+    fn detours(&self, x: &Point3, cell: Option<u32>) -> Vec<f64> {
+        let (Some(gaps), Some(cell)) = (&self.gaps, cell) else { return Vec::new() };
+        gaps.detours(x, cell, &self.nodes[..self.balls.len()], MOST_ENLARGEMENT * self.widest())
     }
+}
+
+/// Factor on all support radii by which `count` of the nodes (all, if there are fewer) cover a point comfortably, from their
+/// relative distances.
+fn enlargement(relative: impl Fn(u32) -> f64, nodes: impl Iterator<Item = u32>, count: usize) -> f64 {
+    let mut ratios: Vec<f64> = nodes.map(relative).collect();
+    let Some(last) = count.min(ratios.len()).checked_sub(1) else { return 1.0 };
+    let (_, &mut ratio, _) = ratios.select_nth_unstable_by(last, f64::total_cmp);
+    (BEYOND_NEIGHBOUR * ratio).clamp(1.0, MOST_ENLARGEMENT)
 }

@@ -1,3 +1,6 @@
+use lanes::LanePath;
+
+use super::fill::fill_gradients;
 use super::*;
 
 #[test]

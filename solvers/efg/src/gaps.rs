@@ -1,0 +1,266 @@
+//! Gaps in the body that supports would reach across: slits, folds, and pieces that lie close together.
+//!
+//! Where two faces of the boundary that face each other lie within a support, the distance of a point from the node is taken through
+//! the body: the straight distance and a detour. At a vertex `v` of the background the detour is
+//!
+//! ```text
+//! d_I(v) = 2 max(0, g_I(v) - 1.5 |v - x_I|)
+//! ```
+//!
+//! with the shortest way `g_I` along the edges of the cells, and within a cell it is linear between its corners. Weights stay
+//! continuous in the body, all points of a cell are cut by the same four numbers, and the shape functions reproduce what their basis
+//! does. A way that is less than half as long again as the straight one is no detour: edges zigzag, and around blunt inner corners
+//! supports stay as they are. Distances are relative to the support. A body without such faces is not touched.
+//! The detour around the end of a slit is that of the diffraction method: Organ, Fleming, Terry and Belytschko (1996),
+//! Computational Mechanics 18, 225-235.
+
+mod ways;
+
+use geometry::{CellKind, Locator, Mesh};
+use rayon::prelude::*;
+use shape::{Point3, Vector3};
+
+use crate::row_list::RowList;
+use crate::{Approximation, EfgError};
+use ways::{Graph, Ways};
+
+/// Faces whose normals have a smaller product than this face each other: at an inner corner of less than 84 degrees.
+const TURNED: f64 = -0.1;
+/// Faces overlap by rounding, over their size, where pieces touch.
+const TOUCHING: f64 = 1e-6;
+/// Ways that are longer than the straight one by less than this factor are no detour.
+const STRAIGHT: f64 = 1.5;
+/// Factor on what a way is longer by.
+const STEEP: f64 = 2.0;
+/// Relative length up to which ways are searched: what lies beyond is cut off even next to the node.
+const FARTHEST: f64 = STRAIGHT + 1.0 / STEEP;
+
+/// Which nodes have detours to which cells.
+pub(crate) struct Gaps {
+    locator: Locator,
+    graph: Graph,
+    /// Corners of each cell.
+    corners: Vec<[u32; 4]>,
+    /// The cell that each node is in or closest to.
+    homes: Vec<u32>,
+    /// The detours to cell `c`: `cuts[offsets[c]..offsets[c + 1]]`, by ascending node.
+    offsets: Vec<usize>,
+    cuts: Vec<Cut>,
+}
+
+/// Relative detours of a node to the corners of a cell.
+#[derive(Clone, Copy)]
+struct Cut {
+    node: u32,
+    at: [f64; 4],
+}
+
+/// What the way from a node to a point is longer by than the straight one, over the node's support radius, and its gradient (1/m).
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Detour {
+    pub(crate) longer: f64,
+    pub(crate) slope: Vector3,
+}
+
+/// A face of the boundary: its centre and outward unit normal, and the ball around it, m.
+struct Face {
+    centre: Point3,
+    normal: Vector3,
+    radius: f64,
+}
+
+impl Gaps {
+    /// The gaps that supports reach across, if there are any.
+    pub fn find(approximation: &Approximation, background: &Mesh) -> Result<Option<Gaps>, EfgError> {
+        let faces = facing(background, 2.0 * approximation.widest());
+        if faces.is_empty() {
+            return Ok(None);
+        }
+        let nodes = approximation.nodes();
+        let locator = Locator::new(background)?;
+        let corners: Vec<[u32; 4]> =
+            (0..background.cell_count()).map(|cell| [0, 1, 2, 3].map(|k| background.cell(cell)[k])).collect();
+        let homes = if nodes == background.points() {
+            // By number: where pieces touch, another's cells have the place, too.
+            let mut homes = vec![0; nodes.len()];
+            for (cell, corners) in corners.iter().enumerate() {
+                corners.iter().for_each(|&vertex| homes[vertex as usize] = cell as u32);
+            }
+            homes
+        } else {
+            locator.locate(nodes)?.into_iter().map(|place| place.cell).collect()
+        };
+        let graph = Graph::new(background, &corners);
+        let mut gaps = Gaps { locator, graph, corners, homes, offsets: Vec::new(), cuts: Vec::new() };
+        gaps.fill(approximation, &faces);
+        Ok(Some(gaps))
+    }
+
+    fn fill(&mut self, approximation: &Approximation, faces: &[Face]) {
+        let all: Vec<u32> = (0..approximation.nodes().len() as u32).collect();
+        let crossed = |&&node: &&u32| {
+            let (x, reach) = (approximation.nodes()[node as usize], approximation.radius(node as usize));
+            let near = |face: &&Face| (face.centre - x).norm() < reach + face.radius;
+            let near: Vec<&Face> = faces.iter().filter(near).collect();
+            near.iter().enumerate().any(|(k, a)| near[..k].iter().any(|b| a.faces(b)))
+        };
+        let balls: Vec<(Point3, f64)> = (0..self.corners.len()).map(|cell| self.ball(cell)).collect();
+        let cuts_of = |ways: &mut Ways, &node: &u32| {
+            let x = approximation.nodes()[node as usize];
+            let reach = approximation.radius(node as usize);
+            let length = |a: &Point3, b: &Point3| approximation.length(node, &(a - b));
+            ways.walk(&self.graph, &x, &self.corners[self.homes[node as usize] as usize], length, FARTHEST);
+            let detour = |vertex: u32| {
+                let straight = length(self.graph.place(vertex), &x);
+                STEEP * (ways.to(vertex).min(FARTHEST) - STRAIGHT * straight).max(0.0)
+            };
+            let touched =
+                balls.iter().enumerate().filter(|(_, (at, radius))| (at - x).norm() < reach + radius);
+            let cut =
+                touched.map(|(cell, _)| (cell as u32, Cut { node, at: self.corners[cell].map(detour) }));
+            cut.filter(|(_, cut)| cut.at.iter().any(|&d| d > 0.0)).collect::<Vec<_>>()
+        };
+        let vertices = self.graph.vertices();
+        let crossing: Vec<u32> = all.par_iter().filter(crossed).copied().collect();
+        let found: Vec<Vec<(u32, Cut)>> =
+            crossing.par_iter().map_init(|| Ways::new(vertices), cuts_of).collect();
+        self.offsets = vec![0; self.corners.len() + 1];
+        let mut found: Vec<(u32, Cut)> = found.into_iter().flatten().collect();
+        found.sort_by_key(|(cell, cut)| (*cell, cut.node));
+        found.iter().for_each(|(cell, _)| self.offsets[*cell as usize + 1] += 1);
+        (0..self.corners.len()).for_each(|cell| self.offsets[cell + 1] += self.offsets[cell]);
+        self.cuts = found.into_iter().map(|(_, cut)| cut).collect();
+    }
+
+    /// The ball about the mean of a cell's corners that holds it.
+    fn ball(&self, cell: usize) -> (Point3, f64) {
+        let corners = self.locator.corners(cell);
+        let centre = Point3::from(corners.iter().map(|p| p.coords / 4.0).sum::<Vector3>());
+        (centre, corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max))
+    }
+
+    /// The gaps for some of the nodes, by ascending number.
+    pub fn of_nodes(mut self, kept: impl Iterator<Item = usize>) -> Gaps {
+        let mut number = vec![u32::MAX; self.homes.len()];
+        let homes = kept.enumerate().map(|(new, old)| {
+            number[old] = new as u32;
+            self.homes[old]
+        });
+        self.homes = homes.collect();
+        let (mut offsets, mut cuts) = (vec![0], Vec::new());
+        for range in self.offsets.windows(2) {
+            let renumbered = self.cuts[range[0]..range[1]]
+                .iter()
+                .map(|cut| Cut { node: number[cut.node as usize], ..*cut });
+            cuts.extend(renumbered.filter(|cut| cut.node != u32::MAX));
+            offsets.push(cuts.len());
+        }
+        Gaps { offsets, cuts, ..self }
+    }
+
+    /// The cell of each point; that of a node is its own.
+    pub fn cells(&self, points: &[Point3], nodes: &[Point3]) -> Result<Vec<u32>, EfgError> {
+        if points == &nodes[..self.homes.len()] {
+            return Ok(self.homes.clone());
+        }
+        Ok(self.locator.locate(points)?.into_iter().map(|place| place.cell).collect())
+    }
+
+    /// Appends the detour of every node of the last row, and drops the nodes that then lie beyond their supports. `relative` is the
+    /// straight distance over the support radius.
+    pub fn cut(
+        &self,
+        x: &Point3,
+        cell: u32,
+        relative: impl Fn(u32) -> f64,
+        rows: &mut RowList,
+        detours: &mut Vec<Detour>,
+    ) {
+        let first = detours.len();
+        let cuts = &self.cuts[self.offsets[cell as usize]..self.offsets[cell as usize + 1]];
+        if cuts.is_empty() {
+            detours.resize(rows.nodes.len(), Detour::default());
+            return;
+        }
+        let (values, slopes) =
+            (self.locator.barycentric(cell as usize, x), self.locator.slopes(cell as usize));
+        let mut n = first;
+        for k in first..rows.nodes.len() {
+            let node = rows.nodes[k];
+            let detour = match cuts.binary_search_by_key(&node, |cut| cut.node) {
+                Ok(found) => {
+                    let at = cuts[found].at;
+                    let longer = (0..4).map(|c| values[c] * at[c]).sum::<f64>().max(0.0);
+                    Detour { longer, slope: (0..4).map(|c| slopes[c] * at[c]).sum() }
+                }
+                Err(_) => Detour::default(),
+            };
+            if detour.longer == 0.0 || relative(node) + detour.longer < 1.0 {
+                rows.nodes[n] = node;
+                detours.push(detour);
+                n += 1;
+            }
+        }
+        rows.shorten_last(n);
+    }
+
+    /// What the ways from a point in a cell to all nodes are longer by than the straight ones, m: infinite beyond `farthest`.
+    pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
+        let mut ways = Ways::new(self.graph.vertices());
+        let length = |a: &Point3, b: &Point3| (a - b).norm();
+        ways.walk(&self.graph, x, &self.corners[cell as usize], length, STRAIGHT * farthest);
+        let detour = |(node, &home): (&Point3, &u32)| {
+            let straight = (node - x).norm();
+            let over = |&vertex: &u32| ways.to(vertex) + (self.graph.place(vertex) - node).norm();
+            let way = if home == cell {
+                straight
+            } else {
+                self.corners[home as usize].iter().map(over).fold(f64::INFINITY, f64::min)
+            };
+            if way <= STRAIGHT * straight { 0.0 } else { way - straight }
+        };
+        nodes.iter().zip(&self.homes).map(detour).collect()
+    }
+}
+
+impl Face {
+    /// Whether the two faces face each other, with nothing or a gap between them.
+    fn faces(&self, other: &Face) -> bool {
+        let (apart, slack) = (other.centre - self.centre, TOUCHING * (self.radius + other.radius));
+        self.normal.dot(&other.normal) < TURNED
+            && apart.dot(&self.normal) > -slack
+            && apart.dot(&other.normal) < slack
+    }
+}
+
+/// The faces of the boundary that face another one nearer than `reach` (m).
+fn facing(mesh: &Mesh, reach: f64) -> Vec<Face> {
+    let face = |facet| {
+        let corners: Vec<Point3> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();
+        let centre = Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3>() / corners.len() as f64);
+        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize();
+        let radius = corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+        Face { centre, normal, radius }
+    };
+    let tets = mesh.uniform_kind() == Some(CellKind::Tet4);
+    let mut faces: Vec<Face> =
+        if tets { mesh.boundary().into_iter().map(face).collect() } else { Vec::new() };
+    let spread = |axis: usize| {
+        let ends =
+            |fold: fn(f64, f64) -> f64, from| faces.iter().map(|face| face.centre[axis]).fold(from, fold);
+        ends(f64::max, f64::NEG_INFINITY) - ends(f64::min, f64::INFINITY)
+    };
+    let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
+    faces.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+    let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
+    let faced = |(k, a): (usize, &Face)| {
+        let near = |b: &&Face| b.centre[axis] - a.centre[axis] <= reach + 2.0 * largest;
+        let close = |b: &Face| (b.centre - a.centre).norm() <= reach + a.radius + b.radius;
+        let later = faces[k + 1..].iter().take_while(near).enumerate();
+        later.filter(|(_, b)| a.faces(b) && close(b)).map(|(j, _)| [k, k + 1 + j]).collect::<Vec<_>>()
+    };
+    let pairs: Vec<Vec<[usize; 2]>> = faces.par_iter().enumerate().map(faced).collect();
+    let mut of_gaps = vec![false; faces.len()];
+    pairs.into_iter().flatten().flatten().for_each(|k| of_gaps[k] = true);
+    faces.into_iter().zip(of_gaps).filter_map(|(face, of_gap)| of_gap.then_some(face)).collect()
+}
