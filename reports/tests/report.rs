@@ -392,7 +392,7 @@ fn a_history_is_drawn_over_commits_with_what_moved() {
     for (commit, times) in [("a1b2c3d4e5f6a7", 1.0), ("fedcba98765432", 2.0)] {
         study.provenance.program.commit = commit.into();
         study.records.iter_mut().filter(|r| r.quantity == "l2").for_each(|r| r.value *= times);
-        add(&history, &study).unwrap();
+        add(&history, &study, "").unwrap();
     }
     let (shown, files) = page(Some(&history)).unwrap();
     let commits = shown["trends"][0]["commits"].as_array().unwrap();
