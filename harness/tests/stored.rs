@@ -75,6 +75,11 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
     }
     let [first, last] = [metric(0, "tool-force"), metric(1, "tool-force")];
     assert!((metric(0, "tool-force-error") - (first / last - 1.0).abs()).abs() < 1e-12);
+    // The record is known as well as its two solutions agree.
+    let own = |name: &str| objects[0]["reference"]["band"][name].as_f64().unwrap();
+    for name in ["tool-force-error", "relative-rms"] {
+        assert!((own(name) - metric(0, name)).abs() < 1e-12, "{name}: {}", objects[0]["reference"]);
+    }
     // The record: forces of both steps, the band from one method's to the other's.
     let file: Value =
         serde_json::from_str(&std::fs::read_to_string(inside(&dir, "reference.json")).unwrap()).unwrap();
@@ -84,6 +89,17 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
     let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
     let rows = records.lines().filter(|l| l.contains("reference,hex20-mixed") && l.contains("tool-force,N"));
     assert_eq!(rows.count(), 6, "two steps with value, low and high");
+}
+
+#[test]
+fn a_record_of_one_solution_does_not_know_its_error() {
+    let dir = tempfile::tempdir().unwrap();
+    made(&dir, &bonded_without(&["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\"", "\"hex20-mixed\""]), &inside(&dir, "reference.json"));
+    let text = format!("{}reference = {{ record = \"reference.json\" }}\n", bonded());
+    let done = tissuebench(&["run", &write(&dir, "s.toml", &text), "--once"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let line = done.stdout.lines().find(|line| line.starts_with("compared with hex8 with ")).unwrap();
+    assert!(line.contains("whose own error is unknown: it is of hex8 alone"), "{line}");
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! Every question asked of every case, by each kind of time: the runs that answer, over time and error.
 
 use crate::figures::chosen;
-use crate::fronts::{Clock, QUESTIONS, Question, WANTED, counts, point};
-use crate::history::{band, curve, reference};
+use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
 use crate::record::{Family, Purpose};
 use crate::select::{Run, Series, kernels, labels, series};
 
@@ -30,6 +29,7 @@ pub(crate) struct Line {
 /// One question to one case.
 pub(crate) struct Ask {
     pub(crate) case: String,
+    pub(crate) poisson: f64,
     pub(crate) title: String,
     pub(crate) question: &'static Question,
     pub(crate) clock: Clock,
@@ -38,7 +38,7 @@ pub(crate) struct Ask {
     pub(crate) lines: Vec<Line>,
     /// The method that the others are compared with: having no error, it has no place on the axes.
     pub(crate) reference: Option<String>,
-    /// Relative half width of the reference's own uncertainty, where it is known.
+    /// The reference's own error, relative, where it is known.
     pub(crate) band: Option<f64>,
     /// Whether it compares kernels alone.
     pub(crate) kernels: bool,
@@ -61,12 +61,13 @@ pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
                 let (usual, every) = kernels(&series(group));
                 let ask = |title: String, lines: Vec<Line>, kernels: bool| Ask {
                     case: group[0].is.case.clone(),
+                    poisson: group[0].is.poisson,
                     title,
                     question,
                     clock,
                     error,
                     reference: reference_of(group).filter(|_| !kernels),
-                    band: uncertainty(group, error),
+                    band: group.iter().filter_map(|run| band(run, error)).reduce(f64::max),
                     kernels,
                     rank: rank(&group[0], question, clock, &lines),
                     lines,
@@ -115,7 +116,7 @@ fn line(
         let (seconds, off) = point(run, error, clock)?;
         let spread =
             run.time("total", "spread").filter(|s| clock == Clock::First && *s > 0.0).map(|s| 0.5 * s);
-        let counts = counts(run, question, displacement, off);
+        let counts = counts(run, question, displacement, (error, off));
         Some(Timed { run: run.is.run.clone(), seconds, spread, error: off, counts })
     };
     Line { label, family: series.is().family, runs: series.runs.iter().filter_map(timed).collect() }
@@ -124,14 +125,6 @@ fn line(
 fn reference_of(group: &[Run]) -> Option<String> {
     let reference = group.iter().find(|r| r.is_reference())?;
     Some(format!("{} with {} nodes", reference.name(), reference.is.nodes))
-}
-
-/// How well a recorded reference knows the last force itself.
-fn uncertainty(group: &[Run], error: &str) -> Option<f64> {
-    let run = reference(group).filter(|_| error == "tool-force-error")?;
-    let (_, force) = curve(run, "closure", "tool-force").pop()?;
-    let (_, low, high) = band(run, "closure", "tool-force").pop()?;
-    Some(0.5 * (high - low) / force.abs()).filter(|b| b.is_finite() && *b > 0.0)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::error::ReportError;
 use crate::findings::Matched;
-use crate::fronts::{Clock, point};
+use crate::fronts::{Clock, judged};
 use crate::record::{Family, Record};
 use crate::run_set::RunSet;
 use crate::select::{Run, runs, solved};
@@ -173,7 +173,7 @@ impl Relation {
     fn holds(&self, runs: &[&Run], left: &Side, right: &Side) -> (Option<Held>, String) {
         let points = |side: &Side| -> Vec<(f64, f64)> {
             let own = runs.iter().filter(|run| side.takes(run.is));
-            own.filter_map(|run| point(run, &self.error, Clock::First)).collect()
+            own.filter_map(|run| judged(run, &self.error, Clock::First)).collect()
         };
         let (left, right) = (points(left), points(right));
         let bound = self.at_most * (1.0 + self.tolerance);

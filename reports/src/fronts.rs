@@ -60,8 +60,17 @@ fn is_peak_prescribed(runs: &[Run]) -> bool {
 
 /// A plain value, of several tools (`NAME`, `NAME-2`, ...) the largest.
 fn worst(run: &Run, quantity: &str) -> Option<f64> {
-    let first = run.value(quantity)?;
-    Some((2..).map_while(|tool| run.value(&format!("{quantity}-{tool}"))).fold(first, f64::max))
+    largest(quantity, |name| run.value(name))
+}
+
+/// The reference's own error in a quantity, of several tools the largest.
+pub(crate) fn band(run: &Run, quantity: &str) -> Option<f64> {
+    largest(quantity, |name| run.band(name))
+}
+
+fn largest(quantity: &str, of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
+    let first = of(quantity)?;
+    Some((2..).map_while(|tool| of(&format!("{quantity}-{tool}"))).fold(first, f64::max))
 }
 
 /// Two kinds of time.
@@ -143,6 +152,11 @@ pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64
     (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
 }
 
+/// The same with an error that counts no less than the reference's own.
+pub(crate) fn judged(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
+    point(run, quantity, clock).map(|(time, error)| (time, error.max(band(run, quantity).unwrap_or(0.0))))
+}
+
 /// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
 const CHANCE: f64 = 3.0;
 
@@ -154,11 +168,19 @@ pub(crate) fn wanted() -> String {
     format!("{} %", significant(100.0 * WANTED, 1))
 }
 
-/// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger.
-/// Within what is asked for, a run answers if this is.
-pub(crate) fn counts(run: &Run, question: &Question, displacement: Option<&str>, error: f64) -> f64 {
-    let companion = displacement.filter(|_| question.scalar).and_then(|quantity| worst(run, quantity));
-    error.max(companion.unwrap_or(0.0) / CHANCE)
+/// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger,
+/// and neither counts for less than the reference's own. Within what is asked for, a run answers if this is.
+pub(crate) fn counts(
+    run: &Run,
+    question: &Question,
+    displacement: Option<&str>,
+    (quantity, error): (&str, f64),
+) -> f64 {
+    let known = |quantity: &str, error: f64| error.max(band(run, quantity).unwrap_or(0.0));
+    let companion = displacement
+        .filter(|_| question.scalar)
+        .and_then(|quantity| Some(known(quantity, worst(run, quantity)?)));
+    known(quantity, error).max(companion.unwrap_or(0.0) / CHANCE)
 }
 
 /// Fewest runs that have a front: of one or two it would say nothing that their markers do not.
@@ -284,7 +306,7 @@ pub(crate) mod tests {
     fn a_number_right_by_chance_counts_as_a_third_of_the_error_of_its_field() {
         let counted = |question: &Question, errors: &[(&str, f64)], error: f64| {
             let records = run(("efg", Family::Efg), 83, 1.0, errors);
-            counts(&runs(&records)[0], question, Some("relative-rms"), error)
+            counts(&runs(&records)[0], question, Some("relative-rms"), ("tool-force-error", error))
         };
         let force = &QUESTIONS[2];
         assert_eq!(counted(force, &[("relative-rms", 0.69)], 0.001), 0.69 / 3.0);
@@ -292,6 +314,27 @@ pub(crate) mod tests {
         assert_eq!(counted(force, &[], 0.01), 0.01);
         // A field is no single number.
         assert_eq!(counted(&QUESTIONS[1], &[("relative-rms", 0.69)], 0.01), 0.01);
+    }
+
+    #[test]
+    fn nothing_counts_for_less_than_the_error_of_the_reference() {
+        let of = ("jaws", "tet4", Family::Fem);
+        let mut records = run(("tet4", Family::Fem), 100, 1.0, &[("relative-rms", 0.127)]);
+        let counted = |records: &[Record], question: &Question, error: (&str, f64)| {
+            counts(&runs(records)[0], question, Some("relative-rms"), error)
+        };
+        let displacement = ("relative-rms", 0.127);
+        assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.127);
+        records.push(record(of, 100, ("relative-rms", ":band"), 0.9));
+        assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.9);
+        // Nor is a force right whose displacement nobody knows.
+        assert_eq!(counted(&records, &QUESTIONS[2], ("tool-force-error", 0.01)), 0.9 / 3.0);
+        records.extend([
+            record(of, 100, ("tool-force-error", ":band"), 0.2),
+            record(of, 100, ("tool-force-error-2", ":band"), 0.4),
+        ]);
+        assert_eq!(counted(&records, &QUESTIONS[2], ("tool-force-error", 0.01)), 0.4);
+        assert_eq!(judged(&runs(&records)[0], "relative-rms", Clock::First), Some((1.0, 0.9)));
     }
 
     #[test]

@@ -42,6 +42,7 @@ mod provenance;
 mod published;
 mod quantity;
 mod record;
+mod reference;
 mod render;
 mod run_set;
 mod select;
@@ -59,6 +60,7 @@ pub use order::{Order, observed as observed_order};
 pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
 pub use record::{Family, Purpose, Record};
+pub use reference::Reference;
 pub use render::{Rendered, render, render_over_commits};
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,

@@ -5,6 +5,8 @@
 //! - A row is found by `run`, `quantity`, `phase`, `step`, `mode`, `statistic` and `repeat`: no two rows agree in all of them.
 //! - Errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`, `tool-force-error`) and plain outcomes
 //!   (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and no phase, step or mode.
+//! - Relative errors against a method or a stored record have beside them `statistic = "band"`, the reference's own error, where it is known:
+//!   what is below it says nothing.
 //! - Times (`time`: by the clock on the wall; `cpu-time`: of all threads of the process, of other runs too where several go on at
 //!   once) have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` a static path's
 //!   `solve-to-limit`). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from 1), and so have their `median`, and of
@@ -158,8 +160,8 @@ pub struct Record {
     pub step: Option<u64>,
     /// Mode of vibration, 1 the lowest.
     pub mode: Option<u64>,
-    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9` (quantiles), or the ends `low` and
-    /// `high` of an uncertainty.
+    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9` (quantiles), the ends `low` and
+    /// `high` of an uncertainty, or `band`: the reference's own error in that quantity.
     pub statistic: String,
     /// Which repeat of a timing, from 1.
     pub repeat: Option<u64>,

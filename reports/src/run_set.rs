@@ -8,6 +8,7 @@ use crate::body::Body;
 use crate::error::ReportError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
+use crate::reference::Reference;
 
 /// How a check came out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -225,6 +226,8 @@ pub struct RunSet {
     pub failures: Vec<Failure>,
     /// What is to be said against the numbers.
     pub warnings: Vec<Warning>,
+    /// What the numbers are compared with.
+    pub references: Vec<Reference>,
     /// How methods fare along axes.
     pub axes: Vec<Axis>,
 }

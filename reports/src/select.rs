@@ -19,6 +19,11 @@ impl<'a> Run<'a> {
         self.plain(quantity).map(|r| r.value)
     }
 
+    /// The reference's own error in a quantity, where it is known: a smaller error of the run says nothing.
+    pub(crate) fn band(&self, quantity: &str) -> Option<f64> {
+        self.records.iter().find(|r| r.quantity == quantity && r.statistic == "band").map(|r| r.value)
+    }
+
     /// Everything recorded.
     pub(crate) fn records(&self) -> &[&'a Record] {
         &self.records

@@ -7,6 +7,7 @@
 //! | `checks.csv`, `checks.json` | every bound and how it came out |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers, or those of a part of their load |
 //! | `warnings.json` | what is to be said against the numbers of runs |
+//! | `references.json` | what runs are compared with, and how far that is off itself |
 //! | `axes.json` | how methods fare along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements, and the surface at some states for a view in three dimensions; with tools also these and a section with its pressure |
 //! | `incomplete.json` | there from the beginning of a study or run until all of the above is written |
@@ -84,6 +85,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_json(&dir.join("plans.json"), &run.plans)?;
     write_json(&dir.join("failures.json"), &run.failures)?;
     write_json(&dir.join("warnings.json"), &run.warnings)?;
+    write_json(&dir.join("references.json"), &run.references)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
     let mut csv = String::from("case,method,metric,value,bound,status,reason,at\n");
     for c in &run.checks {
@@ -176,6 +178,10 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
         plans: read_json(&dir.join("plans.json"))?,
         failures: read_json(&dir.join("failures.json"))?,
         warnings: read_json(&dir.join("warnings.json"))?,
+        references: match dir.join("references.json") {
+            path if path.exists() => read_json(&path)?,
+            _ => Vec::new(),
+        },
         axes: read_json(&dir.join("axes.json"))?,
     };
     run.records.iter().try_for_each(|r| r.check())?;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use geometry::Vector3;
+use reports::Reference;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -45,6 +46,9 @@ pub struct RunObject<'a> {
     /// Load steps of a static procedure, as far as it came; absent in a linear one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
+    /// What they are compared with, and its own error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<&'a Reference>,
     /// What is to be said against these numbers; empty in a run without any.
     warnings: &'a [Warning],
     plan: &'a Plan,
@@ -199,6 +203,7 @@ impl<'a> RunObject<'a> {
                     metrics: numbers(&step.more),
                 })
                 .collect(),
+            reference: outcome.reference.as_ref(),
             warnings: &outcome.warnings,
             plan: &outcome.plan,
             force_kernel: outcome.identity.force_kernel.as_deref(),
@@ -228,6 +233,7 @@ impl<'a> RunObject<'a> {
             means: Vec::new(),
             modes: Vec::new(),
             steps: Vec::new(),
+            reference: None,
             warnings: &[],
             plan: &run.plan,
             force_kernel: None,

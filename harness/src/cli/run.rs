@@ -175,6 +175,7 @@ impl Made {
         self.set.records.extend(records);
         self.set.plans.extend(outcome.plan_entries());
         self.set.warnings.extend(outcome.warning_rows());
+        study::compared_with(&mut self.set, outcome.reference.as_ref());
         self.set.fields.extend(outcome.field.clone());
         if let (Some(out), Some(states)) = (&self.args.out, outcome.states.take())
             && let Err(bad) = fields::write(&states, &method.id, &out.join(fields::FOLDER))
@@ -226,7 +227,8 @@ impl Made {
     fn conclude(&mut self) -> u8 {
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
             println!("{}", text::outcomes(&self.outcomes));
-            print!("{}{}", text::places(&self.outcomes), text::warnings(&self.outcomes));
+            let compared = self.set.references.iter().map(text::compared_with).collect::<String>();
+            print!("{}{compared}{}", text::places(&self.outcomes), text::warnings(&self.set.warnings));
         }
         for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
             eprintln!("{}", text::painted_verdict(check));

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use reports::{Check, Status};
+use reports::{Check, Reference, Status};
 
 use crate::cli::colour;
 
@@ -39,6 +39,13 @@ pub fn reference(stored: &Stored) -> String {
         }
     }
     text
+}
+
+/// What runs are compared with, how far that is off, and its warnings, a line each.
+pub fn compared_with(reference: &Reference) -> String {
+    let warnings = reference.warnings.iter();
+    let warnings = warnings.map(|text| format!("warning: reference {}: {text}\n", reference.method));
+    std::iter::once(format!("compared with {}\n", reference.sentence())).chain(warnings).collect()
 }
 
 /// One line on a check that did not hold.
@@ -189,19 +196,22 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// What is to be said against the numbers above, a line for each warning with the methods it is of.
-pub fn warnings(outcomes: &[Outcome]) -> String {
+pub fn warnings(rows: &[reports::Warning]) -> String {
     let mut found: Vec<(String, Vec<&str>)> = Vec::new();
-    for outcome in outcomes {
-        let method = outcome.identity.method.as_str();
-        for warning in &outcome.warnings {
-            let text = warning.text();
-            match found.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, methods)) => methods.push(method),
-                None => found.push((text, vec![method])),
-            }
+    for warning in rows {
+        let (text, method) = (line(warning), warning.method.as_str());
+        match found.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, methods)) if methods.contains(&method) => {}
+            Some((_, methods)) => methods.push(method),
+            None => found.push((text, vec![method])),
         }
     }
     found.iter().map(|(text, methods)| format!("warning: {}: {text}\n", methods.join(", "))).collect()
+}
+
+fn line(warning: &reports::Warning) -> String {
+    let place = if warning.place.is_empty() { String::new() } else { format!("key '{}': ", warning.place) };
+    format!("{place}{} ({})", warning.message, warning.code)
 }
 
 /// The method that the others are compared with: it differs by nothing from itself. An exact solution is no method.

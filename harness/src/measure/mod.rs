@@ -46,7 +46,7 @@ pub(crate) use places::places;
 pub(crate) use probe_history::metrics as probe_history;
 pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;
-pub use request::{Reference, Repeats};
+pub use request::{OwnError, Reference, Repeats};
 pub(crate) use states::states;
 pub(crate) use step_history::report as report_steps;
 pub(crate) use surface::surface;

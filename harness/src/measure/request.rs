@@ -5,7 +5,7 @@ use geometry::{Point3, Vector3};
 use interp::Scheme;
 
 use crate::Failure;
-use crate::outcome::{LoadStep, SchemeSettings, Warning, Watch};
+use crate::outcome::{LoadStep, Metric, SchemeSettings, Warning, Watch};
 
 /// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +38,32 @@ pub struct Reference {
     pub finished: bool,
     /// What is to be said against it.
     pub warnings: Vec<Warning>,
+    /// How far it is off itself.
+    pub own: OwnError,
     /// Evaluates the reference at any point, m; a stored one knows only the targets.
     pub at: Option<Evaluate>,
+}
+
+/// The own error of a reference, as far as it is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OwnError {
+    /// Relative errors; a smaller one of a run says nothing.
+    pub band: Vec<Metric>,
+    /// The solutions by whose distance they are estimated.
+    pub by: Vec<String>,
+    /// Why nothing is known; empty where something is.
+    pub unknown: String,
+}
+
+impl OwnError {
+    /// Adds a distance to what is known already.
+    pub(crate) fn add(&mut self, distance: Metric) {
+        let same = |m: &&mut Metric| m.entry == distance.entry && m.index == distance.index;
+        match self.band.iter_mut().find(same) {
+            Some(known) => known.value += distance.value,
+            None => self.band.push(distance),
+        }
+    }
 }
 
 /// What a scene requests of every run.

@@ -14,7 +14,7 @@ mod watch;
 
 use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};
-use reports::{Record, SurfaceField};
+use reports::{Record, Reference, SurfaceField};
 
 use crate::Failure;
 pub use counters::Counters;
@@ -199,6 +199,8 @@ pub struct Outcome {
     pub stalled: Option<Failure>,
     /// What is to be said against its numbers.
     pub warnings: Vec<Warning>,
+    /// What it is compared with.
+    pub reference: Option<Reference>,
 }
 
 /// A run that gave no numbers.
@@ -244,6 +246,7 @@ impl Outcome {
             relaxed: None,
             stalled: None,
             warnings: Vec::new(),
+            reference: None,
         }
     }
 

@@ -11,6 +11,7 @@ impl Outcome {
     pub fn records(&self) -> Vec<Record> {
         let own = self.row();
         let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
+        rows.extend(self.metrics.iter().filter_map(|m| self.band(&own, m)));
         self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
         for latency in &self.latencies {
             let phase =
@@ -30,6 +31,12 @@ impl Outcome {
             rows.extend(metrics.iter().map(|m| number(&mode, m)));
         }
         rows
+    }
+
+    /// The reference's own error in a number that is one of the run.
+    fn band(&self, own: &Record, error: &Metric) -> Option<Record> {
+        let value = *self.reference.as_ref()?.band.get(&error.name())?;
+        Some(Record { statistic: "band".into(), value, ..number(own, error) })
     }
 
     /// What all rows of the run share.

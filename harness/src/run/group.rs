@@ -5,16 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
+use catalogue::{metric, warning};
 use geometry::{Point3, files};
 use interp::Scheme;
 
 use super::mirror::Mirror;
 use super::stored::Stored;
+use super::witness::own_error;
 use super::{Finished, run};
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::measure::{self, Repeats, Request};
-use crate::outcome::{Counters, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Watch};
+use crate::measure::{self, OwnError, Repeats, Request};
+use crate::outcome::{Counters, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch};
 use crate::prepare::reach;
 use crate::procedure::{Wanted, plan};
 use crate::scenario::{Scenario, point, rule, warnings};
@@ -69,7 +71,10 @@ impl<'a> Group<'a> {
         let mut group = Group::prepared(scene, repeats)?;
         (group.poisson, group.watch) = (poisson, watch);
         match group.scene.reference.clone() {
-            Some(Reference::Method { id, size }) => group.run_reference(&id, size.as_ref())?,
+            Some(Reference::Method { id, size }) => {
+                let method = group.run_reference(&id, size.as_ref())?;
+                group.know_reference(&method);
+            }
             Some(Reference::Record(path)) => {
                 let stored = Stored::load(&group.scene, &path)?;
                 let mirror = Mirror::of(&group.scene.body);
@@ -79,7 +84,8 @@ impl<'a> Group<'a> {
             Some(Reference::Exact { .. }) | None => {}
         }
         if let Some(id) = group.scene.output.beside.clone() {
-            group.beside = Some(group.compared(&id, None)?.0);
+            let method = group.scene.method(&id).expect("validated").clone();
+            group.beside = Some(group.compared(method, false)?.0);
         }
         Ok(group)
     }
@@ -129,31 +135,44 @@ impl<'a> Group<'a> {
         }
     }
 
-    fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<(), Failure> {
-        let (reference, stalled) = self.compared(id, size)?;
-        (self.reference, self.reference_stalled) = (Some(reference), stalled);
-        Ok(())
-    }
-
-    /// Runs a method that others are compared with; also why it ended early, if it did.
-    fn compared(
-        &mut self,
-        id: &str,
-        size: Option<&Size>,
-    ) -> Result<(measure::Reference, Option<Failure>), Failure> {
+    fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<scene::Method, Failure> {
         let mut method = self.scene.method(id).expect("validated").clone();
         if let Some(size) = size {
             method.resize(size);
         }
+        let (reference, stalled) = self.compared(method.clone(), size.is_some())?;
+        (self.reference, self.reference_stalled) = (Some(reference), stalled);
+        Ok(method)
+    }
+
+    /// Finds how far the reference, which is this method, is off itself.
+    fn know_reference(&mut self, method: &scene::Method) {
+        let Some(reference) = &self.reference else { return };
+        let (own, counters) = match &self.reference_stalled {
+            Some(_) => (OwnError { unknown: "it ended early".into(), ..OwnError::default() }, Counters::default()),
+            None => own_error(self, method, reference),
+        };
+        self.reference_counters += counters;
+        self.reference.iter_mut().for_each(|reference| reference.own = own.clone());
+    }
+
+    /// Runs a method that others are compared with, whose size may be the reference's own; also why it ended early, if it did.
+    fn compared(
+        &mut self,
+        method: scene::Method,
+        resized: bool,
+    ) -> Result<(measure::Reference, Option<Failure>), Failure> {
         let scene = self.scene.clone();
         let mut scenario = self.scenario_of(&scene, method, 0);
-        scenario.size_key = size.map(|_| "reference.size".into());
+        scenario.size_key = resized.then(|| "reference.size".into());
         let discretisation = scenario.discretise()?;
         if self.targets.is_empty() {
             self.targets = discretisation.nodes().to_vec();
         }
-        let solved = self.solved(&scenario, &discretisation)?;
+        let mut solved = self.solved(&scenario, &discretisation)?;
         let stalled = solved.outcome.stalled.clone().map(|failure| scenario.locate(failure));
+        let nodes = solved.outcome.size.nodes as usize;
+        solved.outcome.warn(warnings(&scene, &scenario.method, discretisation.mesh(), nodes));
         self.reference_counters += solved.outcome.counters;
         Ok((super::reference(solved, &self.targets)?, stalled))
     }
@@ -244,6 +263,7 @@ impl<'a> Group<'a> {
                 solved.outcome.stalled = solved.outcome.stalled.map(locate);
                 solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
                 let nodes = solved.outcome.size.nodes as usize;
+                self.hold_against(&mut solved.outcome);
                 solved.outcome.warn(warnings(&self.scene, &scenario.method, discretisation.mesh(), nodes));
                 Ok(solved.outcome)
             }
@@ -259,6 +279,32 @@ impl<'a> Group<'a> {
             watch: self.watch.as_deref(),
             ..Request::alone(&self.probes, &self.targets)
         }
+    }
+
+    /// What the runs are compared with; `None` where that is nothing.
+    pub fn reference(&self) -> Option<reports::Reference> {
+        let case = self.case.clone();
+        if let Some(Reference::Exact { entry, .. }) = &self.scene.reference {
+            return Some(reports::Reference { case, method: entry.name.into(), ..reports::Reference::default() });
+        }
+        let measure::Reference { method, nodes, own, warnings, .. } = self.reference.as_ref()?;
+        Some(reports::Reference {
+            case,
+            poisson: 0.0,
+            method: method.clone(),
+            nodes: *nodes as u64,
+            band: own.band.iter().map(|metric| (metric.name(), metric.value)).collect(),
+            by: own.by.clone(),
+            unknown: own.unknown.clone(),
+            warnings: warnings.iter().map(Warning::text).collect(),
+        })
+    }
+
+    /// Says in a run what it is compared with, and warns where that is coarser than the run.
+    pub(super) fn hold_against(&self, outcome: &mut Outcome) {
+        let poisson = outcome.identity.poisson;
+        outcome.reference = self.reference().map(|reference| reports::Reference { poisson, ..reference });
+        outcome.warnings.extend(outcome.reference.as_ref().and_then(|reference| coarser(reference, outcome)));
     }
 
     /// The plan of one method, without running it. An empty place is refused as a run refuses it.
@@ -279,6 +325,24 @@ impl<'a> Group<'a> {
     fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
         if method.interpolates { &[] } else { &self.schemes }
     }
+}
+
+/// Relative errors below this are of rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The error of a run that is finer than its reference may be the error of the reference.
+fn coarser(reference: &reports::Reference, outcome: &Outcome) -> Option<Warning> {
+    let error = outcome.metric(metric::RELATIVE_RMS.name).filter(|error| *error > ROUNDING)?;
+    let (own, known) = (outcome.size.nodes, reference.nodes);
+    (known > 0 && own > known).then(|| {
+        let message = format!(
+            "with {own} nodes it is finer than the reference, which is {}: that it differs by {:.1} % may be the error of the reference, which \
+             a finer one would show (reference.size)",
+            reference.name(),
+            100.0 * error
+        );
+        Warning::new(&warning::REFERENCE_COARSER, own as f64 / known as f64, "reference", message)
+    })
 }
 
 /// What is known of the sizes before any table is filled.

@@ -7,6 +7,7 @@ pub(crate) mod mirror;
 mod posed;
 mod repeated;
 pub(crate) mod stored;
+mod witness;
 
 use std::time::Instant;
 
@@ -17,7 +18,7 @@ use reports::{Record, SurfaceField};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
-    self, Field, Reference, Request, check_probes, displacement, measure, of_tables, over_time, picture,
+    self, Field, OwnError, Reference, Request, check_probes, displacement, measure, of_tables, over_time, picture,
     places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface, transfers,
     warnings,
 };
@@ -287,7 +288,8 @@ pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Refere
     let nodes = outcome.size.nodes as usize;
     let Outcome { identity, steps, stalled, warnings, .. } = outcome;
     let (method, finished) = (identity.method, stalled.is_none());
-    Ok(Reference { method, nodes, targets: points, steps, finished, warnings, at: Some(Box::new(at)) })
+    let own = OwnError::default();
+    Ok(Reference { method, nodes, targets: points, steps, finished, warnings, own, at: Some(Box::new(at)) })
 }
 
 #[cfg(test)]

@@ -97,6 +97,7 @@ impl Group<'_> {
         };
         let mut outcome = Outcome::new(identity, size(method, prepared, solution.dofs), plan);
         loaded(&mut outcome, &run, &request, meters)?;
+        self.hold_against(&mut outcome);
         Ok(outcome)
     }
 }

@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use super::mirror::Mirror;
 use crate::Failure;
-use crate::measure::{Reference, norms};
-use crate::outcome::{LoadStep, ToolStep, provenance, run_id};
+use crate::measure::{OwnError, Reference, norms};
+use crate::outcome::{LoadStep, ToolStep, provenance, push, push_numbered, run_id};
 
 /// The file, as JSON. Lengths in m, forces in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -231,8 +231,31 @@ impl Stored {
             steps: steps.collect(),
             finished: true,
             warnings: Vec::new(),
+            own: self.own_error(),
             at: None,
         }
+    }
+
+    /// How far the other solutions are off, relative, at the end.
+    fn own_error(&self) -> OwnError {
+        let mut own = OwnError::default();
+        if self.beside.is_empty() {
+            own.unknown = format!("it is of {} alone, and no other solution is stored with it", self.source.method);
+            return own;
+        }
+        own.by = self.beside.iter().map(|s| format!("{} with {} nodes", s.method, s.nodes)).collect();
+        let u: Vec<Vector3> = self.displacement.iter().map(|&u| u.into()).collect();
+        let size = norms::difference(&u, &vec![Vector3::zeros(); u.len()]).rms_magnitude;
+        if size > 0.0 {
+            push(&mut own.band, &metric::RELATIVE_RMS, self.displacement_band / size);
+        }
+        for (index, tool) in self.steps.iter().last().iter().flat_map(|step| &step.tools).enumerate() {
+            if tool.force != 0.0 {
+                let farthest = (tool.high - tool.force).max(tool.force - tool.low);
+                push_numbered(&mut own.band, &metric::TOOL_FORCE_ERROR, index, farthest / tool.force.abs());
+            }
+        }
+        own
     }
 
     /// Its forces and their bands as rows of the long table; `case` has the name and purpose of the case and its Poisson's ratio.

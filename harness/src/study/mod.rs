@@ -28,7 +28,7 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex};
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
-use reports::{Axis, Check as Verdict, Machine, Record, RunSet, SurfaceField};
+use reports::{Axis, Check as Verdict, Machine, Record, Reference, RunSet, SurfaceField};
 
 use crate::error::ForeignStatus;
 use crate::outcome::{Counters, Watch, provenance};
@@ -301,6 +301,7 @@ impl Plan {
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
             set.warnings.extend(result.warnings.iter().cloned());
+            compared_with(&mut set, result.reference.as_ref());
             for field in &result.fields {
                 // Of a method at several sizes the finest is shown.
                 let same =
@@ -426,6 +427,13 @@ struct Family<'a> {
     run: usize,
     first: &'a Task,
     members: Vec<&'a TaskResult>,
+}
+
+/// Adds what a run is compared with, which others may have in common with it.
+pub fn compared_with(set: &mut RunSet, reference: Option<&Reference>) {
+    if let Some(reference) = reference.filter(|reference| !set.references.contains(reference)) {
+        set.references.push(reference.clone());
+    }
 }
 
 /// The rows of a stored reference; one that can't be read has failed every method that asked for it.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cases::scene;
-use reports::{Failure as FailedRun, PlanEntry, Record, SurfaceField, Warning};
+use reports::{Failure as FailedRun, PlanEntry, Record, Reference, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -19,6 +19,9 @@ pub struct TaskResult {
     pub plans: Vec<PlanEntry>,
     /// What is to be said against its numbers.
     pub warnings: Vec<Warning>,
+    /// What they are compared with.
+    #[serde(default)]
+    pub reference: Option<Reference>,
     /// Surface displacement, where asked for.
     pub fields: Vec<SurfaceField>,
     /// Why it failed, with its exit code.
@@ -35,6 +38,7 @@ impl TaskResult {
             records: outcome.records(),
             plans: outcome.plan_entries(),
             warnings: outcome.warning_rows(),
+            reference: outcome.reference.clone(),
             fields: outcome.field.iter().cloned().collect(),
             failure: outcome.stalled.as_ref().map(|f| (stalled(outcome, f), f.exit_code())),
             counters: outcome.counters,

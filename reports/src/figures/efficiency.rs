@@ -264,6 +264,7 @@ mod tests {
             let runs = times.iter().map(timed).collect();
             Ask {
                 case: title.into(),
+                poisson: 0.495,
                 title: title.into(),
                 question: &QUESTIONS[0],
                 clock: Clock::First,

@@ -3,7 +3,7 @@
 //! The claim is of contact with jaws: a case without contact says nothing about it.
 
 use crate::figures::chosen;
-use crate::fronts::{Clock, QUESTIONS, point};
+use crate::fronts::{Clock, QUESTIONS, judged};
 use crate::published::{Publication, tested};
 use crate::record::Family;
 use crate::select::Run;
@@ -36,7 +36,7 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
         let Some(error) = question.error(group) else { continue };
         let of = |family: Family| -> Vec<Point> {
             let own = group.iter().filter(|r| r.is.family == family);
-            own.filter_map(|run| point(run, error, Clock::First)).collect()
+            own.filter_map(|run| judged(run, error, Clock::First)).collect()
         };
         let (fem, efg) = (of(Family::Fem), of(Family::Efg));
         let Some(matched) = Matched::of(&fem, &efg) else {
@@ -47,7 +47,7 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
             });
             continue;
         };
-        let timed = |r: &&Run| r.is.family == Family::Fem && point(r, error, Clock::First).is_some();
+        let timed = |r: &&Run| r.is.family == Family::Fem && judged(r, error, Clock::First).is_some();
         elements.extend(group.iter().filter(timed).map(|r| r.name().to_string()));
         phrases.push(matched.phrase(question.name));
         sides[matched.side(share)].push(question.name.to_string());

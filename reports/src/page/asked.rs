@@ -6,6 +6,7 @@ use super::methods::Methods;
 use crate::asks::{Ask, Line, Rank, Timed};
 use crate::fronts::Clock;
 use crate::quantity::label;
+use crate::reference::Reference;
 
 #[derive(Serialize)]
 pub(super) struct AskView {
@@ -19,6 +20,7 @@ pub(super) struct AskView {
     error: String,
     scalar: bool,
     kernels: bool,
+    /// What the runs are compared with, and its own error in words.
     reference: Option<String>,
     band: Option<f64>,
     /// The page begins with the question that has most of it.
@@ -36,8 +38,15 @@ struct LineView {
     counts: Vec<f32>,
 }
 
+/// A reference with its warnings.
+fn described(reference: &Reference) -> String {
+    let warnings = reference.warnings.iter().map(|text| format!(". Its warning: {text}"));
+    std::iter::once(reference.sentence()).chain(warnings).collect()
+}
+
 impl AskView {
-    pub(super) fn new(ask: &Ask, methods: &mut Methods) -> AskView {
+    pub(super) fn new(ask: &Ask, references: &[Reference], methods: &mut Methods) -> AskView {
+        let of_case = |r: &&Reference| r.case == ask.case && r.poisson == ask.poisson;
         let mut line = |line: &Line| {
             let each = |f: fn(&Timed) -> f64| line.runs.iter().map(|r| f(r) as f32).collect();
             LineView {
@@ -57,7 +66,7 @@ impl AskView {
             error: label(ask.error),
             scalar: ask.question.scalar,
             kernels: ask.kernels,
-            reference: ask.reference.clone(),
+            reference: references.iter().find(of_case).map(described).or_else(|| ask.reference.clone()),
             band: ask.band,
             rank: ask.rank,
             lines: ask.lines.iter().map(&mut line).collect(),

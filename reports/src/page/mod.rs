@@ -133,7 +133,8 @@ pub(crate) fn html(
 ) -> Result<String, ReportError> {
     let solved = solved(runs);
     let mut methods = Methods::new(&solved);
-    let asks: Vec<AskView> = asks(&solved).iter().map(|ask| AskView::new(ask, &mut methods)).collect();
+    let asks: Vec<AskView> =
+        asks(&solved).iter().map(|ask| AskView::new(ask, &set.references, &mut methods)).collect();
     let (plots, pictures) = views(figures, &mut methods);
     let trends = trends.iter().map(|trend| TrendView::new(trend, &mut methods)).collect();
     let maps: Vec<MapView> = set.axes.iter().map(MapView::new).collect();

@@ -93,6 +93,13 @@ pub(super) fn warnings(set: &RunSet) -> Table {
             ("what", Words),
         ],
     );
+    for reference in &set.references {
+        for text in &reference.warnings {
+            let method = format!("reference {}", reference.method);
+            let (case, none) = (Cell::Text(&reference.case), Cell::Text(""));
+            table.row(&[case, Cell::Text(&method), none, Cell::Digits(None, 3), Cell::Text(""), Cell::Text(text)]);
+        }
+    }
     for w in &set.warnings {
         let place = if w.place.is_empty() { String::new() } else { format!("{}: ", w.place) };
         table.row(&[

@@ -89,6 +89,8 @@ warnings! {
         "a tool stands in the body before anything moves, so that the first step has all of that to press out; how deep";
     STEP_ERROR: "step-error", None,
         "time steps are too long: the estimated error of one step over the largest displacement";
+    REFERENCE_COARSER: "reference-coarser", None,
+        "a run has more nodes than the reference that it is compared with, whose error its own may be; nodes over those of the reference";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
         "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
     STABILITY_LOST: "stability-lost", None,

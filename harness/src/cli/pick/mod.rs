@@ -9,6 +9,7 @@ mod usual;
 use std::io::IsTerminal;
 
 use cases::scene::Scene;
+use reports::Reference;
 use serde::Serialize;
 
 use crate::cli::args::Format;
@@ -66,6 +67,13 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         folder.into_iter().for_each(folder::Folder::leave);
         return failure.exit_code();
     }
+    let reference = group.reference();
+    if let Some((quantity, most, own)) = reference.as_ref().and_then(|reference| demand.beyond(reference)) {
+        folder.into_iter().for_each(folder::Folder::leave);
+        let sentence = beyond(&demand, quantity, most, own);
+        print(args, &scene, &demand, &Found::default(), reference.as_ref(), sentence);
+        return 1;
+    }
     let options = RunOptions { picture: args.out.is_some(), ..RunOptions::default() };
     let found = match search(&scene, &group, ladders(&scene, &chosen), &demand, options) {
         Ok(found) => found,
@@ -74,7 +82,8 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
             return wrong(&format!("{}: {bad}", args.scene.file.display()));
         }
     };
-    print(args, &scene, &demand, &found);
+    let sentence = sentence(&demand, &found);
+    print(args, &scene, &demand, &found, reference.as_ref(), sentence);
     let code = match (found.cheapest(), found.tried.is_empty()) {
         (Some(_), _) => 0,
         (None, false) => 1,
@@ -124,12 +133,20 @@ struct Answer<'a> {
     cheapest: Option<&'a Tried>,
     /// All runs, by time.
     runs: &'a [Tried],
+    /// What the runs are compared with, and its own error.
+    reference: Option<&'a Reference>,
     /// The answer in words.
     sentence: String,
 }
 
-fn print(args: &PickArgs, scene: &Scene, demand: &Demand, found: &Found) {
-    let sentence = sentence(demand, found);
+fn print(
+    args: &PickArgs,
+    scene: &Scene,
+    demand: &Demand,
+    found: &Found,
+    reference: Option<&Reference>,
+    sentence: String,
+) {
     if args.format == Format::Json {
         let answer = Answer {
             scene: case_name(scene),
@@ -138,12 +155,18 @@ fn print(args: &PickArgs, scene: &Scene, demand: &Demand, found: &Found) {
             also: demand.also.iter().map(|(quantity, most)| (quantity.name.as_str(), *most)).collect(),
             cheapest: found.cheapest(),
             runs: &found.tried,
+            reference,
             sentence,
         };
         println!("{}", serde_json::to_string(&answer).expect("finite numbers and text"));
         return;
     }
-    println!("{}\n\n{sentence}", table(demand, &found.tried));
+    if !found.tried.is_empty() {
+        println!("{}\n", table(demand, &found.tried));
+    }
+    reference.iter().for_each(|reference| print!("{}", text::compared_with(reference)));
+    print!("{}", text::warnings(&found.set.warnings));
+    println!("{sentence}");
     for (method, seconds) in &found.too_long {
         println!(
             "The next size of {method} was not tried: it is foreseen to take {} s (--at-most).",
@@ -183,16 +206,34 @@ fn error_of(run: &Tried, name: &str) -> Option<f64> {
     run.errors.iter().find(|(other, _)| other == name).map(|(_, error)| *error)
 }
 
+/// A part as it was given: 3 %, not 3.000 %.
+fn asked(part: f64) -> String {
+    format!("{} %", (1e8 * part).round() / 1e6)
+}
+
+/// All that is demanded, in words.
+fn bound(demand: &Demand) -> String {
+    let also = demand.also.iter().map(|(quantity, most)| format!(" and {} of {}", asked(*most), quantity.name));
+    format!("{} of {}{}", asked(demand.error), demand.quantity.name, also.collect::<String>())
+}
+
+/// The answer where the reference is off itself by more than a method may be.
+fn beyond(demand: &Demand, quantity: &Quantity, most: f64, own: f64) -> String {
+    format!(
+        "No method can be named within {}: the reference's own error of {} is about {} %, more than {}. No run was made: take a finer \
+         reference (reference.size).",
+        bound(demand),
+        quantity.name,
+        text::digits(100.0 * own),
+        asked(most)
+    )
+}
+
 /// The answer in one sentence.
 fn sentence(demand: &Demand, found: &Found) -> String {
     let percent = |part: f64| format!("{} %", text::digits(100.0 * part));
-    // As it was given: 3 %, not 3.000 %.
-    let asked = |part: f64| format!("{} %", (1e8 * part).round() / 1e6);
     let name = &demand.quantity.name;
-    let also: String = (demand.also.iter())
-        .map(|(quantity, most)| format!(" and {} of {}", asked(*most), quantity.name))
-        .collect();
-    let bound = format!("{} of {name}{also}", asked(demand.error));
+    let bound = bound(demand);
     if let Some(best) = found.cheapest() {
         let error = best.error.unwrap_or_default();
         return format!(

@@ -2,6 +2,7 @@
 
 use catalogue::metric::{self, Kind, METRICS, Metric};
 use catalogue::{Dimension, nearest};
+use reports::Reference;
 
 use crate::outcome::Outcome;
 
@@ -52,6 +53,14 @@ impl Quantity {
         self.metrics.iter().find_map(|metric| {
             let each = outcome.metrics.iter().filter(|m| m.entry == *metric).map(|m| m.value);
             each.reduce(f64::max)
+        })
+    }
+
+    /// The own error of a reference in it, of several tools the largest; `None` where it is unknown.
+    pub fn band(&self, reference: &Reference) -> Option<f64> {
+        self.metrics.iter().find_map(|metric| {
+            let of = |index: usize| reference.band.get(&metric.numbered(index)).copied();
+            (0..).map_while(of).reduce(f64::max)
         })
     }
 

@@ -1,7 +1,7 @@
 //! The search: every approach from coarse to fine, the cheapest next size first, until each is right or dearer than one that is.
 
 use cases::scene::{Method, Scene};
-use reports::RunSet;
+use reports::{Reference, RunSet};
 use serde::Serialize;
 
 use super::ladder::Ladder;
@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use crate::Failure;
 use crate::outcome::Outcome;
 use crate::run::{Group, RunOptions};
-use crate::study::{failed, stalled};
+use crate::study::{compared_with, failed, stalled};
 
 /// What an answer has to keep.
 pub(super) struct Demand {
@@ -19,6 +19,15 @@ pub(super) struct Demand {
     pub also: Vec<(Quantity, f64)>,
     /// Longest time of a run that is foreseen, s.
     pub at_most: f64,
+}
+
+impl Demand {
+    /// The quantity in which a reference is off itself by more than it may be, with its largest error and the reference's own.
+    pub fn beyond(&self, reference: &Reference) -> Option<(&Quantity, f64, f64)> {
+        let all = std::iter::once((&self.quantity, self.error)).chain(self.also.iter().map(|(q, most)| (q, *most)));
+        let known = all.filter_map(|(quantity, most)| Some((quantity, most, quantity.band(reference)?)));
+        known.into_iter().find(|(_, most, own)| own > most)
+    }
 }
 
 /// One run.
@@ -117,7 +126,8 @@ pub(super) fn search(
             }
         }
     }
-    mark_front(&mut found.tried);
+    let band = group.reference().and_then(|reference| demand.quantity.band(&reference));
+    mark_front(&mut found.tried, band.unwrap_or(0.0));
     Ok(found)
 }
 
@@ -136,6 +146,7 @@ impl Found {
         self.set.records.extend(outcome.records());
         self.set.plans.extend(outcome.plan_entries());
         self.set.warnings.extend(outcome.warning_rows());
+        compared_with(&mut self.set, outcome.reference.as_ref());
         self.set.fields.extend(outcome.field.clone());
         self.tried.push(tried);
     }
@@ -174,12 +185,12 @@ fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     }
 }
 
-/// Marks the runs that no other beats in time and error, and sorts all by time.
-fn mark_front(tried: &mut [Tried]) {
+/// Marks the runs that no other beats in time and error, and sorts all by time. No error counts for less than `band`, that of the reference.
+fn mark_front(tried: &mut [Tried], band: f64) {
     tried.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     let mut least = f64::INFINITY;
     for run in tried.iter_mut().filter(|run| run.status != "reference") {
-        if let Some(error) = run.error.filter(|error| *error < least) {
+        if let Some(error) = run.error.map(|error| error.max(band)).filter(|error| *error < least) {
             (run.front, least) = (true, error);
         }
     }
@@ -209,10 +220,14 @@ mod tests {
             run(0.5, Some(0.0), "reference"),
             run(0.1, None, "stalled"),
         ];
-        mark_front(&mut all);
+        mark_front(&mut all, 0.0);
         assert_eq!(
             all.each_ref().map(|r| (r.seconds, r.front)),
             [(0.1, false), (0.5, false), (1.0, true), (2.0, false), (3.0, true)]
         );
+        // What a reference that is off by half itself cannot tell apart.
+        all.iter_mut().for_each(|run| run.front = false);
+        mark_front(&mut all, 0.5);
+        assert_eq!(all.iter().filter(|run| run.front).map(|run| run.seconds).collect::<Vec<_>>(), [1.0]);
     }
 }

@@ -1,0 +1,109 @@
+//! How far a reference is off itself: seen where it locks, small where it is good, unknown where nothing tells.
+
+mod common;
+
+use std::path::Path;
+
+use common::{inside, tissuebench, write};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A block of nearly incompressible tissue under a pressure, its base bonded, against a reference.
+fn block(reference: &str) -> String {
+    format!(
+        r#"title = "A bonded block"
+body = {{ shape = "box", size = ["30 mm", "30 mm", "15 mm"] }}
+material = {{ law = "linear", young = "10 kPa", poisson = 0.495 }}
+support = [{{ on = "z-min", fix = "xyz" }}]
+load = [{{ on = "z-max", pressure = "200 Pa" }}]
+reference = {{ {reference} }}
+method = [
+    {{ id = "tet4", family = "fem", element = "tet4", size = {{ cells = [3, 3, 2] }} }},
+    {{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [3, 3, 2] }} }},
+    {{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = [6, 6, 3] }} }},
+]
+"#
+    )
+}
+
+const LOCKING: &str = "method = \"tet4\", size = { cells = [4, 4, 2] }";
+const GOOD: &str = "method = \"hex20\", size = { cells = [8, 8, 4] }";
+
+/// The objects of the methods of a scene.
+#[track_caller]
+fn objects(dir: &TempDir, text: &str) -> Vec<Value> {
+    let done = tissuebench(&["run", &write(dir, "scene.toml", text), "--once", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn own(object: &Value, metric: &str) -> f64 {
+    object["reference"]["band"][metric].as_f64().unwrap_or_else(|| panic!("{object}"))
+}
+
+fn error(object: &Value, metric: &str) -> f64 {
+    object["metrics"][metric]["value"].as_f64().unwrap()
+}
+
+fn warns(object: &Value, code: &str) -> bool {
+    object["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == code)
+}
+
+#[test]
+fn a_reference_that_locks_is_seen_and_a_good_one_is_not_blamed() {
+    let dir = tempfile::tempdir().unwrap();
+    for element in ["tet4", "hex8"] {
+        let bad = objects(&dir, &block(&LOCKING.replace("tet4", element)));
+        // Elements of second order are the nearest to the truth: the reference is off by about what they differ.
+        let far = error(&bad[2], "relative-rms");
+        let known = own(&bad[2], "relative-rms");
+        assert!(far > 0.5 && known > 0.8 * far && known < 2.0 * far, "{element}: {known} of {far}");
+        assert!(warns(&bad[2], "reference-coarser") && !warns(&bad[0], "reference-coarser"), "{element}");
+    }
+    let good = objects(&dir, &block(GOOD));
+    assert!(good.iter().all(|object| !warns(object, "reference-coarser")));
+    let known = own(&good[0], "relative-rms");
+    // A finer one shows the true error.
+    let fine = block("method = \"hex20\", size = { cells = [12, 12, 6] }").replace("cells = [6, 6, 3]", "cells = [8, 8, 4]");
+    let far = error(&objects(&dir, &fine)[2], "relative-rms");
+    assert!(known < 0.1 && known > far && known < 5.0 * far, "{known} of {far}");
+}
+
+#[test]
+fn the_reference_is_named_with_its_error_and_records_have_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = inside(&dir, "out");
+    let done = tissuebench(&["run", &write(&dir, "scene.toml", &block(LOCKING)), "--once", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let line = done.stdout.lines().find(|line| line.starts_with("compared with ")).unwrap();
+    assert!(line.starts_with("compared with tet4 with 75 nodes, whose own error is about "), "{line}");
+    assert!(line.contains("(by tet4 with 18 nodes and tet10 with 75 nodes)"), "{line}");
+    let results = reports::read_run(Path::new(&out)).unwrap();
+    assert_eq!(results.references.len(), 1);
+    let bands: Vec<f64> = (results.records.iter())
+        .filter(|r| r.quantity == "relative-rms" && r.statistic == "band")
+        .map(|r| r.value)
+        .collect();
+    assert_eq!(bands, [results.references[0].band["relative-rms"]; 3]);
+    let page = std::fs::read_to_string(Path::new(&out).join("report/report.html")).unwrap();
+    assert!(page.contains("tet4 with 75 nodes, whose own error is about"));
+}
+
+#[test]
+fn warnings_of_a_reference_are_shown_with_it() {
+    let dir = tempfile::tempdir().unwrap();
+    // A linear law far beyond small strain.
+    let text = block(GOOD).replace("200 Pa", "4 kPa");
+    let done = tissuebench(&["run", &write(&dir, "scene.toml", &text), "--once", "--method", "tet4"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    assert!(done.stdout.contains("warning: reference hex20: ") && done.stdout.contains("(large-strain)"), "{}", done.stdout);
+}
+
+#[test]
+fn nodes_of_a_file_have_no_coarser_ones_and_an_exact_solution_needs_none() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = inside(&dir, "block.msh");
+    let made = write(&dir, "mesh.toml", &block(GOOD));
+    let exported = tissuebench(&["mesh", "export", &made, "--method", "tet4", "--out", &mesh]);
+    assert_eq!(exported.code, 0, "{}", exported.stderr);
+}
