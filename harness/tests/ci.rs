@@ -61,6 +61,38 @@ fn runs_are_chosen_by_case_method_and_tag() {
 }
 
 #[test]
+fn stored_times_are_what_runs_are_foreseen_to_take() {
+    let dir = tempfile::tempdir().unwrap();
+    let (study, out) = (study(&dir), inside(&dir, "out"));
+    assert_eq!(tissuebench(&["verify", &study, "--case", "two", "--quiet", "--out", &out]).code, 1);
+    // A time that no estimate would give.
+    for entry in std::fs::read_dir(dir.path().join("out/tasks")).unwrap() {
+        let path = entry.unwrap().path();
+        let mut stored: serde_json::Value =
+            serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        stored["result"]["seconds"] = 700.0.into();
+        std::fs::write(&path, stored.to_string()).unwrap();
+    }
+    let seconds = |options: &[&str]| {
+        let done = tissuebench(
+            &[&["verify", &study, "--dry-run", "--case", "block", "--case", "two"], options].concat(),
+        );
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let of_line = |line: &str| line.split_whitespace().rev().nth(3).unwrap().parse::<f64>().unwrap();
+        let lines: Vec<&str> = done.stdout.lines().skip(1).take(4).collect();
+        (lines.iter().map(|line| of_line(line)).collect::<Vec<_>>(), done.stderr)
+    };
+    let (estimated, _) = seconds(&[]);
+    let (learned, said) = seconds(&["--times", &out]);
+    assert!(said.contains("2 of 4 runs have times in "), "{said}");
+    assert_eq!(learned[2..], [700.0, 700.0]);
+    // The others are foreseen to take as many times as long as estimated.
+    assert!(estimated[0] < 1.0 && learned[0] > 100.0, "{estimated:?} {learned:?}");
+    let nothing = tissuebench(&["verify", &study, "--dry-run", "--times", &inside(&dir, "nothing")]);
+    assert_fails(&nothing, 2, "has no stored runs");
+}
+
+#[test]
 fn what_failed_is_in_junit_annotations_and_events() {
     let dir = tempfile::tempdir().unwrap();
     let (study, out) = (study(&dir), inside(&dir, "out"));

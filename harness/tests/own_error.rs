@@ -64,7 +64,8 @@ fn a_reference_that_locks_is_seen_and_a_good_one_is_not_blamed() {
     assert!(good.iter().all(|object| !warns(object, "reference-coarser")));
     let known = own(&good[0], "relative-rms");
     // A finer one shows the true error.
-    let fine = block("method = \"hex20\", size = { cells = [12, 12, 6] }").replace("cells = [6, 6, 3]", "cells = [8, 8, 4]");
+    let fine = block("method = \"hex20\", size = { cells = [12, 12, 6] }")
+        .replace("cells = [6, 6, 3]", "cells = [8, 8, 4]");
     let far = error(&objects(&dir, &fine)[2], "relative-rms");
     assert!(known < 0.1 && known > far && known < 5.0 * far, "{known} of {far}");
 }
@@ -96,14 +97,47 @@ fn warnings_of_a_reference_are_shown_with_it() {
     let text = block(GOOD).replace("200 Pa", "4 kPa");
     let done = tissuebench(&["run", &write(&dir, "scene.toml", &text), "--once", "--method", "tet4"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    assert!(done.stdout.contains("warning: reference hex20: ") && done.stdout.contains("(large-strain)"), "{}", done.stdout);
+    assert!(
+        done.stdout.contains("warning: reference hex20: ") && done.stdout.contains("(large-strain)"),
+        "{}",
+        done.stdout
+    );
 }
 
 #[test]
 fn nodes_of_a_file_have_no_coarser_ones_and_an_exact_solution_needs_none() {
     let dir = tempfile::tempdir().unwrap();
-    let mesh = inside(&dir, "block.msh");
-    let made = write(&dir, "mesh.toml", &block(GOOD));
-    let exported = tissuebench(&["mesh", "export", &made, "--method", "tet4", "--out", &mesh]);
-    assert_eq!(exported.code, 0, "{}", exported.stderr);
+    let corners = [[0, 0], [20, 0], [20, 20], [0, 20]];
+    let nodes: String = (0..12)
+        .map(|k| format!("{} {} {} {}\n", k + 1, corners[k % 4][0], corners[k % 4][1], k / 4 * 10))
+        .collect();
+    let mesh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n12\n{nodes}$EndNodes\n$Elements\n2\n1 5 0 1 2 3 4 5 6 7 8\n2 5 0 5 6 7 8 9 10 11 12\n\
+         $EndElements\n"
+    );
+    write(&dir, "column.msh", &mesh);
+    let column = r#"title = "A column of two cells"
+body = { shape = "file", path = "column.msh", unit = "mm" }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ where = "z <= 0 mm", fix = "xyz" }]
+load = [{ where = "z >= 20 mm", pressure = "100 Pa" }]
+reference = { method = "hex8" }
+method = [{ id = "hex8", family = "fem", element = "hex8", size = { file = "column.msh" } }]
+"#;
+    let unknown = &objects(&dir, column)[0]["reference"];
+    assert_eq!(
+        unknown["unknown"], "its nodes are of the file column.msh, and no coarser ones are known",
+        "{unknown}"
+    );
+    assert!(unknown["band"].as_object().unwrap().is_empty(), "{unknown}");
+    let exact = r#"title = "A block in a linear field"
+body = { shape = "box", size = ["30 mm", "20 mm", "20 mm"] }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ on = "surface", move = "exact" }]
+reference = { exact = "affine" }
+method = [{ id = "tet4", family = "fem", element = "tet4", size = { level = 1 } }]
+"#;
+    let run = &objects(&dir, exact)[0];
+    assert_eq!((&run["reference"]["method"], &run["reference"]["unknown"]), (&"affine".into(), &"".into()));
+    assert_eq!(run["work"]["factorisations"], 1, "{}", run["work"]);
 }

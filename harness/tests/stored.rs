@@ -94,7 +94,11 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
 #[test]
 fn a_record_of_one_solution_does_not_know_its_error() {
     let dir = tempfile::tempdir().unwrap();
-    made(&dir, &bonded_without(&["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\"", "\"hex20-mixed\""]), &inside(&dir, "reference.json"));
+    made(
+        &dir,
+        &bonded_without(&["\"base\"", "\"tet4-nodal\"", "\"tet10-p1\"", "\"efg\"", "\"hex20-mixed\""]),
+        &inside(&dir, "reference.json"),
+    );
     let text = format!("{}reference = {{ record = \"reference.json\" }}\n", bonded());
     let done = tissuebench(&["run", &write(&dir, "s.toml", &text), "--once"]);
     assert_eq!(done.code, 0, "{}", done.stderr);

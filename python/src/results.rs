@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use cases::scene;
 use harness::outcome::{Outcome, provenance};
 use harness::run::case_name;
-use harness::study::{check, failed, reference_records, stalled};
+use harness::study::{check, compared_with, failed, reference_records, stalled, warn_if_busy};
 use pyo3::prelude::*;
 use reports::{Failure as FailedRun, Machine, Record, RunSet};
 
@@ -79,6 +79,7 @@ impl Results {
             }
             set.plans.extend(outcome.plan_entries());
             set.warnings.extend(outcome.warning_rows());
+            compared_with(&mut set, outcome.reference.as_ref());
             set.fields.extend(outcome.field.clone());
             set.failures.extend(outcome.stalled.as_ref().map(|failure| stalled(&outcome, failure)));
         }
@@ -87,6 +88,7 @@ impl Results {
             provenance::provenance(self.machine.clone(), &[(case, self.scene.text().to_string())]);
         let name = Path::new(self.scene.file()).file_name();
         set.provenance.source = name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        warn_if_busy(&mut set);
         set
     }
 }

@@ -3,6 +3,7 @@
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
 use crate::record::{Family, Purpose};
+use crate::seconds::Seconds;
 use crate::select::{Run, Series, kernels, labels, series};
 
 /// One run that answers.
@@ -33,6 +34,8 @@ pub(crate) struct Ask {
     pub(crate) title: String,
     pub(crate) question: &'static Question,
     pub(crate) clock: Clock,
+    /// The seconds of a first solve.
+    pub(crate) by: Seconds,
     /// The quantity that measures it.
     pub(crate) error: &'static str,
     pub(crate) lines: Vec<Line>,
@@ -43,6 +46,16 @@ pub(crate) struct Ask {
     /// Whether it compares kernels alone.
     pub(crate) kernels: bool,
     pub(crate) rank: Rank,
+}
+
+impl Ask {
+    /// What stands along the axis of times, in seconds.
+    pub(crate) fn time(&self) -> String {
+        match self.clock {
+            Clock::First => format!("{} [s]", self.by.name()),
+            Clock::Repeated => "repeated solve, 99 % within [s]".into(),
+        }
+    }
 }
 
 /// A page and its figures begin with the case that many methods compete in, most of all one for what a tool feels that tests what a
@@ -65,6 +78,7 @@ pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
                     title,
                     question,
                     clock,
+                    by: group[0].by,
                     error,
                     reference: reference_of(group).filter(|_| !kernels),
                     band: group.iter().filter_map(|run| band(run, error)).reduce(f64::max),

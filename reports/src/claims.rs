@@ -10,6 +10,7 @@ use crate::findings::Matched;
 use crate::fronts::{Clock, judged};
 use crate::record::{Family, Record};
 use crate::run_set::RunSet;
+use crate::seconds::decide;
 use crate::select::{Run, runs, solved};
 use crate::text::significant;
 
@@ -134,7 +135,9 @@ pub fn read_claims(path: &Path) -> Result<Vec<Claim>, ReportError> {
 impl Claim {
     /// Judges it by the runs of its scenes.
     pub fn judge(&self, set: &RunSet) -> Judged {
-        let all = solved(&runs(&set.records));
+        let mut all = runs(&set.records);
+        decide(&mut all, &set.provenance.machine);
+        let all = solved(&all);
         let (mut lines, mut held) = (Vec::new(), Vec::new());
         for scene in &self.scenes {
             let of_scene: Vec<&Run> = all.iter().filter(|run| run.is.case == *scene).collect();

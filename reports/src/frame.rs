@@ -17,6 +17,7 @@ struct Origin<'a> {
     rustc: &'a str,
     profile: &'a str,
     cpu: &'a str,
+    model: &'a str,
     instructions: &'a str,
     /// 0 for values: only times and memory depend on the number of threads.
     threads: u32,
@@ -36,6 +37,7 @@ fn rows<W: io::Write>(mut file: csv::Writer<W>, records: &[Record], from: &Prove
             rustc: &program.rustc,
             profile: &program.profile,
             cpu: &machine.cpu,
+            model: &machine.model,
             instructions: &machine.instructions,
             threads: if record.is_measured() { machine.threads } else { 0 },
         };

@@ -45,6 +45,7 @@ mod record;
 mod reference;
 mod render;
 mod run_set;
+mod seconds;
 mod select;
 mod store;
 mod table;
@@ -65,4 +66,5 @@ pub use render::{Rendered, render, render_over_commits};
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
 };
+pub use seconds::{Busy, Seconds, Took};
 pub use store::{begin, end, is_incomplete, provenance_of, read_run, source_of, write_run, write_text};

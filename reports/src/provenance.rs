@@ -37,6 +37,12 @@ impl Program {
 pub struct Machine {
     /// Processor model.
     pub cpu: String,
+    /// Its family, model and stepping, as far as the system says: names such as `AMD EPYC` are those of several generations.
+    #[serde(default)]
+    pub model: String,
+    /// Its clock when the run began, GHz; `None` where it is not known.
+    #[serde(default)]
+    pub clock: Option<f64>,
     /// Instruction sets that the solvers choose between, such as `avx2,fma`.
     pub instructions: String,
     /// Threads that the solvers use.
@@ -45,6 +51,19 @@ pub struct Machine {
     pub load: Option<f64>,
     /// Whether at most a fifth of the processors was busy then: times of a machine that was not quiet are too long.
     pub quiet: Option<bool>,
+    /// Runs that were made at once by one process, of which the seconds of the processors are not told apart; 0 or 1 where each had the
+    /// process for itself.
+    #[serde(default)]
+    pub at_once: u32,
+}
+
+impl Machine {
+    /// The processor in words: its name, model and clock.
+    pub fn processor(&self) -> String {
+        let model = if self.model.is_empty() { String::new() } else { format!(", {}", self.model) };
+        let clock = self.clock.map_or(String::new(), |ghz| format!(", {ghz:.1} GHz"));
+        format!("{}{model}{clock}", self.cpu)
+    }
 }
 
 /// By what, where and from what a run's numbers came. Carries no date.

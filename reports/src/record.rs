@@ -11,6 +11,7 @@
 //!   once) have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` a static path's
 //!   `solve-to-limit`). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from 1), and so have their `median`, and of
 //!   `time` also `spread` (interquartile range) and `min`.
+//! - `memory` is of the method, beyond its input; with `phase = "process"` of the whole process during the run.
 //! - A loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` or, of too few frames, `max` (s), and `frames`,
 //!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it.
 //! - A transfer scheme is a run of its own, whose `rms` is the error of the displacement after the transfer (the method's error and the

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::text::{list, percent};
 
 /// What the runs of a case are compared with, and how far that is off itself.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Case name.
     pub case: String,
@@ -43,15 +44,25 @@ impl Reference {
             return format!("{name}, whose own error is unknown: {}", self.unknown);
         }
         let known = WORDS.iter().filter_map(|(metric, word)| {
-            Some(format!("{} of {word}", percent(*self.band.get(*metric)?)))
+            Some(format!(
+                "{} of {word}",
+                percent(*self.band.get(*metric).filter(|error| **error > ROUNDING)?)
+            ))
         });
         let known: Vec<String> = known.collect();
         if known.is_empty() {
             return name;
         }
-        format!("{name}, whose own error is about {} (by {}): a smaller one says nothing", list(&known), list(&self.by))
+        format!(
+            "{name}, whose own error is about {} (by {}): a smaller one says nothing",
+            list(&known),
+            list(&self.by)
+        )
     }
 }
+
+/// Errors below this are of rounding, or of a quantity that is prescribed.
+const ROUNDING: f64 = 1e-6;
 
 /// Metrics of a reference's own error that a sentence names, and how.
 const WORDS: [(&str, &str); 4] = [

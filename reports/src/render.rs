@@ -9,6 +9,7 @@ use crate::commits;
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
+use crate::seconds;
 use crate::select;
 use crate::store::{make_dir, read_run, remove_files, write_text};
 use crate::tables;
@@ -42,7 +43,9 @@ pub fn render_over_commits(
     };
     // Along an axis a scene is another one from value to value: it has maps of its own.
     let as_they_are = set.records.iter().filter(|r| r.at.is_none());
-    let (runs, clouds) = clouds::part(&select::runs(as_they_are));
+    let mut all = select::runs(as_they_are);
+    seconds::decide(&mut all, &set.provenance.machine);
+    let (runs, clouds) = clouds::part(&all);
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;

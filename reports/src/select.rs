@@ -4,12 +4,15 @@ use std::cmp::Ordering;
 
 use crate::history::step;
 use crate::record::{Family, Purpose, Record};
+use crate::seconds::Seconds;
 
 /// All numbers of one discretisation of one case.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<'a> {
     /// Any of its records: it carries the identity.
     pub(crate) is: &'a Record,
+    /// The seconds that are its time.
+    pub(crate) by: Seconds,
     records: Vec<&'a Record>,
 }
 
@@ -40,10 +43,19 @@ impl<'a> Run<'a> {
         self.plain(quantity).map(|r| r.unit.as_str())
     }
 
-    /// A time in seconds by phase and statistic.
+    /// A time in seconds by phase and statistic: of a phase whose median is not that of the clock on the wall the one that it is compared by,
+    /// and no spread.
     pub(crate) fn time(&self, phase: &str, statistic: &str) -> Option<f64> {
-        let fits = |r: &&&Record| r.quantity == "time" && r.phase == phase && r.statistic == statistic;
-        self.records.iter().find(fits).map(|r| r.value)
+        let of = |quantity: &str, statistic: &str| {
+            let fits = |r: &&&Record| r.quantity == quantity && r.phase == phase && r.statistic == statistic;
+            self.records.iter().find(fits).map(|r| r.value)
+        };
+        match (self.by, statistic) {
+            (Seconds::Cpu, "median") => of("cpu-time", statistic).or_else(|| of("time", statistic)),
+            (Seconds::Least, "median") => of("time", "min").or_else(|| of("time", statistic)),
+            (Seconds::Cpu | Seconds::Least, "spread") => None,
+            _ => of("time", statistic),
+        }
     }
 
     /// Median time of the whole run: its `total`, or else the sum of its phases.
@@ -70,9 +82,18 @@ impl<'a> Run<'a> {
         self.value("relative-rms") == Some(0.0) && self.value("l2").is_none()
     }
 
-    /// Peak memory in bytes, however it was summarised.
+    /// Peak memory in bytes: of the method, beyond its input.
     pub(crate) fn memory(&self) -> Option<f64> {
-        self.records.iter().find(|r| r.quantity == "memory").map(|r| r.value)
+        self.memory_of("")
+    }
+
+    /// Peak memory in bytes of the whole process.
+    pub(crate) fn memory_of_process(&self) -> Option<f64> {
+        self.memory_of("process")
+    }
+
+    fn memory_of(&self, phase: &str) -> Option<f64> {
+        self.records.iter().find(|r| r.quantity == "memory" && r.phase == phase).map(|r| r.value)
     }
 
     /// The name of its series.
@@ -156,7 +177,8 @@ pub(crate) fn runs<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<Run
     let mut sorted: Vec<&Record> = records.into_iter().collect();
     sorted.sort_by_key(|r| r.key());
     let by_run = sorted.chunk_by(|a, b| a.run == b.run);
-    let mut runs: Vec<Run> = by_run.map(|chunk| Run { is: chunk[0], records: chunk.to_vec() }).collect();
+    let mut runs: Vec<Run> =
+        by_run.map(|chunk| Run { is: chunk[0], by: Seconds::Wall, records: chunk.to_vec() }).collect();
     runs.sort_by(|a, b| shown(a.is, b.is));
     runs
 }

@@ -31,7 +31,10 @@ pub struct RunObject<'a> {
     elements: u64,
     dofs: u64,
     metrics: BTreeMap<String, Number>,
+    /// On the wall, s.
     phases: BTreeMap<String, f64>,
+    /// The same of all processors together, where they are known.
+    cpu_phases: BTreeMap<String, f64>,
     probes: Vec<ProbeObject>,
     /// Rigid tools at the end.
     tools: Vec<ToolObject<'a>>,
@@ -149,6 +152,9 @@ impl<'a> RunObject<'a> {
     pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
         let mut metrics = numbers(&outcome.metrics);
         metrics.insert("memory".into(), Number { value: outcome.memory as f64, unit: "B" });
+        if let Some(bytes) = outcome.process_memory {
+            metrics.insert("memory-process".into(), Number { value: bytes as f64, unit: "B" });
+        }
         let frames = outcome.latencies.iter().flat_map(|latency| {
             let times = latency.statistics().into_iter().filter(|(_, unit, _)| *unit == "s");
             times.map(|(name, _, seconds)| match name {
@@ -169,6 +175,9 @@ impl<'a> RunObject<'a> {
             phases: (outcome.phases.iter())
                 .map(|timed| (timed.phase.into(), timed.summary().median))
                 .chain(frames)
+                .collect(),
+            cpu_phases: (outcome.phases.iter())
+                .filter_map(|timed| Some((timed.phase.into(), timed.cpu_median()?)))
                 .collect(),
             probes: outcome
                 .probes
@@ -227,6 +236,7 @@ impl<'a> RunObject<'a> {
             dofs: run.size.dofs,
             metrics: BTreeMap::new(),
             phases: BTreeMap::new(),
+            cpu_phases: BTreeMap::new(),
             probes: Vec::new(),
             tools: Vec::new(),
             supports: Vec::new(),

@@ -219,7 +219,7 @@ fn affordable(found: &[SceneError], force: bool) -> Result<(), u8> {
 
 /// The same for some methods of a scene.
 fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<(), u8> {
-    let of = |&index: &usize| too_large(scene, &scene.methods[index]);
+    let of = |&index: &usize| too_large(scene, &scene.methods[index], 1.0);
     affordable(&chosen.iter().filter_map(of).collect::<Vec<_>>(), force)
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use cases::scene::{self, Scene};
-use reports::{Machine, RunSet, Status};
+use reports::{Machine, RunSet, Seconds, Status};
 
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
@@ -225,8 +225,14 @@ impl Made {
 
     /// Prints the table and the checks that do not hold, and writes the folder of results.
     fn conclude(&mut self) -> u8 {
+        let text = self.scene.text().to_string();
+        self.set.provenance = provenance::provenance(self.machine.clone(), &[(self.case.clone(), text)]);
+        self.set.provenance.set = self.args.scene.set.iter().map(ToString::to_string).collect();
+        self.set.provenance.source = folder::source(&self.args.scene.file);
+        study::warn_if_busy(&mut self.set);
         if self.args.format == Format::Table && !self.outcomes.is_empty() {
-            println!("{}", text::outcomes(&self.outcomes));
+            let took = self.outcomes.iter().filter_map(|outcome| Some(outcome.total()?.took()));
+            println!("{}", text::outcomes(&self.outcomes, Seconds::of(&self.set.provenance.machine, took)));
             let compared = self.set.references.iter().map(text::compared_with).collect::<String>();
             print!("{}{compared}{}", text::places(&self.outcomes), text::warnings(&self.set.warnings));
         }
@@ -236,10 +242,6 @@ impl Made {
         }
         let Some(out) = &self.args.out else { return self.code };
         self.set.records.extend(study::reference_records(&self.scene));
-        let text = self.scene.text().to_string();
-        self.set.provenance = provenance::provenance(self.machine.clone(), &[(self.case.clone(), text)]);
-        self.set.provenance.set = self.args.scene.set.iter().map(ToString::to_string).collect();
-        self.set.provenance.source = folder::source(&self.args.scene.file);
         match reports::write_run(out, &self.set) {
             Ok(()) => self.code.max(report(out, &out.join("report"), None, self.args.quiet)),
             Err(bad) => unreported(&bad),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use reports::{Check, Reference, Status};
+use reports::{Check, Reference, Seconds, Status};
 
 use crate::cli::colour;
 
@@ -76,8 +76,8 @@ fn judged(check: &Check) -> String {
     format!("{} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
 }
 
-/// A table of finished runs: sizes, errors, displacement, milliseconds per phase.
-pub fn outcomes(outcomes: &[Outcome]) -> String {
+/// A table of finished runs: sizes, errors, displacement, milliseconds per phase by the seconds that runs are compared by.
+pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     let columns: [(&str, &str, f64); 19] = [
         ("l2", "L2 [%]", 100.0),
         ("energy", "energy [%]", 100.0),
@@ -108,9 +108,11 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
         if moves && title.starts_with("max") { title.replacen("max", "end", 1) } else { title.into() }
     };
     head.extend(shown.iter().map(|c| of_end(c.1)));
-    let phases = PHASES.iter().chain(&["total"]).filter(|p| outcomes.iter().any(|o| phase(o, p).is_some()));
+    let phases =
+        PHASES.iter().chain(&["total"]).filter(|p| outcomes.iter().any(|o| phase(o, p, by).is_some()));
     let phases: Vec<_> = phases.copied().collect();
-    head.extend(phases.iter().map(|p| format!("{p} [ms]")));
+    let unit = if by == Seconds::Wall { String::new() } else { format!("{} ", by.word()) };
+    head.extend(phases.iter().map(|p| format!("{p} [{unit}ms]")));
     rows.push(head);
     for outcome in outcomes {
         let mut row = vec![
@@ -125,7 +127,7 @@ pub fn outcomes(outcomes: &[Outcome]) -> String {
             }
             _ => outcome.metric(name).map_or("-".into(), |v| digits(v * scale)),
         }));
-        row.extend(phases.iter().map(|p| phase(outcome, p).map_or("-".into(), |s| digits(s * 1e3))));
+        row.extend(phases.iter().map(|p| phase(outcome, p, by).map_or("-".into(), |s| digits(s * 1e3))));
         rows.push(row);
     }
     aligned(&rows)
@@ -206,7 +208,11 @@ pub fn warnings(rows: &[reports::Warning]) -> String {
             None => found.push((text, vec![method])),
         }
     }
-    found.iter().map(|(text, methods)| format!("warning: {}: {text}\n", methods.join(", "))).collect()
+    let line = |(text, methods): &(String, Vec<&str>)| match methods.join(", ").as_str() {
+        "" => format!("warning: {text}\n"),
+        methods => format!("warning: {methods}: {text}\n"),
+    };
+    found.iter().map(line).collect()
 }
 
 fn line(warning: &reports::Warning) -> String {
@@ -219,8 +225,8 @@ fn is_reference(outcome: &Outcome) -> bool {
     outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none()
 }
 
-fn phase(outcome: &Outcome, name: &str) -> Option<f64> {
-    outcome.phases.iter().find(|timed| timed.phase == name).map(|timed| timed.summary().median)
+fn phase(outcome: &Outcome, name: &str, by: Seconds) -> Option<f64> {
+    outcome.phases.iter().find(|timed| timed.phase == name).map(|timed| timed.by(by))
 }
 
 /// Four significant digits, in exponents where plain digits would hide them.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use cases::scene;
+use catalogue::warning;
 use reports::Status;
 
 use crate::cli::ci::{self, CiArgs};
@@ -28,20 +29,32 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
         Ok(plan) => plan,
         Err(errors) => return refuse(&errors),
     };
+    if let Some(times) = args.times.as_deref().filter(|times| !study::has_stored(times)) {
+        let times = times.display();
+        eprintln!(
+            "tissuebench: --times {times}: has no stored runs; give a folder of results that `tissuebench verify` wrote"
+        );
+        return 2;
+    }
     plan.select(args);
     if plan.is_empty() {
         eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
         return 4;
     }
     if ci.list {
-        print!("{}", ci::names(&plan.planned()));
+        print!("{}", ci::names(&plan.planned(args)));
         return 0;
     }
     if ci.dry_run {
-        print!("{}", ci::forecast(&plan.planned()));
+        let planned = plan.planned(args);
+        if let Some(times) = &args.times {
+            let known = planned.iter().filter(|run| run.stored).count();
+            eprintln!("{known} of {} runs have times in {}", planned.len(), times.display());
+        }
+        print!("{}", ci::forecast(&planned));
         return 0;
     }
-    if let Err(code) = affordable(&plan.too_large(), args.force) {
+    if let Err(code) = affordable(&plan.too_large(args), args.force) {
         return code;
     }
     // A history that can't be read is refused before the runs, which may take hours.
@@ -129,8 +142,11 @@ pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> 
     for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
         eprintln!("{}", text::painted_verdict(check));
     }
+    let busy: Vec<_> =
+        set.warnings.iter().filter(|w| w.code == warning::MACHINE_BUSY.code).cloned().collect();
     let [passed, failed, known, not_run] = counts(finished);
     if !quiet {
+        eprint!("{}", text::warnings(&busy));
         println!(
             "{} runs, {} records; checks: {passed} passed, {failed} failed, {known} known not to pass, {not_run} not run",
             finished.ran,

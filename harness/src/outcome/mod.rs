@@ -166,6 +166,8 @@ pub struct Outcome {
     pub latencies: Vec<Latency>,
     /// Most memory allocated at once in the run beyond its input, bytes.
     pub memory: u64,
+    /// Most memory that the whole process had during the run, bytes; `None` where the system does not say.
+    pub process_memory: Option<u64>,
     /// Probes, in the scene's order.
     pub probes: Vec<Probe>,
     /// Stages run and skipped.
@@ -230,6 +232,7 @@ impl Outcome {
             phases: Vec::new(),
             latencies: Vec::new(),
             memory: 0,
+            process_memory: None,
             probes: Vec::new(),
             plan,
             transfers: Vec::new(),
@@ -254,6 +257,11 @@ impl Outcome {
     pub(crate) fn warn(&mut self, of_scene: Vec<Warning>) {
         self.warnings.splice(0..0, of_scene);
         push(&mut self.metrics, &metric::WARNINGS, self.warnings.len() as f64);
+    }
+
+    /// What the whole run took.
+    pub fn total(&self) -> Option<&Timed> {
+        self.phases.iter().find(|timed| timed.phase == "total")
     }
 
     /// One metric's value.

@@ -29,10 +29,13 @@ pub fn machine() -> Machine {
     let processors = std::thread::available_parallelism().map_or(1, |n| n.get()) as f64;
     Machine {
         cpu: cpu(),
+        model: model(),
+        clock: clock(),
         instructions: instructions(),
         threads: rayon::current_num_threads() as u32,
         load,
         quiet: load.map(|load| load <= QUIET * processors),
+        at_once: 1,
     }
 }
 
@@ -62,6 +65,18 @@ fn load() -> Option<f64> {
 
 fn cpu() -> String {
     cpuinfo("model name").unwrap_or_else(|| std::env::consts::ARCH.to_string())
+}
+
+/// Family, model and stepping of the processor, as far as the system says.
+fn model() -> String {
+    let known = [("family", "cpu family"), ("model", "model"), ("stepping", "stepping")];
+    let each = known.iter().filter_map(|(word, field)| Some(format!("{word} {}", cpuinfo(field)?)));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Clock of the first processor now, GHz.
+fn clock() -> Option<f64> {
+    Some(cpuinfo("cpu MHz")?.parse::<f64>().ok()? / 1e3)
 }
 
 /// The kind of processor, as far as it decides the last bits of a result: instruction sets, and caches, by whose size matrix

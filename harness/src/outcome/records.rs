@@ -24,6 +24,10 @@ impl Outcome {
             }));
         }
         rows.push(number(&own, &Metric::new(&metric::MEMORY, self.memory as f64)));
+        rows.extend(self.process_memory.map(|bytes| Record {
+            phase: "process".into(),
+            ..number(&own, &Metric::new(&metric::MEMORY, bytes as f64))
+        }));
         self.transfers.iter().for_each(|transfer| rows.extend(self.transfer_records(&own, transfer)));
         rows.extend(self.step_records(&own));
         for (index, metrics) in self.modes.iter().enumerate() {

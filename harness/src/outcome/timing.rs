@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use reports::{Seconds, Took};
 
 use super::Counters;
 
@@ -21,9 +22,24 @@ pub struct Timed {
 }
 
 impl Timed {
+    /// Medians of both clocks.
+    pub fn took(&self) -> Took {
+        Took { wall: self.summary().median, cpu: self.cpu_median() }
+    }
+
     /// Summary of the wall-clock times.
     pub fn summary(&self) -> Summary {
         Summary::of(&self.wall)
+    }
+
+    /// What it takes, by the seconds that runs are compared by.
+    pub fn by(&self, seconds: Seconds) -> f64 {
+        let wall = self.summary();
+        match seconds {
+            Seconds::Wall => wall.median,
+            Seconds::Cpu => self.cpu_median().unwrap_or(wall.median),
+            Seconds::Least => wall.min,
+        }
     }
 
     /// Median of the CPU times, where they are known.

@@ -111,7 +111,7 @@ fn fields(id: u32) -> Option<Vec<f64>> {
 }
 
 /// Most bytes in memory that a process had at once.
-fn most(id: u32) -> u64 {
+pub(super) fn most(id: u32) -> u64 {
     let text = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();
     line.split_whitespace().next().and_then(|kb| kb.parse::<u64>().ok()).map_or(0, |kb| kb << 10)

@@ -10,6 +10,20 @@ pub(crate) use call::{Call, End, Limits, call};
 pub(crate) use group::{Started, last_words};
 pub use leash::LeashArgs;
 
+/// Most bytes in memory that this process has had since [`forget_most_memory`], or since it began; `None` where the system does not say.
+pub(crate) fn most_memory() -> Option<u64> {
+    #[cfg(target_os = "linux")]
+    return Some(members::most(std::process::id())).filter(|bytes| *bytes > 0);
+    #[cfg(not(target_os = "linux"))]
+    None
+}
+
+/// Makes the most memory of this process what it has now, where the system can.
+pub(crate) fn forget_most_memory() {
+    #[cfg(target_os = "linux")]
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
 /// Seconds that the system has worked for this process, to a hundredth; `None` where it does not say.
 pub(crate) fn system_seconds() -> Option<f64> {
     #[cfg(target_os = "linux")]

@@ -149,7 +149,9 @@ impl<'a> Group<'a> {
     fn know_reference(&mut self, method: &scene::Method) {
         let Some(reference) = &self.reference else { return };
         let (own, counters) = match &self.reference_stalled {
-            Some(_) => (OwnError { unknown: "it ended early".into(), ..OwnError::default() }, Counters::default()),
+            Some(_) => {
+                (OwnError { unknown: "it ended early".into(), ..OwnError::default() }, Counters::default())
+            }
             None => own_error(self, method, reference),
         };
         self.reference_counters += counters;
@@ -285,7 +287,11 @@ impl<'a> Group<'a> {
     pub fn reference(&self) -> Option<reports::Reference> {
         let case = self.case.clone();
         if let Some(Reference::Exact { entry, .. }) = &self.scene.reference {
-            return Some(reports::Reference { case, method: entry.name.into(), ..reports::Reference::default() });
+            return Some(reports::Reference {
+                case,
+                method: entry.name.into(),
+                ..reports::Reference::default()
+            });
         }
         let measure::Reference { method, nodes, own, warnings, .. } = self.reference.as_ref()?;
         Some(reports::Reference {

@@ -18,9 +18,9 @@ use reports::{Record, SurfaceField};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
-    self, Field, OwnError, Reference, Request, check_probes, displacement, measure, of_tables, over_time, picture,
-    places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface, transfers,
-    warnings,
+    self, Field, OwnError, Reference, Request, check_probes, displacement, measure, of_tables, over_time,
+    picture, places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface,
+    transfers, warnings,
 };
 use crate::outcome::timing::{Timed, Timings};
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
@@ -70,12 +70,14 @@ fn on_pool(
     request: &Request,
 ) -> Result<Finished, Failure> {
     let baseline = Baseline::new();
+    process::forget_most_memory();
     let mut meters = Meters::default();
     let Pass { refined, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
     let memory = baseline.peak();
     let method = refined.as_ref().unwrap_or(method);
     let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
     let mut outcome = Outcome::new(identity, size(method, &prepared, solution.dofs), plan);
+    outcome.process_memory = process::most_memory().filter(|_| solution.program.is_none());
     outcome.memory = solution.program.as_ref().map_or(memory, |program| program.memory);
     outcome.identity.linear_solver = solution.solver().map(Into::into);
     if request.states {

@@ -240,7 +240,8 @@ impl Stored {
     fn own_error(&self) -> OwnError {
         let mut own = OwnError::default();
         if self.beside.is_empty() {
-            own.unknown = format!("it is of {} alone, and no other solution is stored with it", self.source.method);
+            own.unknown =
+                format!("it is of {} alone, and no other solution is stored with it", self.source.method);
             return own;
         }
         own.by = self.beside.iter().map(|s| format!("{} with {} nodes", s.method, s.nodes)).collect();

@@ -46,7 +46,9 @@ fn distances(
     counters: &mut Counters,
 ) -> Result<(usize, Vec<Metric>), Failure> {
     let id = witness.id.clone();
-    let failed = |failure: Failure| Failure::Run(format!("{id} on a coarser mesh gives no number to compare: {failure}"));
+    let failed = |failure: Failure| {
+        Failure::Run(format!("{id} on a coarser mesh gives no number to compare: {failure}"))
+    };
     let first_order = is_first_order(&witness.family);
     let scenario = group.scenario(witness, 0);
     let discretisation = scenario.discretise().map_err(failed)?;

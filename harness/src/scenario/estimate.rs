@@ -58,18 +58,20 @@ impl Estimate {
 }
 
 /// Refuses a method of a scene that takes more than anyone means to spend, or the reference that it needs. What no `--force` lifts is
-/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps.
-pub fn too_large(scene: &Scene, method: &Method) -> Option<SceneError> {
+/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps. Estimated seconds are multiplied by
+/// the factor that runs of the scene took before.
+pub fn too_large(scene: &Scene, method: &Method, factor: f64) -> Option<SceneError> {
     let of_reference = || {
         let (method, size) = reference(scene)?;
-        refuse(scene, &method, size.map(|_| "reference.size".into()))
+        refuse(scene, &method, size.map(|_| "reference.size".into()), factor)
     };
-    refuse(scene, method, None).or_else(of_reference)
+    refuse(scene, method, None, factor).or_else(of_reference)
 }
 
 /// The same of a method alone, whose size is at this key unless it is the method's own.
-fn refuse(scene: &Scene, method: &Method, size: Option<String>) -> Option<SceneError> {
+fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> Option<SceneError> {
     let found = estimate(scene, &method.family);
+    let found = Estimate { seconds: factor * found.seconds, ..found };
     let explicit = matches!(scene.procedure, Procedure::Explicit(_));
     let counted = matches!(method.size(), Some(Size::Cells { .. }));
     if explicit && found.steps > MOST_STEPS || !counted && found.nodes > body::MOST_NODES as f64 {

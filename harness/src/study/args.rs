@@ -49,6 +49,9 @@ pub struct VerifyArgs {
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
+    /// Foresee what runs take by the times stored in these results of this machine, for --dry-run, --shard and refusals
+    #[arg(long, value_name = "DIR")]
+    pub times: Option<PathBuf>,
     /// Also draw the errors and times over commits of this folder, which `history add` fills
     #[arg(long, value_name = "DIR")]
     pub history: Option<PathBuf>,
@@ -76,6 +79,7 @@ impl VerifyArgs {
             apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
             force: true,
             out: PathBuf::new(),
+            times: None,
             history: None,
         }
     }

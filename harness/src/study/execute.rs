@@ -7,7 +7,7 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::apart::Apart;
 use super::files::{files, versions};
@@ -210,10 +210,12 @@ impl Plan {
             shared = group.as_ref().map_or(shared, Group::reference_counters);
             group
         });
+        let start = Instant::now();
         let mut result = match group {
             Ok(group) => self.compared(task, group, self.options(task, args)),
             Err(failure) => TaskResult::failed(&case_name(scene), &task.method, failure),
         };
+        result.seconds = start.elapsed().as_secs_f64();
         result.counters += shared;
         result
     }

@@ -1,9 +1,11 @@
 //! The runs of a study by name, before they are made.
 
+use std::collections::BTreeSet;
+
 use cases::scene::{self, Cloud, Family, Functions, Size, SupportRule};
 
-use super::Plan;
 use super::tasks::Task;
+use super::{Plan, VerifyArgs};
 use crate::run::case_name;
 use crate::scenario::{Estimate, estimate};
 
@@ -13,21 +15,38 @@ pub struct Planned {
     pub case: String,
     /// The method, with what the study changes of it.
     pub name: String,
-    /// What it is about to take.
+    /// What it is about to take, with all of its repeats.
     pub(crate) takes: Estimate,
+    /// Whether its seconds are those that it took before.
+    pub(crate) stored: bool,
 }
 
 impl Plan {
     /// The runs in their order.
-    pub fn planned(&self) -> Vec<Planned> {
-        self.tasks.iter().map(|task| self.one(task)).collect()
+    pub fn planned(&self, args: &VerifyArgs) -> Vec<Planned> {
+        let foreseen = self.foreseen(args);
+        let mut referenced = BTreeSet::new();
+        let each = self.tasks.iter().enumerate().map(|(index, task)| {
+            let mut planned = self.one(task, foreseen.of(index), foreseen.is_stored(index));
+            // Its reference is solved before the first run of a scene.
+            if referenced.insert((task.scene, task.poisson.map(f64::to_bits))) {
+                planned.takes.seconds += self.reference_seconds(task.scene, &foreseen);
+            }
+            planned
+        });
+        each.collect()
     }
 
-    fn one(&self, task: &Task) -> Planned {
+    fn one(&self, task: &Task, seconds: f64, stored: bool) -> Planned {
         let scene = &self.scenes[task.scene].2;
         let varied = scene.varied.as_ref().map(|(axis, value)| format!(" {axis}={value}"));
         let name = name(task, self.tables(task)) + &varied.unwrap_or_default();
-        Planned { case: case_name(scene), name, takes: estimate(scene, &task.method.family) }
+        Planned {
+            case: case_name(scene),
+            name,
+            takes: Estimate { seconds, ..estimate(scene, &task.method.family) },
+            stored,
+        }
     }
 }
 

@@ -2,12 +2,14 @@
 
 pub(crate) mod apart;
 mod args;
+mod busy;
 pub mod check;
 mod events;
 mod execute;
 mod files;
 mod filters;
 pub(crate) mod folder;
+mod foreseen;
 mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;
@@ -45,6 +47,7 @@ use trials::RefusedScene;
 
 pub use apart::ExperimentArgs;
 pub use args::{Loudness, VerifyArgs};
+pub use busy::warn_if_busy;
 pub use events::Events;
 pub(crate) use events::{Event, Line};
 pub use filters::Filters;
@@ -214,8 +217,10 @@ impl Plan {
     }
 
     /// Refusals of runs that take more than anyone means to spend.
-    pub(crate) fn too_large(&self) -> Vec<scene::SceneError> {
-        let of = |task: &Task| too_large(&self.scenes[task.scene].2, &task.method);
+    pub(crate) fn too_large(&self, args: &VerifyArgs) -> Vec<scene::SceneError> {
+        let foreseen = self.foreseen(args);
+        let of =
+            |task: &Task| too_large(&self.scenes[task.scene].2, &task.method, foreseen.factor(task.scene));
         self.tasks.iter().filter_map(of).collect()
     }
 
@@ -274,7 +279,7 @@ impl Plan {
 
     /// As [`execute`](Plan::execute), with what happens reported as it happens.
     pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
-        let machine = provenance::machine();
+        let machine = Machine { at_once: args.jobs.into(), ..provenance::machine() };
         let store = store(args);
         let work = Work {
             plan: self,
@@ -348,6 +353,7 @@ impl Plan {
         let texts: Vec<(String, String)> =
             self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
+        warn_if_busy(&mut set);
         Finished { set, failed, runs, ran: results.len(), stored: 0, counters }
     }
 
@@ -458,6 +464,11 @@ pub(crate) fn clean(args: &VerifyArgs) {
 pub(crate) fn sweep(args: &VerifyArgs) {
     clean(args);
     store(args).sweep();
+}
+
+/// Whether a folder of results has any of single runs.
+pub fn has_stored(out: &Path) -> bool {
+    store::any(out)
 }
 
 /// Where the results of single runs are stored.

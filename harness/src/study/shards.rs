@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::foreseen::Foreseen;
 use super::tasks::Task;
-use super::{Plan, QUICK, REPEATS, VerifyArgs};
-use crate::scenario::{estimate, of_reference};
+use super::{Plan, VerifyArgs};
 
 /// Tasks that belong together, and the seconds that they take.
 struct Unit {
@@ -26,14 +26,16 @@ impl Unit {
 impl Plan {
     /// The tasks of the k-th of n shares. The costliest unit goes first, each to the share that is ready first with it.
     pub(super) fn share(&self, args: &VerifyArgs, (k, n): (usize, usize)) -> BTreeSet<usize> {
-        let mut units = self.units(args);
+        let foreseen = self.foreseen(args);
+        let mut units = self.units(&foreseen);
         units.sort_by(|a, b| b.seconds.total_cmp(&a.seconds).then(a.tasks.cmp(&b.tasks)));
         let mut shares: Vec<Unit> =
             (0..n).map(|_| Unit { tasks: vec![], seconds: 0.0, groups: BTreeSet::new() }).collect();
         for unit in units {
             let with = |share: &Unit| {
                 let new = unit.groups.difference(&share.groups);
-                share.seconds + unit.seconds + new.map(|group| self.reference_seconds(group.0)).sum::<f64>()
+                let references = new.map(|group| self.reference_seconds(group.0, &foreseen));
+                share.seconds + unit.seconds + references.sum::<f64>()
             };
             let seconds: Vec<f64> = shares.iter().map(with).collect();
             let first = (0..n).min_by(|&a, &b| seconds[a].total_cmp(&seconds[b])).unwrap_or(0);
@@ -44,21 +46,13 @@ impl Plan {
         shares.swap_remove(k - 1).tasks.into_iter().collect()
     }
 
-    /// Seconds that the reference of a scene takes.
-    fn reference_seconds(&self, scene: usize) -> f64 {
-        of_reference(&self.scenes[scene].2).map_or(0.0, |reference| reference.seconds)
-    }
-
     /// Orders and shares of clouds are of all runs that a run table has of a method at a Poisson's ratio: these stay together,
     /// and so do families that have a run in common.
-    fn units(&self, args: &VerifyArgs) -> Vec<Unit> {
-        let repeats = if args.quick { QUICK } else { REPEATS };
+    fn units(&self, foreseen: &Foreseen) -> Vec<Unit> {
         let mut units: Vec<Option<Unit>> = Vec::new();
         let mut of_family: BTreeMap<Family, usize> = BTreeMap::new();
         for (index, task) in self.tasks.iter().enumerate() {
-            let once = estimate(&self.scenes[task.scene].2, &task.method.family).seconds;
-            // Short runs are repeated for their times.
-            let seconds = once * (1.0 + repeats.seconds / once).min(repeats.most as f64);
+            let seconds = foreseen.of(index);
             let ratio = task.poisson.map(f64::to_bits);
             let mut unit =
                 Unit { tasks: vec![index], seconds, groups: BTreeSet::from([(task.scene, ratio)]) };

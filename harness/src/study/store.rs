@@ -27,10 +27,10 @@ impl Maker {
     /// The running program on this machine.
     pub(super) fn new(program: &Program, machine: &Machine) -> Maker {
         let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
-        let Machine { cpu, instructions, threads, .. } = machine;
+        let Machine { cpu, model, instructions, threads, .. } = machine;
         Maker {
             program: format!("{program:?}, {}", blake3::hash(&bytes).to_hex()),
-            machine: format!("{cpu}, {instructions}, {threads} threads"),
+            machine: format!("{cpu}, {model}, {instructions}, {threads} threads"),
         }
     }
 }
@@ -93,6 +93,14 @@ impl Store {
         good.then_some(result)
     }
 
+    /// Seconds that the task under a key took on this machine, by whatever program, where it did not fail.
+    pub(super) fn seconds(&self, key: &str) -> Option<f64> {
+        let Read { by, result } = serde_json::from_str(&fs::read_to_string(self.file(key)).ok()?).ok()?;
+        (by.machine == self.by.machine && result.failure.is_none())
+            .then_some(result.seconds)
+            .filter(|s| *s > 0.0)
+    }
+
     /// Stores a result; written beside and renamed, so that a stop leaves no half file.
     pub(super) fn save(&self, key: &str, result: &TaskResult) -> Result<(), ReportError> {
         let path = self.file(key);
@@ -152,6 +160,11 @@ impl Share {
     }
 }
 
+/// Whether a folder of results has any of single runs.
+pub(super) fn any(out: &Path) -> bool {
+    !files(&out.join(TASKS), &["json"]).is_empty()
+}
+
 /// Keeps the text of a result from another folder.
 pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError> {
     let folder = out.join(TASKS);
@@ -189,7 +202,7 @@ mod tests {
         let found = |program: &Program, machine: &Machine, accept| {
             store(dir.path(), program, machine).load("key", accept).is_some()
         };
-        let later = Machine { load: Some(3.0), quiet: Some(false), ..machine.clone() };
+        let later = Machine { load: Some(3.0), quiet: Some(false), clock: Some(3.1), ..machine.clone() };
         assert!(found(&program, &later, Accept::Finished));
         assert!(!found(&program, &later, Accept::Nothing));
         for other in

@@ -26,6 +26,9 @@ pub struct TaskResult {
     pub fields: Vec<SurfaceField>,
     /// Why it failed, with its exit code.
     pub failure: Option<(FailedRun, u8)>,
+    /// Seconds that it took, all repeats included and without its reference; 0 where they are not known.
+    #[serde(default)]
+    pub seconds: f64,
     /// What was done for it now: nothing where it was stored.
     #[serde(skip)]
     pub counters: Counters,
@@ -41,6 +44,7 @@ impl TaskResult {
             reference: outcome.reference.clone(),
             fields: outcome.field.iter().cloned().collect(),
             failure: outcome.stalled.as_ref().map(|f| (stalled(outcome, f), f.exit_code())),
+            seconds: 0.0,
             counters: outcome.counters,
         }
     }

@@ -30,7 +30,7 @@ impl Plan {
         study: &Path,
         events: Option<&Events>,
     ) -> Result<Finished, Failure> {
-        if let (false, Some(refused)) = (args.force, self.too_large().into_iter().next()) {
+        if let (false, Some(refused)) = (args.force, self.too_large(args).into_iter().next()) {
             return Err(Failure::Scene(Box::new(refused)));
         }
         let folder = folder::take(study, &args.out)?;

@@ -9,6 +9,7 @@ use crate::asks::{Ask, Line, Timed, asks};
 use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, FRONT, Question, pareto};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
+use crate::seconds::Seconds;
 use crate::select::Run;
 use crate::text::list;
 
@@ -28,7 +29,7 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
     let styles = styles(&plot::labels(&plots));
     let contents = panels.iter().map(|panel| content(panel, clock, &styles)).collect();
     let (name, title, time) = match clock {
-        Clock::First => ("efficiency", "Run time against error", "Median run time of all phases"),
+        Clock::First => ("efficiency", "Run time against error", "Run time of all phases"),
         Clock::Repeated => (
             "efficiency-repeated",
             "Time of a repeated solve against error",
@@ -56,14 +57,10 @@ fn plotted(ask: &Ask) -> Plot {
         let ids = line.runs.iter().map(|r| r.run.clone()).collect();
         Curve::new(line.label.clone(), line.family, points, ids)
     };
-    let time = match ask.clock {
-        Clock::First => "run time, median [s]",
-        Clock::Repeated => "repeated solve, 99 % within [s]",
-    };
     Plot {
         case: ask.case.clone(),
         title: format!("{}: {}", ask.title, ask.question.name),
-        x: Scale::log(time),
+        x: Scale::log(&ask.time()),
         y: Scale::log(&label(ask.error)),
         curves: ask.lines.iter().map(curve).collect(),
     }
@@ -92,7 +89,7 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
     let Ask { title, lines, .. } = panel;
     let panel_of_kernels = panel.kernels;
     let (scale, x) = match clock {
-        Clock::First => (1.0, Axis::log("run time, median [s]", all(lines).map(|r| r.seconds))),
+        Clock::First => (1.0, Axis::log(&panel.time(), all(lines).map(|r| r.seconds))),
         Clock::Repeated => {
             let near = near(&panel.lines).into_iter().map(|d| d.seconds);
             let times = all(lines).map(|r| 1e3 * r.seconds).chain(near.map(|t| 1e3 * t));
@@ -199,6 +196,9 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
             note += &format!(" Not drawn, more than a decade away: {}.", list(&beyond));
         }
     }
+    if clock == Clock::First && panels.iter().any(|panel| panel.by == Seconds::Cpu) {
+        note += " CPU time where the machine was busy: seconds of all processors together.";
+    }
     if question.scalar {
         note += " A single number can be right by chance: a thin line leads to the error as which a run counts, a third of its displacement's.";
     }
@@ -268,6 +268,7 @@ mod tests {
                 title: title.into(),
                 question: &QUESTIONS[0],
                 clock: Clock::First,
+                by: Seconds::Wall,
                 error: "l2",
                 lines: vec![Line { label: "tet4".into(), family: Family::Fem, runs }],
                 reference: None,

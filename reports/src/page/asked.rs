@@ -16,6 +16,8 @@ pub(super) struct AskView {
     what: &'static str,
     /// Whether the time is that of one solve in a loop prepared before.
     repeated: bool,
+    /// The axis of times.
+    time: String,
     /// The error's axis.
     error: String,
     scalar: bool,
@@ -63,6 +65,7 @@ impl AskView {
             title: ask.title.clone(),
             what: ask.question.name,
             repeated: ask.clock == Clock::Repeated,
+            time: ask.time(),
             error: label(ask.error),
             scalar: ask.question.scalar,
             kernels: ask.kernels,

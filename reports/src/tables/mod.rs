@@ -45,7 +45,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend
         orders::convergence_index(runs),
         modes::modes(runs),
         places::frequencies(runs),
-        timing::phases(runs),
+        timing::phases(runs, &set.provenance.machine),
         repeated::repeated(runs),
         cost::cost(runs),
         transfer::schemes(runs),

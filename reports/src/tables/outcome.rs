@@ -97,7 +97,14 @@ pub(super) fn warnings(set: &RunSet) -> Table {
         for text in &reference.warnings {
             let method = format!("reference {}", reference.method);
             let (case, none) = (Cell::Text(&reference.case), Cell::Text(""));
-            table.row(&[case, Cell::Text(&method), none, Cell::Digits(None, 3), Cell::Text(""), Cell::Text(text)]);
+            table.row(&[
+                case,
+                Cell::Text(&method),
+                none,
+                Cell::Digits(None, 3),
+                Cell::Text(""),
+                Cell::Text(text),
+            ]);
         }
     }
     for w in &set.warnings {

@@ -1,6 +1,7 @@
 //! What every phase cost.
 
 use super::{labelled, millimetres as milliseconds};
+use crate::provenance::Machine;
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Spread, Words};
 use crate::table::{Cell, Table};
@@ -9,11 +10,18 @@ use crate::text::ratio;
 const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
 
 /// Median and spread of every phase, and peak memory.
-pub(super) fn phases(runs: &[Run]) -> Table {
+pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
     let mut table = Table::new(
         "timing",
         "Run time by phase",
-        "Median ± interquartile range over repeats, no range where there was one repeat only; most memory at once beyond the input (mesh, cloud, reference). Transfer schemes have a table of their own",
+        &format!(
+            "On {}, {} threads. Seconds are on the wall (median ± interquartile range over repeats, no range where there was one repeat only); of the \
+             processors (median), where the machine was not quiet or a run of the case took more than 1.2 times as long on the wall; or on the wall, \
+             the least repeat, where runs were made at once. Most memory of the method at once, beyond the input (mesh, cloud, reference), and of the \
+             whole process. Transfer schemes have a table of their own",
+            machine.processor(),
+            machine.threads
+        ),
         &[
             ("case", Words),
             ("ν [1]", Number),
@@ -21,6 +29,7 @@ pub(super) fn phases(runs: &[Run]) -> Table {
             ("nodes", Number),
             ("points", Number),
             ("unknowns", Number),
+            ("seconds", Words),
             ("prepare [ms]", Spread),
             ("assemble [ms]", Spread),
             ("factor [ms]", Spread),
@@ -28,6 +37,7 @@ pub(super) fn phases(runs: &[Run]) -> Table {
             ("transfer [ms]", Spread),
             ("total [ms]", Spread),
             ("memory [MB]", Number),
+            ("process [MB]", Number),
         ],
     );
     let solved = solved(runs);
@@ -44,9 +54,12 @@ pub(super) fn phases(runs: &[Run]) -> Table {
             Cell::Count(run.is.nodes),
             Cell::Count(run.is.points),
             Cell::Count(run.is.dofs),
+            Cell::Text(run.by.word()),
         ];
         cells.extend(times.iter().map(|(m, s)| Cell::Spread(milliseconds(*m), milliseconds(*s))));
-        cells.push(Cell::Digits(run.memory().map(|b| b / 1e6), 3));
+        cells.extend(
+            [run.memory(), run.memory_of_process()].map(|bytes| Cell::Digits(bytes.map(|b| b / 1e6), 3)),
+        );
         table.row(&cells);
     }
     table

@@ -364,6 +364,9 @@ fn provenance() -> Provenance {
             threads: 2,
             load: Some(0.25),
             quiet: Some(true),
+            model: "family 25, model 17, stepping 1".into(),
+            clock: Some(2.45),
+            at_once: 1,
         },
         scenes: vec![SceneHash {
             case: "pure-bending".into(),

@@ -91,6 +91,8 @@ warnings! {
         "time steps are too long: the estimated error of one step over the largest displacement";
     REFERENCE_COARSER: "reference-coarser", None,
         "a run has more nodes than the reference that it is compared with, whose error its own may be; nodes over those of the reference";
+    MACHINE_BUSY: "machine-busy", None,
+        "other programs had the processors while runs were timed; the largest ratio of a run's time to its seconds of the processors";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
         "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
     STABILITY_LOST: "stability-lost", None,

@@ -9,7 +9,7 @@ mod usual;
 use std::io::IsTerminal;
 
 use cases::scene::Scene;
-use reports::Reference;
+use reports::{Reference, Seconds};
 use serde::Serialize;
 
 use crate::cli::args::Format;
@@ -75,13 +75,17 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         return 1;
     }
     let options = RunOptions { picture: args.out.is_some(), ..RunOptions::default() };
-    let found = match search(&scene, &group, ladders(&scene, &chosen), &demand, options) {
+    let mut found = match search(&scene, &group, ladders(&scene, &chosen), &demand, &machine, options) {
         Ok(found) => found,
         Err(bad) => {
             folder.into_iter().for_each(folder::Folder::leave);
             return wrong(&format!("{}: {bad}", args.scene.file.display()));
         }
     };
+    let of_scene = (case_name(&scene), scene.text().to_string());
+    found.set.provenance = provenance::provenance(machine, &[of_scene]);
+    found.set.provenance.source = folder::source(&args.scene.file);
+    study::warn_if_busy(&mut found.set);
     let sentence = sentence(&demand, &found);
     print(args, &scene, &demand, &found, reference.as_ref(), sentence);
     let code = match (found.cheapest(), found.tried.is_empty()) {
@@ -89,7 +93,7 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         (None, false) => 1,
         (None, true) => found.code.max(3),
     };
-    code.max(write(args, &scene, found, machine))
+    code.max(write(args, &scene, found))
 }
 
 fn wrong(what: &str) -> u8 {
@@ -131,6 +135,8 @@ struct Answer<'a> {
     also: Vec<(&'a str, f64)>,
     /// The quickest run that keeps all of them.
     cheapest: Option<&'a Tried>,
+    /// Which seconds are compared: `wall`, `cpu` or `least`.
+    by: Seconds,
     /// All runs, by time.
     runs: &'a [Tried],
     /// What the runs are compared with, and its own error.
@@ -154,6 +160,7 @@ fn print(
             error: demand.error,
             also: demand.also.iter().map(|(quantity, most)| (quantity.name.as_str(), *most)).collect(),
             cheapest: found.cheapest(),
+            by: found.by,
             runs: &found.tried,
             reference,
             sentence,
@@ -162,7 +169,7 @@ fn print(
         return;
     }
     if !found.tried.is_empty() {
-        println!("{}\n", table(demand, &found.tried));
+        println!("{}\n", table(demand, &found.tried, found.by));
     }
     reference.iter().for_each(|reference| print!("{}", text::compared_with(reference)));
     print!("{}", text::warnings(&found.set.warnings));
@@ -176,7 +183,7 @@ fn print(
 }
 
 /// Every run by time, the front marked.
-fn table(demand: &Demand, tried: &[Tried]) -> String {
+fn table(demand: &Demand, tried: &[Tried], by: Seconds) -> String {
     let mut others: Vec<&str> = Vec::new();
     for (name, _) in tried.iter().flat_map(|run| &run.errors) {
         if !others.contains(&name.as_str()) {
@@ -186,7 +193,8 @@ fn table(demand: &Demand, tried: &[Tried]) -> String {
     let percent = |error: Option<f64>| error.map_or("-".into(), |error| text::digits(100.0 * error));
     let mut head = vec!["method".to_string(), "nodes".into(), format!("{} [%]", demand.quantity.name)];
     head.extend(others.iter().map(|name| format!("{name} [%]")));
-    head.extend(["time [s]", "within", "front"].map(String::from));
+    let time = if by == Seconds::Wall { "time [s]".into() } else { format!("{} time [s]", by.word()) };
+    head.extend([time, "within".into(), "front".into()]);
     let mut rows = vec![head];
     for run in tried {
         let mut row = vec![run.method.clone(), run.nodes.to_string(), percent(run.error)];
@@ -213,7 +221,8 @@ fn asked(part: f64) -> String {
 
 /// All that is demanded, in words.
 fn bound(demand: &Demand) -> String {
-    let also = demand.also.iter().map(|(quantity, most)| format!(" and {} of {}", asked(*most), quantity.name));
+    let also =
+        demand.also.iter().map(|(quantity, most)| format!(" and {} of {}", asked(*most), quantity.name));
     format!("{} of {}{}", asked(demand.error), demand.quantity.name, also.collect::<String>())
 }
 
@@ -264,12 +273,9 @@ fn sentence(demand: &Demand, found: &Found) -> String {
 }
 
 /// Writes the folder of results, if one is asked for.
-fn write(args: &PickArgs, scene: &Scene, mut found: Found, machine: reports::Machine) -> u8 {
+fn write(args: &PickArgs, scene: &Scene, mut found: Found) -> u8 {
     let Some(out) = &args.out else { return 0 };
     found.set.records.extend(study::reference_records(scene));
-    let of_scene = (case_name(scene), scene.text().to_string());
-    found.set.provenance = provenance::provenance(machine, &[of_scene]);
-    found.set.provenance.source = folder::source(&args.scene.file);
     match reports::write_run(out, &found.set) {
         Ok(()) => report(out, &out.join("report"), None, false),
         Err(bad) => unreported(&bad),

@@ -1,13 +1,14 @@
 //! The search: every approach from coarse to fine, the cheapest next size first, until each is right or dearer than one that is.
 
 use cases::scene::{Method, Scene};
-use reports::{Reference, RunSet};
+use reports::{Machine, Reference, RunSet, Seconds, Took};
 use serde::Serialize;
 
 use super::ladder::Ladder;
 use super::quantity::Quantity;
 use crate::Failure;
 use crate::outcome::Outcome;
+use crate::outcome::timing::Timed;
 use crate::run::{Group, RunOptions};
 use crate::study::{compared_with, failed, stalled};
 
@@ -24,7 +25,8 @@ pub(super) struct Demand {
 impl Demand {
     /// The quantity in which a reference is off itself by more than it may be, with its largest error and the reference's own.
     pub fn beyond(&self, reference: &Reference) -> Option<(&Quantity, f64, f64)> {
-        let all = std::iter::once((&self.quantity, self.error)).chain(self.also.iter().map(|(q, most)| (q, *most)));
+        let all =
+            std::iter::once((&self.quantity, self.error)).chain(self.also.iter().map(|(q, most)| (q, *most)));
         let known = all.filter_map(|(quantity, most)| Some((quantity, most, quantity.band(reference)?)));
         known.into_iter().find(|(_, most, own)| own > most)
     }
@@ -40,7 +42,11 @@ pub(super) struct Tried {
     pub error: Option<f64>,
     /// Errors of the others by their names.
     pub errors: Vec<(String, f64)>,
+    /// By the seconds that all are compared by.
     pub seconds: f64,
+    /// The seconds on the wall, of all processors together, and the least repeat on the wall.
+    #[serde(skip)]
+    pub timed: Timed,
     pub status: &'static str,
     /// Whether all that is demanded holds.
     pub within: bool,
@@ -55,6 +61,8 @@ pub(super) struct Found {
     pub set: RunSet,
     /// Approaches whose next size was foreseen to take too long: a name and the seconds.
     pub too_long: Vec<(String, f64)>,
+    /// The seconds by which runs are compared.
+    pub by: Seconds,
     /// Exit code of what failed.
     pub code: u8,
 }
@@ -75,6 +83,7 @@ pub(super) fn search(
     group: &Group,
     mut ladders: Vec<Ladder>,
     demand: &Demand,
+    machine: &Machine,
     options: RunOptions,
 ) -> Result<Found, String> {
     let mut found = Found::default();
@@ -126,6 +135,8 @@ pub(super) fn search(
             }
         }
     }
+    found.by = Seconds::of(machine, found.tried.iter().map(|run| run.timed.took()));
+    found.tried.iter_mut().for_each(|run| run.seconds = run.timed.by(found.by));
     let band = group.reference().and_then(|reference| demand.quantity.band(&reference));
     mark_front(&mut found.tried, band.unwrap_or(0.0));
     Ok(found)
@@ -171,18 +182,25 @@ fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     let within = keeps(&demand.quantity, demand.error)
         && demand.also.iter().all(|(quantity, most)| keeps(quantity, *most))
         && !is_reference;
-    let total = outcome.phases.iter().find(|timed| timed.phase == "total");
+    let total = outcome.total().cloned().unwrap_or_default();
     Tried {
         method: outcome.identity.method.clone(),
         nodes: outcome.size.nodes,
         dofs: outcome.size.dofs,
         error,
         errors,
-        seconds: total.map_or(0.0, |timed| timed.summary().median),
+        seconds: undisturbed(&total),
+        timed: total,
         status: if is_reference { "reference" } else { outcome.status },
         within,
         front: false,
     }
+}
+
+/// Seconds that a run would take if it had the processors for itself, as far as both clocks say.
+fn undisturbed(total: &Timed) -> f64 {
+    let Took { wall, cpu } = total.took();
+    cpu.map_or(wall, |cpu| cpu.min(wall))
 }
 
 /// Marks the runs that no other beats in time and error, and sorts all by time. No error counts for less than `band`, that of the reference.
@@ -209,6 +227,7 @@ mod tests {
             error,
             errors: Vec::new(),
             seconds,
+            timed: Timed::default(),
             status,
             within: false,
             front: false,

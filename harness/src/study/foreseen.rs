@@ -1,0 +1,106 @@
+//! What the runs of a study are about to take: by what they took before where that is stored, otherwise by an estimate, which learns from the
+//! stored ones.
+
+use std::collections::BTreeMap;
+
+use super::tasks::Task;
+use super::{Plan, QUICK, REPEATS, VerifyArgs, store};
+use crate::scenario::{estimate, of_reference};
+
+/// Seconds of the tasks of a plan, all repeats included.
+pub(super) struct Foreseen {
+    /// By task.
+    seconds: Vec<f64>,
+    /// Whether they are stored.
+    known: Vec<bool>,
+    /// Seconds that were measured over those estimated, of the tasks of a scene that are stored; and of all of them.
+    of_scene: BTreeMap<usize, f64>,
+    of_all: f64,
+}
+
+impl Plan {
+    /// What the tasks take, with the times stored in the folder `--times`.
+    pub(super) fn foreseen(&self, args: &VerifyArgs) -> Foreseen {
+        let estimated: Vec<f64> = self.tasks.iter().map(|task| self.estimated(task, args)).collect();
+        let stored = args
+            .times
+            .as_ref()
+            .map(|folder| store(&VerifyArgs { out: folder.clone(), ..VerifyArgs::of(folder) }));
+        let took = |index: usize| stored.as_ref()?.seconds(&self.key(index, args));
+        let known: Vec<Option<f64>> = (0..self.tasks.len()).map(took).collect();
+        let ratios = || {
+            let pairs = known.iter().zip(&estimated).zip(&self.tasks);
+            pairs.filter_map(|((known, estimated), task)| Some((task.scene, (*known)? / estimated)))
+        };
+        let mut by_scene: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        ratios().for_each(|(scene, ratio)| by_scene.entry(scene).or_default().push(ratio));
+        let of_scene = by_scene.into_iter().map(|(scene, ratios)| (scene, median(ratios))).collect();
+        let of_all = median(ratios().map(|(_, ratio)| ratio).collect());
+        let mut foreseen = Foreseen { seconds: Vec::new(), known: Vec::new(), of_scene, of_all };
+        let tasks = self.tasks.iter().zip(known.iter().zip(estimated));
+        foreseen.seconds = tasks
+            .map(|(task, (known, estimated))| {
+                known.unwrap_or_else(|| estimated * foreseen.factor(task.scene))
+            })
+            .collect();
+        foreseen.known = known.iter().map(Option::is_some).collect();
+        foreseen
+    }
+
+    /// An estimate of what a task takes with its repeats.
+    fn estimated(&self, task: &Task, args: &VerifyArgs) -> f64 {
+        let repeats = if args.quick { QUICK } else { REPEATS };
+        let once = estimate(&self.scenes[task.scene].2, &task.method.family).seconds;
+        // Short runs are repeated for their times.
+        once * (1.0 + repeats.seconds / once).min(repeats.most as f64)
+    }
+
+    /// Seconds that the reference of a scene takes with what it is held against, where it is solved.
+    pub(super) fn reference_seconds(&self, scene: usize, foreseen: &Foreseen) -> f64 {
+        let once = of_reference(&self.scenes[scene].2).map_or(0.0, |reference| reference.seconds);
+        WITH_WITNESS * once * foreseen.factor(scene)
+    }
+}
+
+/// A reference with the same method on a coarser mesh over the reference alone.
+const WITH_WITNESS: f64 = 1.125;
+
+impl Foreseen {
+    /// Seconds of a task.
+    pub(super) fn of(&self, task: usize) -> f64 {
+        self.seconds[task]
+    }
+
+    /// Whether a task took its seconds before.
+    pub(super) fn is_stored(&self, task: usize) -> bool {
+        self.known[task]
+    }
+
+    /// What estimates of a scene are multiplied by.
+    pub(super) fn factor(&self, scene: usize) -> f64 {
+        self.of_scene.get(&scene).copied().unwrap_or(self.of_all)
+    }
+}
+
+/// 1 of no numbers.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    match numbers.len() {
+        0 => 1.0,
+        n if n % 2 == 1 => numbers[n / 2],
+        n => 0.5 * (numbers[n / 2 - 1] + numbers[n / 2]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::median;
+
+    #[test]
+    fn the_median_of_nothing_leaves_estimates_as_they_are() {
+        assert_eq!(
+            [vec![], vec![4.0], vec![9.0, 1.0], vec![3.0, 1.0, 2.0]].map(median),
+            [1.0, 4.0, 5.0, 2.0]
+        );
+    }
+}
