@@ -89,7 +89,9 @@ fn the_cheapest_within_the_error_is_named_and_nothing_is_written() {
 #[test]
 fn what_no_method_reaches_is_said() {
     let dir = tempfile::tempdir().unwrap();
-    let coarse = block().replace("size = { level = 1 }", "series = \"all\", size = { level = 1 }");
+    let coarse = block()
+        .replace("\"hex20\", size = { level = 1 }", "\"hex20\", size = { cells = [2, 2, 1] }")
+        .replace("family = \"fem\"", "series = \"all\", family = \"fem\"");
     let answer = answer(&dir, &coarse, &["--error", "2%"], 1);
     assert!(answer["cheapest"].is_null() && runs(&answer).len() == 2, "{answer}");
     assert!(
@@ -103,7 +105,10 @@ fn what_no_method_reaches_is_said() {
 #[test]
 fn a_right_force_alone_is_no_answer() {
     let dir = tempfile::tempdir().unwrap();
-    let text = format!("{PLATE}reference = {{ method = \"hex20\", size = {{ cells = [8, 8, 4] }} }}\n");
+    let methods =
+        "method = [\n    { id = \"hex20\", family = \"fem\", element = \"hex20\", size = { level = 1 } },";
+    let plate = PLATE.replace("method = [", methods);
+    let text = format!("{plate}reference = {{ method = \"hex20\", size = {{ cells = [8, 8, 4] }} }}\n");
     let force = &["--error", "5%", "--quantity", "force", "--method", "tet10", "--at-most", "2 s"];
     let found = answer(&dir, &text, force, 0);
     // Of a single number the displacement has to be right as well, to three times the error.
@@ -111,7 +116,18 @@ fn a_right_force_alone_is_no_answer() {
     assert!(found["cheapest"]["error"].as_f64().unwrap() <= 0.05, "{found}");
     // One size of each, none of which has the displacement.
     let text = text.replace("family", "series = \"all\", family");
-    let asked = ["--error", "5%", "--quantity", "force", "--also", "displacement=3.5%"];
+    let asked = [
+        "--error",
+        "5%",
+        "--quantity",
+        "force",
+        "--also",
+        "displacement=3.5%",
+        "--method",
+        "hex8",
+        "--method",
+        "tet10",
+    ];
     let found = answer(&dir, &text, &asked, 1);
     assert!(found["cheapest"].is_null(), "{found}");
     let sentence = found["sentence"].as_str().unwrap();
