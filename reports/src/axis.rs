@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_wrong_result_is_silent_unless_it_warns_or_refuses() {
-        let told: &[&str] = &["estimated-error"];
+        let told: &[&str] = &["stress-jump"];
         let axis = axis(&[
             (Some(0.01), &[]),
             (Some(0.019), &[]),

@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-20;
 
 /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1; `None` without stress, and of
 /// tissue that relaxes, whose stress is that of its past.
-pub(super) fn estimated_error(run: &Solved) -> Option<f64> {
+pub(super) fn stress_jump(run: &Solved) -> Option<f64> {
     let Solved { setup, prepared, solution, method } = *run;
     if setup.relaxes() {
         return None;

@@ -31,7 +31,7 @@ struct Triangle {
 /// the displacement, which is across a body that bends or is pressed, and along one that is stretched or sheared. Errors against
 /// an exact solution need no such guess.
 pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
-    let jump = metrics.iter().find(|m| *m.entry == metric::ESTIMATED_ERROR).map(|m| m.value);
+    let jump = metrics.iter().find(|m| *m.entry == metric::STRESS_JUMP).map(|m| m.value);
     if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {
         return Ok(None);
     }

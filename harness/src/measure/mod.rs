@@ -129,8 +129,8 @@ pub(crate) fn measure(
     if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
-    if let Some(estimate) = estimate::estimated_error(run) {
-        push(metrics, &metric::ESTIMATED_ERROR, estimate);
+    if let Some(jump) = estimate::stress_jump(run) {
+        push(metrics, &metric::STRESS_JUMP, jump);
     }
     of_tables(metrics, prepared);
     Ok(())

@@ -70,7 +70,7 @@ mod tests {
             wrong: 0.25,
             trials: vec![
                 trial("tet4", 0.3, 0.2, &[]),
-                trial("tet4", 0.45, 0.4, &["estimated-error"]),
+                trial("tet4", 0.45, 0.4, &["stress-jump"]),
                 trial("hex8-mean", 0.3, 0.01, &[]),
                 trial("hex8-mean", 0.45, 0.01, &[]),
                 trial("worse", 0.3, 0.1, &[]),

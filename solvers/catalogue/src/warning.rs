@@ -106,8 +106,8 @@ warnings! {
          the median by strain energy";
     FEW_DIGITS: "few-digits", None,
         "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
-    ESTIMATED_ERROR: "estimated-error", None,
-        "the stress is far from smooth: its estimated error in the energy norm over the norm of the stress";
+    STRESS_JUMP: "stress-jump", None,
+        "the stress is far from smooth: its distance from the stress recovered from it over the norm of both; no error by itself";
 }
 
 #[cfg(test)]

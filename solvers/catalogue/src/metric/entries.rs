@@ -264,8 +264,9 @@ metrics! {
         "iterations with multigrid, of conjugate gradients or with pressures";
     OPERATOR_COMPLEXITY: "operator-complexity", "operator complexity", None, Value, Run,
         "entries of the matrices of all levels of a multigrid solver over those of the finest";
-    ESTIMATED_ERROR: "estimated-error", "estimated energy error", None, Error, Run,
-        "estimated error of the stress in the energy norm over the norm of the stress, from the stress smoothed over patches";
+    STRESS_JUMP: "stress-jump", "jump of the stress", None, Value, Run,
+        "distance between a method's own stress and the smooth one recovered from it, over the norm of both; no error, which can be a \
+         fraction of it or several times as large";
     SMALLEST_FINE_J: "smallest-fine-j", "least J between points", None, Value, Steps,
         "smallest J at the points of a finer quadrature than the method's own, at the end";
     NITSCHE_FACTOR_NEEDED: "nitsche-factor-needed", "needed factor of Nitsche's method", None, Value, Run,

@@ -120,9 +120,15 @@ pub fn find(name: &str) -> Option<&'static Metric> {
     })
 }
 
+/// Metrics that were renamed: old and new.
+const RENAMED: [(&str, &str); 1] = [("estimated-error", "stress-jump")];
+
 /// The metric of exactly that name, or the nearest name.
 pub fn named(name: &str) -> Result<&'static Metric, Problem> {
     METRICS.iter().copied().find(|metric| metric.name == name).ok_or_else(|| {
+        if let Some((_, new)) = RENAMED.iter().find(|(old, _)| *old == name) {
+            return Problem::new(format!("is called '{new}' now")).found(name);
+        }
         let near = nearest(name, METRICS.iter().map(|metric| metric.name));
         let near = near.map_or(String::new(), |near| format!("did you mean '{near}'? "));
         let help = format!("{near}`tissuebench list metrics` explains all of them");
@@ -133,6 +139,12 @@ pub fn named(name: &str) -> Result<&'static Metric, Problem> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_metric_under_its_old_name_is_refused_with_the_new_one() {
+        assert!(RENAMED.iter().all(|(old, new)| find(old).is_none() && find(new).is_some()));
+        assert!(named("estimated-error").unwrap_err().to_string().contains("'stress-jump'"));
+    }
 
     #[test]
     fn every_metric_has_one_name_a_label_and_a_meaning() {
