@@ -160,6 +160,10 @@ fn nodal_dilation_lanes_agree_with_the_plain_loop() {
     let block = Block::new(CellKind::Tet4, [5, 4, 3]);
     let groups = DilationGroups::nodal(&block.volume).unwrap();
     paths_agree(&block, Some(&groups), "tet4 nodal dilation");
+    // Groups that end at the border of two parts, and chunks of points of one part each.
+    let cut = groups.by_part(&regions(&block), block.volume.weights()).unwrap();
+    assert!(cut.len() > groups.len());
+    paths_agree(&block, Some(&cut), "tet4 nodal dilation");
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
         for kind in [CellKind::Hex8, CellKind::Tet10] {
             let block = cube(kind);
             let groups = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
-            let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD);
+            let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD, &[]);
             let mut dilations = vec![Dilation::Standard, Dilation::Groups(&groups)];
             if let Ok(pressure) = &pressure {
                 dilations.push(Dilation::Mixed(pressure));
@@ -166,7 +166,7 @@ fn at_the_end_a_bar_is_a_softer_one() {
     let laws = [Law::NeoHookeanIsochoric(stiff)];
     let block = cube(CellKind::Tet10);
     let groups = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
-    let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD).unwrap();
+    let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD, &[]).unwrap();
     let fixed = symmetric(&block, Some(0.3 * SIDE));
     for dilation in [Dilation::Standard, Dilation::Groups(&groups), Dilation::Mixed(&pressure)] {
         let last = |laws: &[Law], relaxation: &[Option<Prony>]| {

@@ -53,7 +53,8 @@ impl Model {
             Projection::Nodal => Some(DilationGroups::nodal(&volume).unwrap()),
             _ => None,
         };
-        let pressure = (projection == Projection::Mixed).then(|| fem::pressure_rows(&mesh, &rule).unwrap());
+        let pressure =
+            (projection == Projection::Mixed).then(|| fem::pressure_rows(&mesh, &rule, &[]).unwrap());
         Model { mesh, volume, groups, pressure }
     }
 

@@ -134,11 +134,11 @@ words! {
         Standard = "standard",
         /// One per element (B-bar).
         ElementMean = "element-mean",
-        /// One per node.
+        /// One per node and material.
         NodalMean = "nodal-mean",
-        /// One per node, of the points at which it is among the four that count most: of a cloud fewer couplings.
+        /// One per node and material, of the points at which it is among the four that count most: of a cloud fewer couplings.
         NodalNear = "nodal-near",
-        /// An independent pressure field.
+        /// An independent pressure field in each material.
         Mixed = "mixed",
     }
 }

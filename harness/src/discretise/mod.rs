@@ -24,11 +24,11 @@ pub enum Dilation {
     Standard,
     /// One per element or integration cell.
     Element,
-    /// One per node, weighted by the shape values.
+    /// One per node and material, weighted by the shape values.
     Nodal,
     /// The same, each point among the four nodes with the largest values alone.
     Near,
-    /// A pressure field of its own, linear between the corners.
+    /// A pressure field of its own in each material, linear between the corners.
     Mixed,
 }
 
@@ -155,9 +155,10 @@ impl Discretisation {
         self.mesh.region_names().len() > 1
     }
 
-    /// Finds the supports and fills the volume tables that the plan has.
+    /// Finds the supports and fills the volume tables that the plan has; `alike` names the material of each region.
     pub(crate) fn volume(
         &self,
+        alike: &[u16],
         plan: &Plan,
         counters: &mut Counters,
     ) -> Result<(Box<dyn RowSource>, Volume), Failure> {
@@ -167,17 +168,26 @@ impl Discretisation {
         if !self.interpolates {
             gradients::check(Key::Method("basis"), self.nodes(), rows.at())?;
         }
+        let region = if plan.runs(StageName::Tensors) { source.regions() } else { Vec::new() };
+        // A dilation, and a pressure, jump at the border of two materials.
+        let several = alike.iter().any(|&material| material != alike[0]);
+        let by_material = |groups: DilationGroups| match several {
+            true => {
+                let parts: Vec<u16> = region.iter().map(|&r| alike[usize::from(r)]).collect();
+                groups.by_part(&parts, rows.weights())
+            }
+            false => Ok(groups),
+        };
         let (mut groups, mut pressure) = (None, None);
         if plan.runs(StageName::Projection) {
             match self.dilation {
                 Dilation::Standard => {}
                 Dilation::Element => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
-                Dilation::Nodal => groups = Some(DilationGroups::nodal(&rows)?),
-                Dilation::Near => groups = Some(DilationGroups::near(&rows)?),
-                Dilation::Mixed => pressure = Some(source.pressure()?.ok_or_else(no_pressure)?),
+                Dilation::Nodal => groups = Some(by_material(DilationGroups::nodal(&rows)?)?),
+                Dilation::Near => groups = Some(by_material(DilationGroups::near(&rows)?)?),
+                Dilation::Mixed => pressure = Some(source.pressure(alike)?.ok_or_else(no_pressure)?),
             }
         }
-        let region = if plan.runs(StageName::Tensors) { source.regions() } else { Vec::new() };
         counters.support_radii += source.supports() as u64;
         counters.volume_rows += rows.weights().len() as u64;
         counters.pressure_parameters += pressure.as_ref().map_or(0, Rows::node_count) as u64;

@@ -85,7 +85,7 @@ pub fn prepare(
     plan: &Plan,
     counters: &mut Counters,
 ) -> Result<Prepared, Failure> {
-    let (source, volume) = method.volume(plan, counters)?;
+    let (source, volume) = method.volume(&setup.alike(), plan, counters)?;
     let spacing = source.spacing(&volume.rows);
     let mut prepared = Prepared {
         source,

@@ -93,6 +93,14 @@ impl Setup {
         })
     }
 
+    /// For each region the first of the same material.
+    pub(crate) fn alike(&self) -> Vec<u16> {
+        let same =
+            |a: usize, b: usize| self.laws[a] == self.laws[b] && self.relaxation[a] == self.relaxation[b];
+        let first = |region: usize| (0..region).find(|&other| same(other, region)).unwrap_or(region);
+        (0..self.laws.len()).map(|region| first(region) as u16).collect()
+    }
+
     /// Whether one linear solve is all there is.
     pub fn is_linear(&self) -> bool {
         matches!(self.procedure, Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. })

@@ -217,7 +217,7 @@ impl RowSource for CloudSource {
         Ok(self.points_per_cell().map(of_cells).transpose()?)
     }
 
-    fn pressure(&self) -> Result<Option<Rows>, SourceError> {
+    fn pressure(&self, _alike: &[u16]) -> Result<Option<Rows>, SourceError> {
         Ok(None)
     }
 

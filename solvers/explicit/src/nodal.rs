@@ -17,7 +17,7 @@
 use rayon::prelude::*;
 use shape::DilationGroups;
 
-use super::chunks::Border;
+use super::chunks::{Border, ChunkNodes};
 use super::force::ExplicitBody;
 use super::moduli::{LaneLaw, close_group};
 use lanes::{LANES, LanePath, on_path};
@@ -26,14 +26,16 @@ use lanes::{LANES, LanePath, on_path};
 const NODES: usize = 1024;
 
 pub(super) struct Nodal {
+    /// Slots by node and part, where groups end at the border of parts; none where a group is a node.
+    border: Option<Border>,
     /// `sum share w (J - 1)` and `B_a` of each slot, then what `closed` has for it.
     slots: Vec<[f64; 2]>,
     constants: Vec<Constants>,
-    /// `sum share w (J - 1)` and `B_a` of each node, then `J_a^(2/3)` and `p_a`.
+    /// `sum share w (J - 1)` and `B_a` of each group, then `J_a^(2/3)` and `p_a`.
     closed: Vec<[f64; 2]>,
 }
 
-/// Of one node: `1 / V_a` (1/m^3), `M_a`, `L_a` and `K_a` (J).
+/// Of one group: `1 / V_a` (1/m^3), `M_a`, `L_a` and `K_a` (J).
 #[derive(Clone, Copy)]
 struct Constants {
     per_volume: f64,
@@ -43,41 +45,59 @@ struct Constants {
 }
 
 impl Nodal {
-    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares.
+    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares, cut by part where there are
+    /// several. `chunks` has the distinct nodes of every chunk, and a chunk the points of one part.
     pub fn new(
         body: &ExplicitBody,
         groups: &DilationGroups,
         laws: &[LaneLaw],
-        slots: usize,
+        chunks: &[ChunkNodes],
     ) -> Option<Nodal> {
         let (rows, weights) = (body.volume.rows(), body.volume.weights());
         let even = rows.values().iter().all(|n| (n - 0.25).abs() < 1e-14);
-        if !even || DilationGroups::nodal(body.volume).as_ref() != Ok(groups) {
+        let part = |q: usize| groups.parts().get(q).map_or(0, |&part| usize::from(part));
+        let parts = groups.parts().iter().max().map_or(1, |&part| usize::from(part) + 1);
+        let mut nodal = DilationGroups::nodal(body.volume).ok()?;
+        if !groups.parts().is_empty() {
+            nodal = nodal.by_part(groups.parts(), weights).ok()?;
+        }
+        if !even || &nodal != groups {
             return None;
         }
-        let mut sums = vec![[0.0; 4]; rows.node_count()];
+        let group = |node: u32, part: usize| node as usize * parts + part;
+        let count = rows.node_count() * parts;
+        let border = (parts > 1).then(|| {
+            let of_chunk = |chunk: &ChunkNodes| {
+                let part = part(chunk.items[0] as usize);
+                chunk.nodes.iter().map(|&node| group(node, part) as u32).collect()
+            };
+            Border::new(count, &chunks.iter().map(of_chunk).collect::<Vec<_>>())
+        });
+        let mut sums = vec![[0.0; 4]; count];
         let moduli: Vec<[f64; 3]> = laws.iter().map(LaneLaw::of_group).collect();
         for (q, &w) in weights.iter().enumerate() {
             let [mu, lambda, quadratic] = moduli[body.region(q) as usize];
             for &node in rows.row(q).0 {
-                let s = &mut sums[node as usize];
+                let s = &mut sums[group(node, part(q))];
                 s[0] += 0.25 * w;
                 s[1] += 0.25 * w * mu;
                 s[2] += 0.25 * w * lambda;
                 s[3] += 0.25 * w * quadratic;
             }
         }
-        // A node of no element has no volume; nothing reads what comes out there.
+        // A node of no element, or of none in a part, has no volume; nothing reads what comes out there.
         let constants = |s: &[f64; 4]| Constants {
             per_volume: if s[0] > 0.0 { 1.0 / s[0] } else { 0.0 },
             mu: s[1],
             lambda: s[2],
             quadratic: s[3],
         };
+        let slots = chunks.iter().map(|chunk| chunk.nodes.len()).sum();
         Some(Nodal {
+            border,
             slots: vec![[0.0; 2]; slots],
             constants: sums.iter().map(constants).collect(),
-            closed: vec![[0.0; 2]; rows.node_count()],
+            closed: vec![[0.0; 2]; count],
         })
     }
 
@@ -86,16 +106,19 @@ impl Nodal {
     }
 
     /// From the sums of the first pass to what the second needs.
-    pub fn close(&mut self, path: LanePath, border: &Border) {
-        let Nodal { slots, constants, closed } = self;
-        border.sum(|slot| slots[slot], |sum| sum, closed);
+    pub fn close(&mut self, path: LanePath, of_nodes: &Border) {
+        let Nodal { border, slots, constants, closed } = self;
+        border.as_ref().unwrap_or(of_nodes).sum(|slot| slots[slot], |sum| sum, closed);
         let tasks = constants.par_chunks(NODES).zip(closed.par_chunks_mut(NODES));
         tasks.for_each(|(constants, closed)| close(path, constants, closed));
     }
 
-    /// `J_a^(2/3)` and `p_a` of each node, and the slots to bring them to.
-    pub fn closed(&mut self) -> (&[[f64; 2]], &mut [[f64; 2]]) {
-        (&self.closed, &mut self.slots)
+    /// `J_a^(2/3)` and `p_a` of each group, the slots to bring them to, and the group of each slot.
+    pub fn closed<'a>(
+        &'a mut self,
+        of_nodes: &'a Border,
+    ) -> (&'a [[f64; 2]], &'a mut [[f64; 2]], &'a Border) {
+        (&self.closed, &mut self.slots, self.border.as_ref().unwrap_or(of_nodes))
     }
 }
 

@@ -28,15 +28,21 @@ pub(super) struct Tet4 {
 }
 
 impl Tet4 {
-    /// Of rows laid out as linear tetrahedra; none for groups other than one per node, weighted evenly.
+    /// Of rows laid out as linear tetrahedra; none for groups other than one per node and part, weighted evenly.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Tet4> {
         let (volume, rows) = (body.volume, body.volume.rows());
-        let order = locality_order(volume.points());
-        let parts = split(rows.node_count(), &order, SIZE, |q| rows.row(q).0.to_vec());
+        let mut order = locality_order(volume.points());
+        // A chunk is of one part, so that each of its nodes stands for one group.
+        let part = |q: &u32| body.groups.and_then(|groups| groups.parts().get(*q as usize));
+        order.sort_by_key(part);
+        let parts: Vec<ChunkNodes> = order
+            .chunk_by(|a, b| part(a) == part(b))
+            .flat_map(|order| split(rows.node_count(), order, SIZE, |q| rows.row(q).0.to_vec()))
+            .collect();
         let lists: Vec<Vec<u32>> = parts.iter().map(|p| p.nodes.clone()).collect();
         let border = Border::new(rows.node_count(), &lists);
         let nodal = match body.groups {
-            Some(groups) => Some(Nodal::new(body, groups, &laws, border.slot_count())?),
+            Some(groups) => Some(Nodal::new(body, groups, &laws, &parts)?),
             None => None,
         };
         let chunk = |part| {
@@ -74,10 +80,10 @@ impl Tet4 {
                     not_inverted
                 });
                 nodal.close(path, border);
-                let (closed, shared) = nodal.closed();
+                let (closed, shared, groups) = nodal.closed(border);
                 border.for_each(shared, sums, |c, shared, sums| {
-                    for (shared, &node) in shared.iter_mut().zip(border.chunk(c)) {
-                        *shared = closed[node as usize];
+                    for (shared, &group) in shared.iter_mut().zip(groups.chunk(c)) {
+                        *shared = closed[group as usize];
                     }
                     sums.fill(Slot::ZERO);
                     dilated(path, laws, &chunks[c], &slots[border.range(c)], shared, sums);

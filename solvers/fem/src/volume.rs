@@ -99,12 +99,18 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
 
 /// Linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`] with the same rule, over
 /// the corner nodes only, numbered in the order of the mesh: the continuous pressure of Taylor-Hood elements
-/// (tet10/P1; Taylor & Hood 1973).
-pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<Rows, FemError> {
-    let mut number = vec![u32::MAX; mesh.points().len()];
+/// (tet10/P1; Taylor & Hood 1973). A corner between several materials has a pressure in each; `alike` names that of each
+/// region, and is empty where all are of one.
+pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Rows, FemError> {
+    let materials = alike.iter().max().map_or(1, |&material| usize::from(material) + 1);
+    let place = |cell: usize, node: u32| {
+        let material = alike.get(usize::from(mesh.region(cell))).map_or(0, |&material| usize::from(material));
+        node as usize * materials + material
+    };
+    let mut number = vec![u32::MAX; mesh.points().len() * materials];
     for cell in 0..mesh.cell_count() {
         for &node in &mesh.cell(cell)[..mesh.kind(cell).corner_count()] {
-            number[node as usize] = 0;
+            number[place(cell, node)] = 0;
         }
     }
     let mut count = 0;
@@ -117,7 +123,7 @@ pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<Rows, FemError> {
         let kind = mesh.kind(cell);
         let corners = &mesh.cell(cell)[..kind.corner_count()];
         for &xi in &rule.rule(kind)?.points {
-            nodes.extend(corners.iter().map(|&n| number[n as usize]));
+            nodes.extend(corners.iter().map(|&n| number[place(cell, n)]));
             if kind.is_tet() {
                 values.extend(Tet4::shape(xi));
             } else {

@@ -6,6 +6,10 @@ use crate::{ShapeError, Vector3, VolumeRows};
 /// Nodes among which [`DilationGroups::near`] shares out a point: in three dimensions those of the tetrahedron around it.
 const NEAREST: usize = 4;
 
+/// Volume of a group over that of its shares taken positive, below which a part of a group that [`DilationGroups::by_part`]
+/// cuts is left out.
+const POSITIVE: f64 = 0.5;
+
 /// Groups of (point, share): group `a` averages the dilation of its points with the weights
 /// `share * w_q`, `V_a = sum_q share_aq w_q`. Shares of one point over all groups sum to one, so that no volume is
 /// lost or counted twice.
@@ -15,6 +19,8 @@ pub struct DilationGroups {
     points: Vec<u32>,
     shares: Vec<f64>,
     point_count: usize,
+    /// Part of each point that groups do not cross; empty where there is one.
+    parts: Vec<u16>,
 }
 
 impl DilationGroups {
@@ -50,7 +56,7 @@ impl DilationGroups {
         let lost = total.iter().position(|t| !((t - 1.0).abs() < 1e-12));
         match lost {
             Some(row) => Err(ShapeError::NotUnity { row, sum: total[row], tolerance: 1e-12 }),
-            None => Ok(DilationGroups { offsets, points, shares, point_count }),
+            None => Ok(DilationGroups { offsets, points, shares, point_count, parts: Vec::new() }),
         }
     }
 
@@ -78,6 +84,11 @@ impl DilationGroups {
     /// Number of quadrature points the groups divide up.
     pub fn point_count(&self) -> usize {
         self.point_count
+    }
+
+    /// Part of each point, that of [`DilationGroups::by_part`]; empty where there is one.
+    pub fn parts(&self) -> &[u16] {
+        &self.parts
     }
 
     /// Points and shares of one group.
@@ -147,6 +158,42 @@ impl DilationGroups {
         DilationGroups::new(rows.len(), offsets, points, shares)
     }
 
+    /// The same groups cut into one for each part among their points: a mean over the border of two materials mixes dilations
+    /// that jump there. `parts` has one entry for each point, `weights` (m^3) are those of the quadrature.
+    ///
+    /// The shares of a cloud can be negative. A piece of a cut group that has hardly a volume is left out, and its points are
+    /// shared out among their other groups.
+    pub fn by_part(&self, parts: &[u16], weights: &[f64]) -> Result<DilationGroups, ShapeError> {
+        for (what, found) in [("parts of points", parts.len()), ("weights", weights.len())] {
+            if found != self.point_count {
+                return Err(ShapeError::Length { what, found, expected: self.point_count });
+            }
+        }
+        let (mut offsets, mut points, mut shares) = (vec![0], Vec::new(), Vec::new());
+        let mut kept = vec![1.0; self.point_count];
+        for a in 0..self.len() {
+            let (of_group, by) = self.group(a);
+            let mut entries: Vec<(u32, f64)> = of_group.iter().copied().zip(by.iter().copied()).collect();
+            let part = |entry: &(u32, f64)| parts[entry.0 as usize];
+            entries.sort_by_key(part);
+            for piece in entries.chunk_by(|x, y| part(x) == part(y)) {
+                let volume = |size: fn(f64) -> f64| -> f64 {
+                    piece.iter().map(|&(q, share)| size(share) * weights[q as usize]).sum()
+                };
+                if piece.len() < entries.len() && volume(|share| share) <= POSITIVE * volume(f64::abs) {
+                    piece.iter().for_each(|&(q, share)| kept[q as usize] -= share);
+                    continue;
+                }
+                points.extend(piece.iter().map(|entry| entry.0));
+                shares.extend(piece.iter().map(|entry| entry.1));
+                offsets.push(points.len());
+            }
+        }
+        shares.iter_mut().zip(&points).for_each(|(share, &q)| *share /= kept[q as usize]);
+        let groups = DilationGroups::new(self.point_count, offsets, points, shares)?;
+        Ok(DilationGroups { parts: parts.to_vec(), ..groups })
+    }
+
     /// Volume `V_a` (m^3) and averaged gradient row `b_a = sum_q share w_q grad N / V_a` (1/m) of one group, by
     /// ascending node. `scratch` holds one vector per node and is zero on entry and on return.
     pub fn averaged_gradient(
@@ -213,6 +260,26 @@ mod tests {
         assert!(close(&of(0), [0.3, 0.0, 0.2, 0.2, 0.3]), "{:?}", of(0));
         let sum = 0.9375;
         assert!(close(&of(1), [0.5 / sum, 0.25 / sum, 0.125 / sum, 0.0625 / sum, 0.0]), "{:?}", of(1));
+    }
+
+    #[test]
+    fn a_group_does_not_cross_the_border_of_two_parts() {
+        let volume = volume();
+        let whole = DilationGroups::nodal(&volume).unwrap();
+        let cut = whole.by_part(&[0, 1, 0], volume.weights()).unwrap();
+        let part = |q: &u32| [0, 1, 0][*q as usize];
+        assert!((0..cut.len()).all(|a| cut.group(a).0.iter().all(|q| part(q) == part(&cut.group(a).0[0]))));
+        let sum = |groups: &DilationGroups, point: u32| -> f64 {
+            let entries = |a: usize| groups.group(a).0.iter().zip(groups.group(a).1);
+            (0..groups.len()).flat_map(entries).filter(|(q, _)| **q == point).map(|(_, share)| share).sum()
+        };
+        assert!((0..3).all(|q| (sum(&cut, q) - 1.0).abs() < 1e-15));
+        // Node 4 counts for -0.05 of the first point: such a piece has no volume, and the others take it over.
+        assert_eq!((0..cut.len()).filter(|&a| cut.group(a).1.iter().any(|share| *share < 0.0)).count(), 0);
+        // Points of one part have the groups that they had.
+        let uncut = whole.by_part(&[1; 3], volume.weights()).unwrap();
+        assert!((0..whole.len()).all(|a| whole.group(a) == uncut.group(a)) && uncut.len() == whole.len());
+        assert!(whole.by_part(&[0, 1], volume.weights()).is_err());
     }
 
     #[test]

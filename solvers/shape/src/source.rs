@@ -56,8 +56,9 @@ pub trait RowSource: Send + Sync {
     /// One group of points for each cell; `None` where the quadrature does not go by cells.
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;
 
-    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none.
-    fn pressure(&self) -> Result<Option<Rows>, SourceError>;
+    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none. It is
+    /// continuous in each material alone; `alike` names that of each region.
+    fn pressure(&self, alike: &[u16]) -> Result<Option<Rows>, SourceError>;
 
     /// A coarser mesh whose functions the method's nodes hold exactly; `None` where there is none.
     fn coarser(&self) -> Result<Option<Coarser>, SourceError> {

@@ -126,7 +126,7 @@ fn case() -> Case {
     let mesh = box_mesh(kind, Point3::origin(), max, [2, 1, 1], [1.0; 3], jitter).unwrap();
     let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
     let element = fem::element_dilation(&mesh, &VolumeRule::STANDARD).unwrap();
-    let pressure = fem::pressure_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+    let pressure = fem::pressure_rows(&mesh, &VolumeRule::STANDARD, &[]).unwrap();
     // Positive shares that overlap: the corner values of the pressure.
     let mut lists = vec![Vec::new(); pressure.node_count()];
     for q in 0..pressure.len() {
