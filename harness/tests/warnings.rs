@@ -139,7 +139,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     };
     let found = patch("0.4999", "\"penalty\"");
     // The stress is off by a fifth, and the warning says about as much.
-    assert!((metric(&found, "stress") - 0.21).abs() < 0.02, "{found}");
+    assert!((metric(&found, "stress") - 0.19).abs() < 0.02, "{found}");
     assert_eq!(codes(&found), ["support-leaks"]);
     assert!((found["warnings"][0]["value"].as_f64().unwrap() - 0.21).abs() < 0.05, "{found}");
     assert!(codes(&patch("0.4999", "\"nitsche\"")).is_empty());
@@ -167,9 +167,9 @@ method = [
     assert!(codes(&reduced).contains(&"folded") && !codes(&full).contains(&"folded"), "{full}");
 }
 
-/// A law has no stress where the body is folded: no error of the stress, and a warning in its place.
+/// A cloud folded between its points has a stress at them, which is of no use: two warnings, and an error beyond 100 %.
 #[test]
-fn a_folded_cloud_has_no_stress_error() {
+fn a_folded_cloud_is_told() {
     let dir = tempfile::tempdir().unwrap();
     let text = |poisson: f64| {
         format!(
@@ -185,7 +185,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     };
     let folded = run(&dir, &text(0.4999)).remove(0);
     assert!(metric(&folded, "smallest-fine-j") < 0.0 && codes(&folded).contains(&"folded"), "{folded}");
-    assert!(folded["metrics"]["stress"].is_null(), "{folded}");
+    assert!(codes(&folded).contains(&"stress-jump") && metric(&folded, "stress") > 1.0, "{folded}");
     assert!(metric(&run(&dir, &text(0.3)).remove(0), "stress") < 1.0);
 }
 

@@ -107,6 +107,10 @@ pub struct Discretisation {
     pub interpolates: bool,
     /// Whether shape functions reach across borders between regions.
     pub blends: bool,
+    /// Order of the polynomials that the shape functions hold: 1 or 2.
+    pub order: usize,
+    /// Whether it integrates at so few points that much of the strain between them has no energy.
+    pub reduced: bool,
     /// Essential conditions.
     pub essential: Essential,
     /// Volumetric projection.

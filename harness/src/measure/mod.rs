@@ -2,7 +2,6 @@
 
 mod dead_pressure;
 mod displacement;
-mod estimate;
 mod exact_fit;
 mod few_cells;
 mod large_strain;
@@ -10,7 +9,6 @@ pub(crate) mod mean_pressure;
 mod modes;
 pub(crate) mod norms;
 mod over_time;
-mod own_stress;
 mod patch;
 mod penetration;
 mod picture;
@@ -20,6 +18,7 @@ mod probes;
 mod request;
 mod states;
 mod step_history;
+mod stress;
 mod surface;
 mod transfer;
 mod warnings;
@@ -37,6 +36,7 @@ use crate::prepare::Prepared;
 use crate::procedure::Solution;
 use crate::scenario::setup::Setup;
 use norms::{difference, exact_at, norms, relative};
+use stress::Recovered;
 
 pub(crate) use displacement::displacement;
 pub(crate) use modes::report as report_modes;
@@ -84,7 +84,7 @@ pub(crate) fn measure(
         dilation: prepared.volume.groups.as_ref(),
     };
     if let Some(exact) = setup.exact.as_deref() {
-        errors_in_the_volume(metrics, run, &body, exact)?;
+        errors_in_the_volume(metrics, run, exact)?;
     }
     errors_at_targets(metrics, run, &field.values, request);
     for (axis, entry) in [&metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z].into_iter().enumerate() {
@@ -129,7 +129,7 @@ pub(crate) fn measure(
     if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
-    if let Some(jump) = estimate::stress_jump(run) {
+    if let Some(jump) = Recovered::new(run).and_then(|recovered| recovered.jump()) {
         push(metrics, &metric::STRESS_JUMP, jump);
     }
     of_tables(metrics, prepared);
@@ -148,31 +148,10 @@ fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
     Ok(gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).reduce(f64::min))
 }
 
-/// Norms over the body against an exact solution. Stresses are compared with Hooke's; a pressure field of its own is another
-/// stress than the displacement's.
-fn errors_in_the_volume(
-    metrics: &mut Vec<Metric>,
-    run: &Solved,
-    body: &Body,
-    exact: &dyn Exact,
-) -> Result<(), Failure> {
-    let Solved { setup, prepared, solution, .. } = *run;
-    let hooke =
-        setup.laws.iter().all(Law::is_small_strain) && prepared.volume.pressure.is_none() && !setup.relaxes();
-    let (fine, region) = prepared.fine_volume()?;
-    if !hooke {
-        if let Some(value) = norms::l2(&fine, &solution.u, exact) {
-            push(metrics, &metric::L2, value);
-        }
-        // A solution at large strain states the stress of the body's own law; a projected dilation has another.
-        let own = prepared.volume.groups.is_none() && prepared.volume.pressure.is_none() && !setup.relaxes();
-        if own && exact.is_large_strain() {
-            let stress = norms::stress(&setup.laws, &fine, &region, &solution.u, exact);
-            stress.into_iter().for_each(|value| push(metrics, &metric::STRESS, value));
-        }
-        return Ok(());
-    }
-    let n = norms(body, &fine, &region, &solution.u, exact)?;
+/// Norms over the body against an exact solution.
+fn errors_in_the_volume(metrics: &mut Vec<Metric>, run: &Solved, exact: &dyn Exact) -> Result<(), Failure> {
+    let (fine, region) = run.prepared.fine_volume()?;
+    let n = norms(run, &fine, &region, exact);
     let found = [
         (&metric::L2, n.l2),
         (&metric::ENERGY, n.energy),

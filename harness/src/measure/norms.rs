@@ -3,10 +3,9 @@
 use cases::exact::Exact;
 use material::{Law, LinearElastic, Material as _};
 use shape::{Matrix3, Point3, Vector3, VolumeRows};
-use statics::Body;
 
-use super::mean_pressure::cauchy;
-use crate::Failure;
+use super::Solved;
+use super::stress::{Recovered, own_stress};
 
 /// Relative errors over the body. A norm whose exact value vanishes (the pressure of a traceless stress, the energy
 /// of a rigid motion) is absent rather than divided by zero.
@@ -17,9 +16,9 @@ pub struct Norms {
     /// `sqrt(int ds : C^-1 : ds / int s : C^-1 : s)`, `ds` the stress error: for a plain displacement method the
     /// energy norm of the strain error, with a volumetric projection the same with the projected pressure.
     pub energy: Option<f64>,
-    /// `|p_h - p| / |p|` in L2, p the mean stress.
+    /// `|p_h - p| / |p|` in L2, p the mean of the recovered stress.
     pub pressure: Option<f64>,
-    /// `|s_h - s| / |s|` in L2, over all components.
+    /// `|s_h - s| / |s|` in L2, over all components of the recovered stress.
     pub stress: Option<f64>,
 }
 
@@ -42,83 +41,65 @@ impl Ratio {
     }
 }
 
-/// `|u_h - u| / |u|` in L2 alone: what can be said where the stress is that of another law.
-pub fn l2(fine: &VolumeRows, u: &[Vector3], exact: &dyn Exact) -> Option<f64> {
+/// Errors of a run, over `fine`, a quadrature of higher order than the solver's own, with the region of each point. Solutions at
+/// large strain state their own Cauchy stress, over the undeformed body, and no energy.
+pub(super) fn norms(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exact) -> Norms {
+    let Solved { setup, solution, .. } = *run;
     let mut l2 = Ratio::default();
-    for ((x, w), u) in fine.points().iter().zip(fine.weights()).zip(fine.rows().apply(u)) {
+    for ((x, w), u) in fine.points().iter().zip(fine.weights()).zip(fine.rows().apply(&solution.u)) {
         let u_exact = exact.displacement(x);
         l2.add(*w, (u - u_exact).norm_squared(), u_exact.norm_squared());
     }
-    l2.root(l2.exact)
-}
-
-/// `|s_h - s| / |s|` in L2 over the undeformed body, s the Cauchy stress of a solution at large strain. `fine` as in [`norms`].
-/// Absent too where the body is folded at a point, at which a law has no stress: nearly incompressible clouds can be between the
-/// points that they integrate at.
-pub fn stress(
-    laws: &[Law],
-    fine: &VolumeRows,
-    fine_region: &[u16],
-    u: &[Vector3],
-    exact: &dyn Exact,
-) -> Option<f64> {
-    let mut all = Ratio::default();
-    let mut scale = 0.0;
-    let gradients = fine.at().displacement_gradients(u);
-    for (q, (x, w)) in fine.points().iter().zip(fine.weights()).enumerate() {
-        if (Matrix3::identity() + gradients[q]).determinant() <= 0.0 {
-            return None;
-        }
-        let law = &laws[fine_region.get(q).copied().unwrap_or(0) as usize];
-        let s = exact.stress(x);
-        all.add(*w, (cauchy(law, &gradients[q]) - s).norm_squared(), s.norm_squared());
-        scale += w * law.mu().powi(2) * exact.gradient(x).norm_squared();
-    }
-    all.root(scale)
-}
-
-/// Errors of the parameters `u`. `fine` (with the region of each point) is a quadrature of higher order than the
-/// solver's own; with a volumetric projection, whose pressure lives at the solver's points, stresses are compared
-/// there.
-pub fn norms(
-    body: &Body,
-    fine: &VolumeRows,
-    fine_region: &[u16],
-    u: &[Vector3],
-    exact: &dyn Exact,
-) -> Result<Norms, Failure> {
-    let mut l2 = Ratio::default();
-    let field = fine.rows().apply(u);
-    let mut gradient_scale = 0.0;
-    for (q, x) in fine.points().iter().enumerate() {
-        let u_exact = exact.displacement(x);
-        l2.add(fine.weights()[q], (field[q] - u_exact).norm_squared(), u_exact.norm_squared());
-        gradient_scale += fine.weights()[q] * exact.gradient(x).norm_squared();
-    }
-    let (points, weights, region, stress) = if body.dilation.is_some() {
-        let stress = statics::body_stress(body, u)?;
-        (body.volume.points(), body.volume.weights(), body.region, stress)
-    } else {
-        let stress = statics::stress(fine.at(), u, body.materials, fine_region)?;
-        (fine.points(), fine.weights(), fine_region, stress)
-    };
-    let (mut energy, mut pressure, mut all) = (Ratio::default(), Ratio::default(), Ratio::default());
-    for (q, x) in points.iter().enumerate() {
-        let law = &body.materials[region.get(q).copied().unwrap_or(0) as usize];
-        let s = law.stress(&exact.gradient(x));
-        let ds = stress[q] - s;
-        let w = weights[q];
-        energy.add(w, complementary(law, &ds), complementary(law, &s));
+    let small = setup.laws.iter().all(Law::is_small_strain);
+    let found = Norms { l2: l2.root(l2.exact), ..Norms::default() };
+    let comparable = small || exact.is_large_strain();
+    let Some(recovered) = Recovered::new(run).filter(|_| comparable) else { return found };
+    let (mut pressure, mut all, mut scale) = (Ratio::default(), Ratio::default(), 0.0);
+    for (q, (x, &w)) in fine.points().iter().zip(fine.weights()).enumerate() {
+        let region = fine_region.get(q).copied().unwrap_or(0);
+        let law = &setup.materials[usize::from(region)];
+        let gradient = exact.gradient(x);
+        let s = if exact.is_large_strain() { exact.stress(x) } else { law.stress(&gradient) };
+        let ds = recovered.at(x, region, fine.rows().row(q)) - s;
         pressure.add(w, (ds.trace() / 3.0).powi(2), (s.trace() / 3.0).powi(2));
         all.add(w, ds.norm_squared(), s.norm_squared());
+        scale += w * law.mu().powi(2) * gradient.norm_squared();
     }
-    let law = &body.materials[0];
-    Ok(Norms {
-        l2: l2.root(l2.exact),
-        energy: energy.root(law.mu() * gradient_scale),
-        pressure: pressure.root(all.exact),
-        stress: all.root(law.mu().powi(2) * gradient_scale),
-    })
+    let stress = all.root(scale);
+    match exact.is_large_strain() {
+        true => Norms { stress, ..found },
+        false => Norms {
+            energy: energy(run, fine, fine_region, exact),
+            pressure: pressure.root(all.exact),
+            stress,
+            ..found
+        },
+    }
+}
+
+/// The energy of the stress error: of the law at the displacement's gradient, over `fine`; of the method's own stress, at its own
+/// points, where that is another, or much of the strain between them has no energy.
+fn energy(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exact) -> Option<f64> {
+    let Solved { method, setup, prepared, solution } = *run;
+    let volume = &prepared.volume;
+    let own = volume.groups.is_some() || volume.pressure.is_some() || method.reduced;
+    let (rows, region) = if own { (&volume.rows, &volume.region[..]) } else { (fine, fine_region) };
+    let law = |q: usize| &setup.materials[region.get(q).map_or(0, |&r| usize::from(r))];
+    let stress = match own {
+        true => own_stress(run, &solution.u, &solution.pressure),
+        false => {
+            let gradients = fine.at().displacement_gradients(&solution.u);
+            gradients.iter().enumerate().map(|(q, h)| law(q).stress(h)).collect()
+        }
+    };
+    let (mut ratio, mut scale) = (Ratio::default(), 0.0);
+    for (q, (x, &w)) in rows.points().iter().zip(rows.weights()).enumerate() {
+        let gradient = exact.gradient(x);
+        let s = law(q).stress(&gradient);
+        ratio.add(w, complementary(law(q), &(stress[q] - s)), complementary(law(q), &s));
+        scale += w * law(q).mu() * gradient.norm_squared();
+    }
+    ratio.root(scale)
 }
 
 /// `s : C^-1 : s = |dev s|^2 / 2 mu + p^2 / kappa`, twice the complementary energy density, Pa.

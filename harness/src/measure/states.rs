@@ -4,7 +4,7 @@ use geometry::{Mesh, Point3, Search, Vector3};
 use shape::Matrix3;
 
 use super::Solved;
-use super::own_stress::OwnStress;
+use super::stress::own_stress;
 use crate::Failure;
 use crate::discretise::Volume;
 use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
@@ -97,9 +97,8 @@ fn skin(set: &PlacedTool, mesh: &Mesh) -> ToolSkin {
 }
 
 fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64]) -> Tensors {
-    let Solved { setup, prepared, .. } = *run;
-    let gradients = prepared.volume.rows.at().displacement_gradients(u);
-    let of_points = OwnStress::new(&setup.laws, prepared, &gradients, parameters).everywhere();
+    let gradients = run.prepared.volume.rows.at().displacement_gradients(u);
+    let of_points = own_stress(run, u, parameters);
     let j: Vec<f64> = gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).collect();
     Tensors {
         stress: cells.of(|q| of_points[q]),

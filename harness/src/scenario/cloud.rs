@@ -218,6 +218,11 @@ impl CloudMethod {
             mesh: self.background.clone(),
             interpolates: false,
             blends: !self.separate,
+            order: match self.functions {
+                Functions::MovingLeastSquares { basis: efg::Basis::Quadratic, .. } => 2,
+                _ => 1,
+            },
+            reduced: false,
             essential,
             dilation: self.dilation,
             inner: inner(&self.integration),

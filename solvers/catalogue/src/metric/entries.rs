@@ -43,11 +43,11 @@ metrics! {
     L2: "l2", "relative L2 error", None, Error, Reference,
         "relative L2 error of the displacement";
     ENERGY: "energy", "relative energy error", None, Error, Reference,
-        "relative error in the energy norm";
+        "relative error of the method's own stress in the energy norm";
     STRESS: "stress", "relative stress error", None, Error, Reference,
-        "relative L2 error of the stress";
+        "relative L2 error of the stress recovered from the method's own points";
     PRESSURE: "pressure", "relative pressure error", None, Error, Reference,
-        "relative L2 error of the pressure";
+        "relative L2 error of the pressure recovered from the method's own points";
     PROBE_ERROR: "probe-error", "relative error at probes", None, Error, Probes,
         "largest relative error at the probes";
     HISTORY_ERROR: "history-error", "relative error over time", None, Error, Exact,

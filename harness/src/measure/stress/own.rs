@@ -1,0 +1,37 @@
+//! Stress (Pa) as the method itself has it at its quadrature points: of the law at its own dilation, with the mean pressure of its
+//! projection.
+
+use shape::{Matrix3, Vector3};
+
+use super::super::mean_pressure::{self, cauchy, dilated, dilation, mean};
+use super::Solved;
+
+/// Cauchy stress at every quadrature point, of nodal parameters `u` (m) and the parameters (Pa) of a pressure field, where there is
+/// one.
+pub(in super::super) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
+    let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
+    let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| usize::from(r))];
+    let gradients = volume.rows.at().displacement_gradients(u);
+    let mut stress: Vec<Matrix3> = match &volume.groups {
+        None => gradients.iter().enumerate().map(|(q, h)| cauchy(law(q), h)).collect(),
+        Some(groups) => {
+            let mut stress = vec![Matrix3::zeros(); gradients.len()];
+            for a in 0..groups.len() {
+                let (points, shares) = groups.group(a);
+                let theta = mean(points, shares, volume.rows.weights(), &|q| dilation(law(q), &gradients[q]));
+                for (&q, &share) in points.iter().zip(shares) {
+                    let q = q as usize;
+                    stress[q] += cauchy(law(q), &dilated(law(q), &gradients[q], theta)) * share;
+                }
+            }
+            stress
+        }
+    };
+    if volume.groups.is_some() || volume.pressure.is_some() {
+        let pressure = mean_pressure::at_points(laws, volume, &gradients, parameters);
+        for (stress, pressure) in stress.iter_mut().zip(pressure) {
+            *stress -= Matrix3::identity() * (stress.trace() / 3.0 + pressure);
+        }
+    }
+    stress
+}
