@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
-    ExitCode::from(harness::cli::main(harness::cli::Cli::parse()))
+    ExitCode::from(harness::cli::called())
 }

@@ -106,7 +106,7 @@ fn a_scene_is_replaced_only_by_force() {
     assert_eq!(init(&["--young", "5 kPa", "--force"]).code, 0);
     assert!(std::fs::read_to_string(&out).unwrap().contains("young = \"5 kPa\""));
     let onto = tissuebench(&["init", "--file", &file, "--out", &file, "--force"]);
-    assert_fails(&onto, 2, "is the file that is read");
+    assert_fails(&onto, 2, "is the input file");
     drop(dir);
 }
 

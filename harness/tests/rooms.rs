@@ -155,3 +155,45 @@ fn no_meaning_is_read_out_of_names() {
         }
     }
 }
+
+/// Readers take regular files up to a size, and no output replaces an input: this holds where one place opens them. The same of
+/// characters that a terminal obeys.
+#[test]
+fn files_are_opened_and_text_is_printed_in_one_place_each() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();
+    let opens = [
+        "fs::read(",
+        "fs::read_to_string(",
+        "fs::write(",
+        "fs::copy(",
+        "fs::rename(",
+        "fs::remove_file(",
+        "File::open(",
+        "File::create(",
+        "OpenOptions::",
+        "from_path(",
+        "fs::hard_link(",
+    ];
+    let prints = ["io::stdout()", "io::stderr()", "std::println!", "std::eprintln!"];
+    let mut count = 0;
+    for folder in ["harness/src", "reports/src", "cases/src", "python/src", "solvers"] {
+        for (path, text) in files(&root.join(folder)) {
+            let name = path.strip_prefix(&root).unwrap().to_string_lossy().into_owned();
+            if ["/tests", "/benches", "solvers/disk"].iter().any(|part| name.contains(part)) {
+                continue;
+            }
+            let code = text.split("#[cfg(test)]").next().unwrap();
+            let lines = code.lines().map(str::trim).filter(|line| !line.starts_with("//"));
+            for line in lines {
+                let system = ["\"/proc/", "\"/sys/"].iter().any(|folder| line.contains(folder));
+                let opened = opens.iter().find(|call| line.contains(**call) && !system);
+                assert_eq!(opened, None, "{name}: {line}");
+                let asked = ["is_terminal", "choice", "flush"].iter().any(|word| line.contains(word));
+                let printed = prints.iter().find(|call| line.contains(**call) && !asked);
+                assert!(printed.is_none() || name == "harness/src/print.rs", "{name}: {line}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 300, "{count} files");
+}

@@ -15,6 +15,8 @@ use crate::error::input;
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Mesh {
     pub(crate) mesh: Arc<geometry::Mesh>,
+    /// The file that it was read from.
+    source: Option<disk::Identity>,
 }
 
 /// The length of a unit, m.
@@ -46,6 +48,12 @@ pub(crate) fn cells_of<'py>(py: Python<'py>, mesh: &geometry::Mesh) -> PyResult<
     matrix(py, all, kind.node_count())
 }
 
+impl From<geometry::Mesh> for Mesh {
+    fn from(mesh: geometry::Mesh) -> Mesh {
+        Mesh { mesh: Arc::new(mesh), source: None }
+    }
+}
+
 #[pymethods]
 impl Mesh {
     /// From positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
@@ -59,7 +67,7 @@ impl Mesh {
         let mesh = geometry::Mesh::from_flat(positions, vec![kind; cells.nrows()], nodes);
         let mesh = mesh.map_err(|bad| input(py, &bad.to_string()))?;
         quality::check(&mesh).map_err(|bad| input(py, &format!("cells: {bad}")))?;
-        Ok(Mesh { mesh: Arc::new(mesh) })
+        Ok(Mesh::from(mesh))
     }
 
     /// From a file; `unit` is that of its numbers.
@@ -69,7 +77,7 @@ impl Mesh {
         let unit = metres(py, unit)?;
         let read = py.detach(|| files::read(&path, unit));
         let mesh = read.map_err(|bad| input(py, &bad.to_string()))?;
-        Ok(Mesh { mesh: Arc::new(mesh) })
+        Ok(Mesh { source: disk::Identity::of(&path), ..Mesh::from(mesh) })
     }
 
     /// To a file: .msh, .inp, .vtu or the boundary as .stl by its name; `version` is that of Gmsh's format.
@@ -77,6 +85,10 @@ impl Mesh {
     fn write(&self, py: Python<'_>, path: PathBuf, unit: &str, version: Option<&str>) -> PyResult<()> {
         let unit = metres(py, unit)?;
         let format = format(py, &path, version)?;
+        if self.source.is_some() && self.source == disk::Identity::of(&path) {
+            let problem = "is the input file that the mesh was read from; give another name";
+            return Err(input(py, &format!("{}: {problem}", path.display())));
+        }
         let written = py.detach(|| files::write_as(&self.mesh, &path, unit, format));
         written.map_err(|bad| input(py, &bad.to_string()))
     }

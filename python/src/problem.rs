@@ -114,7 +114,7 @@ impl Problem {
 
     #[getter]
     fn mesh(&self) -> Mesh {
-        Mesh { mesh: Arc::new(self.posed.mesh().clone()) }
+        Mesh::from(self.posed.mesh().clone())
     }
 
     /// Whether nodal parameters are displacements, as on a mesh.

@@ -148,10 +148,8 @@ impl Results {
     /// Writes a folder of results with its report.
     fn write(&self, py: Python<'_>, out: PathBuf) -> PyResult<()> {
         unforked(py)?;
-        let written = py.detach(|| {
-            reports::write_run(&out, &self.set(case_name(&self.scene)))?;
-            reports::render(&out, &out.join("report")).map(|_| ())
-        });
+        let written = py
+            .detach(|| reports::write_with_report(&out, &self.set(case_name(&self.scene)), None).map(|_| ()));
         written.map_err(|bad| not_run(py, bad))
     }
 }

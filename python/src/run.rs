@@ -116,7 +116,7 @@ impl Run {
     #[getter]
     fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;
-        Ok(Mesh { mesh: Arc::new(states.mesh().clone()) })
+        Ok(Mesh::from(states.mesh().clone()))
     }
 
     /// Time, part of the load or number of each state.

@@ -24,6 +24,13 @@ def test_a_mesh_goes_to_a_file_and_back(tmp_path):
         mesh.write(tmp_path / "c.msh", version="4.0")
     with pytest.raises(tb.SceneError, match="c.inp: version is of Gmsh's format; write a .msh file"):
         mesh.write(tmp_path / "c.inp", version="4.1")
+    read = tb.Mesh.read(tmp_path / "b.msh")
+    (tmp_path / "link.msh").hardlink_to(tmp_path / "b.msh")
+    before = (tmp_path / "b.msh").read_bytes()
+    for name in ["b.msh", "link.msh"]:
+        with pytest.raises(tb.SceneError, match="is the input file that the mesh was read from"):
+            read.write(tmp_path / name)
+    assert (tmp_path / "b.msh").read_bytes() == before
     assert not (tmp_path / "c.msh").exists() and not (tmp_path / "c.inp").exists()
     with pytest.raises(tb.SceneError, match="names node 9"):
         tb.Mesh(points, [[0, 1, 2, 9]])

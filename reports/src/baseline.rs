@@ -49,8 +49,8 @@ impl Baseline {
 
     /// Reads a baseline file.
     pub fn load(path: &Path) -> Result<Baseline, ReportError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+        let text = disk::read_text(path, disk::Kind::BASELINE)
+            .map_err(|source| ReportError::Io { path: path.into(), source })?;
         toml::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
     }
 

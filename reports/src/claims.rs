@@ -120,7 +120,7 @@ struct File {
 /// A file that can't be read, or is none of claims, with the line.
 pub fn read_claims(path: &Path) -> Result<Vec<Claim>, ReportError> {
     let content = |reason: String| ReportError::Content { path: path.into(), reason };
-    let text = std::fs::read_to_string(path).map_err(|bad| content(bad.to_string()))?;
+    let text = disk::read_text(path, disk::Kind::SCENE).map_err(|bad| content(bad.to_string()))?;
     let file: File = toml::from_str(&text).map_err(|bad| content(bad.to_string().trim_end().into()))?;
     for claim in &file.claim {
         let sound = |r: &Relation| r.at_most > 0.0 && r.at_most.is_finite() && r.tolerance >= 0.0;

@@ -18,6 +18,14 @@ pub enum ReportError {
         /// Name of the study's or scene's file.
         of: String,
     },
+    /// Results without a number.
+    #[error("{} holds no records: there is nothing to {to}", path.display())]
+    Nothing {
+        /// The folder.
+        path: PathBuf,
+        /// What was to be done with them.
+        to: &'static str,
+    },
     /// A record holds a number that isn't finite.
     #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
     NotFinite {

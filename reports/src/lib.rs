@@ -24,6 +24,7 @@ mod asks;
 mod axis;
 pub mod baseline;
 mod body;
+mod cell;
 mod claims;
 mod clouds;
 pub mod commits;
@@ -62,9 +63,11 @@ pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
 pub use record::{Family, Purpose, Record};
 pub use reference::Reference;
-pub use render::{Rendered, render, render_over_commits};
+pub use render::{Rendered, render, render_over_commits, write_with_report};
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
 };
 pub use seconds::{Busy, Seconds, Took};
-pub use store::{begin, end, is_incomplete, provenance_of, read_run, source_of, write_run, write_text};
+pub use store::{
+    begin, end, is_incomplete, provenance_of, read_numbers, read_run, source_of, write_run, write_text,
+};

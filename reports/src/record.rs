@@ -190,6 +190,41 @@ impl Record {
         Ok(())
     }
 
+    /// All of its texts.
+    pub(crate) fn texts_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let own = [
+            &mut self.run,
+            &mut self.case,
+            &mut self.published,
+            &mut self.method,
+            &mut self.series,
+            &mut self.variant,
+            &mut self.axis,
+            &mut self.quantity,
+            &mut self.unit,
+            &mut self.phase,
+            &mut self.statistic,
+        ];
+        let settings = [
+            &mut self.basis,
+            &mut self.neighbourhood,
+            &mut self.kernel,
+            &mut self.dilation,
+            &mut self.integration,
+            &mut self.essential,
+            &mut self.refine,
+            &mut self.split,
+            &mut self.law,
+            &mut self.mass,
+            &mut self.from,
+            &mut self.force_kernel,
+            &mut self.adapter,
+            &mut self.lane_path,
+            &mut self.linear_solver,
+        ];
+        own.into_iter().chain(settings.into_iter().flatten())
+    }
+
     /// Whether the value depends on the machine and the moment (times and memory): such rows are left out when two runs
     /// are compared bit by bit.
     pub fn is_measured(&self) -> bool {

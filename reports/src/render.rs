@@ -9,9 +9,10 @@ use crate::commits;
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
+use crate::run_set::RunSet;
 use crate::seconds;
 use crate::select;
-use crate::store::{make_dir, read_run, remove_files, write_text};
+use crate::store::{end, make_dir, read_marked, read_numbers, remove_files, write_marked, write_text};
 use crate::tables;
 
 /// What rendering wrote.
@@ -36,7 +37,24 @@ pub fn render_over_commits(
     out: &Path,
     history: Option<&Path>,
 ) -> Result<Rendered, ReportError> {
-    let set = read_run(results)?;
+    render_set(&read_numbers(results, "report")?, results, out, history)
+}
+
+/// Writes a run to a folder, and its report to `report` in it. The folder is marked as incomplete until both are there: whatever ends
+/// the program earlier, results do not pass as whole with an older page.
+pub fn write_with_report(dir: &Path, run: &RunSet, history: Option<&Path>) -> Result<Rendered, ReportError> {
+    write_marked(dir, run)?;
+    let rendered = render_set(&read_marked(dir)?, dir, &dir.join("report"), history)?;
+    end(dir)?;
+    Ok(rendered)
+}
+
+fn render_set(
+    set: &RunSet,
+    results: &Path,
+    out: &Path,
+    history: Option<&Path>,
+) -> Result<Rendered, ReportError> {
     let trends = match history {
         Some(history) => commits::shown(history, &set.provenance.source)?,
         None => Vec::new(),
@@ -55,13 +73,13 @@ pub fn render_over_commits(
         files.push(path);
         Ok(())
     };
-    let tables = tables::all(&set, &runs, &clouds, &trends);
+    let tables = tables::all(set, &runs, &clouds, &trends);
     for table in &tables {
         for (ending, text) in [("csv", table.csv()), ("md", table.markdown()), ("tex", table.latex())] {
             write(table_dir.join(format!("{}.{ending}", table.name)), text.as_bytes())?;
         }
     }
-    let drawn: Vec<_> = figures::all(&set, &runs, &trends).into_par_iter().map(draw).collect();
+    let drawn: Vec<_> = figures::all(set, &runs, &trends).into_par_iter().map(draw).collect();
     let drawn: Vec<Painted> = drawn.into_iter().collect::<Result<_, ReportError>>()?;
     for Painted { drawn: Drawn { figure, svg }, png, pdf } in &drawn {
         let path = |ending: &str| figure_dir.join(format!("{}.{ending}", figure.name));
@@ -75,8 +93,8 @@ pub fn render_over_commits(
     let drawn: Vec<Drawn> = drawn.into_iter().map(|painted| painted.drawn).collect();
     let page = out.join("report.html");
     // Beside a page of ours what has our endings in the two folders is ours, and what is not written again is old.
-    let ours = std::fs::read_to_string(&page).is_ok_and(|old| old.contains(page::TITLE));
-    let html = page::html(&set, (&runs, &clouds), &trends, &tables, &drawn, records_from(results, out))?;
+    let ours = disk::read_text(&page, disk::Kind::RESULTS).is_ok_and(|old| old.contains(page::TITLE));
+    let html = page::html(set, (&runs, &clouds), &trends, &tables, &drawn, records_from(results, out))?;
     write(page.clone(), html.as_bytes())?;
     if ours {
         remove_files(&table_dir, &["csv", "md", "tex"], &files)?;

@@ -10,15 +10,16 @@
 //! | `references.json` | what runs are compared with, and how far that is off itself |
 //! | `axes.json` | how methods fare along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements, and the surface at some states for a view in three dimensions; with tools also these and a section with its pressure |
-//! | `incomplete.json` | there from the beginning of a study or run until all of the above is written |
+//! | `incomplete.json` | there from the beginning of a study or run until all of the above is written, and its report |
 //!
 //! Each file is written beside its place and renamed: it is whole, the older one, or not there. Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
 
 use std::collections::HashSet;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use disk::Kind;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +40,7 @@ struct Mark {
     source: String,
 }
 
-/// Marks a folder as one whose results are being made, until [`write_run`] has written them.
+/// Marks a folder as one whose results are being made, until they are written, with their report where they have one.
 /// Records of an earlier run there are no longer read: they would pass for the new ones if this run were killed.
 pub fn begin(dir: &Path, source: &str) -> Result<(), ReportError> {
     make_dir(dir)?;
@@ -54,7 +55,7 @@ pub fn is_incomplete(dir: &Path) -> bool {
 /// Takes the mark away, of results that are whole: all written, or none of them touched.
 pub fn end(dir: &Path) -> Result<(), ReportError> {
     let mark = dir.join(MARK);
-    match fs::remove_file(&mark) {
+    match disk::remove(&mark) {
         Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(&mark, bad)),
         _ => Ok(()),
     }
@@ -62,6 +63,12 @@ pub fn end(dir: &Path) -> Result<(), ReportError> {
 
 /// Writes a run to a folder, which is created where missing; surface fields of an earlier run there are removed.
 pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
+    write_marked(dir, run)?;
+    end(dir)
+}
+
+/// The same, but the folder stays marked as incomplete: for results whose report is still to be rendered.
+pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;
     once(&run.records)?;
@@ -79,7 +86,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     begin(dir, &run.provenance.source)?;
     let mut records = run.records.clone();
     records.sort_by(|a, b| a.order(b));
-    frame::write(dir, &records, &run.provenance)?;
+    frame::write(dir, records, &run.provenance)?;
     write_json(&dir.join("provenance.json"), &run.provenance)?;
     write_json(&dir.join("checks.json"), &run.checks)?;
     write_json(&dir.join("plans.json"), &run.plans)?;
@@ -119,7 +126,7 @@ pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
         write_json(&fields.join(&name), field)?;
         taken.push(name);
     }
-    end(dir)
+    Ok(())
 }
 
 /// Refuses rows that nothing tells apart.
@@ -149,11 +156,22 @@ pub fn provenance_of(dir: &Path) -> Option<Provenance> {
 
 /// Reads a run back from its folder; surface fields in the order of their file names.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
-    let provenance = dir.join("provenance.json");
     if is_incomplete(dir) {
         let of = source_of(dir).unwrap_or_else(|| "a study".into());
         return Err(ReportError::Incomplete { path: dir.into(), of });
     }
+    read_marked(dir)
+}
+
+/// As [`read_run`], but results without a single number are refused: nothing can be said of them.
+pub fn read_numbers(dir: &Path, to: &'static str) -> Result<RunSet, ReportError> {
+    let set = read_run(dir)?;
+    if set.records.is_empty() { Err(ReportError::Nothing { path: dir.into(), to }) } else { Ok(set) }
+}
+
+/// The same of a folder that may be marked.
+pub(crate) fn read_marked(dir: &Path) -> Result<RunSet, ReportError> {
+    let provenance = dir.join("provenance.json");
     if !provenance.exists() {
         return Err(ReportError::NoResults(dir.into()));
     }
@@ -195,31 +213,10 @@ pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
 
 /// Writes a file, whole or not at all.
 pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
-    replace(path, |file| file.write_all(text.as_ref()))
+    disk::replace(path, |file| file.write_all(text.as_ref())).map_err(|source| unwritten(path, source))
 }
 
-/// Writes a file beside its place and renames it, so that what stands there is never half of it.
-pub(crate) fn replace(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> Result<(), ReportError> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    let all = || {
-        let mut file = BufWriter::new(File::create(&partial)?);
-        write(&mut file)?;
-        file.flush()?;
-        drop(file);
-        fs::rename(&partial, path)
-    };
-    all().map_err(|source| {
-        let _ = fs::remove_file(&partial);
-        unwritten(path, source)
-    })
-}
-
-fn unwritten(path: &Path, source: io::Error) -> ReportError {
+pub(crate) fn unwritten(path: &Path, source: io::Error) -> ReportError {
     ReportError::Unwritten { path: path.into(), source }
 }
 
@@ -232,7 +229,7 @@ pub(crate) fn slug(name: &str) -> String {
 /// Removes what an earlier run left but for what is kept, so that no file of it passes for one of this run.
 pub(crate) fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), ReportError> {
     for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
-        fs::remove_file(old).map_err(|source| unwritten(old, source))?;
+        disk::remove(old).map_err(|source| unwritten(old, source))?;
     }
     Ok(())
 }
@@ -258,6 +255,7 @@ fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), ReportError> {
 }
 
 fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
-    let text = fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+    let text = disk::read_text(path, Kind::RESULTS)
+        .map_err(|source| ReportError::Io { path: path.into(), source })?;
     serde_json::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
 }

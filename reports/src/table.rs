@@ -1,5 +1,6 @@
 //! One table, four ways of writing it: CSV, Markdown, LaTeX and HTML cells.
 
+use crate::cell::guarded;
 use crate::text::{scientific, significant, spread};
 
 /// How a number is shown. CSV always has every digit.
@@ -196,13 +197,14 @@ impl Table {
     }
 }
 
-/// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted.
+/// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted, formulas guarded.
 pub(crate) fn csv_line(cells: &[&str]) -> String {
     let quoted: Vec<String> = cells
         .iter()
+        .map(|cell| guarded(cell))
         .map(|cell| match cell.contains([',', '"', '\n', '\r']) {
             true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            false => cell.to_string(),
+            false => cell.into_owned(),
         })
         .collect();
     quoted.join(",") + "\n"

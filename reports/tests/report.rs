@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use reports::commits::add;
-use reports::{ReportError, RunSet, render, render_over_commits, write_run};
+use reports::{ReportError, RunSet, render, render_over_commits, write_run, write_with_report};
 use serde_json::Value;
 
 fn text(path: &Path) -> String {
@@ -244,8 +244,11 @@ fn what_was_not_recorded_is_not_claimed() {
     }
     assert!(page.contains("Locking"));
     // Nothing at all still gives a page.
-    write_run(dir.path(), &RunSet { provenance: set.provenance, ..RunSet::default() }).unwrap();
-    let empty = render(dir.path(), &dir.path().join("empty")).unwrap();
+    let nothing = RunSet { provenance: set.provenance, ..RunSet::default() };
+    // A run without numbers has a page, which says so; there is none to be asked for.
+    let empty = write_with_report(dir.path(), &nothing, None).unwrap();
+    let refused = render(dir.path(), &dir.path().join("empty")).unwrap_err().to_string();
+    assert!(refused.ends_with("holds no records: there is nothing to report"), "{refused}");
     assert_eq!(empty.files.len(), 1);
     assert_eq!(inside(&empty.page)["counts"]["runs"], 0);
 }

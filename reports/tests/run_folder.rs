@@ -112,3 +112,28 @@ fn a_folder_that_is_no_run_is_named() {
     let message = read_run(dir.path()).unwrap_err().to_string();
     assert!(message.contains("checks.json"), "{message}");
 }
+
+/// Whatever text a record has, a spreadsheet runs none of it, and it is read back as it was.
+#[test]
+fn texts_that_are_formulas_are_guarded_in_every_column() {
+    let dir = tempfile::tempdir().unwrap();
+    let names = serde_json::to_value(Record::default()).unwrap();
+    let mut columns = 0;
+    for name in names.as_object().unwrap().keys() {
+        for text in ["=1+1", "+a", "-a", "@a", "'=1+1", "a"] {
+            let mut value = names.clone();
+            value[name] = text.into();
+            // A number takes no text.
+            let Ok(record) = serde_json::from_value::<Record>(value) else { continue };
+            let set = RunSet { records: vec![record], ..common::study() };
+            write_run(dir.path(), &set).unwrap();
+            let csv = std::fs::read_to_string(dir.path().join("records.csv")).unwrap();
+            let cells = csv.lines().flat_map(|line| line.split(','));
+            let run = |cell: &&str| cell.starts_with(['=', '+', '-', '@']) && cell.parse::<f64>().is_err();
+            assert_eq!(cells.filter(run).next(), None, "{name}");
+            assert_eq!(read_run(dir.path()).unwrap().records, set.records, "{name}");
+            columns += 1;
+        }
+    }
+    assert!(columns > 6 * 20, "{columns}");
+}

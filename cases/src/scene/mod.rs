@@ -120,7 +120,7 @@ fn text_of(path: &Path) -> Result<String, Vec<SceneError>> {
             help: help.map(Into::into),
         }]
     };
-    let text = std::fs::read_to_string(path)
+    let text = disk::read_text(path, disk::Kind::SCENE)
         .map_err(|bad| wrong(format!("can't be read: {}", error::unread(&bad)), None))?;
     if text.starts_with("$MeshFormat") {
         let help = "a scene names it: body = { shape = \"file\", path = \"...\", unit = \"mm\" }";

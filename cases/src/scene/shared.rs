@@ -60,7 +60,7 @@ pub(crate) fn read(
     };
     let path = beside(file, path);
     let shared_file = path.display().to_string();
-    let shared_text = std::fs::read_to_string(&path).map_err(|bad| {
+    let shared_text = disk::read_text(&path, disk::Kind::SCENE).map_err(|bad| {
         let help = format!("{}; paths are relative to the folder of the file they are in", unread(&bad));
         wrong(Problem::new("can't be read").found(shared_file.as_str()).help(help))
     })?;

@@ -14,6 +14,9 @@ use super::report::{Report, which};
 use catalogue::Problem;
 use catalogue::metric::Needs;
 
+/// Characters of a method's id: many more make no name of a file.
+const LONGEST_ID: usize = 64;
+
 /// Notes every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     if scene.methods.is_empty() {
@@ -25,8 +28,11 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             report.add(&format!("method[{i}].id"), problem.help("ids are unique"));
         }
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-        if method.id.is_empty() || !method.id.chars().all(plain) {
-            let problem = Problem::new("is no id").help("use letters, digits, '-', '_' and '.'");
+        // It names files and folders, where one or two dots lead elsewhere.
+        let dots = method.id.chars().all(|c| c == '.');
+        if dots || method.id.len() > LONGEST_ID || !method.id.chars().all(plain) {
+            let help = format!("use up to {LONGEST_ID} letters, digits, '-', '_' and '.', not dots alone");
+            let problem = Problem::new("is no id").help(help);
             report.add(&format!("method[{i}].id"), problem);
         }
     }

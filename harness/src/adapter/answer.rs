@@ -1,8 +1,10 @@
 //! What a solver outside this program answers: `result.json` and `displacement.npy`, each held against the question.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
+use disk::Kind;
 use geometry::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +15,6 @@ use crate::error::{Foreign, ForeignStatus};
 pub(crate) const RESULT: &str = "result.json";
 /// The file of what it found.
 pub(super) const DISPLACEMENT: &str = "displacement.npy";
-/// What it says takes no more.
-const LARGEST_RESULT: u64 = 1 << 20;
 
 /// `result.json`. Keys that are not known here are left to others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -44,12 +44,10 @@ pub(crate) struct Answer {
 impl Answer {
     /// Reads it; `None` where there is none.
     pub(super) fn read(folder: &Path) -> Option<Result<Answer, String>> {
-        let path = folder.join(RESULT);
-        let size = std::fs::metadata(&path).ok()?.len();
-        if size > LARGEST_RESULT {
-            return Some(Err(format!("{RESULT}: has {size} bytes; {LARGEST_RESULT} are the most")));
-        }
-        let text = std::fs::read_to_string(&path);
+        let text = match disk::read_text(&folder.join(RESULT), Kind::MESSAGE) {
+            Err(bad) if bad.kind() == ErrorKind::NotFound => return None,
+            text => text,
+        };
         let parsed = text.map_err(|bad| bad.to_string());
         let parsed = parsed.and_then(|text| serde_json::from_str(&text).map_err(|bad| bad.to_string()));
         Some(parsed.map_err(|bad| format!("{RESULT}: {bad}")))
@@ -76,16 +74,9 @@ impl Answer {
 /// The displacement of so many nodes: at the end, or at the end of each of so many steps. Metres.
 pub(super) fn displacement(folder: &Path, nodes: usize, steps: usize) -> Result<Vec<Vec<Vector3>>, String> {
     let named = |bad: String| format!("{DISPLACEMENT}: {bad}");
-    let path = folder.join(DISPLACEMENT);
+    // More than the nodes take is not read.
     let most = (24 * nodes * steps.max(1)) as u64 + (1 << 16);
-    match std::fs::metadata(&path) {
-        Ok(file) if file.len() > most => {
-            return Err(named(format!("has {} bytes, more than the {nodes} nodes take", file.len())));
-        }
-        Ok(_) => {}
-        Err(_) => return Err(named("is not there".into())),
-    }
-    let array = npy::read(&path).map_err(named)?;
+    let array = npy::read(&folder.join(DISPLACEMENT), Kind::ARRAY.at_most(most)).map_err(named)?;
     let count = match array.shape[..] {
         [n, 3] if n == nodes => 1,
         [k, n, 3] if n == nodes && k == steps => k,
@@ -135,7 +126,7 @@ mod tests {
     fn a_displacement_has_the_nodes_and_steps_of_the_question() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join(DISPLACEMENT);
-        assert!(displacement(dir.path(), 2, 1).unwrap_err().contains("not there"));
+        assert!(displacement(dir.path(), 2, 1).unwrap_err().contains("No such file"));
         npy::write_floats(&path, 3, (0..6).map(f64::from)).unwrap();
         assert_eq!(
             displacement(dir.path(), 2, 4).unwrap(),
@@ -146,6 +137,6 @@ mod tests {
         let bad = displacement(dir.path(), 2, 1).unwrap_err();
         assert!(bad.contains("2 numbers are not finite, the first at node 1"), "{bad}");
         std::fs::write(&path, vec![0; 1 << 20]).unwrap();
-        assert!(displacement(dir.path(), 2, 1).unwrap_err().contains("more than the 2 nodes take"));
+        assert!(displacement(dir.path(), 2, 1).unwrap_err().contains("has more than 65584 bytes"));
     }
 }

@@ -24,11 +24,11 @@ fn state(adapter: &Found) -> String {
 pub(crate) fn note(adapter: &Found, passed: bool) {
     let Some(file) = file(adapter) else { return };
     if !passed {
-        let _ = std::fs::remove_file(file);
+        let _ = disk::remove(&file);
         return;
     }
     let folder = file.parent().map(std::fs::create_dir_all);
-    if let Err(bad) = folder.unwrap_or(Ok(())).and_then(|()| std::fs::write(&file, state(adapter))) {
+    if let Err(bad) = folder.unwrap_or(Ok(())).and_then(|()| disk::write(&file, state(adapter))) {
         eprintln!(
             "tissuebench: {}: can't be written: {bad}; the adapter counts as unchecked",
             file.display()
@@ -38,6 +38,6 @@ pub(crate) fn note(adapter: &Found, passed: bool) {
 
 /// Whether an adapter has passed as it is now.
 pub(crate) fn is_checked(adapter: &Found) -> bool {
-    let noted = file(adapter).and_then(|file| std::fs::read_to_string(file).ok());
+    let noted = file(adapter).and_then(|file| disk::read_text(&file, disk::Kind::MESSAGE).ok());
     noted.is_some_and(|noted| noted == state(adapter))
 }

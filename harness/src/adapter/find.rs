@@ -1,10 +1,14 @@
 //! Where adapters are: in the folders that a person names, beside the scene, in the folder that the program is called in, and in the
 //! program.
 
+use std::collections::BTreeSet;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 use catalogue::nearest;
+use disk::Kind;
 
 use super::FOLDERS;
 use super::builtin::{Files, SHIPPED};
@@ -14,13 +18,27 @@ use crate::Failure;
 /// What a folder of adapters is called beside a scene.
 const BESIDE: &str = "adapters";
 const MANIFEST: &str = "adapter.toml";
+/// Bytes.
+const LARGEST_MANIFEST: u64 = 1 << 20;
 
 /// Folders of the command line.
 static GIVEN: OnceLock<Vec<PathBuf>> = OnceLock::new();
+/// Whether only those are looked in that a person has named, and the program.
+static NOT_LOCAL: AtomicBool = AtomicBool::new(false);
 
 /// Looks in these folders first. Only the first call counts.
 pub(crate) fn add_folders(folders: &[PathBuf]) {
     let _ = GIVEN.set(folders.to_vec());
+}
+
+/// Looks neither beside the scene nor in the folder that the program is called in.
+pub(crate) fn leave_local_out() {
+    NOT_LOCAL.store(true, Ordering::Relaxed);
+}
+
+/// Whether it does not look there.
+pub(crate) fn leaves_local_out() -> bool {
+    NOT_LOCAL.load(Ordering::Relaxed)
 }
 
 /// The folders that a person has named, on the command line or in the environment.
@@ -48,27 +66,38 @@ impl Found {
 
     fn in_folder(folder: &Path) -> Option<Result<Found, Failure>> {
         let file = folder.join(MANIFEST);
-        let text = std::fs::read_to_string(&file).ok()?;
+        let text = match disk::read_text(&file, Kind::ADAPTER.at_most(LARGEST_MANIFEST)) {
+            Err(bad) if matches!(bad.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return None,
+            Err(bad) => return Some(Err(Failure::Input(format!("{}: {bad}", file.display())))),
+            Ok(text) => text,
+        };
         let found = |manifest| Found { manifest, folder: Some(folder.to_path_buf()), shipped: &[] };
         Some(Manifest::parse(&text, &file).map(found).map_err(Failure::Input))
     }
 
-    /// Its files with their contents, by name; those of folders inside its own are not among them.
-    pub(crate) fn files(&self) -> Vec<(String, Vec<u8>)> {
-        let Some(folder) = &self.folder else {
-            return self
-                .shipped
-                .iter()
-                .map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()))
-                .collect();
-        };
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let file = |path: PathBuf| {
-            Some((path.file_name()?.to_string_lossy().into_owned(), std::fs::read(&path).ok()?))
-        };
-        let mut files: Vec<_> = entries.filter_map(|entry| file(entry.path())).collect();
-        files.sort();
-        files
+    /// Its files with their contents, by name, one at a time; those of folders inside its own are not among them, nor those that are
+    /// together more than one may be.
+    pub(crate) fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
+        let shipped = self.shipped.iter().map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()));
+        let entries = self.folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        paths.sort();
+        let mut left = Kind::ADAPTER.most();
+        shipped.chain(paths.into_iter().filter_map(move |path| {
+            let bytes = disk::read(&path, Kind::ADAPTER.at_most(left)).ok()?;
+            left -= bytes.len() as u64;
+            Some((path.file_name()?.to_string_lossy().into_owned(), bytes))
+        }))
+    }
+
+    /// Says once where an adapter comes from whose program is not one of this program.
+    fn announce(&self) {
+        static SAID: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+        let Some(folder) = &self.folder else { return };
+        let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+        if SAID.lock().is_ok_and(|mut said| said.insert(whole.clone())) {
+            eprintln!("adapter '{}' is that of {}", self.manifest.name, whole.display());
+        }
     }
 
     /// Where it is, for people.
@@ -89,7 +118,8 @@ pub(crate) struct All {
 /// All adapters for a scene.
 pub(crate) fn all(scene: Option<&Path>) -> All {
     let beside = scene.and_then(Path::parent).map(|folder| folder.join(BESIDE));
-    let folders = given_folders().into_iter().chain(beside).chain([PathBuf::from(BESIDE)]);
+    let local = beside.into_iter().chain([PathBuf::from(BESIDE)]).filter(|_| !leaves_local_out());
+    let folders = given_folders().into_iter().chain(local);
     let mut all = All::default();
     let add = |all: &mut All, read: Result<Found, Failure>, folder: &Path| match read {
         Ok(new) if all.found.iter().any(|known| known.manifest.name == new.manifest.name) => {}
@@ -122,7 +152,9 @@ pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
         return Err(broken.swap_remove(at).1);
     }
     if let Some(at) = found.iter().position(|found| found.manifest.name == name) {
-        return Ok(found.swap_remove(at));
+        let found = found.swap_remove(at);
+        found.announce();
+        return Ok(found);
     }
     let names: Vec<&str> = found.iter().map(|found| found.manifest.name.as_str()).collect();
     let near = nearest(name, names.iter().copied());

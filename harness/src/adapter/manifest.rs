@@ -10,6 +10,8 @@ use serde::Deserialize;
 const WORDS: [&str; 3] = ["linear", "static", "tools"];
 const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
 const READS: [&str; 2] = ["mesh.inp", "mesh.vtu"];
+/// Characters of a name: it is one of a folder, too.
+const LONGEST_NAME: usize = 64;
 /// Digits of a displacement that is written as it is.
 const ALL_DIGITS: u32 = 15;
 
@@ -86,8 +88,9 @@ impl Manifest {
 
     fn check(&self) -> Result<(), String> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
-        if self.name.is_empty() || !self.name.chars().all(plain) {
-            return Err(format!("name '{}' is no name; use letters, digits, '-' and '_'", self.name));
+        if self.name.is_empty() || self.name.len() > LONGEST_NAME || !self.name.chars().all(plain) {
+            let help = format!("use up to {LONGEST_NAME} letters, digits, '-' and '_'");
+            return Err(format!("name '{}' is no name; {help}", self.name));
         }
         if self.run.is_empty() {
             return Err("run is empty; give a program with its arguments".into());

@@ -17,16 +17,16 @@ mod work;
 
 pub(crate) use answer::RESULT;
 pub(crate) use checked::{is_checked, note};
-pub(crate) use find::{All, Found, add_folders, all, find, given_folders};
+pub(crate) use find::{All, Found, add_folders, all, find, given_folders, leave_local_out, leaves_local_out};
 pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};
-pub(crate) use work::Folder;
+pub(crate) use work::{Folder, remove_all};
 
 /// Reads what is there of an adapter and its answer in a folder: `adapter.toml`, `result.json` and `displacement.npy`; says of each what is
 /// wrong with it. For whoever tries these readers on files of all kinds.
 pub fn try_readers(folder: &Path, nodes: usize, steps: usize) -> [Result<(), String>; 3] {
     let file = folder.join("adapter.toml");
-    let text = std::fs::read_to_string(&file).map_err(|bad| bad.to_string());
+    let text = disk::read_text(&file, disk::Kind::ADAPTER.at_most(1 << 20)).map_err(|bad| bad.to_string());
     let manifest = text.and_then(|text| manifest::Manifest::parse(&text, &file));
     let result = answer::Answer::read(folder).unwrap_or_else(|| Err("there is none".into()));
     let result = result.and_then(|answer| answer.objection("id"));

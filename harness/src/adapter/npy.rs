@@ -42,7 +42,7 @@ fn write(
     file.extend(std::iter::repeat_n(b' ', fill));
     file.push(b'\n');
     file.extend_from_slice(&bytes);
-    std::fs::write(path, file).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
+    disk::write(path, file).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 
 /// An array of numbers, row by row.
@@ -57,8 +57,8 @@ pub(crate) struct Array {
 ///
 /// # Errors
 /// A file that is not there, is no array, or has not the bytes that its head says; without its name.
-pub(crate) fn read(path: &Path) -> Result<Array, String> {
-    let bytes = std::fs::read(path).map_err(|bad| format!("can't be read: {bad}"))?;
+pub(crate) fn read(path: &Path, kind: disk::Kind) -> Result<Array, String> {
+    let bytes = disk::read(path, kind).map_err(|bad| format!("can't be read: {bad}"))?;
     let (head, data) = parts(&bytes)?;
     let kind = after(head, "'descr':").ok_or("its head has no 'descr'")?;
     let kind = kind.trim_start().trim_start_matches('\'').split('\'').next().unwrap_or_default();
@@ -145,12 +145,15 @@ mod tests {
         write_floats(&path, 3, values.into_iter()).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         assert_eq!(bytes.len() % ALIGNED, 6 * 8 % ALIGNED);
-        assert_eq!(read(&path).unwrap(), Array { shape: vec![2, 3], values: values.to_vec() });
+        assert_eq!(
+            read(&path, disk::Kind::ARRAY).unwrap(),
+            Array { shape: vec![2, 3], values: values.to_vec() }
+        );
         write_integers(&path, 1, [7, -1, 1 << 40].into_iter()).unwrap();
         let expected = Array { shape: vec![3], values: vec![7.0, -1.0, (1u64 << 40) as f64] };
-        assert_eq!(read(&path).unwrap(), expected);
+        assert_eq!(read(&path, disk::Kind::ARRAY).unwrap(), expected);
         write_floats(&path, 3, std::iter::empty()).unwrap();
-        assert_eq!(read(&path).unwrap().shape, [0, 3]);
+        assert_eq!(read(&path, disk::Kind::ARRAY).unwrap().shape, [0, 3]);
     }
 
     fn file(head: &str, data: &[u8]) -> Result<Array, String> {
@@ -158,7 +161,7 @@ mod tests {
         let path = dir.path().join("a.npy");
         let length = (head.len() as u16).to_le_bytes();
         std::fs::write(&path, [MAGIC, &[1, 0], &length, head.as_bytes(), data].concat()).unwrap();
-        read(&path)
+        read(&path, disk::Kind::ARRAY)
     }
 
     #[test]
@@ -192,8 +195,8 @@ mod tests {
         for (bytes, says) in [(&b"garbage"[..], "is no .npy"), (b"\x93NUMPY\x01\x00\xff\x00{", "ends within")]
         {
             std::fs::write(&path, bytes).unwrap();
-            assert!(read(&path).unwrap_err().contains(says));
+            assert!(read(&path, disk::Kind::ARRAY).unwrap_err().contains(says));
         }
-        assert!(read(&dir.path().join("none.npy")).unwrap_err().contains("can't be read"));
+        assert!(read(&dir.path().join("none.npy"), disk::Kind::ARRAY).unwrap_err().contains("can't be read"));
     }
 }

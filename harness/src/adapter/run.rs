@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use geometry::Vector3;
@@ -12,12 +12,12 @@ use super::answer::{Answer, displacement};
 use super::find::Found;
 use super::work::{Folder, data_folder};
 use crate::error::{Foreign, ForeignStatus};
-use crate::process::{Call, End, Limits, call};
+use crate::process::{Call, End, Limits, call, said_within};
 
 /// Python for all adapters, in place of their own.
 const PYTHON: &str = "TISSUEBENCH_PYTHON";
 /// How long a program may think about its version.
-const VERSION: Duration = Duration::from_secs(20);
+const VERSION: Duration = Duration::from_secs(8);
 
 /// A problem in files, for an adapter.
 pub(crate) struct Question<'a> {
@@ -122,8 +122,7 @@ fn programs(adapter: &Found, work: &Folder) -> Result<PathBuf, String> {
     }
     let folder = work.inside("adapter")?;
     for (name, bytes) in adapter.files() {
-        std::fs::write(folder.join(&name), bytes)
-            .map_err(|bad| format!("{name}: can't be written: {bad}"))?;
+        disk::write(&folder.join(&name), bytes).map_err(|bad| format!("{name}: can't be written: {bad}"))?;
     }
     Ok(folder)
 }
@@ -204,11 +203,12 @@ fn has_packages(python: &Path, packages: &[String]) -> bool {
         let name = package.split(['=', '<', '>', '~', '!', '[', ' ']).next().unwrap_or_default();
         format!("m.version({name:?})")
     });
-    let script = format!("import importlib.metadata as m; {}", names.collect::<Vec<_>>().join("; "));
-    let mut command = Command::new(python);
-    let quiet =
-        command.args(["-c", &script]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    quiet.status().is_ok_and(|status| status.success())
+    // Files of the folder that this program is called in are no modules.
+    let script = format!(
+        "import sys; sys.path = [p for p in sys.path if p]; import importlib.metadata as m; {}",
+        names.collect::<Vec<_>>().join("; ")
+    );
+    said_within(Command::new(python).args(["-c", &script]), VERSION).is_ok_and(|(status, _)| status.success())
 }
 
 /// What an adapter's solver says of its version, in a line.
@@ -216,15 +216,11 @@ pub(crate) fn version(adapter: &Found) -> Option<String> {
     static KNOWN: Mutex<BTreeMap<String, Option<String>>> = Mutex::new(BTreeMap::new());
     once(&KNOWN, &format!("{:?}", adapter.manifest), || {
         let here = Path::new("");
-        let word = |word: &String| fill(adapter, word, here, here, here);
+        let folder = adapter.folder.as_ref().and_then(|folder| folder.canonicalize().ok());
+        let word = |word: &String| fill(adapter, word, folder.as_deref().unwrap_or(here), here, here);
         let mut words = adapter.manifest.version.iter().map(word);
-        let mut command = Command::new(words.next()?);
-        command.args(words).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let (send, heard) = mpsc::channel();
-        std::thread::spawn(move || send.send(command.output()));
-        let output = heard.recv_timeout(VERSION).ok()?.ok()?;
-        let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-        let line = text.iter().flat_map(|text| text.lines()).map(str::trim).find(|line| !line.is_empty())?;
+        let (_, said) = said_within(Command::new(words.next()?).args(words), VERSION).ok()?;
+        let line = said.iter().flat_map(|text| text.lines()).map(str::trim).find(|line| !line.is_empty())?;
         Some(format!("{} ({})", adapter.manifest.title, line.chars().take(80).collect::<String>()))
     })
 }

@@ -33,6 +33,9 @@ pub struct Cli {
     /// several times)
     #[arg(long, global = true, value_name = "DIR")]
     pub adapters: Vec<PathBuf>,
+    /// Use no adapter from beside the scene or from ./adapters: only from --adapters, TISSUEBENCH_ADAPTERS and the program
+    #[arg(long, global = true)]
+    pub no_local_adapters: bool,
     /// What to do
     #[command(subcommand)]
     pub command: Command,

@@ -13,12 +13,16 @@ const SHOWN: usize = 40;
 
 /// Compares, and accepts what is asked for; the exit code: 0 if no difference is left, else 1; 2 without accepted numbers.
 pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
-    let now = Baseline::of(&reports::read_run(&args.results)?.records, &processor());
+    let now = Baseline::of(&reports::read_numbers(&args.results, "compare")?.records, &processor());
     if !args.file.exists() {
         return first(args, &now);
     }
     let mut accepted = Baseline::load(&args.file)?;
     let found = accepted.compare(&now, !args.part);
+    if found.compared == 0 && found.changes.is_empty() {
+        eprintln!("tissuebench: {}: nothing was compared", args.file.display());
+        return Ok(2);
+    }
     println!(
         "{}: {} numbers compared, {}; {} differences",
         args.file.display(),

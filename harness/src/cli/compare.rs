@@ -21,6 +21,10 @@ pub(super) fn compare(args: &CompareArgs) -> u8 {
         }
     };
     let found = Comparison::of(&pairs, args.tolerance, !args.no_times);
+    if found.numbers.compared == 0 && found.is_same() {
+        eprintln!("tissuebench: nothing was compared: the results have no number in common");
+        return 2;
+    }
     match args.format {
         Format::Table => {
             numbers(&found.numbers);
@@ -45,7 +49,7 @@ fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
     if !(args.tolerance >= 0.0 && args.tolerance < 1.0) {
         return Err(format!("--tolerance {}: is no relative difference; give 0 to below 1", args.tolerance));
     }
-    let one = |path: &Path| reports::read_run(path).map_err(|bad| bad.to_string());
+    let one = |path: &Path| reports::read_numbers(path, "compare").map_err(|bad| bad.to_string());
     let mut pairs: Vec<(RunSet, RunSet)> = args
         .results
         .chunks(2)

@@ -79,11 +79,13 @@ pub(super) fn clear(folder: &Path) -> Result<(), ReportError> {
     let unwritten = |source| ReportError::Unwritten { path: folder.into(), source };
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for entry in entries {
-        let path = entry.map_err(unwritten)?.path();
-        if path.is_dir() {
+        let entry = entry.map_err(unwritten)?;
+        let path = entry.path();
+        // A folder behind a link is somebody else's.
+        if entry.file_type().map_err(unwritten)?.is_dir() {
             clear(&path)?;
-        } else if path.extension().is_some_and(|suffix| suffix == "vtu" || suffix == "pvd") {
-            fs::remove_file(&path).map_err(unwritten)?;
+        } else if States::is_file(&entry.file_name().to_string_lossy()) {
+            disk::remove(&path).map_err(|source| ReportError::Unwritten { path, source })?;
         }
     }
     // Where something else is left the folder stays.

@@ -48,7 +48,7 @@ const SHOWN: usize = 5;
 pub(super) fn act(action: &HistoryAction) -> u8 {
     let done = match action {
         HistoryAction::Add { results, to, label } => {
-            reports::read_run(results).and_then(|set| add(to, &set, label)).map(|path| {
+            reports::read_numbers(results, "keep").and_then(|set| add(to, &set, label)).map(|path| {
                 println!("{}", path.display());
                 0
             })

@@ -33,10 +33,7 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let mesh = read(from, MILLIMETRE).map_err(input)?;
     quality::check(&mesh)
         .map_err(|bad| input(format!("{}: {}", from.display(), files::inverted(from, &bad))))?;
-    let real = |path: &Path| path.canonicalize().ok();
-    if real(from) == real(to) {
-        return Err(input(format!("{}: is the file that is read; give another name", to.display())));
-    }
+    spare(to)?;
     let (mesh, joined) = if *join { joined(mesh, from)? } else { (mesh, String::new()) };
     let mesh = match element.as_deref() {
         None => mesh,
@@ -62,6 +59,11 @@ fn joined(mesh: Mesh, from: &Path) -> Result<(Mesh, String), Failure> {
         return Err(input(problem));
     };
     Ok((mesh, format!("; {count} pieces joined at {faces} faces")))
+}
+
+/// Refuses an output that is one of the files read.
+pub(super) fn spare(out: &Path) -> Result<(), Failure> {
+    disk::spare(out).map_err(|bad| input(format!("{}: {bad}", out.display())))
 }
 
 /// The format to write; a version is one of Gmsh's.

@@ -27,7 +27,8 @@ pub fn info(file: &Path, unit: LengthUnit, format: Format) -> Result<(), Failure
         let surface = files::read_surface(file, unit.metres).map_err(input)?;
         return of_surface(file, &surface, unit, format);
     }
-    let bytes = std::fs::read(file).map_err(|bad| input(format!("{}: {bad}", file.display())))?;
+    let bytes =
+        disk::read(file, disk::Kind::MESH).map_err(|bad| input(format!("{}: {bad}", file.display())))?;
     let (mesh, rows) = files::read_bytes(&bytes, file, unit.metres).map_err(input)?;
     let found = Found::new(&mesh, rows);
     match format {

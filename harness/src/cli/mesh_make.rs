@@ -4,7 +4,7 @@ use geometry::stuffing::{self, Stuffed, Stuffing};
 use geometry::{Surface, files, quality};
 
 use super::args::MakeArgs;
-use super::mesh_files::{input, row};
+use super::mesh_files::{input, row, spare};
 use crate::Failure;
 use crate::cli::text::digits;
 
@@ -16,6 +16,7 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let MakeArgs { surface: file, unit, out, .. } = args;
     let surface = files::read_surface(file, unit.metres).map_err(input)?;
     let doublings = if args.uniform { 0 } else { args.coarser };
+    spare(out)?;
     let (Stuffed { mesh, left_out }, spacing) = match (args.size, args.nodes) {
         (Some(spacing), _) => {
             (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)

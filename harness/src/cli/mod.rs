@@ -27,12 +27,13 @@ mod solve;
 mod text;
 mod verify;
 
+use std::io::ErrorKind::InvalidInput;
 use std::path::Path;
 
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
-use clap::CommandFactory;
-use reports::ReportError;
+use clap::{CommandFactory, Parser};
+use reports::{Rendered, ReportError, RunSet};
 use schemars::schema_for;
 
 use crate::Failure;
@@ -58,6 +59,22 @@ use args::{SceneArgs, SchemaOf};
 
 pub use args::{Cli, Command};
 
+/// Runs the command of the command line; its exit code.
+pub fn called() -> u8 {
+    match Cli::try_parse() {
+        Ok(cli) => main(cli),
+        Err(bad) => {
+            // Colours and all, unless a name among the arguments has some of its own.
+            let text = bad.render().to_string();
+            if crate::print::shown(&text, false) == text {
+                bad.exit()
+            }
+            eprintln!("{}", text.trim_end());
+            u8::try_from(bad.exit_code()).unwrap_or(2)
+        }
+    }
+}
+
 /// Runs one command and returns its exit code.
 pub fn main(cli: Cli) -> u8 {
     crate::print::code(act(cli))
@@ -71,7 +88,14 @@ fn act(cli: Cli) -> u8 {
         return 3;
     }
     colour::choose(cli.color);
+    // A leash is ended by whoever holds it.
+    if !matches!(cli.command, Command::Leash(_)) {
+        interrupt::install();
+    }
     crate::adapter::add_folders(&cli.adapters);
+    if cli.no_local_adapters {
+        crate::adapter::leave_local_out();
+    }
     match cli.command {
         Command::Init(args) => init::init(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Run(args) => run(&args),
@@ -224,10 +248,19 @@ fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<()
 }
 
 fn report(results: &Path, out: &Path, history: Option<&Path>, quiet: bool) -> u8 {
-    match reports::render_over_commits(results, out, history) {
+    rendered(reports::render_over_commits(results, out, history), quiet)
+}
+
+/// Writes a folder of results with its report; the exit code.
+fn write_results(out: &Path, set: &RunSet, history: Option<&Path>, quiet: bool) -> u8 {
+    rendered(reports::write_with_report(out, set, history), quiet)
+}
+
+fn rendered(done: Result<Rendered, ReportError>, quiet: bool) -> u8 {
+    match done {
         Ok(rendered) => {
             if !quiet {
-                eprintln!("{} files; open {}", rendered.files.len(), out.join("report.html").display());
+                eprintln!("{} files; open {}", rendered.files.len(), rendered.page.display());
             }
             0
         }
@@ -239,6 +272,8 @@ fn report(results: &Path, out: &Path, history: Option<&Path>, quiet: bool) -> u8
 fn unreported(bad: &ReportError) -> u8 {
     eprintln!("tissuebench: {bad}");
     match bad {
+        // An output that is an input, or no file.
+        ReportError::Unwritten { source, .. } if source.kind() == InvalidInput => 2,
         ReportError::Incomplete { .. } | ReportError::Unwritten { .. } => 5,
         _ => 2,
     }

@@ -6,13 +6,15 @@ use crate::Failure;
 use crate::cli::args::ReferenceArgs;
 use crate::cli::{fail, open, text};
 use crate::run::stored::Stored;
-use crate::study::folder;
 use crate::study::make_reference::make;
+use crate::study::{folder, note_inputs};
 
 /// Runs every method of a scene and writes what they agree on.
 pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, chosen) = open(&args.scene)?;
     let chosen: Vec<String> = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
+    note_inputs(&scene);
+    args.from.iter().chain(&args.alongside).chain([&args.points]).for_each(|file| disk::input(file));
     folder::ready_file(&args.out).map_err(|problem| fail(&Failure::Input(problem)))?;
     let text = scene.text().to_string();
     let mesh = geometry::files::read(&args.points, args.unit.metres)
@@ -47,6 +49,6 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     alongside.iter().for_each(|other| stored.widen(other));
     print!("{}", text::reference(&stored));
     let json = serde_json::to_string(&stored).expect("finite numbers and text");
-    std::fs::write(&args.out, json + "\n")
+    disk::write(&args.out, json + "\n")
         .map_err(|bad| fail(&Failure::Run(format!("{} can't be written: {bad}", args.out.display()))))
 }

@@ -10,7 +10,7 @@ use reports::{Machine, RunSet, Seconds, Status};
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::json::RunObject;
-use crate::cli::{affordable_methods, fields, interrupt, open, report, take, text, unreported};
+use crate::cli::{affordable_methods, fields, interrupt, open, take, text, unreported, write_results};
 use crate::outcome::{Outcome, Unfinished, provenance};
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
@@ -53,7 +53,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         code: 0,
     }));
     let shared = made.clone();
-    interrupt::install(move || {
+    interrupt::at_last(move || {
         if let Ok(mut made) = shared.lock() {
             made.interrupted();
             // Nothing is added any more.
@@ -242,10 +242,7 @@ impl Made {
         }
         let Some(out) = &self.args.out else { return self.code };
         self.set.records.extend(study::reference_records(&self.scene));
-        match reports::write_run(out, &self.set) {
-            Ok(()) => self.code.max(report(out, &out.join("report"), None, self.args.quiet)),
-            Err(bad) => unreported(&bad),
-        }
+        self.code.max(write_results(out, &self.set, None, self.args.quiet))
     }
 }
 

@@ -7,7 +7,7 @@ use catalogue::warning;
 use reports::Status;
 
 use crate::cli::ci::{self, CiArgs};
-use crate::cli::{affordable, colour, fail, interrupt, refuse, report, take, text, unreported};
+use crate::cli::{affordable, colour, fail, interrupt, refuse, take, text, unreported, write_results};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, Event, Events, Finished, Plan, VerifyArgs};
 
@@ -61,11 +61,10 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
         return unreported(&bad);
     }
-    let events = match ci.events.as_deref().map(Events::to).transpose() {
+    let events = match ci::begin(ci, &plan) {
         Ok(events) => events,
         Err(bad) => {
-            let file = ci.events.as_deref().unwrap_or(&path).display();
-            eprintln!("tissuebench: --events {file}: {bad}; give a file that can be written");
+            eprintln!("tissuebench: {bad}; give a file that can be written");
             return 2;
         }
     };
@@ -79,7 +78,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if !args.quiet {
         eprintln!("{}: {} runs", path.display(), plan.len());
     }
-    interrupt::install(interrupt::resumable(args.out.clone()));
+    interrupt::at_last(interrupt::resumable(args.out.clone()));
     let mut finished = plan.execute_watched(args, events.as_ref());
     finished.set.provenance.source = folder::source(&path);
     if finished.stored > 0 && !args.quiet {
@@ -93,12 +92,20 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
         },
         |()| code,
     );
-    if let Some(events) = &events {
-        let [passed, failed, known, not_run] = counts(&finished);
-        events.send(&Event::End { passed, failed, known, not_run, code });
-    }
+    let code = ended(events, ci, &finished, code);
     folder.close(|| study::clean(args));
     code
+}
+
+/// Sends the last event; the exit code, which is 5 where all held but events are missing.
+fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> u8 {
+    let Some(events) = events else { return code };
+    let [passed, failed, known, not_run] = counts(finished);
+    events.send(&Event::End { passed, failed, known, not_run, code });
+    let Some(bad) = events.lost() else { return code };
+    let file = ci.events.as_deref().unwrap_or(Path::new("-")).display();
+    eprintln!("tissuebench: --events {file}: {bad}; not all events are there");
+    if code == 0 { 5 } else { code }
 }
 
 /// Checks that passed, failed, are known not to pass, and did not run.
@@ -125,10 +132,7 @@ pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> 
     let (lock, written) = folder.writing();
     let rendered = match written {
         true => 0,
-        false => match reports::write_run(out, set) {
-            Ok(()) => report(out, &out.join("report"), history.as_deref(), *quiet),
-            Err(bad) => return unreported(&bad),
-        },
+        false => write_results(out, set, history.as_deref(), *quiet),
     };
     drop(lock);
     for failure in &set.failures {

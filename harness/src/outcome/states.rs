@@ -74,6 +74,12 @@ impl States {
         std::iter::once((format!("{name}.pvd"), self.series(name).into_bytes())).chain(parts)
     }
 
+    /// Whether a file of this name may be one of an earlier series.
+    pub(crate) fn is_file(name: &str) -> bool {
+        let part = ["body-", "tools-"].iter().any(|what| name.starts_with(what)) && name.ends_with(".vtu");
+        part || name.ends_with(".pvd")
+    }
+
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.states.is_empty()

@@ -1,6 +1,6 @@
 //! One call of another program: as long as it may take, with as much memory as it may have, and measured.
 
-use std::io;
+use std::io::{self, Read};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -12,6 +12,9 @@ const SHORTEST_PAUSE: Duration = Duration::from_millis(3);
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 /// How long the last words of a program are waited for: what it has started may keep its end of the pipe open.
 const LAST_WORDS: Duration = Duration::from_secs(1);
+
+/// Bytes of the first words of a program that are kept.
+const FIRST_WORDS: u64 = 4096;
 
 /// What a call may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +65,36 @@ pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
     let end = watched.end.unwrap_or(End::Exited(status));
     let last_words = words.recv_timeout(LAST_WORDS).unwrap_or_default();
     Ok(Call { end, wall: watched.wall, cpu, memory: watched.memory, last_words })
+}
+
+/// Runs a program for so long at most, and ends all of its group; its status, and what it begins stdout and stderr with.
+pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(ExitStatus, [String; 2])> {
+    let mut started =
+        Started::new(program.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;
+    let child = started.child();
+    let (out, err) = (child.stdout.take().map(first_words), child.stderr.take().map(first_words));
+    let began = Instant::now();
+    while !started.has_ended()? && began.elapsed() < time {
+        std::thread::sleep((began.elapsed() / 10).clamp(SHORTEST_PAUSE, LONGEST_PAUSE));
+    }
+    let status = started.end()?;
+    let heard = |words: Option<mpsc::Receiver<String>>| {
+        words.and_then(|words| words.recv_timeout(LAST_WORDS).ok()).unwrap_or_default()
+    };
+    Ok((status, [heard(out), heard(err)]))
+}
+
+/// The beginning of what a program writes. It is read to its end, so that the program does not wait.
+fn first_words(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
+    let (send, heard) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mut words = Vec::new();
+        let mut from = from.take(FIRST_WORDS);
+        let read = from.read_to_end(&mut words);
+        let _ = send.send(String::from_utf8_lossy(&words).into_owned());
+        read.and_then(|_| io::copy(&mut from.into_inner(), &mut io::sink()))
+    });
+    heard
 }
 
 /// This program as the leash of another one.

@@ -2,6 +2,7 @@
 
 use std::io::{self, Read};
 use std::process::{Child, Command, ExitStatus};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Most of what a process said last that is kept.
@@ -86,8 +87,12 @@ pub(crate) fn last_words(mut from: impl Read) -> String {
     String::from_utf8_lossy(&kept).into_owned()
 }
 
-/// Ends all groups, and lets no other one begin: for a program that is about to exit.
+/// Ends all groups, and lets no other one begin: for a program that is about to exit. A second call does nothing.
 pub(crate) fn end_all() {
+    static ENDED: AtomicBool = AtomicBool::new(false);
+    if ENDED.swap(true, Ordering::Relaxed) {
+        return;
+    }
     let running = running();
     running.iter().for_each(|id| kill(*id));
     std::mem::forget(running);

@@ -6,7 +6,7 @@ pub(crate) mod leash;
 #[cfg(target_os = "linux")]
 mod members;
 
-pub(crate) use call::{Call, End, Limits, call};
+pub(crate) use call::{Call, End, Limits, call, said_within};
 pub(crate) use group::{Started, last_words};
 pub use leash::LeashArgs;
 

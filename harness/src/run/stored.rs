@@ -163,7 +163,7 @@ impl Stored {
     }
 
     fn parsed(path: &Path) -> Result<Stored, String> {
-        let text = std::fs::read_to_string(path).map_err(|bad| match bad.kind() {
+        let text = disk::read_text(path, disk::Kind::REFERENCE).map_err(|bad| match bad.kind() {
             std::io::ErrorKind::NotFound => format!("can't be read: there is no file {}", path.display()),
             _ => format!("can't be read: {bad}"),
         })?;

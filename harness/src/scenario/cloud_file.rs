@@ -120,7 +120,7 @@ fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
         let problem = format!("can't be read: {} {bad}", file.path.display());
         Failure::input(FILE, problem, "give an array of shape (nodes, 3), a row of x, y, z for each node")
     };
-    let array = npy::read(&file.path).map_err(wrong)?;
+    let array = npy::read(&file.path, disk::Kind::MESH).map_err(wrong)?;
     if !matches!(array.shape[..], [rows, 3] if rows > 0) {
         return Err(wrong(format!("has an array of shape {:?}", array.shape)));
     }

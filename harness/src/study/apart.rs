@@ -89,11 +89,18 @@ impl<'a> Apart<'a> {
     pub(super) fn run(&self, plan: &Plan, index: usize, key: &str) -> TaskResult {
         let task = &plan.tasks[index];
         let answer = self.store.answer(key);
-        let _ = std::fs::remove_file(&answer);
-        let ended = self.command(&task.runs, key, &answer).and_then(|command| self.watch(command));
+        let _ = disk::remove(&answer);
+        // It may be killed, and leaves its temporary files then.
+        let work = adapter::Folder::new().map_err(std::io::Error::other);
+        let ended = work.and_then(|work| {
+            let mut command = self.command(&task.runs, key, &answer)?;
+            self.watch(command.env("TMPDIR", work.path()))
+        });
         // It is whole or not there.
-        let result = std::fs::read_to_string(&answer).ok().and_then(|text| serde_json::from_str(&text).ok());
-        let _ = std::fs::remove_file(&answer);
+        let result = disk::read_text(&answer, disk::Kind::RESULTS)
+            .ok()
+            .and_then(|text| serde_json::from_str(&text).ok());
+        let _ = disk::remove(&answer);
         let failure = match (ended, result) {
             (Ok(Ended { status: Some(_), .. }), Some(result)) => return result,
             (Ok(ended), _) => self.failure(&ended),
@@ -110,6 +117,7 @@ impl<'a> Apart<'a> {
         command.args(["--parent", &std::process::id().to_string()]);
         command.args(["--threads", &rayon::current_num_threads().to_string()]);
         command.args(self.args.quick.then_some("--quick"));
+        command.args(adapter::leaves_local_out().then_some("--no-local-adapters"));
         if let Some(bytes) = self.args.apart.memory_limit {
             command.args(["--memory-limit", &bytes.to_string()]);
         }
@@ -121,8 +129,8 @@ impl<'a> Apart<'a> {
     }
 
     /// Waits for a process as long as it may take, then ends all that it has started.
-    fn watch(&self, mut command: Command) -> std::io::Result<Ended> {
-        let mut started = Started::new(&mut command)?;
+    fn watch(&self, command: &mut Command) -> std::io::Result<Ended> {
+        let mut started = Started::new(command)?;
         let stderr = started.child().stderr.take();
         let reader = std::thread::spawn(move || stderr.map_or_else(String::new, last_words));
         let began = Instant::now();

@@ -1,9 +1,8 @@
 //! What happens in a study, as it happens: one JSON object a line, for programs that watch.
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use schemars::JsonSchema;
@@ -60,14 +59,19 @@ const FORMAT: u32 = 1;
 /// Where events go.
 pub struct Events {
     out: Mutex<Box<dyn Write + Send>>,
+    /// Why a line could not be written.
+    lost: Mutex<Option<io::Error>>,
     begin: Instant,
 }
 
 impl Events {
     /// To a file, `-` being stdout.
     pub(crate) fn to(path: &Path) -> io::Result<Events> {
-        let out: Box<dyn Write + Send> =
-            if path == Path::new("-") { Box::new(io::stdout()) } else { Box::new(File::create(path)?) };
+        let out: Box<dyn Write + Send> = if path == Path::new("-") {
+            Box::new(crate::print::Stdout)
+        } else {
+            Box::new(disk::create(path)?)
+        };
         Ok(Events::new(out))
     }
 
@@ -78,7 +82,13 @@ impl Events {
 
     /// To whatever takes lines.
     pub fn new(out: Box<dyn Write + Send>) -> Events {
-        Events { out: Mutex::new(out), begin: Instant::now() }
+        Events { out: Mutex::new(out), lost: Mutex::default(), begin: Instant::now() }
+    }
+
+    /// Why the events are not whole; a reader that has gone away has what it wants.
+    pub(crate) fn lost(self) -> Option<io::Error> {
+        let lost = self.lost.into_inner().unwrap_or_else(PoisonError::into_inner);
+        lost.filter(|bad| bad.kind() != io::ErrorKind::BrokenPipe)
     }
 
     /// Writes one line at once. A reader that has gone away, or a full disk, ends no study.
@@ -86,7 +96,10 @@ impl Events {
         let at = (self.begin.elapsed().as_secs_f64() * 1e3).round() / 1e3;
         let Ok(line) = serde_json::to_string(&Line { at, event }) else { return };
         if let Ok(mut out) = self.out.lock() {
-            let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+            let written = writeln!(out, "{line}").and_then(|()| out.flush());
+            if let (Err(bad), Ok(mut lost)) = (written, self.lost.lock()) {
+                lost.get_or_insert(bad);
+            }
         }
     }
 }

@@ -122,7 +122,13 @@ impl Work<'_> {
             (false, true) => Accept::Finished,
             (false, false) => Accept::Nothing,
         };
-        let stored = || self.store.load(key, accept).map(|result| Turn::Stored(Box::new(result)));
+        let stored = || match self.store.load(key, accept) {
+            Ok(found) => found.map(|result| Turn::Stored(Box::new(result))),
+            Err(bad) => {
+                self.progress.warn(format!("warning: {bad}; its run is made again"));
+                None
+            }
+        };
         if let Some(stored) = stored() {
             return stored;
         }

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{self, Scene};
 
+use super::Plan;
+use super::tasks::Task;
 use crate::adapter::{self, Found};
 
 /// Files that a scene names, and those of the adapters of one of its methods and of its reference: a changed mesh or program is a
@@ -25,15 +27,31 @@ pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
         found.push(path.clone());
     }
     for adapter in adapters(scene, method) {
-        found.extend(adapter.folder.iter().flat_map(|folder| {
-            adapter.files().into_iter().map(|(name, _)| folder.join(name)).collect::<Vec<_>>()
-        }));
+        found.extend(
+            adapter
+                .folder
+                .iter()
+                .flat_map(|folder| adapter.files().map(|(name, _)| folder.join(name)).collect::<Vec<_>>()),
+        );
     }
     let included: Vec<PathBuf> = found.iter().flat_map(|file| geometry::files::included(file)).collect();
     found.extend(included);
     found.sort();
     found.dedup();
     found
+}
+
+/// Notes the files that the methods of a scene read: none of them is an output.
+pub(crate) fn note_inputs(scene: &Scene) {
+    scene.methods.iter().flat_map(|method| files(scene, method)).for_each(|file| disk::input(&file));
+}
+
+impl Plan {
+    /// Notes the files that the runs will read: none of them is an output.
+    pub(crate) fn note_inputs(&self) {
+        let of = |task: &Task| files(&self.scenes[task.scene].2, &task.method);
+        self.tasks.iter().flat_map(of).for_each(|file| disk::input(&file));
+    }
 }
 
 /// What the solvers of a method and of its reference say of their versions: another one is another run.

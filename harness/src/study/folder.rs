@@ -2,7 +2,7 @@
 //! unless all of them work on it together.
 
 use std::collections::BTreeSet;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -77,7 +77,7 @@ fn open(file: &Path, out: &Path) -> Result<File, Failure> {
     }
     let opened = || {
         std::fs::create_dir_all(out)?;
-        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(out.join(LOCK))
+        disk::create_lock(&out.join(LOCK))
     };
     opened().map_err(|bad| unwritable(out, &bad))
 }
@@ -135,7 +135,7 @@ impl Folder {
     /// Locks out the others that work on it, which may write their results at the same time. Their results are the same: whether
     /// they have written them.
     pub(crate) fn writing(&self) -> (Option<File>, bool) {
-        let file = File::create(self.path.join(".writing")).ok();
+        let file = disk::create_lock(&self.path.join(".writing")).ok();
         if let Some(file) = &file {
             let _ = file.lock();
         }
@@ -145,7 +145,7 @@ impl Folder {
     /// Calls `clean` if no other process is left in the folder.
     pub(crate) fn close(self, clean: impl FnOnce()) {
         if self.lock.unlock().is_ok() && self.lock.try_lock().is_ok() {
-            let _ = std::fs::remove_file(self.path.join(".writing"));
+            let _ = disk::remove(&self.path.join(".writing"));
             clean();
         }
     }
@@ -156,10 +156,8 @@ pub(crate) fn ready_file(out: &Path) -> Result<(), String> {
     if out.is_dir() {
         return Err(format!("--out {}: is a folder; give a file", out.display()));
     }
-    let exists = out.exists();
-    let opened = OpenOptions::new().append(true).create(true).open(out);
-    let tried = opened.and_then(|_| if exists { Ok(()) } else { std::fs::remove_file(out) });
-    tried.map_err(|bad| format!("--out {}: {bad}; give a file that can be written", out.display()))
+    disk::try_create(out)
+        .map_err(|bad| format!("--out {}: {bad}; give a file that can be written", out.display()))
 }
 
 /// What the results in a folder are of, all of which a new run replaces; `None` where there are none.

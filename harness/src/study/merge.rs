@@ -71,13 +71,23 @@ fn noted(share: &Path) -> Result<Note, Failure> {
             path.display()
         ))
     };
-    let text = std::fs::read_to_string(share.join(NOTE)).map_err(|bad| wrong(bad.to_string()))?;
+    let text =
+        disk::read_text(&share.join(NOTE), disk::Kind::MESSAGE).map_err(|bad| wrong(bad.to_string()))?;
     serde_json::from_str(&text).map_err(|bad| wrong(bad.to_string()))
+}
+
+fn is_same(one: &Path, other: &Path) -> bool {
+    disk::Identity::of(one).is_some_and(|one| disk::Identity::of(other) == Some(one))
 }
 
 /// The study that the folders are shares of, with its runs.
 pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unmerged> {
     let other = Unmerged::Other;
+    if let Some(share) = args.shares.iter().find(|share| is_same(share, &args.out)) {
+        let problem =
+            format!("{}: is one of the shares; give the whole a folder of its own", share.display());
+        return Err(other(Failure::Input(problem)));
+    }
     let mut notes = Vec::new();
     for share in &args.shares {
         notes.push(noted(share).map_err(other)?);

@@ -50,6 +50,7 @@ pub use args::{Loudness, VerifyArgs};
 pub use busy::warn_if_busy;
 pub use events::Events;
 pub(crate) use events::{Event, Line};
+pub(crate) use files::note_inputs;
 pub use filters::Filters;
 pub(crate) use filters::like;
 pub use listing::Planned;

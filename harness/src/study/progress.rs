@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::events::{Event, Events};
 use super::task::TaskResult;
 use super::{Loudness, summary};
+use crate::print::shown;
 
 /// Time between two lines.
 const EVERY: Duration = Duration::from_secs(10);
@@ -49,7 +50,7 @@ impl<'a> Progress<'a> {
 
     /// What is running now.
     pub(crate) fn running(&self, case: String, method: String, run: usize) -> Running {
-        self.bar.set_message(format!("{case} {method}"));
+        self.bar.set_message(shown(&format!("{case} {method}"), false).into_owned());
         if let Some(events) = self.events {
             events.send(&Event::Start { case: &case, method: &method, run });
         }
@@ -93,7 +94,7 @@ impl<'a> Progress<'a> {
         if self.bar.is_hidden() {
             eprintln!("{text}");
         } else {
-            self.bar.println(text);
+            self.bar.println(shown(&text, false));
         }
     }
 

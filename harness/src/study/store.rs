@@ -1,10 +1,11 @@
 //! Results of single runs in the folder of a study: one file each, written as soon as the run is finished.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use disk::Kind;
 use reports::{Machine, Program, ReportError};
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +59,46 @@ struct Read {
     result: TaskResult,
 }
 
+/// The hash of a stored result stands in front of it: `{"hash":"...",` and the rest that it is of.
+const HASH: &str = "{\"hash\":\"";
+const DIGITS: usize = 64;
+
+/// Of what is stored and of the key that it is stored under: a result is no other run's.
+fn hash(key: &str, rest: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(key.as_bytes()).update(rest.as_bytes());
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Text of a stored result.
+fn sealed(key: &str, stored: &Stored) -> serde_json::Result<String> {
+    let text = serde_json::to_string(stored)?;
+    let rest = &text[1..];
+    Ok(format!("{HASH}{}\",{rest}", hash(key, rest)))
+}
+
+/// A stored result; refused if anything of it has changed since it was stored.
+fn unsealed(path: &Path, key: &str, text: &str) -> Result<Read, String> {
+    let hashed = text.strip_prefix(HASH).and_then(|text| text.split_at_checked(DIGITS));
+    let parts = hashed.and_then(|(hash, rest)| Some((hash, rest.strip_prefix("\",")?)));
+    if !parts.is_some_and(|(found, rest)| found == hash(key, rest)) {
+        return Err(format!(
+            "{} has not the hash that it was stored with: it was changed since",
+            path.display()
+        ));
+    }
+    serde_json::from_str(text).map_err(|bad| format!("{}: {bad}", path.display()))
+}
+
+/// The text of a stored result; `None` where there is none.
+fn stored(path: &Path) -> Result<Option<String>, String> {
+    match disk::read_text(path, Kind::RESULTS) {
+        Ok(text) => Ok(Some(text)),
+        Err(bad) if bad.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(bad) => Err(format!("{}: {bad}", path.display())),
+    }
+}
+
 /// The folder of stored results.
 pub(super) struct Store {
     folder: PathBuf,
@@ -78,24 +119,29 @@ impl Store {
         self.folder.join(format!("{key}.answer"))
     }
 
-    /// The result under a key, if there is a readable one that is accepted.
-    pub(super) fn load(&self, key: &str, accept: Accept) -> Option<TaskResult> {
+    /// The result under a key, if there is one that is accepted.
+    ///
+    /// # Errors
+    /// One that can't be read, or has changed since it was stored.
+    pub(super) fn load(&self, key: &str, accept: Accept) -> Result<Option<TaskResult>, String> {
         if accept == Accept::Nothing {
-            return None;
+            return Ok(None);
         }
-        let text = fs::read_to_string(self.file(key)).ok()?;
-        let Read { by, result } = serde_json::from_str(&text).ok()?;
+        let path = self.file(key);
+        let Some(text) = stored(&path)? else { return Ok(None) };
+        let Read { by, result } = unsealed(&path, key, &text)?;
         let good = match accept {
             Accept::Nothing => false,
             Accept::Finished => by == self.by && result.failure.is_none(),
             Accept::All => by.program == self.by.program,
         };
-        good.then_some(result)
+        Ok(good.then_some(result))
     }
 
     /// Seconds that the task under a key took on this machine, by whatever program, where it did not fail.
     pub(super) fn seconds(&self, key: &str) -> Option<f64> {
-        let Read { by, result } = serde_json::from_str(&fs::read_to_string(self.file(key)).ok()?).ok()?;
+        let path = self.file(key);
+        let Read { by, result } = unsealed(&path, key, &stored(&path).ok()??).ok()?;
         (by.machine == self.by.machine && result.failure.is_none())
             .then_some(result.seconds)
             .filter(|s| *s > 0.0)
@@ -106,7 +152,7 @@ impl Store {
         let path = self.file(key);
         let unwritten = |source| ReportError::Unwritten { path: path.clone(), source };
         fs::create_dir_all(&self.folder).map_err(unwritten)?;
-        let text = serde_json::to_string(&Stored { by: &self.by, result });
+        let text = sealed(key, &Stored { by: &self.by, result });
         reports::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
     }
 
@@ -118,7 +164,7 @@ impl Store {
     pub(super) fn claim(&self, key: &str) -> io::Result<Option<File>> {
         fs::create_dir_all(&self.folder)?;
         let path = self.folder.join(format!("{key}.claim"));
-        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        let file = disk::create_lock(&path)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(file)),
             Err(TryLockError::WouldBlock) => Ok(None),
@@ -131,8 +177,8 @@ impl Store {
     pub(super) fn sweep(&self) {
         for path in files(&self.folder, &["json"]) {
             let key = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if self.load(&key, Accept::Finished).is_none() {
-                let _ = fs::remove_file(path);
+            if !matches!(self.load(&key, Accept::Finished), Ok(Some(_))) {
+                let _ = disk::remove(&path);
             }
         }
     }
@@ -150,8 +196,14 @@ impl Share {
     /// A result in a folder with its text, or why it can't be joined with those before; `None` where there is none.
     pub(super) fn take(&mut self, out: &Path, key: &str) -> Option<Result<(String, TaskResult), String>> {
         let path = out.join(TASKS).join(format!("{key}.json"));
-        let text = fs::read_to_string(&path).ok()?;
-        let Read { by, result } = serde_json::from_str(&text).ok()?;
+        let read = stored(&path).and_then(|text| {
+            let Some(text) = text else { return Ok(None) };
+            unsealed(&path, key, &text).map(|read| Some((text, read)))
+        });
+        let (text, Read { by, result }) = match read {
+            Ok(found) => found?,
+            Err(problem) => return Some(Err(problem)),
+        };
         if *self.program.get_or_insert_with(|| by.program.clone()) != by.program {
             return Some(Err(format!("{} was made by another build of the program", path.display())));
         }
@@ -175,7 +227,7 @@ pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError>
 /// Removes what killed processes left in a folder of results. Only for a process that is alone in it.
 pub(super) fn clean(out: &Path) {
     for path in files(&out.join(TASKS), &["partial", "claim", "answer"]) {
-        let _ = fs::remove_file(path);
+        let _ = disk::remove(&path);
     }
 }
 
@@ -200,7 +252,7 @@ mod tests {
         let known = store(dir.path(), &program, &machine);
         known.save("key", &TaskResult::default()).unwrap();
         let found = |program: &Program, machine: &Machine, accept| {
-            store(dir.path(), program, machine).load("key", accept).is_some()
+            store(dir.path(), program, machine).load("key", accept).unwrap().is_some()
         };
         let later = Machine { load: Some(3.0), quiet: Some(false), clock: Some(3.1), ..machine.clone() };
         assert!(found(&program, &later, Accept::Finished));
@@ -237,6 +289,27 @@ mod tests {
     }
 
     #[test]
+    fn a_changed_result_and_one_of_another_key_are_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let store = store(dir.path(), &Program::default(), &Machine::default());
+        let record = reports::Record { value: 0.125, ..reports::Record::default() };
+        store.save("key", &TaskResult { records: vec![record], ..TaskResult::default() }).unwrap();
+        let load = |key: &str| store.load(key, Accept::Finished);
+        assert_eq!(load("key").unwrap().unwrap().records[0].value, 0.125);
+        let text = fs::read_to_string(store.file("key")).unwrap();
+        fs::write(store.file("other"), &text).unwrap();
+        assert!(load("other").unwrap_err().contains("other.json has not the hash"));
+        for changed in
+            [text.replace("0.125", "0.126"), text.replacen(HASH, "{\"hush\":\"", 1), text[..80].into()]
+        {
+            fs::write(store.file("key"), changed).unwrap();
+            assert!(load("key").unwrap_err().contains("changed since"));
+            let taken = Share::default().take(dir.path(), "key").unwrap();
+            assert!(taken.unwrap_err().contains("changed since"));
+        }
+    }
+
+    #[test]
     fn a_task_is_claimed_once_and_free_again_after_its_holder() {
         let dir = tempfile::tempdir().unwrap();
         let store = store(dir.path(), &Program::default(), &Machine::default());
@@ -259,7 +332,8 @@ mod tests {
             fs::write(store.folder.join(name), text).unwrap();
         }
         assert!(
-            store.load("failed", Accept::All).is_some() && store.load("failed", Accept::Finished).is_none()
+            store.load("failed", Accept::All).unwrap().is_some()
+                && store.load("failed", Accept::Finished).unwrap().is_none()
         );
         store.sweep();
         clean(dir.path());

@@ -102,7 +102,7 @@ pub fn key(scene_text: &str, files: &[PathBuf], what: &str) -> String {
     };
     add(scene_text.as_bytes());
     add(what.as_bytes());
-    files.iter().for_each(|path| add(&std::fs::read(path).unwrap_or_default()));
+    files.iter().for_each(|path| add(&disk::read(path, disk::Kind::MESH).unwrap_or_default()));
     hasher.finalize().to_hex()[..32].to_string()
 }
 

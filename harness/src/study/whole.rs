@@ -55,8 +55,7 @@ impl Plan {
             return Err(Failure::Run(format!("stopped; {out} is incomplete and keeps the finished runs")));
         }
         finished.set.provenance.source = folder::source(study);
-        let written = reports::write_run(&args.out, &finished.set);
-        let written = written.and_then(|()| reports::render(&args.out, &args.out.join("report")));
+        let written = reports::write_with_report(&args.out, &finished.set, None);
         written.map_err(|bad| Failure::Run(bad.to_string()))?;
         Ok(finished)
     }

@@ -114,8 +114,8 @@ impl Summary {
     }
 
     pub(super) fn load(path: &Path) -> Result<Summary, ReportError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| ReportError::Io { path: path.into(), source })?;
+        let text = disk::read_text(path, disk::Kind::HISTORY)
+            .map_err(|source| ReportError::Io { path: path.into(), source })?;
         let content = |reason| ReportError::Content { path: path.into(), reason };
         let read: Summary = toml::from_str(&text).map_err(|bad| content(bad.to_string()))?;
         let numbers = |run: &RunNumbers| {

@@ -14,19 +14,28 @@ use crate::process::Limits;
 pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8, Failure> {
     let path = problem.join(TEXT);
     let wrong = |bad: String| Failure::Input(format!("{}: {bad}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|bad| wrong(bad.to_string()))?;
+    let text = disk::read_text(&path, disk::Kind::MESSAGE).map_err(|bad| wrong(bad.to_string()))?;
     let text: Text = serde_json::from_str(&text).map_err(|bad| wrong(bad.to_string()))?;
     if let Some(reason) = adapter.manifest.refusal(&text.element, &asked(&text, problem)) {
         eprintln!("{}: {} {reason}", ForeignStatus::NotOffered.name(), adapter.manifest.name);
         return Ok(3);
     }
-    let nodes = npy::read(&problem.join("nodes.npy")).map_err(Failure::Input)?.shape.first().copied();
+    let nodes = npy::read(&problem.join("nodes.npy"), disk::Kind::ARRAY)
+        .map_err(Failure::Input)?
+        .shape
+        .first()
+        .copied();
     let folder = |path: &Path| {
         std::fs::create_dir_all(path)
             .and_then(|()| path.canonicalize())
             .map_err(|bad| Failure::Input(format!("{}: {bad}", path.display())))
     };
     let (problem, answer) = (folder(problem)?, folder(answer)?);
+    if disk::Identity::of(&problem) == disk::Identity::of(&answer) {
+        let problem =
+            format!("{}: is the folder of the problem; give another for the answer", answer.display());
+        return Err(Failure::Input(problem));
+    }
     let work = adapter::Folder::new().map_err(Failure::Run)?;
     let limits = Limits {
         time: Duration::try_from_secs_f64(text.limits.seconds).unwrap_or(Duration::MAX),

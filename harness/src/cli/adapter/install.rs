@@ -62,7 +62,7 @@ pub(super) fn copy(adapter: &Found, folder: &Path) -> Result<(), Failure> {
         let old = format!("name = \"{}\"", adapter.manifest.name);
         let text = String::from_utf8_lossy(&bytes).replacen(&old, &format!("name = \"{name}\""), 1);
         let bytes = if file == "adapter.toml" { text.into_bytes() } else { bytes };
-        std::fs::write(folder.join(&file), bytes).map_err(|source| bad(format!("{file}: {source}")))?;
+        disk::write(&folder.join(&file), bytes).map_err(|source| bad(format!("{file}: {source}")))?;
     }
     let beside = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     println!(

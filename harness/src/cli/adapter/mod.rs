@@ -66,10 +66,8 @@ fn list() -> u8 {
     let All { found, broken } = adapter::all(None);
     for adapter in &found {
         let manifest = &adapter.manifest;
-        let state = match adapter::ready(adapter) {
-            Ok(()) => adapter::version(adapter).unwrap_or_else(|| "ready".into()),
-            Err(reason) => reason,
-        };
+        // Its version is what one of its programs says: a list calls none of them.
+        let state = adapter::ready(adapter).err().unwrap_or_else(|| "ready".into());
         println!("{}: {} ({})", manifest.name, manifest.title, adapter.place());
         println!("  can       {}", manifest.can.join(", "));
         println!("  elements  {}", manifest.elements.join(", "));

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::study::RunSummary;
+use crate::study::{Events, Plan, RunSummary};
 
 use annotations::annotate;
 use junit::junit;
@@ -34,6 +34,18 @@ pub struct CiArgs {
     pub events: Option<PathBuf>,
 }
 
+/// Begins the events, and refuses files that the study reads.
+pub(super) fn begin(args: &CiArgs, plan: &Plan) -> Result<Option<Events>, String> {
+    if args.events.is_some() || args.junit.is_some() {
+        plan.note_inputs();
+    }
+    if let Some(file) = &args.junit {
+        disk::try_create(file).map_err(|bad| format!("--junit {}: {bad}", file.display()))?;
+    }
+    let Some(file) = &args.events else { return Ok(None) };
+    Events::to(file).map(Some).map_err(|bad| format!("--events {}: {bad}", file.display()))
+}
+
 /// Writes and prints what was asked for; says what could not be written.
 pub(super) fn write(args: &CiArgs, study: &Path, runs: &[RunSummary]) -> Result<(), String> {
     if args.annotations {
@@ -41,5 +53,5 @@ pub(super) fn write(args: &CiArgs, study: &Path, runs: &[RunSummary]) -> Result<
     }
     let Some(file) = &args.junit else { return Ok(()) };
     let text = junit(&study.display().to_string(), runs);
-    std::fs::write(file, text).map_err(|bad| format!("--junit {}: {bad}", file.display()))
+    disk::write(file, text).map_err(|bad| format!("--junit {}: {bad}", file.display()))
 }

@@ -54,7 +54,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     if let Some(Place::Where(region)) = found.supports.first().map(|support| &support.place) {
         holds(region, &organ, wanted.side)?;
     }
-    std::fs::write(&out, &text).map_err(|bad| input(format!("{name}: can't be written: {bad}")))?;
+    disk::write(&out, &text).map_err(|bad| input(format!("{name}: can't be written: {bad}")))?;
     println!(
         "{name}: {} under a plate from the {}, {} runs",
         file.display(),
@@ -73,10 +73,8 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
 
 /// Refuses to write over a file: a scene unless that is forced, the organ always.
 fn free(out: &Path, file: &Path, force: bool) -> Result<(), Failure> {
-    let real = |path: &Path| path.canonicalize().ok();
-    if out.exists() && real(out) == real(file) {
-        return Err(input(format!("--out '{}': is the file that is read; give another name", out.display())));
-    }
+    disk::input(file);
+    disk::spare(out).map_err(|bad| input(format!("--out '{}': {bad}", out.display())))?;
     if out.is_dir() {
         return Err(input(format!("--out '{}': is a folder; name a file in it", out.display())));
     }

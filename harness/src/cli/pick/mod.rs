@@ -13,7 +13,7 @@ use reports::{Reference, Seconds};
 use serde::Serialize;
 
 use crate::cli::args::Format;
-use crate::cli::{choose, interrupt, refuse, report, take, text, unreported};
+use crate::cli::{choose, interrupt, refuse, take, text, write_results};
 use crate::outcome::provenance;
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, folder};
@@ -50,7 +50,7 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         Ok(folder) => folder,
         Err(code) => return code,
     };
-    interrupt::install(interrupt::incomplete(args.out.clone()));
+    interrupt::at_last(interrupt::incomplete(args.out.clone()));
     if std::io::stderr().is_terminal() {
         eprintln!("reference ...");
     }
@@ -276,8 +276,5 @@ fn sentence(demand: &Demand, found: &Found) -> String {
 fn write(args: &PickArgs, scene: &Scene, mut found: Found) -> u8 {
     let Some(out) = &args.out else { return 0 };
     found.set.records.extend(study::reference_records(scene));
-    match reports::write_run(out, &found.set) {
-        Ok(()) => report(out, &out.join("report"), None, false),
-        Err(bad) => unreported(&bad),
-    }
+    write_results(out, &found.set, None, false)
 }

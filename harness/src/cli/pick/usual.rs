@@ -29,7 +29,7 @@ pub(super) fn with_usual(args: &SceneArgs, always: bool) -> Result<(Scene, usize
     let bare = own.as_ref().err().is_some_and(|errors| errors.iter().all(|error| error.key == "method"));
     let (text, mut count) = match &own {
         Ok(scene) if always => (scene.text().to_string(), scene.methods.len()),
-        Err(_) if bare => (std::fs::read_to_string(path).unwrap_or_default(), 0),
+        Err(_) if bare => (disk::read_text(path, disk::Kind::SCENE).unwrap_or_default(), 0),
         _ => return own.map(|scene| (scene.methods.len(), scene)).map(|(count, scene)| (scene, count)),
     };
     let Ok(mut table) = text.parse::<toml::Table>() else { return own.map(|scene| (scene, count)) };

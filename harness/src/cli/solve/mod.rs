@@ -41,7 +41,7 @@ pub(super) fn solve(args: &SolveArgs) -> u8 {
         Err(reason) => {
             eprintln!("tissuebench solve: {reason}");
             let result = json!({ "status": "failed", "message": reason });
-            let _ = std::fs::write(args.answer.join(RESULT), result.to_string());
+            let _ = disk::write(&args.answer.join(RESULT), result.to_string());
             3
         }
     }
@@ -49,7 +49,8 @@ pub(super) fn solve(args: &SolveArgs) -> u8 {
 
 fn answer(args: &SolveArgs) -> Result<u8, String> {
     let path = args.problem.join(TEXT);
-    let text = std::fs::read_to_string(&path).map_err(|bad| format!("{}: {bad}", path.display()))?;
+    let text =
+        disk::read_text(&path, disk::Kind::MESSAGE).map_err(|bad| format!("{}: {bad}", path.display()))?;
     let text: Text = serde_json::from_str(&text).map_err(|bad| format!("{}: {bad}", path.display()))?;
     if text.schema != SCHEMA {
         return Err(format!("{}: schema {} is not known, only {SCHEMA}", path.display(), text.schema));
@@ -125,7 +126,7 @@ fn said(folder: &Path, text: &Text, status: &str, message: &str) -> Result<u8, S
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    std::fs::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
+    disk::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 
 fn leave_a_child() -> Result<(), String> {

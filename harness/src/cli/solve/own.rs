@@ -104,7 +104,7 @@ fn mesh(folder: &Path, text: &Text) -> Result<Mesh, String> {
 
 /// An array of rows of so many numbers, one row after the other.
 fn array(folder: &Path, name: &str, columns: usize) -> Result<Vec<f64>, String> {
-    let array = npy::read(&folder.join(name)).map_err(|bad| format!("{name}: {bad}"))?;
+    let array = npy::read(&folder.join(name), disk::Kind::ARRAY).map_err(|bad| format!("{name}: {bad}"))?;
     match array.shape[..] {
         [_] if columns == 1 => Ok(array.values),
         [_, n] if n == columns => Ok(array.values),

@@ -110,7 +110,7 @@ pub(crate) fn write(
 }
 
 fn save(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    std::fs::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
+    disk::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 
 /// Of the text without limits and threads, which do not change a solution, and of all arrays.
@@ -120,7 +120,7 @@ fn id(text: &Text, folder: &Path) -> Result<String, String> {
     let what = json!([schema, element, materials, procedure, settings]);
     hasher.update(what.to_string().as_bytes());
     for name in ARRAYS.into_iter().chain([TOOLS]) {
-        hasher.update(&std::fs::read(folder.join(name)).unwrap_or_default());
+        hasher.update(&disk::read(&folder.join(name), disk::Kind::ARRAY).unwrap_or_default());
     }
     Ok(hasher.finalize().to_hex()[..16].to_string())
 }

@@ -94,7 +94,7 @@ const NAMES: [&str; 3] = ["x", "y", "z"];
 /// Reads a file of positions; `unit` is metres per unit of its numbers. Blank lines and those that start with `#` are passed over.
 /// A first line without any number names the columns: those named x, y and z count, in any order and among others.
 pub fn read_points(file: &Path, unit: f64) -> Result<PointFile, PointFileError> {
-    let text = std::fs::read_to_string(file)
+    let text = disk::read_text(file, disk::Kind::MESH)
         .map_err(|source| PointFileError::Io { file: file.to_path_buf(), source })?;
     read_points_text(&text, file, unit)
 }

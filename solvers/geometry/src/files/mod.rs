@@ -50,7 +50,7 @@ fn suffix(file: &Path) -> String {
 pub fn included(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
     let is_deck = suffix(file) == "inp";
-    if is_deck { abaqus::included(file, &folder, 0) } else { Vec::new() }
+    if is_deck { abaqus::included(file, &folder) } else { Vec::new() }
 }
 
 /// Reads a mesh file by what it holds, whatever its name; `unit` is the length of the file's unit in metres (0.001 for millimetres).
@@ -103,7 +103,7 @@ pub fn write_as(mesh: &Mesh, file: &Path, unit: f64, format: Format) -> Result<(
         Format::Stl => Ok(surface::write(mesh, unit)),
     };
     let bytes = bytes.map_err(|name| FileError::Name { file: file.to_path_buf(), name })?;
-    std::fs::write(file, bytes).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
+    disk::write(file, bytes).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
 fn check_unit(file: &Path, unit: f64) -> Result<(), FileError> {
@@ -112,7 +112,7 @@ fn check_unit(file: &Path, unit: f64) -> Result<(), FileError> {
 }
 
 fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
-    std::fs::read(file).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
+    disk::read(file, disk::Kind::MESH).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
 /// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.

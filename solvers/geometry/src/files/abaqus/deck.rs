@@ -1,11 +1,12 @@
 //! A deck as a whole: parts, instances and files that it includes.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::assembly::{self, Placed, Waiting};
 use super::cards::{Card, cards, real, split};
+use super::include::{DEEPEST, Includes};
 use super::keywords;
 use super::names::Shared;
 use super::scope::Scope;
@@ -18,11 +19,9 @@ const MOST_PLACED: usize = 1 << 23;
 /// What adds to the part of the instance that it stands in.
 const ADDED: [&str; 6] = ["NODE", "ELEMENT", "ELSET", "NSET", "SURFACE", "SOLID SECTION"];
 
-/// Files that include files: a deck that includes itself ends here.
-pub(super) const DEEPEST: usize = 8;
-
 pub(super) struct Deck {
     folder: PathBuf,
+    includes: Includes,
     /// What stands outside of parts.
     flat: Scope,
     /// The part that is being read.
@@ -51,6 +50,7 @@ impl Deck {
     pub(super) fn new(folder: &Path) -> Deck {
         Deck {
             folder: folder.into(),
+            includes: Includes::default(),
             flat: Scope::default(),
             open: None,
             placing: false,
@@ -209,15 +209,12 @@ impl Deck {
     fn include(&mut self, card: &Card, depth: usize) -> Parsed<()> {
         let name = card.need("INPUT")?.to_string();
         let unread = |help| Err((card.place, Problem::Unread { what: format!("*INCLUDE of {name}"), help }));
-        let path = Path::new(&name);
-        if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-            return unread("it has to lie in the folder of the deck");
-        }
         if depth == DEEPEST {
             return unread("files include files more than eight deep");
         }
-        let Ok(bytes) = std::fs::read(self.folder.join(path)) else {
-            return unread("there is no such file that can be read");
+        let bytes = match self.includes.read(&self.folder, &name) {
+            Ok((_, bytes)) => bytes,
+            Err(help) => return unread(help),
         };
         let read = text(&bytes).and_then(|text| self.read(&text, depth + 1));
         read.map_err(|(place, problem)| {

@@ -9,6 +9,7 @@
 mod assembly;
 mod cards;
 mod deck;
+mod include;
 mod keywords;
 mod kinds;
 mod names;
@@ -30,18 +31,27 @@ pub(super) fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
 }
 
 /// Files below a deck, in the order of their lines.
-pub(super) fn included(file: &Path, folder: &Path, depth: usize) -> Vec<PathBuf> {
-    let Ok(bytes) = std::fs::read(file) else { return Vec::new() };
-    let Ok(text) = text(&bytes) else { return Vec::new() };
+pub(super) fn included(file: &Path, folder: &Path) -> Vec<PathBuf> {
+    let Ok(bytes) = disk::read(file, disk::Kind::MESH) else { return Vec::new() };
+    let mut found = Vec::new();
+    add_included(&bytes, folder, 0, &mut include::Includes::default(), &mut found);
+    found
+}
+
+fn add_included(
+    bytes: &[u8],
+    folder: &Path,
+    depth: usize,
+    read: &mut include::Includes,
+    found: &mut Vec<PathBuf>,
+) {
+    let Ok(text) = text(bytes) else { return };
     let cards = cards::cards(&text).unwrap_or_default();
     let names = cards.iter().filter(|card| card.keyword == "INCLUDE").filter_map(|card| card.get("INPUT"));
-    let mut found = Vec::new();
-    for path in names.map(|name| folder.join(name)) {
-        if depth < deck::DEEPEST {
-            let below = included(&path, folder, depth + 1);
+    for name in names.filter(|_| depth < include::DEEPEST) {
+        if let Ok((path, bytes)) = read.read(folder, name) {
             found.push(path);
-            found.extend(below);
+            add_included(&bytes, folder, depth + 1, read, found);
         }
     }
-    found
 }

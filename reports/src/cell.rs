@@ -1,0 +1,49 @@
+//! Texts in cells of CSV: a spreadsheet takes one that begins with `=`, `+`, `-` or `@` for a formula and runs it.
+
+use std::borrow::Cow;
+
+/// Stands in front of such a text; a spreadsheet shows the rest.
+const GUARD: char = '\'';
+
+/// Whether a text is a formula to a spreadsheet, be it behind guards of its own.
+fn is_formula(text: &str) -> bool {
+    text.trim_start_matches(GUARD).starts_with(['=', '+', '-', '@', '\t', '\r'])
+}
+
+/// The text as a cell: guarded if it is a formula. Numbers stay as they are.
+pub(crate) fn guarded(text: &str) -> Cow<'_, str> {
+    let safe = !is_formula(text) || text.parse::<f64>().is_ok();
+    if safe { text.into() } else { format!("{GUARD}{text}").into() }
+}
+
+/// The text of a cell.
+pub(crate) fn unguarded(cell: &str) -> &str {
+    cell.strip_prefix(GUARD).filter(|text| is_formula(text)).unwrap_or(cell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_formula_is_guarded_and_every_text_comes_back() {
+        for (text, cell) in [
+            ("=1+1", "'=1+1"),
+            ("+cmd", "'+cmd"),
+            ("-2+3", "'-2+3"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("\t=1", "'\t=1"),
+            ("'=1", "''=1"),
+            ("''-x", "'''-x"),
+            ("-1.5e-3", "-1.5e-3"),
+            ("+2", "+2"),
+            ("'quoted'", "'quoted'"),
+            ("tet4-nodal", "tet4-nodal"),
+            ("", ""),
+            ("'", "'"),
+        ] {
+            assert_eq!(guarded(text), cell);
+            assert_eq!(unguarded(cell), text);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Which files are inputs of this process, whatever their names.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{File, Metadata};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A file whatever its names: device and inode. Where a system has none, the path without links.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Identity(#[cfg(unix)] (u64, u64), #[cfg(not(unix))] PathBuf);
+
+impl Identity {
+    /// Identity of the file or folder that a path leads to; `None` if there is none.
+    pub fn of(path: &Path) -> Option<Identity> {
+        #[cfg(unix)]
+        return Some(Identity::from(&std::fs::metadata(path).ok()?));
+        #[cfg(not(unix))]
+        path.canonicalize().ok().map(Identity)
+    }
+
+    #[cfg(unix)]
+    fn from(of: &Metadata) -> Identity {
+        use std::os::unix::fs::MetadataExt;
+        Identity((of.dev(), of.ino()))
+    }
+}
+
+/// Files that were read, by where they were found, and files that this process has written.
+struct Known {
+    inputs: BTreeMap<Identity, PathBuf>,
+    written: BTreeSet<Identity>,
+}
+
+fn known() -> MutexGuard<'static, Known> {
+    static KNOWN: Mutex<Known> = Mutex::new(Known { inputs: BTreeMap::new(), written: BTreeSet::new() });
+    KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Notes that a file is an input of this process, read or yet to be read: from now on no output replaces it. An own output that is read
+/// again is none.
+pub fn input(path: &Path) {
+    let Some(identity) = Identity::of(path) else { return };
+    let mut known = known();
+    if !known.written.contains(&identity) {
+        known
+            .inputs
+            .entry(identity)
+            .or_insert_with(|| std::path::absolute(path).unwrap_or_else(|_| path.into()));
+    }
+}
+
+/// Notes that this process has made or emptied a file.
+pub(crate) fn written(file: &File, path: &Path) {
+    #[cfg(unix)]
+    let identity = file.metadata().ok().filter(Metadata::is_file).map(|of| Identity::from(&of));
+    #[cfg(not(unix))]
+    let identity = file.metadata().ok().filter(Metadata::is_file).and_then(|_| Identity::of(path));
+    let _ = path;
+    let Some(identity) = identity else { return };
+    let mut known = known();
+    known.inputs.remove(&identity);
+    known.written.insert(identity);
+}
+
+/// Refuses an output that is an input.
+///
+/// # Errors
+/// An input of this process, with its name.
+pub fn spare(out: &Path) -> io::Result<()> {
+    let Some(identity) = Identity::of(out) else { return Ok(()) };
+    let known = known();
+    match known.inputs.get(&identity) {
+        // The number of a file that is gone may be that of a new one.
+        Some(name) if Identity::of(name).as_ref() == Some(&identity) => {
+            let problem = format!("is the input file {}; give another name", name.display());
+            Err(io::Error::new(io::ErrorKind::InvalidInput, problem))
+        }
+        _ => Ok(()),
+    }
+}
