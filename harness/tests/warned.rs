@@ -285,11 +285,13 @@ fn blocks(apart: bool) -> String {
     }
     let plane = |k: usize| (1..=4).map(|c| (4 * k + c).to_string()).collect::<Vec<_>>().join(" ");
     let second = if apart { 2 } else { 1 };
+    // Each piece names the wall from its own side.
+    let walls: String = (1..=second).map(|k| format!("{k} 3 2 3 1 {}\n", plane(k))).collect();
     let count = 4 * planes.len();
     format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 3 \"wall\"\n3 1 \"left\"\n3 2 \"right\"\n$EndPhysicalNames\n\
-         $Nodes\n{count}\n{nodes}$EndNodes\n$Elements\n3\n1 3 2 3 1 {}\n2 5 2 1 1 {} {}\n3 5 2 2 2 {} {}\n$EndElements\n",
-        plane(1),
+         $Nodes\n{count}\n{nodes}$EndNodes\n$Elements\n{}\n{walls}8 5 2 1 1 {} {}\n9 5 2 2 2 {} {}\n$EndElements\n",
+        second + 2,
         plane(0),
         plane(1),
         plane(second),
@@ -326,6 +328,11 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     assert!(warned(&modes, "pieces-apart").is_some(), "{modes:?}");
     let joined = run_in(&dir, &blocks_scene(", join = true", SHEARED));
     assert!(warned(&joined, "pieces-apart").is_none() && joined[0]["nodes"] == 12, "{joined:?}");
+    // The wall that both pieces name is one: u = 100 Pa L / (2 E).
+    let pushed = "load = [{ on = \"wall\", traction = [\"100 Pa\", \"0 Pa\", \"0 Pa\"] }]";
+    let pushed = run_in(&dir, &blocks_scene(", join = true", pushed));
+    let moved = pushed[0]["metrics"]["max-x"]["value"].as_f64().unwrap();
+    assert!((moved - 100.0 * 10e-3 / 40e3).abs() < 1e-9, "{moved}");
     let info = tissuebench(&["mesh", "info", &file, "--unit", "mm"]);
     assert!(info.stdout.contains("2 pieces without a node in common, 1 faces coincide"), "{}", info.stdout);
     let out = inside(&dir, "joined.msh");

@@ -1,5 +1,7 @@
 //! Whether every support and load of a scene touches the body, before any table is filled.
 
+use std::collections::HashSet;
+
 use geometry::{Mesh, Point3, quadrature};
 
 use crate::Failure;
@@ -36,7 +38,14 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
 
 /// The faces that a load acts on.
 pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
-    let patch = place::patch(&load.key, &load.place, mesh)?;
+    let mut patch = place::patch(&load.key, &load.place, mesh)?;
+    // A wall between two cells may be named from both sides: it is one.
+    let mut seen = HashSet::new();
+    patch.whole.retain(|facet| {
+        let mut nodes: Vec<u32> = mesh.facet_nodes(*facet).collect();
+        nodes.sort_unstable();
+        seen.insert(nodes)
+    });
     if patch.whole.is_empty() && patch.cut.is_empty() {
         return Err(place::empty(&load.key, &load.place, mesh));
     }
