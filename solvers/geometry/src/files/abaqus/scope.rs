@@ -113,7 +113,7 @@ impl Scope {
                 self.touch(&words[1..]);
                 continue;
             };
-            if inner_nodes(name, nodes).contains(&(words.len() - 1)) {
+            if has_inner_nodes(name, nodes, words.len() - 1) {
                 self.touch(&words.split_off(nodes + 1));
                 self.content.leave_unused_out();
             }
@@ -330,9 +330,9 @@ impl Scope {
     }
 }
 
-/// Numbers of nodes of an element with incompatible modes that has nodes for these too, behind the eight of its corners.
-fn inner_nodes(name: &str, corners: usize) -> std::ops::RangeInclusive<usize> {
-    if name.eq_ignore_ascii_case("C3D8I") { corners + 1..=corners + 3 } else { 1..=0 }
+/// Whether an element with incompatible modes has nodes for these too, behind the eight of its corners.
+fn has_inner_nodes(name: &str, corners: usize, nodes: usize) -> bool {
+    name.eq_ignore_ascii_case("C3D8I") && (corners + 1..=corners + 3).contains(&nodes)
 }
 
 /// Members of all sets and numbers of all ranges.
