@@ -87,7 +87,7 @@ mod tests {
         };
         assert_eq!(
             known.sentence(),
-            "tet4 with 75 nodes, whose own error is about 90 % of displacement and 20 % of the peak (by tet4 with 18 nodes and tet10 \
+            "tet4 with 75 nodes, whose own error is about 90.0 % of displacement and 20.0 % of the peak (by tet4 with 18 nodes and tet10 \
              with 75 nodes): a smaller one says nothing"
         );
         let unknown = Reference { band: BTreeMap::new(), unknown: "its mesh is a file".into(), ..known };

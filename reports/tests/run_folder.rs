@@ -40,7 +40,7 @@ fn values_carry_no_thread_count_but_times_do() {
         "{}",
         two[0]
     );
-    assert!(two[0].ends_with("commit,rustc,profile,cpu,instructions,threads"), "{}", two[0]);
+    assert!(two[0].ends_with("commit,rustc,profile,cpu,model,instructions,threads"), "{}", two[0]);
     let (mut same, mut other) = (0, 0);
     for (a, b) in one.iter().zip(&two) {
         // The time of a step is the model's own.
