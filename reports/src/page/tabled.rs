@@ -56,6 +56,9 @@ impl<'a> TableView<'a> {
     }
 }
 
+/// `(method, value, verdict, error, why, class)`; the first two and the last by number.
+type Cell = (usize, usize, &'static str, Option<f64>, String, usize);
+
 /// How methods fare along an axis.
 #[derive(Serialize)]
 pub(super) struct MapView<'a> {
@@ -69,8 +72,7 @@ pub(super) struct MapView<'a> {
     methods: Vec<&'a str>,
     /// What the colours stand for.
     classes: Vec<String>,
-    /// `(method, value, verdict, error, why, class)`; the first two and the last by number.
-    cells: Vec<(usize, usize, &'static str, Option<f64>, String, usize)>,
+    cells: Vec<Cell>,
 }
 
 impl<'a> MapView<'a> {
