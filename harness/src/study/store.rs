@@ -81,7 +81,7 @@ fn sealed(key: &str, stored: &Stored) -> serde_json::Result<String> {
 fn unsealed(path: &Path, key: &str, text: &str) -> Result<Read, String> {
     let hashed = text.strip_prefix(HASH).and_then(|text| text.split_at_checked(DIGITS));
     let parts = hashed.and_then(|(hash, rest)| Some((hash, rest.strip_prefix("\",")?)));
-    if !parts.is_some_and(|(found, rest)| found == hash(key, rest)) {
+    if parts.is_none_or(|(found, rest)| found != hash(key, rest)) {
         return Err(format!(
             "{} has not the hash that it was stored with: it was changed since",
             path.display()
