@@ -1,7 +1,9 @@
 //! A study: read, checked against its scenes, its runs listed.
 
+use std::path::Path;
+
 use cases::scene;
-use harness::study::Plan;
+use harness::study::{Plan, VerifyArgs};
 
 pub(crate) fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
@@ -10,7 +12,7 @@ pub(crate) fn run(data: &[u8]) {
         Err(errors) => super::sound(&errors, text, &file),
         Ok(study) => {
             if let Ok(plan) = Plan::new(study) {
-                assert_eq!(plan.planned().len(), plan.len());
+                assert_eq!(plan.planned(&VerifyArgs::of(Path::new(&file))).len(), plan.len());
             }
         }
     }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::blocks::{Blocks, even};
+use common::blocks::{Blocks, Named, even};
 use common::{assert_fails, objects, tissuebench, write};
 
 /// A block of 30 x 8 x 16 mm that is pulled apart at its ends, cut in the middle from its top down to `tip` (mm), by `width`, along a
@@ -14,7 +14,7 @@ fn slit(cells: usize, tip: f64, width: f64, bend: f64) -> String {
         let apart = if middle[0] > 15.0 { apart } else { -apart };
         [x + apart + curve(z) * (1.0 - (x - 15.0).abs() / 15.0), y, z]
     };
-    let surfaces: [(&str, &dyn Fn([f64; 3]) -> bool); 3] =
+    let surfaces: [Named; 3] =
         [("bottom", &|p| p[2] < 1e-9), ("left", &|p| p[0] < 1e-9), ("right", &|p| p[0] > 30.0 - 1e-9)];
     let lines = [&even(30.0, 5 * cells)[..], &even(8.0, cells + 1), &even(16.0, 3 * cells)];
     Blocks { lines, keeps: &|_| true, places: &places, surfaces: &surfaces }.gmsh()
@@ -89,7 +89,7 @@ fn rod() -> String {
     let up: Vec<f64> = (0..=16).map(|k| 2.5 * f64::from(k)).collect();
     let slim = |x: f64| (x - 10.0).abs() < 0.5;
     let keeps = |[x, y, z]: [f64; 3]| z < 20.0 || slim(x) && slim(y);
-    let surfaces: [(&str, &dyn Fn([f64; 3]) -> bool); 1] = [("bottom", &|p| p[2] < 1e-9)];
+    let surfaces: [Named; 1] = [("bottom", &|p| p[2] < 1e-9)];
     Blocks { lines: [lines[0], lines[1], &up], keeps: &keeps, places: &|p, _| p, surfaces: &surfaces }.gmsh()
 }
 

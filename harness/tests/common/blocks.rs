@@ -6,6 +6,9 @@ use std::fmt::Write;
 /// Grid lines along each axis, mm.
 pub type Lines<'a> = [&'a [f64]; 3];
 
+/// A surface: its name, and where its points are, mm.
+pub type Named<'a> = (&'a str, &'a dyn Fn([f64; 3]) -> bool);
+
 /// Which cells there are, by their middles, and where the corners of each stand, from those of the grid: corners of several cells
 /// that stand in one place are one node.
 pub struct Blocks<'a> {
@@ -13,7 +16,7 @@ pub struct Blocks<'a> {
     pub keeps: &'a dyn Fn([f64; 3]) -> bool,
     pub places: &'a dyn Fn([f64; 3], [f64; 3]) -> [f64; 3],
     /// Named surfaces: faces all of whose corners are where this holds.
-    pub surfaces: &'a [(&'a str, &'a dyn Fn([f64; 3]) -> bool)],
+    pub surfaces: &'a [Named<'a>],
 }
 
 /// Steps from the first to the last corner of a block, by axis: six tetrahedra (Kuhn 1960), and whether they are turned round.

@@ -149,10 +149,10 @@ fn terminals_get_text_and_nothing_else() {
     world.write(&format!("{evil}.toml"), &sound);
     fs::copy(world.path("body.msh"), world.path(&format!("{evil}.msh"))).unwrap();
     let study = fs::read_to_string(world.path("study.toml")).unwrap();
-    world.write("evil-study.toml", &study.replace("block", &format!("{escaped}")));
+    world.write("evil-study.toml", &study.replace("block", escaped));
     world.write(&format!("adapters/{evil}/adapter.toml"), "name = 3");
-    let script = format!("[\"sh\", \"-c\", \"printf '\\\\033[2J\\\\007' >&2; exit 1\"]");
-    world.write("adapters/loud/adapter.toml", &manifest("loud", &script, ""));
+    let script = "[\"sh\", \"-c\", \"printf '\\\\033[2J\\\\007' >&2; exit 1\"]";
+    world.write("adapters/loud/adapter.toml", &manifest("loud", script, ""));
     world.write("loud.toml", &scene("loud", ""));
     let named = [format!("{evil}.toml"), format!("{evil}.msh"), format!("--{evil}")];
     let commands: [&[&str]; 13] = [
