@@ -364,6 +364,9 @@ pub struct ConvertArgs {
     /// Join pieces whose faces coincide but share no nodes
     #[arg(long)]
     pub join: bool,
+    /// Turn all cells, whose corners stand in the mirrored order
+    #[arg(long)]
+    pub turn: bool,
     /// Version of Gmsh's format for a .msh file: 2.2 (the default, which most programs read) or 4.1
     #[arg(long, value_name = "2.2|4.1", value_parser = gmsh_version)]
     pub version: Option<GmshVersion>,

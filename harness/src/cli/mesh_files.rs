@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use geometry::files::{Format, GmshVersion};
-use geometry::generate::converted;
+use geometry::generate::{converted, turned};
 use geometry::{CellKind, Mesh, files, pieces, quality};
 
 use super::mesh_info::info;
@@ -27,10 +27,11 @@ pub fn act(action: &MeshAction) -> Result<(), Failure> {
 }
 
 fn convert(args: &ConvertArgs) -> Result<(), Failure> {
-    let ConvertArgs { from, to, element, drop_unused, join, version } = args;
+    let ConvertArgs { from, to, element, drop_unused, join, turn, version } = args;
     let format = format(to, *version)?;
     let read = if *drop_unused { files::read_without_unused } else { files::read };
     let mesh = read(from, MILLIMETRE).map_err(input)?;
+    let mesh = if *turn { turned(&mesh) } else { mesh };
     quality::check(&mesh)
         .map_err(|bad| input(format!("{}: {}", from.display(), files::inverted(from, &bad))))?;
     spare(to)?;
@@ -47,6 +48,8 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
         mesh.points().len(),
         mesh.cell_count()
     );
+    let left_out = files::left_out(from);
+    files::summary(&left_out).iter().for_each(|line| row("left out", line));
     Ok(())
 }
 

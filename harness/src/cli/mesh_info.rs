@@ -33,7 +33,12 @@ pub fn info(file: &Path, unit: LengthUnit, format: Format) -> Result<(), Failure
     let found = Found::new(&mesh, rows);
     match format {
         Format::Json => println!("{}", found.json(file, unit)),
-        Format::Table => found.table(file, unit),
+        Format::Table => {
+            found.table(file, unit);
+            for (at, line) in files::summary(&files::left_out(file)).iter().enumerate() {
+                row(if at == 0 { "left out" } else { "" }, line);
+            }
+        }
     }
     match quality::check(&mesh) {
         Ok(_) => Ok(()),
@@ -113,14 +118,17 @@ impl Found<'_> {
         kinds.into_iter().filter(|(_, count)| *count > 0).collect()
     }
 
-    /// Cells and volume (m^3) of each region.
+    /// Cells and volume (m^3) of each region, and of the groups of cells across them.
     fn regions(&self) -> Vec<(&str, usize, f64)> {
         let mut found: Vec<_> = self.mesh.region_names().iter().map(|name| (name.as_str(), 0, 0.0)).collect();
         for (cell, shape) in self.shapes.iter().enumerate() {
             let region = &mut found[self.mesh.region(cell) as usize];
             (region.1, region.2) = (region.1 + 1, region.2 + shape.volume);
         }
-        found
+        let of_groups = self.mesh.cell_groups().map(|(name, cells)| {
+            (name, cells.len(), cells.iter().map(|&cell| self.shapes[cell as usize].volume).sum())
+        });
+        found.into_iter().chain(of_groups).collect()
     }
 
     /// Pieces without a node in common, if there are several, with the faces at which they can be joined.
@@ -222,7 +230,7 @@ impl Found<'_> {
             "file": file, "kind": "mesh", "nodes": self.mesh.points().len(), "cells": self.mesh.cell_count(),
             "kinds": kinds, "pieces": self.pieces[0], "coincident_faces": self.pieces[1], "regions": regions, "surfaces": surfaces, "extent_m": extent_json(self.low, self.high),
             "unit": unit.name, "unit_guess": guess((self.high - self.low).amax(), unit), "volume_m3": self.volume(),
-            "angles_degrees": self.angles(), "aspects": bins, "worst": worst,
+            "angles_degrees": self.angles(), "aspects": bins, "worst": worst, "left_out": files::summary(&files::left_out(file)),
         })
     }
 }

@@ -208,7 +208,14 @@ fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
 
 /// The scene, and the indices of the methods asked for in their order.
 fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
-    let scene = scene::load_with(&args.file, &args.set).map_err(|errors| refuse(&errors))?;
+    let path = &args.file;
+    let scene = scene::load_with(path, &args.set).map_err(|errors| {
+        if holds_key(path, "run") {
+            eprintln!("{0}: is a study, not a scene: tissuebench verify {0} runs it", path.display());
+            return 2;
+        }
+        refuse(&errors)
+    })?;
     let chosen = choose(&scene, args)?;
     Ok((scene, chosen))
 }
@@ -231,6 +238,12 @@ fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
     }
     let wanted = |name: &str| args.methods.is_empty() || args.methods.iter().any(|id| like(id, name));
     Ok((0..known.len()).filter(|&index| wanted(known[index])).collect())
+}
+
+/// Whether a file that was refused has a key that scenes have and studies have not, or the other way round.
+fn holds_key(path: &Path, key: &str) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.parse::<toml::Table>().is_ok_and(|table| table.contains_key(key))
 }
 
 /// Refuses what takes more than anyone means to spend, unless it is forced: then it is a warning.

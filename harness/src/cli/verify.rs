@@ -7,7 +7,9 @@ use catalogue::warning;
 use reports::Status;
 
 use crate::cli::ci::{self, CiArgs};
-use crate::cli::{affordable, colour, fail, interrupt, refuse, take, text, unreported, write_results};
+use crate::cli::{
+    affordable, colour, fail, holds_key, interrupt, refuse, take, text, unreported, write_results,
+};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, Event, Events, Finished, Plan, VerifyArgs};
 
@@ -21,6 +23,10 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
                 eprintln!(
                     "tissuebench: run from the project's folder, or name a study: tissuebench verify STUDY.toml"
                 );
+            }
+            if holds_key(&path, "body") {
+                eprintln!("{0}: is a scene, not a study: tissuebench run {0} runs it", path.display());
+                return 2;
             }
             return refuse(&errors);
         }

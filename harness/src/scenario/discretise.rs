@@ -84,9 +84,7 @@ impl Scenario<'_> {
             let mut hit = false;
             for (cell, slot) in regions.iter_mut().enumerate() {
                 let inside = match &region.place {
-                    scene::Place::On(names) => {
-                        names.contains(&mesh.region_names()[mesh.region(cell) as usize])
-                    }
+                    scene::Place::On(names) => names.iter().any(|name| mesh.is_in(cell, name)),
                     at => {
                         let n = mesh.cell(cell).len() as f64;
                         let sum = mesh.cell_points(cell).fold(Vector3::zeros(), |s, p| s + p.coords);
@@ -94,13 +92,20 @@ impl Scenario<'_> {
                     }
                 };
                 if inside {
-                    *slot = index as u16 + 1;
+                    let before = usize::from(std::mem::replace(slot, index as u16 + 1));
                     hit = true;
+                    if before > 0 {
+                        self.one_material([before - 1, index], cell)?;
+                    }
                 }
             }
             if !hit {
                 let (key, help) = match &region.place {
-                    scene::Place::On(_) => ("on", format!("the mesh has {}", mesh.region_names().join(", "))),
+                    scene::Place::On(_) => {
+                        let groups = mesh.cell_groups().map(|(name, _)| name.to_string());
+                        let names: Vec<String> = mesh.region_names().iter().cloned().chain(groups).collect();
+                        ("on", format!("the mesh has {}", names.join(", ")))
+                    }
                     _ => ("where", format!("{}; check its signs and its unit", place::extent(&mesh))),
                 };
                 let key = Key::Scene(format!("region[{index}].{key}"));
@@ -109,6 +114,21 @@ impl Scenario<'_> {
         }
         let names = std::iter::once("body".into()).chain(self.scene.regions.iter().map(|r| r.name.clone()));
         Ok(mesh.with_regions(regions, names.collect()))
+    }
+
+    /// Refuses a cell that two regions name with different materials; of places by comparisons the later one counts.
+    fn one_material(&self, regions: [usize; 2], cell: usize) -> Result<(), Failure> {
+        let [first, second] = regions.map(|index| &self.scene.regions[index]);
+        if !matches!((&first.place, &second.place), (scene::Place::On(_), scene::Place::On(_))) {
+            return Ok(());
+        }
+        let key = Key::Scene(format!("region[{}].on", regions[1]));
+        let names = [first, second].map(|region| place::words(&region.place));
+        let problem = format!(
+            "'{}' ({}) and '{}' ({}) are both over cell {cell} of the mesh, which has one material",
+            second.name, names[1], first.name, names[0]
+        );
+        Err(Failure::input(key, problem, "name groups without a common cell"))
     }
 }
 

@@ -130,10 +130,19 @@ impl FileBody {
         let middles: Vec<Point3> =
             (0..mesh.cell_count()).map(|cell| middle(&mut mesh.cell(cell).iter().copied())).collect();
         let found = locate(&tets, &middles).map_err(unlocated)?;
+        let cells_in = |name: &str| -> Vec<u32> {
+            let of = found.iter().zip(0..).filter(|(location, _)| tets.is_in(location.cell as usize, name));
+            of.map(|(_, cell)| cell).collect()
+        };
+        let further: Vec<(&str, Vec<u32>)> =
+            tets.cell_groups().map(|(name, _)| (name, cells_in(name))).collect();
         let regions = found.iter().map(|location| tets.region(location.cell as usize)).collect();
         let mut names: Vec<&str> = named.keys().copied().collect();
         names.sort_unstable();
         let mut mesh = mesh.with_regions(regions, of_file.region_names().to_vec());
+        for (name, cells) in further {
+            mesh = mesh.with_cell_group(name, cells);
+        }
         for name in names {
             mesh = mesh.with_group(name, named[name].clone()).expect("faces of the mesh itself");
         }

@@ -1,8 +1,10 @@
 //! What can be said against a run before it starts: of the scene and its mesh alone.
 
+use std::path::Path;
+
 use cases::scene::{self, Body, Scene, Size};
 use catalogue::warning;
-use geometry::{Mesh, pieces, quality};
+use geometry::{Mesh, files, pieces, quality};
 
 use super::file_body;
 use crate::discretise::place::{self, tolerance};
@@ -25,7 +27,26 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
     found.extend(apart(mesh));
     found.extend(other_volume(&scene.body, method, mesh));
+    let of_body = if let Body::File(file) = &scene.body { Some(file) } else { None };
+    let of_size = if let Some(Size::File(file)) = method.size() { Some(file) } else { None };
+    found.extend(of_size.or(of_body).and_then(|file| left_out(&file.path)));
     found
+}
+
+/// What the file of the mesh has beside it.
+fn left_out(file: &Path) -> Option<Warning> {
+    let mut parts = files::left_out(file);
+    parts.retain(|part| part.kind != files::Kind::Values);
+    let joins = parts.iter().filter(|part| part.kind == files::Kind::Joins).count();
+    (!parts.is_empty()).then(|| {
+        let words = match joins {
+            0 => "",
+            _ => ". The first of these join or carry parts of the body: without them this is another problem",
+        };
+        let list = files::summary(&parts).join(", ");
+        let message = format!("{} is read for its mesh alone, without: {list}{words}", file.display());
+        Warning::new(&warning::LEFT_OUT, joins as f64, "body", message)
+    })
 }
 
 /// Contact is between a body and tools: a piece feels nothing of another, even where their faces coincide.

@@ -77,6 +77,9 @@ warnings! {
     VOLUME_DIFFERS: "volume-differs", None,
         "a mesh made inside a surface has 5 % less or more volume than that encloses, as parts thinner than its cells are left out; volume \
          got over enclosed";
+    LEFT_OUT: "left-out", None,
+        "the file of the mesh has parts that are not read, such as the model of a deck or arrays that may number regions; how many of \
+         them join or carry parts of the body";
     PIECES_APART: "pieces-apart", None,
         "the body is in pieces without a node in common, which do not feel each other, also where their faces coincide; how many there \
          are";

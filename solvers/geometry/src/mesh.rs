@@ -1,4 +1,4 @@
-//! A mixed mesh in flat arrays, with named cell regions and named groups of boundary facets.
+//! A mixed mesh in flat arrays, with named regions and further groups of cells, and named groups of boundary facets.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -70,6 +70,7 @@ pub struct Mesh {
     nodes: Vec<u32>,
     regions: Vec<u16>,
     region_names: Vec<String>,
+    cell_groups: BTreeMap<String, Vec<u32>>,
     groups: BTreeMap<String, Vec<Facet>>,
     boundary: Boundary,
 }
@@ -136,6 +137,7 @@ impl Mesh {
             nodes,
             regions,
             region_names: vec!["body".into()],
+            cell_groups: BTreeMap::new(),
             groups: BTreeMap::new(),
             boundary: Boundary::default(),
         })
@@ -147,6 +149,15 @@ impl Mesh {
         assert!(regions.iter().all(|&r| (r as usize) < names.len()), "every region has a name");
         self.regions = regions;
         self.region_names = names;
+        self
+    }
+
+    /// Adds (or replaces) a named group of cells, which have their regions all the same.
+    pub fn with_cell_group(mut self, name: &str, mut cells: Vec<u32>) -> Mesh {
+        assert!(cells.iter().all(|&cell| (cell as usize) < self.kinds.len()), "cells of the mesh");
+        cells.sort_unstable();
+        cells.dedup();
+        self.cell_groups.insert(name.into(), cells);
         self
     }
 
@@ -200,6 +211,18 @@ impl Mesh {
     /// Names of the regions.
     pub fn region_names(&self) -> &[String] {
         &self.region_names
+    }
+
+    /// Groups of cells across the regions, sorted by name, with their cells in order.
+    pub fn cell_groups(&self) -> impl Iterator<Item = (&str, &[u32])> {
+        self.cell_groups.iter().map(|(name, cells)| (name.as_str(), cells.as_slice()))
+    }
+
+    /// Whether a cell is in the region or in the group of cells of a name.
+    pub fn is_in(&self, cell: usize, name: &str) -> bool {
+        let group =
+            || self.cell_groups.get(name).is_some_and(|cells| cells.binary_search(&(cell as u32)).is_ok());
+        self.region_names[self.regions[cell] as usize] == name || group()
     }
 
     /// A named facet group.

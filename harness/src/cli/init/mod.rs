@@ -1,6 +1,8 @@
 //! `tissuebench init`: a scene of an organ under a plate, from options, answers and defaults.
 
 mod args;
+mod filled;
+mod meshes;
 mod organ;
 mod questions;
 mod scene_text;
@@ -8,8 +10,9 @@ mod scene_text;
 use std::io::{BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 
-use cases::scene::{self, Place, Region, SceneError};
+use cases::scene::{self, Place, Region, Scene, SceneError};
 use catalogue::Dimension;
+use geometry::files;
 
 pub use args::InitArgs;
 
@@ -17,7 +20,10 @@ use super::args::{LengthUnit, length, length_unit};
 use super::mesh_files::{input, row};
 use super::mesh_info::guess;
 use crate::Failure;
+use crate::discretise::place;
 use args::{Method, Side, Strain, choice, word};
+use filled::Filled;
+use meshes::Meshes;
 use organ::Organ;
 use questions::Questions;
 use scene_text::{Drive, Hold, Size, Wanted};
@@ -26,6 +32,21 @@ use scene_text::{Drive, Hold, Size, Wanted};
 const HELD: f64 = 0.2;
 /// Part of the height by which the plate presses unless something else is said.
 const CLOSURE: f64 = 0.05;
+/// The sizes of each method as parts of the finest, and how many times as many nodes that has: the first that do are taken.
+const FINENESS: [([f64; 3], f64); 7] = [
+    ([0.25, 0.5, 1.0], 1.0),
+    ([0.4, 0.6, 1.0], 1.0),
+    ([0.6, 0.8, 1.0], 1.0),
+    ([0.5, 0.7, 1.0], 1.5),
+    ([0.6, 0.8, 1.0], 2.0),
+    ([0.6, 0.8, 1.0], 3.0),
+    ([0.6, 0.8, 1.0], 5.0),
+];
+/// Part of the height by which a mesh may fall short of the plate.
+const SHORT: f64 = 0.05;
+/// Part of the height by which more is held where that does not reach all of a mesh, and the most that is.
+const MORE: f64 = 0.05;
+const MOST: f64 = 0.5;
 /// Fewer nodes than this make no mesh of an organ at a quarter of them; more are a matter of hours.
 const NODES: [f64; 2] = [100.0, 200_000.0];
 
@@ -47,12 +68,18 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
         .unwrap_or_else(|| Path::new(file.file_name().unwrap_or_default()).with_extension("toml"));
     free(&out, &file, args.force)?;
     let (organ, unit) = sized(&file, args, &mut ask)?;
-    let wanted = wanted(args, &mut ask, &file, &out, &organ, unit)?;
-    let text = scene_text::text(&wanted);
-    let name = out.display().to_string();
-    let found = scene::parse(&text, &name).map_err(|errors| refused(&errors))?;
-    if let Some(Place::Where(region)) = found.supports.first().map(|support| &support.place) {
+    let (wanted, meshes) = wanted(args, &mut ask, &file, &out, &organ, unit)?;
+    let (text, name) = (scene_text::text(&wanted), out.display().to_string());
+    let found = parsed(&wanted, &out)?;
+    let held = &found.supports[0].place;
+    if let Place::Where(region) = held {
         holds(region, &organ, wanted.side)?;
+    }
+    if let Some((mesh, pieces)) = meshes.unheld(held)? {
+        let problem = format!(
+            "does not hold the mesh of {mesh}, which has {pieces} pieces: hold more of the body, or give more --nodes"
+        );
+        return Err(input(format!("--hold '{}': {problem}", place::words(held))));
     }
     disk::write(&out, &text).map_err(|bad| input(format!("{name}: can't be written: {bad}")))?;
     println!(
@@ -66,9 +93,21 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
         let given = format!("{option} \"{value}\"");
         row(if at == 0 { "defaults" } else { "" }, &format!("{given:width$}  {question}"));
     }
+    if wanted.parts != FINENESS[0].0 {
+        row("sizes", "finer than usual, so that every mesh reaches the plate and what is held");
+    }
+    for (at, line) in files::summary(&model_of(&file)).iter().enumerate() {
+        row(if at == 0 { "left out" } else { "" }, line);
+    }
     let results = out.with_extension("");
     row("next", &format!("tissuebench run {name} --out {}-results", results.display()));
     Ok(())
+}
+
+/// What a mesh file has of a model, which the scene does not.
+fn model_of(file: &Path) -> Vec<files::LeftOut> {
+    let found = files::left_out(file).into_iter();
+    found.filter(|part| part.kind != files::Kind::Values).collect()
 }
 
 /// Refuses to write over a file: a scene unless that is forced, the organ always.
@@ -97,6 +136,7 @@ fn sized(file: &Path, args: &InitArgs, ask: &mut Questions) -> Result<(Organ, Le
     Ok((if same { organ } else { read(unit)? }, unit))
 }
 
+/// What the scene says: as given or answered, and what fits the meshes that it makes.
 fn wanted(
     args: &InitArgs,
     ask: &mut Questions,
@@ -104,7 +144,7 @@ fn wanted(
     out: &Path,
     organ: &Organ,
     unit: LengthUnit,
-) -> Result<Wanted, Failure> {
+) -> Result<(Wanted, Meshes), Failure> {
     let question = "How large strains become: small or large";
     let strain = ask.value("strain", args.strain.as_deref(), question, "large", choice::<Strain>)?;
     let (young, young_value) =
@@ -112,39 +152,19 @@ fn wanted(
             quantity(Dimension::Pressure, text).map(|value| (text.to_string(), value))
         })?;
     let poisson = ask.value("poisson", args.poisson.as_deref(), "Poisson's ratio", "0.45", ratio)?;
-    let question = "Side from which the plate presses: top, bottom, left, right, front or back";
-    let side = ask.value("press-from", args.press_from.as_deref(), question, "top", choice::<Side>)?;
-    let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
-    let (than, opposite) = if side.sign() > 0.0 { ("<=", 0) } else { (">=", 1) };
-    let end = organ.bounds[opposite][side.axis()] + side.sign() * HELD * organ.extent(side.axis());
-    let default = format!("{} {than} {}", ["x", "y", "z"][side.axis()], described(end));
-    let question = "What is held: comparisons of x, y and z, or a surface of the mesh file";
-    let hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
-    let drive = driven(args, ask, strain, &described(CLOSURE * organ.extent(side.axis())))?;
-    if let Drive::Closure(by) = drive
-        && by >= organ.extent(side.axis())
-    {
-        let height = described(organ.extent(side.axis()));
-        return Err(input(format!("--closure '{}': the body is only {height} high", described(by))));
-    }
-    let gap = match (&args.gap, strain) {
-        (None, _) => 0.0,
-        (Some(text), Strain::Large) => {
-            quantity(Dimension::Length, text).map_err(|bad| input(format!("--gap '{text}': {bad}")))?
-        }
-        (Some(text), Strain::Small) => {
-            return Err(input(format!(
-                "--gap '{text}': there is no plate at small strain; --strain large has one"
-            )));
-        }
-    };
     let question = "Methods, of tet4, tet4-nodal, tet10 and efg";
     let methods = ask.value("methods", args.methods.as_deref(), question, "tet4,tet10,efg", methods)?;
+    let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
     let size = match &args.spacing {
         Some(text) => spacing(text, organ, &described)?,
         None => ask.value("nodes", args.nodes.as_deref(), "Nodes of the finest size", "1000", nodes)?,
     };
-    Ok(Wanted {
+    let filled = Filled::new(organ);
+    let question = "Side from which the plate presses: top, bottom, left, right, front or back";
+    let best = word(filled.side(HELD));
+    let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
+    let held_part = filled.held(side, HELD);
+    let mut wanted = Wanted {
         title: title(file, side),
         path: path_from(out, file)?,
         unit,
@@ -152,15 +172,97 @@ fn wanted(
         young,
         young_value,
         poisson,
-        hold,
+        hold: Hold::Where(held_end(organ, side, held_part, &described)),
         side,
         bounds: organ.bounds,
-        drive,
-        gap,
+        drive: Drive::Closure(CLOSURE * organ.extent(side.axis())),
+        gap: gap(args, strain)?,
         methods,
         size,
-        probes: [organ.near(side), organ.middle()],
-    })
+        parts: FINENESS[0].0,
+        probes: organ.bounds,
+    };
+    let meshes = fine_enough(&mut wanted, organ, held_part, out)?;
+    let Hold::Where(default) = wanted.hold.clone() else { unreachable!("comparisons so far") };
+    let question = "What is held: comparisons of x, y and z, or a surface of the mesh file";
+    wanted.hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
+    let height = organ.extent(side.axis());
+    let (short, _) = meshes.shortest(organ.bounds, side);
+    wanted.drive = driven(args, ask, strain, &described((CLOSURE * height).max(2.0 * short)))?;
+    if let Drive::Closure(by) = wanted.drive
+        && by >= height
+    {
+        let height = described(height);
+        return Err(input(format!("--closure '{}': the body is only {height} high", described(by))));
+    }
+    wanted.probes = [organ.near(side, &meshes), organ.middle(&meshes)];
+    Ok((wanted, meshes))
+}
+
+/// Distance from which the plate starts, m.
+fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
+    match (&args.gap, strain) {
+        (None, _) => Ok(0.0),
+        (Some(text), Strain::Large) => {
+            quantity(Dimension::Length, text).map_err(|bad| input(format!("--gap '{text}': {bad}")))
+        }
+        (Some(text), Strain::Small) => {
+            Err(input(format!("--gap '{text}': there is no plate at small strain; --strain large has one")))
+        }
+    }
+}
+
+/// Comparisons that hold a part of the height, at the end away from the plate.
+fn held_end(organ: &Organ, side: Side, part: f64, described: &dyn Fn(f64) -> String) -> String {
+    let (than, opposite) = if side.sign() > 0.0 { ("<=", 0) } else { (">=", 1) };
+    let end = organ.bounds[opposite][side.axis()] + side.sign() * part * organ.extent(side.axis());
+    format!("{} {than} {}", ["x", "y", "z"][side.axis()], described(end))
+}
+
+/// Makes sizes finer until every mesh reaches the plate and all its pieces reach what is held, of which `part` of the height is tried first.
+/// Leaves size and hold in `wanted`.
+fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Result<Meshes, Failure> {
+    let (size, side, height) = (wanted.size, wanted.side, organ.extent(wanted.side.axis()));
+    let unit = wanted.unit;
+    let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
+    let mut why = String::new();
+    for (parts, finer) in FINENESS {
+        (wanted.parts, wanted.size) = (parts, size.times(finer));
+        let meshes = match Meshes::new(&parsed(wanted, out)?) {
+            Ok(meshes) => meshes,
+            Err(bad) => {
+                why = bad.to_string();
+                continue;
+            }
+        };
+        let (short, name) = meshes.shortest(organ.bounds, side);
+        if short > SHORT * height {
+            why = format!("the mesh of {name} ends {} from where the plate touches", described(short));
+            continue;
+        }
+        let more = (0..).map(|k| part + f64::from(k) * MORE);
+        for held in more.take_while(|held| *held <= MOST.max(part)) {
+            wanted.hold = Hold::Where(held_end(organ, side, held, &described));
+            match meshes.unheld(&parsed(wanted, out)?.supports[0].place)? {
+                None => return Ok(meshes),
+                Some((name, pieces)) => {
+                    why = format!(
+                        "the mesh of {name} has {pieces} pieces, of which some reach no part that is held"
+                    )
+                }
+            }
+        }
+    }
+    let problem = format!(
+        "no mesh of up to {} nodes does: {why}; give more, or another --press-from",
+        size.described()
+    );
+    Err(input(problem))
+}
+
+/// The scene of a text.
+fn parsed(wanted: &Wanted, out: &Path) -> Result<Scene, Failure> {
+    scene::parse(&scene_text::text(wanted), &out.display().to_string()).map_err(|errors| refused(&errors))
 }
 
 fn title(file: &Path, side: Side) -> String {

@@ -6,6 +6,7 @@ use geometry::surface::BoundaryFaces;
 use geometry::{Point3, Surface, files};
 
 use super::args::Side;
+use super::meshes::Meshes;
 use crate::Failure;
 use crate::cli::args::LengthUnit;
 use crate::cli::mesh_files::input;
@@ -68,28 +69,33 @@ impl Organ {
     }
 
     /// Close to the plate: just below the point that it touches first; where that is a tip, which coarse meshes cut off, on the way
-    /// from it to the middle.
-    pub fn near(&self, side: Side) -> Point3 {
-        let (tip, middle) = (self.first_touched(side), self.middle());
+    /// from it to the middle. All meshes have the point.
+    pub fn near(&self, side: Side, meshes: &Meshes) -> Point3 {
+        let (tip, middle) = (self.first_touched(side), self.middle(meshes));
         let below = BELOW * self.smallest_extent();
         let mut straight = tip;
         straight[side.axis()] -= side.sign() * below;
         let on_the_way = (1..STRIDES).map(|k| tip + (middle - tip) * (f64::from(k) / f64::from(STRIDES)));
-        let inside = std::iter::once(straight).chain(on_the_way).find(|p| self.depth(p) > 0.5 * below);
+        let inside = std::iter::once(straight)
+            .chain(on_the_way)
+            .find(|p| self.depth(p) > 0.5 * below && meshes.all_have(p));
         inside.unwrap_or(middle)
     }
 
-    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points.
-    pub fn middle(&self) -> Point3 {
+    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points that all meshes have.
+    pub fn middle(&self, meshes: &Meshes) -> Point3 {
         let middle = nalgebra::center(&self.bounds[0], &self.bounds[1]);
-        if self.depth(&middle) > 2.0 * BELOW * self.smallest_extent() {
+        if self.depth(&middle) > 2.0 * BELOW * self.smallest_extent() && meshes.all_have(&middle) {
             return middle;
         }
         let at =
             |k: usize, axis: usize| self.bounds[0][axis] + self.extent(axis) * (k as f64 + 0.5) / GRID as f64;
         let grid = (0..GRID.pow(3))
             .map(|k| Point3::new(at(k % GRID, 0), at(k / GRID % GRID, 1), at(k / GRID / GRID, 2)));
-        grid.fold(middle, |best, p| if self.depth(&p) > self.depth(&best) { p } else { best })
+        let mut inside: Vec<(f64, Point3)> =
+            grid.map(|p| (self.depth(&p), p)).filter(|(depth, _)| *depth > 0.0).collect();
+        inside.sort_by(|a, b| b.0.total_cmp(&a.0));
+        inside.into_iter().map(|(_, p)| p).find(|p| meshes.all_have(p)).unwrap_or(middle)
     }
 
     fn depth(&self, p: &Point3) -> f64 {

@@ -7,8 +7,8 @@ use geometry::Point3;
 use super::args::{Method, Side, Strain, word};
 use crate::cli::args::LengthUnit;
 
-/// The finest size of each method has all nodes; the others these parts of it.
-const SIZES: [(&str, f64); 3] = [("coarse", 0.25), ("medium", 0.5), ("fine", 1.0)];
+/// The sizes of each method.
+const SIZES: [&str; 3] = ["coarse", "medium", "fine"];
 /// The reference has so many times as many nodes.
 const FINER: f64 = 6.0;
 /// Pressure of a plate per penetration, over Young's modulus by the body's height: tissue then goes into the plate by a
@@ -38,6 +38,8 @@ pub(super) struct Wanted {
     pub gap: f64,
     pub methods: Vec<Method>,
     pub size: Size,
+    /// The sizes of each method as parts of the finest one's nodes.
+    pub parts: [f64; 3],
     /// Close to the plate, and in the middle.
     pub probes: [Point3; 2],
 }
@@ -66,8 +68,16 @@ pub(super) enum Size {
 }
 
 impl Size {
+    /// In words.
+    pub fn described(self) -> String {
+        match self {
+            Size::Nodes(count) => format!("{count} nodes"),
+            Size::Spacing(length) => format!("{length} m"),
+        }
+    }
+
     /// The size with so many times the nodes.
-    fn times(self, nodes: f64) -> Size {
+    pub fn times(self, nodes: f64) -> Size {
         match self {
             Size::Nodes(count) => Size::Nodes((count * nodes).round()),
             Size::Spacing(length) => Size::Spacing(length / nodes.cbrt()),
@@ -265,7 +275,7 @@ probes = [[{near}], [{middle}]]
         );
         for &method in &self.methods {
             writeln!(text, "\n# {}", about(method)).expect("a string");
-            for (name, part) in SIZES {
+            for (name, part) in SIZES.iter().zip(self.parts) {
                 // Small meshes of tet10 are few cells: half of its nodes are on their edges.
                 let doubled = if method == Method::Tet10 { 2.0 } else { 1.0 };
                 let size = self.size.times(doubled * part);

@@ -1,9 +1,12 @@
 //! What a mesh file holds, as the readers find it, and the mesh that it makes.
 
+mod groups;
+
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use super::error::{FileError, Parsed, Place, Problem};
+use super::left_out::LeftOut;
 use super::names::{Names, without_empty};
 use super::numbers::Numbers;
 use super::overlap::Cells;
@@ -32,6 +35,11 @@ pub(super) struct Content {
     node_sets: Vec<(String, Vec<u32>)>,
     /// Elements of the file have nodes of their own inside.
     leaves_unused_out: bool,
+    /// Cells that are in a further region, which is a group of cells then.
+    also: Vec<(u32, u16)>,
+    /// A cell may be listed once for each of its regions.
+    repeats: bool,
+    left_out: Vec<LeftOut>,
 }
 
 /// What a name is of.
@@ -305,6 +313,7 @@ impl Content {
         let regions: Vec<u16> = other.regions().map(region).collect::<Parsed<_>>()?;
         let region = |region: &u16| regions.get(*region as usize).copied().unwrap_or(NO_REGION);
         self.regions.extend(other.regions.iter().map(region));
+        self.also.extend(other.also.iter().map(|(cell, of)| (cell + first_cell, region(of))));
         let surface = |name: &String| named(Named::Surface, name);
         let groups: Vec<usize> =
             other.group_names.list.iter().map(|name| self.group(&surface(name))).collect();
@@ -337,6 +346,8 @@ impl Content {
         unused: Unused,
     ) -> Result<(Mesh, Vec<Row>), FileError> {
         let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+        self.put_middles_in_order();
+        self.join_repeated();
         self.refuse_overlaps().map_err(at)?;
         self.attach().map_err(at)?;
         let wrong = |source| FileError::Mesh { file: file.to_path_buf(), source };
@@ -353,9 +364,13 @@ impl Content {
             points.push(Point3::from(p.coords * unit));
         }
         let nodes = self.nodes.iter().map(|&n| used[n as usize]).collect();
+        let further = self.further();
         let (regions, names) = without_empty(self.regions, self.region_names.list);
         let mut mesh =
             Mesh::from_flat(points, self.kinds, nodes).map_err(wrong)?.with_regions(regions, names);
+        for (name, cells) in further {
+            mesh = mesh.with_cell_group(&name, cells);
+        }
         let mut groups: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
         for (group, facet) in self.facets {
             groups.entry(self.group_names.list[group].clone()).or_default().push(facet);

@@ -37,7 +37,10 @@ pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
     let row = row_of_cell(file, bad.element).map_or_else(String::new, |row| row.to_string());
     match (bad.inverted, bad.cells) {
         (some, all) if some == all => {
-            format!("all {all} cells are inverted (first: {row}): the order of their corners is mirrored")
+            format!(
+                "all {all} cells are inverted (first: {row}): the order of their corners is mirrored; tissuebench mesh convert --turn \
+                 turns them"
+            )
         }
         (1, all) => format!("1 of {all} cells is inverted ({row})"),
         (some, all) => format!("{some} of {all} cells are inverted (first: {row})"),

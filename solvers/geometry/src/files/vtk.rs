@@ -2,7 +2,7 @@
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
-use super::vtk_cells::{Array, Cells, regions};
+use super::vtk_cells::{Array, Cells, lost, regions};
 use crate::Point3;
 
 /// The newest version that there is.
@@ -34,14 +34,19 @@ struct Found {
     types: Option<Vec<i64>>,
     /// Single numbers of cells.
     arrays: Vec<Array>,
+    /// All other arrays, without their numbers, and whether they are of cells.
+    others: Vec<(Array, bool)>,
 }
 
 impl Found {
-    /// Keeps single numbers of cells, which may be regions; `place` is where they are described.
+    /// Keeps single numbers of cells, which may be regions, and the names of other arrays; `place` is where they are described.
     fn keep(&mut self, of: Of, parts: usize, name: &str, place: Place, values: Vec<f64>) {
-        if let (Of::Cells(_), 1) = (of, parts) {
-            // Blanks in names are written as %20.
-            self.arrays.push(Array { name: name.replace("%20", " "), place, values });
+        // Blanks in names are written as %20.
+        let array = Array { name: name.replace("%20", " "), place, values };
+        match (of, parts) {
+            (Of::Grid, _) => {}
+            (Of::Cells(_), 1) => self.arrays.push(array),
+            _ => self.others.push((Array { values: Vec::new(), ..array }, matches!(of, Of::Cells(_)))),
         }
     }
 }
@@ -224,7 +229,17 @@ fn content(scanner: &Scanner, found: Found) -> Parsed<Content> {
     };
     let regions = regions(array)?;
     let surfaces = array("surface")?.map(|array| array.whole()).transpose()?;
-    Cells { first: 0, types, ends, list: found.list, regions, surfaces }.add_to(&mut content, &[], &[])?;
+    let name = regions.as_ref().map(|array| array.name.clone());
+    let is_taken =
+        |array: &Array| name.as_ref() == Some(&array.name) || array.name.eq_ignore_ascii_case("surface");
+    let single =
+        found.arrays.iter().filter(|array| !is_taken(array)).map(|array| lost(array, true, name.is_some()));
+    content
+        .leave_out(single.chain(found.others.iter().map(|(array, of_cells)| lost(array, *of_cells, true))));
+    let regions = regions.map(|array| array.whole()).transpose()?;
+    let further = Vec::new();
+    let cells = Cells { first: 0, types, ends, list: found.list, regions, surfaces, further };
+    cells.add_to(&mut content, &[], &[])?;
     if content.cell_count() == 0 { Err((scanner.place(), Problem::NoCells)) } else { Ok(content) }
 }
 

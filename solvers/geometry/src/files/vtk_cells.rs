@@ -2,6 +2,7 @@
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
+use super::left_out::{Kind, LeftOut};
 use super::rows::Row;
 use crate::CellKind;
 
@@ -13,7 +14,7 @@ const REGIONS: [&[&str]; 8] = [
     &["physical"],
     &["medit:ref"],
     &["CellEntityIds"],
-    &["MaterialIDs", "material"],
+    &["MaterialIDs", "MaterialID", "material"],
     &["RegionId"],
     &["ElementBlockIds"],
 ];
@@ -33,14 +34,14 @@ pub(super) struct Array {
     pub values: Vec<f64>,
 }
 
-/// Numbers of the regions of cells, by the first known array that a grid has; `array` finds one by its name without regard to capitals.
-pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<Option<Vec<i64>>> {
+/// The first known array that a grid has of the regions of cells; `array` finds one by its name without regard to capitals.
+pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<Option<Array>> {
     for names in REGIONS {
         let found: Vec<Option<Array>> = names.iter().map(|name| array(name)).collect::<Parsed<_>>()?;
         let mut found = found.into_iter().flatten();
         if let Some(first) = found.next() {
             found.try_for_each(|other| first.agree(&other))?;
-            return first.whole().map(Some);
+            return Ok(Some(first));
         }
     }
     Ok(None)
@@ -69,6 +70,18 @@ impl Array {
     }
 }
 
+/// What is lost with an array that is not taken; `taken` says whether another one has the regions.
+pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
+    let whole = array.values.iter().all(|value| value.fract() == 0.0);
+    let (low, high) =
+        array.values.iter().fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
+    let regions = of_cells && !taken && whole && low < high;
+    let of = if of_cells { "cells" } else { "points" };
+    let (kind, range) =
+        if regions { (Kind::Regions, format!(", {low} to {high}")) } else { (Kind::Values, String::new()) };
+    LeftOut { place: array.place, what: format!("array '{}' of {of}{range}", array.name), kind }
+}
+
 /// Cells of a grid.
 pub(super) struct Cells {
     /// Number of the grid's first point.
@@ -80,6 +93,8 @@ pub(super) struct Cells {
     /// Numbers of regions, and of named surfaces.
     pub regions: Option<Vec<i64>>,
     pub surfaces: Option<Vec<i64>>,
+    /// Groups of cells across the regions: a number above zero of each cell that is in it.
+    pub further: Vec<(String, Vec<i64>)>,
 }
 
 impl Cells {
@@ -114,6 +129,10 @@ impl Cells {
                     let name = region.map_or("body".into(), |v| name_of(region_names, v, "region"));
                     let region = content.region(row.place, &name)?;
                     content.cell(row, kind, region, &nodes, &ORDER[..nodes.len()])?;
+                    let index = content.cell_count() as u32 - 1;
+                    for (name, _) in self.further.iter().filter(|(_, values)| values[cell] > 0) {
+                        content.also(row.place, name, &[index])?;
+                    }
                 }
                 Some((_, What::Face(corners))) => {
                     let of_face = value(&self.surfaces, cell).or_else(|| value(&self.regions, cell));

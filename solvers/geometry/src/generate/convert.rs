@@ -71,7 +71,15 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
         points.push(mesh.points()[node]);
     }
     let nodes = cells.iter().flatten().map(|&n| number[n as usize]).collect();
-    rebuilt(mesh, points, vec![TET; cells.len()], nodes, regions, groups)
+    let tets = rebuilt(mesh, points, vec![TET; cells.len()], nodes, regions, groups);
+    mesh.cell_groups().fold(tets, |tets, (name, of)| {
+        tets.with_cell_group(
+            name,
+            of.iter()
+                .flat_map(|&cell| first[cell as usize] as u32..first[cell as usize + 1] as u32)
+                .collect(),
+        )
+    })
 }
 
 fn cut_hexahedron(nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
@@ -146,7 +154,51 @@ pub fn raise_order(mesh: &Mesh) -> Mesh {
         .group_names()
         .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().to_vec()))
         .collect();
-    rebuilt(mesh, points, kinds, nodes, regions, groups)
+    with_cell_groups(rebuilt(mesh, points, kinds, nodes, regions, groups), mesh)
+}
+
+/// The groups of cells of a mesh on one with the same cells.
+fn with_cell_groups(mesh: Mesh, of: &Mesh) -> Mesh {
+    of.cell_groups().fold(mesh, |mesh, (name, cells)| mesh.with_cell_group(name, cells.to_vec()))
+}
+
+/// The same mesh with the corners of each cell in the mirrored order: what makes a mirrored mesh right.
+pub fn turned(mesh: &Mesh) -> Mesh {
+    let (mut kinds, mut nodes, mut faces) = (Vec::new(), Vec::new(), HashMap::new());
+    for cell in 0..mesh.cell_count() {
+        let (kind, own) = (mesh.kind(cell), mesh.cell(cell));
+        let corners: &[usize] = if kind.is_tet() { &[0, 2, 1, 3] } else { &[0, 3, 2, 1, 4, 7, 6, 5] };
+        kinds.push(kind);
+        nodes.extend(corners.iter().map(|&corner| own[corner]));
+        if kind.order() == 2 {
+            // A middle node goes with its edge.
+            nodes.extend(kind.edges().iter().map(|&[a, b]| {
+                let ends = [corners[a], corners[b]];
+                let edge = kind.edges().iter().position(|edge| ends.iter().all(|end| edge.contains(end)));
+                own[kind.corner_count() + edge.unwrap_or(0)]
+            }));
+        }
+        // The face of ours that has the corners of one before.
+        let count = kind.face_kind().corner_count();
+        faces.entry(kind.is_tet()).or_insert_with(|| {
+            kind.faces()
+                .iter()
+                .map(|face| {
+                    let same =
+                        |new: &&[usize]| new[..count].iter().all(|&c| face[..count].contains(&corners[c]));
+                    kind.faces().iter().position(|new| same(&&new[..])).unwrap_or(0) as u8
+                })
+                .collect::<Vec<u8>>()
+        });
+    }
+    let regions = (0..mesh.cell_count()).map(|cell| mesh.region(cell)).collect();
+    let moved =
+        |f: &Facet| Facet { face: faces[&mesh.kind(f.cell as usize).is_tet()][f.face as usize], ..*f };
+    let groups = mesh
+        .group_names()
+        .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().iter().map(moved).collect()));
+    let groups = groups.collect();
+    with_cell_groups(rebuilt(mesh, mesh.points().to_vec(), kinds, nodes, regions, groups), mesh)
 }
 
 fn ordered(a: u32, b: u32) -> (u32, u32) {

@@ -98,6 +98,13 @@ pub(super) fn add(whole: &mut Content, waiting: &[Waiting], placed: &[Placed]) -
         if of_nodes && !lists.contains_key(&key) {
             names.push(&card.name);
         }
+        // A region of a part keeps its name for itself.
+        if !of_nodes
+            && !card.name.starts_with('_')
+            && !whole.regions().any(|name| name.eq_ignore_ascii_case(&card.name))
+        {
+            whole.also(card.place, &card.name, &found)?;
+        }
         lists.entry(key).or_default().extend(found);
     }
     for name in names {

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
+use super::super::left_out::{Kind, LeftOut};
 use super::assembly::{self, Placed, Waiting};
 use super::cards::{Card, cards, real, split};
 use super::include::{DEEPEST, Includes};
 use super::keywords;
+use super::kinds::{Type, element_type};
 use super::names::Shared;
 use super::scope::Scope;
 use super::text;
@@ -35,6 +37,8 @@ pub(super) struct Deck {
     /// Sets and surfaces of the assembly.
     waiting: Vec<Waiting>,
     ended: bool,
+    /// Parts of the deck that are not in the mesh.
+    left_out: Vec<LeftOut>,
 }
 
 /// A part placed in the assembly: moved, then turned about a line by an angle.
@@ -59,12 +63,14 @@ impl Deck {
             instances: Vec::new(),
             waiting: Vec::new(),
             ended: false,
+            left_out: Vec::new(),
         }
     }
 
     /// Reads a deck's text; `depth` counts the files that include it.
     pub(super) fn read(&mut self, text: &str, depth: usize) -> Parsed<()> {
         for card in cards(text)? {
+            self.left_out.extend(lost(&card, depth));
             if self.ended {
                 self.flat.read_over(&card);
             } else {
@@ -277,10 +283,25 @@ impl Deck {
         }
         assembly::add(&mut whole, &self.waiting, &placed)?;
         whole.fill_regions("body")?;
+        whole.leave_out(self.left_out);
         match (whole.node_count(), whole.cell_count()) {
             (0, _) => Err((end, Problem::Missing { section: "*NODE" })),
             (_, 0) => Err((end, Problem::NoCells)),
             _ => Ok(whole),
         }
     }
+}
+
+/// What is lost with a card that is read over.
+fn lost(card: &Card, depth: usize) -> Option<LeftOut> {
+    let of_type = card.get("TYPE").filter(|name| matches!(element_type(name), Some(Type::Other)));
+    let (kind, which) = match (card.keyword.as_str(), of_type) {
+        ("ELEMENT", Some(of_type)) => (Kind::Joins, format!(", TYPE={of_type}")),
+        (keyword, _) => {
+            let name = card.get("NAME").filter(|name| !name.is_empty());
+            (keywords::lost(keyword)?, name.map_or(String::new(), |name| format!(", NAME={name}")))
+        }
+    };
+    let within = if depth > 0 { " of an included file" } else { "" };
+    Some(LeftOut { place: card.place, what: format!("*{}{which}{within}", card.keyword), kind })
 }

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
+use super::super::left_out::Kind;
+
 /// Those of Abaqus's keyword reference, those of CalculiX, and some that older versions of either had; one a line.
 const LIST: &str = include_str!("keywords.txt");
 
@@ -21,6 +23,77 @@ fn letters(keyword: &str) -> String {
 /// A keyword in capitals as it is written in full; `None` if there is none.
 pub(super) fn known(keyword: &str) -> Option<&'static str> {
     KNOWN.get(&letters(keyword)).copied()
+}
+
+/// Keywords that are read, or whose loss changes nothing of the body: headings, ends and what is to be printed.
+const NO_LOSS: [&str; 31] = [
+    "NODE",
+    "ELEMENT",
+    "ELSET",
+    "NSET",
+    "SURFACE",
+    "SOLID SECTION",
+    "INCLUDE",
+    "PART",
+    "END PART",
+    "INSTANCE",
+    "END INSTANCE",
+    "ASSEMBLY",
+    "END ASSEMBLY",
+    "HEADING",
+    "PREPRINT",
+    "END STEP",
+    "OUTPUT",
+    "NODE OUTPUT",
+    "ELEMENT OUTPUT",
+    "CONTACT OUTPUT",
+    "ENERGY OUTPUT",
+    "NODE FILE",
+    "EL FILE",
+    "NODE PRINT",
+    "EL PRINT",
+    "CONTACT FILE",
+    "CONTACT PRINT",
+    "ENERGY PRINT",
+    "RESTART",
+    "MONITOR",
+    "FILE FORMAT",
+];
+
+/// Keywords that join nodes or parts, or carry loads beside the solids.
+const JOINS: [&str; 23] = [
+    "TIE",
+    "EQUATION",
+    "MPC",
+    "RIGID BODY",
+    "COUPLING",
+    "KINEMATIC",
+    "DISTRIBUTING",
+    "KINEMATIC COUPLING",
+    "DISTRIBUTING COUPLING",
+    "SHELL TO SOLID COUPLING",
+    "CONTACT",
+    "CONTACT PAIR",
+    "CONTACT INCLUSIONS",
+    "EMBEDDED ELEMENT",
+    "CYCLIC SYMMETRY MODEL",
+    "PRE-TENSION SECTION",
+    "SPRING",
+    "DASHPOT",
+    "CONNECTOR SECTION",
+    "SHELL SECTION",
+    "MEMBRANE SECTION",
+    "BEAM SECTION",
+    "TRANSFORM",
+];
+
+/// How the loss of a keyword matters; `None` where nothing is lost.
+pub(super) fn lost(keyword: &str) -> Option<Kind> {
+    match keyword {
+        _ if NO_LOSS.contains(&keyword) => None,
+        _ if JOINS.contains(&keyword) => Some(Kind::Joins),
+        _ => Some(Kind::Model),
+    }
 }
 
 /// The keyword that takes the fewest changes of a letter, if these are few.
@@ -55,6 +128,13 @@ fn changes(a: &[char], b: &[char]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn keywords_of_which_something_is_said_exist() {
+        for keyword in NO_LOSS.iter().chain(&JOINS) {
+            assert_eq!(known(keyword), Some(*keyword));
+        }
+    }
 
     #[test]
     fn the_list_is_in_capitals_and_each_once() {

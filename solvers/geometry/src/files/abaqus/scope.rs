@@ -316,6 +316,12 @@ impl Scope {
         }
         for key in &self.elsets.order {
             let (name, members) = &self.elsets.lists[key];
+            // What Abaqus/CAE makes for itself begins so.
+            if !name.starts_with('_') {
+                let cells: Vec<u32> =
+                    members.iter().filter_map(|&number| self.content.cell_of(number)).collect();
+                self.content.also(Place::Line(1), name, &cells)?;
+            }
             for (number, (place, corners)) in members.iter().filter_map(|n| Some((n, self.shells.get(n)?))) {
                 let group = self.content.group(name);
                 self.content.shell(Row { place: *place, tag: *number }, group, corners)?;

@@ -1,4 +1,5 @@
-//! The writer of flat decks: a section for each region, a surface of elements' faces for each facet group.
+//! The writer of flat decks: a section for each region, a set for each further group of cells, a surface of elements' faces for each
+//! facet group.
 
 use std::fmt::Write;
 
@@ -7,7 +8,9 @@ use crate::{CellKind, Mesh};
 
 /// The file's text, in lengths of `unit` metres; or a name that it can't hold.
 pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
-    let names: Vec<&str> = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names()).collect();
+    let further: Vec<&str> = mesh.cell_groups().map(|(name, _)| name).collect();
+    let of_cells: Vec<&str> = mesh.region_names().iter().map(String::as_str).chain(further).collect();
+    let names: Vec<&str> = of_cells.iter().copied().chain(mesh.group_names()).collect();
     let bad = |name: &&&str| {
         name.is_empty() || name.trim() != **name || name.contains(['"', '\n', '\r', ',']) || !name.is_ascii()
     };
@@ -17,9 +20,9 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     // Names of sets count without their case.
     let regions = mesh.region_names();
     let twin =
-        |(at, name): &(usize, &String)| regions[..*at].iter().any(|other| other.eq_ignore_ascii_case(name));
-    if let Some((_, name)) = regions.iter().enumerate().find(twin) {
-        return Err(name.clone());
+        |(at, name): &(usize, &&str)| of_cells[..*at].iter().any(|other| other.eq_ignore_ascii_case(name));
+    if let Some((_, name)) = of_cells.iter().enumerate().find(twin) {
+        return Err(name.to_string());
     }
     let mut out = String::from("*HEADING\nwritten by tissuebench\n*NODE\n");
     // Writing to a string can't fail.
@@ -41,6 +44,13 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
         let lines: Vec<String> =
             [vec![(cell + 1).to_string()], nodes].concat().chunks(15).map(|chunk| chunk.join(", ")).collect();
         line!("{}", lines.join(",\n"));
+    }
+    for (name, cells) in mesh.cell_groups() {
+        line!("*ELSET, ELSET=\"{name}\"");
+        let numbers: Vec<String> = cells.iter().map(|cell| (cell + 1).to_string()).collect();
+        for chunk in numbers.chunks(15) {
+            line!("{}", chunk.join(", "));
+        }
     }
     // Sections keep the regions in order. Their materials are for others to add.
     let mut has = vec![false; regions.len()];

@@ -320,6 +320,7 @@ impl Reader<'_> {
 
     /// Version 2: heads of type, number of elements and number of tags.
     fn elements_by_type(&mut self) -> Parsed<()> {
+        self.content.repeat_cells();
         let all = self.count_line("the number of elements")?;
         let mut left = self.scanner.counted(all, 8, "elements")?;
         while left > 0 {

@@ -12,6 +12,7 @@ use super::text2::{add, begin, count, read_nodes};
 pub(super) fn parse(text: &str) -> Parsed<Content> {
     let mut lines = Lines::new(text);
     let mut content = Content::default();
+    content.repeat_cells();
     begin(&mut lines, "$NOD")?;
     read_nodes(&mut lines, &mut content, "$ENDNOD")?;
     lines.exactly("$ELM")?;

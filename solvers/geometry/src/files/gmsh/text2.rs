@@ -12,6 +12,7 @@ use crate::Point3;
 pub(super) fn parse(text: &str) -> Parsed<Content> {
     let mut lines = Lines::new(text);
     let mut content = Content::default();
+    content.repeat_cells();
     let mut names = Names::default();
     let (mut nodes, mut elements) = (false, false);
     begin(&mut lines, "$MeshFormat")?;
@@ -129,7 +130,7 @@ fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Par
     if content.cell_count() == 0 { lines.fail(Problem::NoCells) } else { Ok(()) }
 }
 
-/// Adds an element of physical groups, 0 being none; a solid is of the first.
+/// Adds an element of physical groups, 0 being none; the first is a solid's region.
 pub(super) fn add(
     content: &mut Content,
     names: &Names,
@@ -142,7 +143,13 @@ pub(super) fn add(
         Element::Cell(kind) => {
             let group = groups.first().copied().unwrap_or(0);
             let region = names.region(content, row.place, group)?;
-            content.cell(row, kind, region, list, order(kind))
+            content.cell(row, kind, region, list, order(kind))?;
+            let cell = content.cell_count() as u32 - 1;
+            for &group in groups.iter().skip(1).filter(|&&group| group != 0) {
+                let region = names.region(content, row.place, group)?;
+                content.also_in(cell, region);
+            }
+            Ok(())
         }
         Element::Face { corners, .. } if groups.iter().any(|&group| group != 0) => {
             let named = groups.iter().filter(|&&group| group != 0);

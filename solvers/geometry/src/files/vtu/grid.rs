@@ -4,9 +4,13 @@ use roxmltree::{Document, Node};
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
-use super::super::vtk_cells::{Array, Cells, regions};
+use super::super::left_out::LeftOut;
+use super::super::vtk_cells::{Array, Cells, lost, regions};
 use super::array::{Coding, Compressor, Numbers, Source, read};
 use crate::Point3;
+
+/// Arrays of the cells in groups across the regions begin so, with the number of the group behind.
+pub(super) const GROUP: &str = "group-";
 
 struct File<'a> {
     bytes: &'a [u8],
@@ -175,9 +179,40 @@ impl<'a> File<'a> {
         let length = ends.last().copied().unwrap_or(0);
         let list = whole(self.array(named("connectivity")?, length)?, self.place(of_cells))?;
         let regions = regions(|name| self.cell_array(piece, cells, name))?;
+        content.leave_out(self.lost(piece, cells, regions.as_ref())?);
+        let regions = regions.map(|array| array.whole()).transpose()?;
         let surfaces = self.cell_array(piece, cells, "surface")?.map(|array| array.whole()).transpose()?;
-        let cells = Cells { first, types, ends, list, regions, surfaces };
+        let mut further = Vec::new();
+        for (at, name) in self.names(self.document.root_element(), "group-names")?.into_iter().enumerate() {
+            if let Some(array) = self.cell_array(piece, cells, &format!("{GROUP}{at}"))? {
+                further.push((name, array.whole()?));
+            }
+        }
+        let cells = Cells { first, types, ends, list, regions, surfaces, further };
         cells.add_to(content, region_names, surface_names)
+    }
+
+    /// Arrays of cells and of points that are not taken.
+    fn lost(&self, piece: Node, cells: usize, taken: Option<&Array>) -> Parsed<Vec<LeftOut>> {
+        let mut found = Vec::new();
+        for (section, of_cells) in [("CellData", true), ("PointData", false)] {
+            let data =
+                piece.children().filter(|node| node.has_tag_name(section)).flat_map(|data| data.children());
+            for node in data.filter(|node| node.has_tag_name("DataArray")) {
+                let (name, place) = (node.attribute("Name").unwrap_or_default(), self.place(node));
+                let own = name.eq_ignore_ascii_case("surface") || name.starts_with(GROUP);
+                if of_cells && (own || taken.is_some_and(|taken| taken.name == name)) {
+                    continue;
+                }
+                let single =
+                    of_cells && node.attribute("NumberOfComponents").is_none_or(|count| count.trim() == "1");
+                // What can't be read is not needed here.
+                let read = |_| self.array(node, cells).map(reals).unwrap_or_default();
+                let values = (taken.is_none() && single).then_some(()).map(read).unwrap_or_default();
+                found.push(lost(&Array { name: name.into(), place, values }, of_cells, taken.is_some()));
+            }
+        }
+        Ok(found)
     }
 
     /// Numbers per cell, by the array's name without regard to capitals.

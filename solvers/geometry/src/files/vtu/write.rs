@@ -5,6 +5,7 @@ use std::io::Write as _;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use super::grid::GROUP;
 use crate::{CellKind, FaceKind, Mesh, Point3};
 
 /// Bytes of a block before they are packed, as VTK has them.
@@ -92,7 +93,10 @@ pub struct Values {
 /// The file's bytes, in lengths of `unit` metres; or a name that it can't hold. Faces of groups are cells behind the solids.
 pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String> {
     let groups: Vec<&str> = mesh.group_names().collect();
-    let names = mesh.region_names().iter().map(String::as_str).chain(groups.iter().copied());
+    let further: Vec<(&str, &[u32])> = mesh.cell_groups().collect();
+    let of_cells = further.iter().map(|(name, _)| *name);
+    let names =
+        mesh.region_names().iter().map(String::as_str).chain(of_cells.clone()).chain(groups.iter().copied());
     if let Some(name) = names.into_iter().find(|name| name.is_empty() || name.contains(['\0', '\n', '\r'])) {
         return Err(name.into());
     }
@@ -106,10 +110,19 @@ pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String>
             surfaces.push(surface as i32);
         }
     }
-    let field = text_array("region-names", mesh.region_names().iter().map(String::as_str))
+    let mut field = text_array("region-names", mesh.region_names().iter().map(String::as_str))
         + &text_array("surface-names", groups.iter().copied());
-    let of_cells = [Data::Whole("region", regions), Data::Whole("surface", surfaces)];
-    Ok(file(&field, (mesh.points(), unit), &cells, &[], &of_cells))
+    if !further.is_empty() {
+        field += &text_array("group-names", of_cells);
+    }
+    let arrays: Vec<String> = (0..further.len()).map(|at| format!("{GROUP}{at}")).collect();
+    let mut data = vec![Data::Whole("region", regions), Data::Whole("surface", surfaces)];
+    for ((_, members), array) in further.iter().zip(&arrays) {
+        let mut is_in = vec![0; cells.types.len()];
+        members.iter().for_each(|&cell| is_in[cell as usize] = 1);
+        data.push(Data::Whole(array, is_in));
+    }
+    Ok(file(&field, (mesh.points(), unit), &cells, &[], &data))
 }
 
 /// A body with what a solution has at its points and in its cells, in SI units; `time` is the instant, the part of the load or the number

@@ -20,7 +20,8 @@ pub enum GmshVersion {
 
 /// The file's text, in lengths of `unit` metres; or a name that it can't hold.
 pub(in crate::files) fn text(mesh: &Mesh, unit: f64, version: GmshVersion) -> Result<String, String> {
-    let names = mesh.region_names().iter().map(String::as_str).chain(mesh.group_names());
+    let further = mesh.cell_groups().map(|(name, _)| name);
+    let names = mesh.region_names().iter().map(String::as_str).chain(further).chain(mesh.group_names());
     if let Some(name) = names.into_iter().find(|n| n.is_empty() || n.contains(['"', '\n', '\r'])) {
         return Err(name.into());
     }
@@ -35,19 +36,46 @@ fn region_tag(region: u16) -> usize {
     usize::from(region) + 1
 }
 
-/// Physical tag of a facet group by its place among the names: behind those of the regions, so that no tag is of both.
+/// Physical tags of each cell, that of its region first.
+fn cell_tags(mesh: &Mesh) -> Vec<Vec<usize>> {
+    let mut tags: Vec<Vec<usize>> =
+        (0..mesh.cell_count()).map(|cell| vec![region_tag(mesh.region(cell))]).collect();
+    for ((_, cells), tag) in mesh.cell_groups().zip(further_tags(mesh)) {
+        let new = cells.iter().filter(|&&cell| mesh.region(cell as usize) as usize + 1 != tag);
+        new.for_each(|&cell| tags[cell as usize].push(tag));
+    }
+    tags
+}
+
+/// Physical tags of the groups of cells: behind those of the regions, or that of the region of the same name.
+fn further_tags(mesh: &Mesh) -> impl Iterator<Item = usize> {
+    let regions = mesh.region_names();
+    mesh.cell_groups().enumerate().map(move |(at, (name, _))| {
+        regions.iter().position(|region| region == name).unwrap_or(regions.len() + at) + 1
+    })
+}
+
+/// Physical tag of a facet group by its place among the names: behind those of the cells, so that no tag is of both.
 fn group_tag(mesh: &Mesh, group: usize) -> usize {
-    mesh.region_names().len() + group + 1
+    mesh.region_names().len() + mesh.cell_groups().count() + group + 1
 }
 
 fn physical_names(out: &mut String, mesh: &Mesh) {
     // Writing to a string can't fail.
-    let _ = writeln!(out, "$PhysicalNames\n{}", mesh.region_names().len() + mesh.group_names().count());
+    let regions = mesh.region_names().len();
+    let further: Vec<(usize, &str)> = further_tags(mesh)
+        .zip(mesh.cell_groups().map(|(name, _)| name))
+        .filter(|(tag, _)| *tag > regions)
+        .collect();
+    let _ = writeln!(out, "$PhysicalNames\n{}", regions + further.len() + mesh.group_names().count());
     for (group, name) in mesh.group_names().enumerate() {
         let _ = writeln!(out, "2 {} \"{name}\"", group_tag(mesh, group));
     }
     for (region, name) in mesh.region_names().iter().enumerate() {
         let _ = writeln!(out, "3 {} \"{name}\"", region_tag(region as u16));
+    }
+    for (tag, name) in further {
+        let _ = writeln!(out, "3 {tag} \"{name}\"");
     }
     out.push_str("$EndPhysicalNames\n");
 }

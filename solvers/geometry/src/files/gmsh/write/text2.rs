@@ -1,9 +1,9 @@
-//! Version 2.2: an element for each facet of each group, then the cells, each with its physical tag.
+//! Version 2.2: an element for each facet of each group, then one for each cell and each of its physical tags.
 
 use std::fmt::Write;
 
 use super::super::order::type_numbers;
-use super::{cell_nodes, face_nodes, group_tag, physical_names, region_tag};
+use super::{cell_nodes, cell_tags, face_nodes, group_tag, physical_names};
 use crate::Mesh;
 
 pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
@@ -19,7 +19,8 @@ pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
     }
     let group = |name: &str| mesh.group(name).unwrap_or_default();
     let faces: usize = mesh.group_names().map(|name| group(name).len()).sum();
-    line!("$EndNodes\n$Elements\n{}", faces + mesh.cell_count());
+    let tags = cell_tags(mesh);
+    line!("$EndNodes\n$Elements\n{}", faces + tags.iter().map(Vec::len).sum::<usize>());
     let mut number = 0;
     for (at, name) in mesh.group_names().enumerate() {
         let tag = group_tag(mesh, at);
@@ -30,11 +31,13 @@ pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
             face_nodes(&mut out, mesh, facet);
         }
     }
-    for cell in 0..mesh.cell_count() {
-        number += 1;
-        let (kind, tag) = (type_numbers(mesh.kind(cell)).0, region_tag(mesh.region(cell)));
-        let _ = write!(out, "{number} {kind} 2 {tag} {tag}");
-        cell_nodes(&mut out, mesh, cell);
+    for (cell, tags) in tags.iter().enumerate() {
+        let (kind, entity) = (type_numbers(mesh.kind(cell)).0, tags[0]);
+        for tag in tags {
+            number += 1;
+            let _ = write!(out, "{number} {kind} 2 {tag} {entity}");
+            cell_nodes(&mut out, mesh, cell);
+        }
     }
     out.push_str("$EndElements\n");
     out

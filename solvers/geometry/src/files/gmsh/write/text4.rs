@@ -1,4 +1,4 @@
-//! Version 4.1: a volume entity for each region, a surface entity for each set of groups that a facet is in.
+//! Version 4.1: a volume entity for each set of groups that a cell is in, a surface entity for each that a facet is in.
 //!
 //! An element belongs to one entity, an entity to any number of physical groups: facets of the same groups are one entity.
 
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use super::super::order::type_numbers;
-use super::{cell_nodes, face_nodes, group_tag, physical_names, region_tag};
+use super::{cell_nodes, cell_tags, face_nodes, group_tag, physical_names};
 use crate::{Facet, Mesh, Point3};
 
 /// A surface entity: the physical tags, and the facets by their element type.
@@ -22,12 +22,31 @@ struct Block<T> {
 
 pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
     let mut out = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
-    let surfaces = surfaces(mesh);
+    let (surfaces, volumes) = (surfaces(mesh), Volumes::new(mesh));
     physical_names(&mut out, mesh);
-    entities(&mut out, mesh, unit, &surfaces);
-    nodes(&mut out, mesh, unit);
-    elements(&mut out, mesh, &surfaces);
+    entities(&mut out, mesh, unit, &surfaces, &volumes);
+    nodes(&mut out, mesh, unit, volumes.of_cell[0]);
+    elements(&mut out, mesh, &surfaces, &volumes);
     out
+}
+
+/// Volume entities: the physical tags of each, and the entity of each cell, from 1 on.
+struct Volumes {
+    tags: Vec<Vec<usize>>,
+    of_cell: Vec<usize>,
+}
+
+impl Volumes {
+    fn new(mesh: &Mesh) -> Volumes {
+        let of_cells = cell_tags(mesh);
+        // Those of one region alone come first and in its order: a mesh without further groups has an entity for each region.
+        let mut tags = of_cells.clone();
+        tags.sort_unstable_by_key(|tags| (tags.len(), tags.clone()));
+        tags.dedup();
+        let place: BTreeMap<&Vec<usize>, usize> = tags.iter().zip(1..).collect();
+        let of_cell = of_cells.iter().map(|tags| place[tags]).collect();
+        Volumes { of_cell, tags }
+    }
 }
 
 fn surfaces(mesh: &Mesh) -> Surfaces {
@@ -48,24 +67,21 @@ fn surfaces(mesh: &Mesh) -> Surfaces {
     surfaces
 }
 
-fn entities(out: &mut String, mesh: &Mesh, unit: f64, surfaces: &Surfaces) {
-    let mut of_region = vec![None; mesh.region_names().len()];
-    for cell in 0..mesh.cell_count() {
-        let bounds = &mut of_region[usize::from(mesh.region(cell))];
-        grow(bounds, mesh.cell(cell).iter().map(|&node| mesh.points()[node as usize]));
+fn entities(out: &mut String, mesh: &Mesh, unit: f64, surfaces: &Surfaces, volumes: &Volumes) {
+    let mut of_volume = vec![None; volumes.tags.len()];
+    for (cell, volume) in volumes.of_cell.iter().enumerate() {
+        grow(&mut of_volume[volume - 1], mesh.cell(cell).iter().map(|&node| mesh.points()[node as usize]));
     }
-    let volumes = || of_region.iter().enumerate().filter_map(|(region, bounds)| Some((region, (*bounds)?)));
     // Writing to a string can't fail.
-    let _ = writeln!(out, "$Entities\n0 0 {} {}", surfaces.len(), volumes().count());
+    let _ = writeln!(out, "$Entities\n0 0 {} {}", surfaces.len(), volumes.tags.len());
     for (at, (tags, by_kind)) in surfaces.iter().enumerate() {
         let nodes = by_kind.values().flatten().flat_map(|&facet| mesh.facet_nodes(facet));
         let mut bounds = None;
         grow(&mut bounds, nodes.map(|node| mesh.points()[node as usize]));
         entity(out, at + 1, bounds.unwrap_or_default(), unit, tags);
     }
-    for (region, bounds) in volumes() {
-        let tag = region_tag(region as u16);
-        entity(out, tag, bounds, unit, &[tag]);
+    for (at, (tags, bounds)) in volumes.tags.iter().zip(of_volume).enumerate() {
+        entity(out, at + 1, bounds.unwrap_or_default(), unit, tags);
     }
     out.push_str("$EndEntities\n");
 }
@@ -105,8 +121,8 @@ fn entity(out: &mut String, tag: usize, (low, high): Bounds, unit: f64, physical
 }
 
 /// All in one block, of the first cell's volume, so that they keep their order.
-fn nodes(out: &mut String, mesh: &Mesh, unit: f64) {
-    let (count, volume) = (mesh.points().len(), region_tag(mesh.region(0)));
+fn nodes(out: &mut String, mesh: &Mesh, unit: f64, volume: usize) {
+    let count = mesh.points().len();
     let _ = writeln!(out, "$Nodes\n1 {count} 1 {count}\n3 {volume} 0 {count}");
     for node in 1..=count {
         let _ = writeln!(out, "{node}");
@@ -118,7 +134,7 @@ fn nodes(out: &mut String, mesh: &Mesh, unit: f64) {
     out.push_str("$EndNodes\n");
 }
 
-fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces) {
+fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces, volumes: &Volumes) {
     let faces: Vec<Block<Facet>> = (surfaces.values().enumerate())
         .flat_map(|(at, by_kind)| {
             let block = move |(&kind, facets): (&u64, &Vec<Facet>)| Block {
@@ -130,10 +146,10 @@ fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces) {
             by_kind.iter().map(block)
         })
         .collect();
-    // Cells keep their order: a block ends where the region or the type changes.
+    // Cells keep their order: a block ends where the entity or the type changes.
     let mut cells: Vec<Block<usize>> = Vec::new();
     for cell in 0..mesh.cell_count() {
-        let (entity, kind) = (region_tag(mesh.region(cell)), type_numbers(mesh.kind(cell)).0);
+        let (entity, kind) = (volumes.of_cell[cell], type_numbers(mesh.kind(cell)).0);
         match cells.last_mut().filter(|block| (block.entity, block.kind) == (entity, kind)) {
             Some(block) => block.elements.push(cell),
             None => cells.push(Block { dimension: 3, entity, kind, elements: vec![cell] }),

@@ -1,0 +1,89 @@
+//! The body as points of a grid: from which side a plate finds an end that it can press, and how much holds the other end.
+
+use clap::ValueEnum;
+use geometry::Point3;
+use rayon::prelude::*;
+
+use super::args::Side;
+use super::organ::Organ;
+
+/// Points along each axis.
+const GRID: usize = 24;
+/// Layers of points that are the end of the body on one side.
+const END: usize = 2;
+/// Part of the body that an end has at the least; a cap of a ball has 2 %, the tip of a cone .06 %.
+const BLUNT: f64 = 0.012;
+/// Part of an end that stands on what is held at the least: the rest hangs over, and bends away.
+const BACKED: f64 = 0.5;
+/// Part of the body that is held at the least.
+const HELD: f64 = 0.08;
+
+/// Points of a grid in the body's box that are inside.
+pub(super) struct Filled(Vec<bool>);
+
+impl Filled {
+    pub fn new(organ: &Organ) -> Filled {
+        let at = |k: usize, axis: usize| {
+            organ.bounds[0][axis] + organ.extent(axis) * (k as f64 + 0.5) / GRID as f64
+        };
+        let point = |k: usize| Point3::new(at(k % GRID, 0), at(k / GRID % GRID, 1), at(k / GRID / GRID, 2));
+        let inside = |k: usize| organ.surface.signed_distance(&point(k)) < 0.0;
+        Filled((0..GRID.pow(3)).into_par_iter().map(inside).collect())
+    }
+
+    /// Whether a point is inside: its layer counted from one side, and its place in the layer.
+    fn has(&self, side: Side, layer: usize, place: [usize; 2]) -> bool {
+        let axis = side.axis();
+        let mut k = [0; 3];
+        k[axis] = if side.sign() > 0.0 { GRID - 1 - layer } else { layer };
+        (k[(axis + 1) % 3], k[(axis + 2) % 3]) = (place[0], place[1]);
+        self.0[k[0] + GRID * (k[1] + GRID * k[2])]
+    }
+
+    /// Points inside in a layer.
+    fn count(&self, side: Side, layer: usize) -> usize {
+        places().filter(|&place| self.has(side, layer, place)).count()
+    }
+
+    fn all(&self) -> f64 {
+        self.0.iter().filter(|inside| **inside).count().max(1) as f64
+    }
+
+    /// Part of the height, from the side opposite to the plate on, that is held: `least`, or more where that is little of the body.
+    pub fn held(&self, side: Side, least: f64) -> f64 {
+        let mut sum = 0.0;
+        let layers = (0..GRID).rev().take_while(|&layer| {
+            sum += self.count(side, layer) as f64;
+            sum < HELD * self.all()
+        });
+        least.max((layers.count() + 1) as f64 / GRID as f64)
+    }
+
+    /// Part of the body at the end of a side, and part of that end which stands on what is held.
+    fn end(&self, side: Side, held: f64) -> [f64; 2] {
+        let pressed: usize = (0..END).map(|layer| self.count(side, layer)).sum();
+        let ground = GRID - (held * GRID as f64).round() as usize;
+        let ends: Vec<[usize; 2]> =
+            places().filter(|&place| (0..END).any(|layer| self.has(side, layer, place))).collect();
+        let stands =
+            |place: &&[usize; 2]| (END - 1..=ground.min(GRID - 1)).all(|k| self.has(side, k, **place));
+        let backed = ends.iter().filter(stands).count();
+        [pressed as f64 / self.all(), backed as f64 / ends.len().max(1) as f64]
+    }
+
+    /// The side from which a plate presses best: the first whose end is blunt and stands on what is held, or else the one that comes nearest.
+    pub fn side(&self, least: f64) -> Side {
+        let quality = |&side: &Side| {
+            let [pressed, backed] = self.end(side, self.held(side, least));
+            (pressed / BLUNT).min(1.0) * (backed / BACKED).min(1.0)
+        };
+        let all = Side::value_variants().iter().copied();
+        let best = all.map(|side| (quality(&side), side));
+        let better = |best: (f64, Side), one: (f64, Side)| if one.0 > best.0 { one } else { best };
+        best.reduce(better).map_or(Side::Top, |(_, side)| side)
+    }
+}
+
+fn places() -> impl Iterator<Item = [usize; 2]> {
+    (0..GRID * GRID).map(|k| [k % GRID, k / GRID])
+}

@@ -1,0 +1,107 @@
+//! The meshes that the methods and the reference of a scene will have: what a scene names has to be there in each.
+
+use std::sync::Arc;
+
+use cases::scene::{Place, Reference, Scene};
+use geometry::{Mesh, Point3};
+
+use super::args::Side;
+use crate::Failure;
+use crate::discretise::place;
+use crate::scenario::Scenario;
+
+/// Corners of a cell that hold it: three that are on no line.
+const HOLD: usize = 3;
+
+/// One mesh for each method, and one for the reference, with their names.
+pub(super) struct Meshes(Vec<(String, Arc<Mesh>)>);
+
+impl Meshes {
+    /// Makes the meshes of a scene, as a run does.
+    pub fn new(scene: &Scene) -> Result<Meshes, Failure> {
+        let own = scene.methods.iter().map(|method| (method.id.clone(), method.clone()));
+        let mut all: Vec<_> = own.collect();
+        if let Some(Reference::Method { id, size: Some(size) }) = &scene.reference
+            && let Some(method) = scene.method(id)
+        {
+            let mut method = method.clone();
+            method.resize(size);
+            all.push(("the reference".into(), method));
+        }
+        let made = all.into_iter().map(|(name, method)| {
+            let case = String::new();
+            let scenario = Scenario { case, scene, method, level: 0, poisson: None, size_key: None };
+            Ok((name, scenario.discretise()?.mesh))
+        });
+        Ok(Meshes(made.collect::<Result<_, Failure>>()?))
+    }
+
+    /// The largest distance by which a mesh falls short of the end of the body on one side, m, and the mesh.
+    pub fn shortest(&self, bounds: [Point3; 2], side: Side) -> (f64, &str) {
+        let (axis, sign) = (side.axis(), side.sign());
+        let end = bounds[usize::from(sign > 0.0)][axis];
+        let short = |mesh: &Mesh| {
+            let (low, high) = place::bounds(mesh);
+            sign * (end - if sign > 0.0 { high[axis] } else { low[axis] })
+        };
+        let all = self.0.iter().map(|(name, mesh)| (short(mesh), name.as_str()));
+        all.fold((0.0, ""), |most, one| if one.0 > most.0 { one } else { most })
+    }
+
+    /// The first mesh with a piece that a place does not hold, and its number of pieces.
+    pub fn unheld(&self, place: &Place) -> Result<Option<(&str, usize)>, Failure> {
+        for (name, mesh) in &self.0 {
+            let mut held = vec![false; mesh.points().len()];
+            place::nodes("support[0]", place, mesh)?.into_iter().for_each(|node| held[node as usize] = true);
+            let (piece, pieces) = pieces(mesh);
+            let mut holds = vec![false; pieces];
+            for cell in 0..mesh.cell_count() {
+                let corners = &mesh.cell(cell)[..mesh.kind(cell).corner_count()];
+                if corners.iter().filter(|&&node| held[node as usize]).count() >= HOLD {
+                    holds[piece[corners[0] as usize]] = true;
+                }
+            }
+            if holds.contains(&false) {
+                return Ok(Some((name, pieces)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether a point is inside of all of them.
+    pub fn all_have(&self, p: &Point3) -> bool {
+        let inside = |mesh: &Mesh| fem::nearest_cells(mesh, &[*p]).is_ok_and(|found| found[0].1 == 0.0);
+        self.0.iter().all(|(_, mesh)| inside(mesh))
+    }
+}
+
+/// The piece of each node, numbered from 0, and how many there are; nodes of a cell are of one piece.
+fn pieces(mesh: &Mesh) -> (Vec<usize>, usize) {
+    let mut above: Vec<usize> = (0..mesh.points().len()).collect();
+    fn top(above: &mut [usize], mut node: usize) -> usize {
+        while above[node] != node {
+            above[node] = above[above[node]];
+            node = above[node];
+        }
+        node
+    }
+    for cell in 0..mesh.cell_count() {
+        let nodes = mesh.cell(cell);
+        for two in nodes.windows(2) {
+            let (a, b) = (top(&mut above, two[0] as usize), top(&mut above, two[1] as usize));
+            above[a.max(b)] = a.min(b);
+        }
+    }
+    let mut number = vec![usize::MAX; above.len()];
+    let mut count = 0;
+    let piece = (0..above.len()).map(|node| {
+        let slot = top(&mut above, node);
+        if number[slot] == usize::MAX {
+            number[slot] = count;
+            count += 1;
+        }
+        number[slot]
+    });
+    let piece = piece.collect();
+    (piece, count)
+}

@@ -1,0 +1,93 @@
+//! Cells in several groups, and what a mesh does not have of its file.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use super::super::error::{Parsed, Place};
+use super::super::left_out::{Kind, LeftOut};
+use super::super::middles;
+use super::{Cells, Content};
+
+impl Content {
+    /// A cell may be listed once for each of its regions.
+    pub(in crate::files) fn repeat_cells(&mut self) {
+        self.repeats = true;
+    }
+
+    /// Puts a cell into a further region.
+    pub(in crate::files) fn also_in(&mut self, cell: u32, region: u16) {
+        self.also.push((cell, region));
+    }
+
+    /// Puts cells into a further region of a name.
+    pub(in crate::files) fn also(&mut self, place: Place, name: &str, cells: &[u32]) -> Parsed<()> {
+        if !cells.is_empty() {
+            let region = self.region(place, name)?;
+            self.also.extend(cells.iter().map(|&cell| (cell, region)));
+        }
+        Ok(())
+    }
+
+    /// Notes parts of the file that are not in the mesh.
+    pub(in crate::files) fn leave_out(&mut self, parts: impl IntoIterator<Item = LeftOut>) {
+        self.left_out.extend(parts);
+    }
+
+    /// What the mesh does not have of the file.
+    pub(in crate::files) fn into_left_out(mut self) -> Vec<LeftOut> {
+        self.put_middles_in_order();
+        self.left_out
+    }
+
+    /// Puts middle nodes in their places that the file has in another order.
+    pub(super) fn put_middles_in_order(&mut self) {
+        let orders = middles::put_in_order(&self.kinds, &mut self.nodes, &self.points);
+        self.left_out.extend(orders.into_iter().map(|(kind, cells)| LeftOut {
+            place: Place::Cell(0),
+            what: format!(
+                "the middle nodes of {cells} {} stand in another order than that of the format: each is taken for the edge that it halves",
+                kind.name()
+            ),
+            kind: Kind::Changed,
+        }));
+    }
+
+    /// Groups of cells across the regions, each with a cell at least whose region is another.
+    pub(super) fn further(&self) -> BTreeMap<String, Vec<u32>> {
+        let mut cells: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
+        for &(cell, region) in &self.also {
+            cells.entry(region).or_default().push(cell);
+        }
+        cells.retain(|region, cells| cells.iter().any(|&cell| self.regions[cell as usize] != *region));
+        cells
+            .into_iter()
+            .map(|(region, cells)| (self.region_names.list[region as usize].clone(), cells))
+            .collect()
+    }
+
+    /// Joins cells that are listed once for each of their regions: the first is in all of them.
+    pub(super) fn join_repeated(&mut self) {
+        let cells = Cells { kinds: &self.kinds, nodes: &self.nodes, points: &self.points };
+        if !self.repeats || cells.twins().is_none() {
+            return;
+        }
+        let (kinds, nodes) = (std::mem::take(&mut self.kinds), std::mem::take(&mut self.nodes));
+        let (regions, rows) = (std::mem::take(&mut self.regions), std::mem::take(&mut self.rows));
+        let (mut first, mut known) = (HashMap::new(), HashSet::new());
+        let mut start = 0;
+        for (cell, kind) in kinds.into_iter().enumerate() {
+            let list = &nodes[start..start + kind.node_count()];
+            start += list.len();
+            let next = self.kinds.len() as u32;
+            let of = *first.entry(list).or_insert(next);
+            // Twice in one region is a fault of the file, which is found later.
+            if known.insert((of, regions[cell])) && of != next {
+                self.also.push((of, regions[cell]));
+                continue;
+            }
+            self.kinds.push(kind);
+            self.nodes.extend_from_slice(list);
+            self.regions.push(regions[cell]);
+            self.rows.push(rows[cell]);
+        }
+    }
+}
