@@ -68,10 +68,15 @@ fn stored_times_are_what_runs_are_foreseen_to_take() {
     // A time that no estimate would give.
     for entry in std::fs::read_dir(dir.path().join("out/tasks")).unwrap() {
         let path = entry.unwrap().path();
-        let mut stored: serde_json::Value =
-            serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-        stored["result"]["seconds"] = 700.0.into();
-        std::fs::write(&path, stored.to_string()).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (_, rest) = text.split_once(',').unwrap();
+        let (before, after) = rest.split_once("\"seconds\":").unwrap();
+        let end = after.find([',', '}']).unwrap();
+        let rest = format!("{before}\"seconds\":700.0{}", &after[end..]);
+        // It is believed by its hash, which is of its key too.
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(path.file_stem().unwrap().as_encoded_bytes()).update(rest.as_bytes());
+        std::fs::write(&path, format!("{{\"hash\":\"{}\",{rest}", hasher.finalize().to_hex())).unwrap();
     }
     let seconds = |options: &[&str]| {
         let done = tissuebench(

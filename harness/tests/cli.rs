@@ -5,7 +5,8 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
+    "cpu_phases",
     "dofs",
     "elements",
     "format",

@@ -45,23 +45,20 @@ fn warned(run: &Value, code: &str) -> Option<f64> {
 const GAUSS: &str = "integration = { rule = \"gauss\", points = 4 }";
 const SMOOTHED: &str = "integration = { rule = \"cell-smoothed\", order = 2, points = 6 }";
 
-/// On a face of cells of 10,000 : 1 maximum entropy has gradients without a right digit: a stress of 1e10 Pa for 1e3.
+/// On a face of cells of 10,000 : 1 maximum entropy has gradients without a right digit: a stress of 1e10 Pa for 1e3. At a probe the stress
+/// is recovered from the points of the cells, which have right ones; the traction of Nitsche's method is made of the others.
 #[test]
-fn a_stress_of_bad_gradients_is_refused() {
+fn a_stress_of_bad_gradients_is_recovered_or_refused() {
     let probe = "output = { probes = [[\"21 mm\", \"23 mm\", \"0 mm\"]] }";
     let method = format!("{GAUSS}, essential = \"elimination\"");
-    for (thickness, refused) in [(0.05, false), (0.005, true)] {
-        let dir = TempDir::new().unwrap();
-        let scene = write(&dir, "scene.toml", &plate(thickness, 0.3, &method, probe));
-        let done = tissuebench(&["run", &scene]);
-        if refused {
-            assert_fails(&done, 3, "bad gradients: at (2.1e-2, 2.3e-2, 0e0) m");
-            assert!(done.stderr.contains("'output.probes'"), "{}", done.stderr);
-        } else {
-            assert_eq!(done.code, 0, "{}", done.stderr);
-        }
+    for thickness in [0.05, 0.005] {
+        let found = run(&plate(thickness, 0.3, &method, probe));
+        assert!(metric(&found, "stress") < 0.03, "{found}");
+        // A fifth off in energy, as the patch test says, and so may be a stress of 25 Pa.
+        let stress = found["probes"][0]["stress"].as_array().unwrap();
+        assert!(stress.iter().all(|s| s.as_f64().unwrap().abs() < 25.0), "{found}");
     }
-    // Nitsche's traction is made of such gradients; cells that smooth have others.
+    // Cells that smooth have others.
     let nitsche =
         |integration: &str| format!("{integration}, essential = {{ method = \"nitsche\", factor = 1e6 }}");
     let dir = TempDir::new().unwrap();

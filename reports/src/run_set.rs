@@ -60,8 +60,8 @@ pub struct Check {
     pub status: Status,
     /// Why it failed, is known to fail, or wasn't run; empty for a pass.
     pub reason: String,
-    /// Place of the check, `file:line`; empty in results from before 0.2.
-    #[serde(default)]
+    /// Place of the check, `file:line` with the file as it was named; not stored, as results are the same wherever a study is.
+    #[serde(skip)]
     pub at: String,
 }
 

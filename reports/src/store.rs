@@ -94,7 +94,7 @@ pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> 
     write_json(&dir.join("warnings.json"), &run.warnings)?;
     write_json(&dir.join("references.json"), &run.references)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
-    let mut csv = String::from("case,method,metric,value,bound,status,reason,at\n");
+    let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
         csv.push_str(&csv_line(&[
@@ -105,7 +105,6 @@ pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> 
             &c.bound,
             c.status.name(),
             &c.reason,
-            &c.at,
         ]));
     }
     write_text(&dir.join("checks.csv"), &csv)?;

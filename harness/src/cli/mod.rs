@@ -242,7 +242,7 @@ fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
 
 /// Whether a file that was refused has a key that scenes have and studies have not, or the other way round.
 fn holds_key(path: &Path, key: &str) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = disk::read_text(path, disk::Kind::SCENE).unwrap_or_default();
     text.parse::<toml::Table>().is_ok_and(|table| table.contains_key(key))
 }
 

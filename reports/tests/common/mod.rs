@@ -339,7 +339,7 @@ fn check(
         bound: bound.into(),
         status,
         reason: reason.into(),
-        at: "study.toml:1".into(),
+        at: String::new(),
     }
 }
 
