@@ -82,7 +82,7 @@ fn mirrored_cells_are_turned_on_request() {
     let done = tissuebench(&["mesh", "convert", &mirrored, &turned, "--turn"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let info = tissuebench(&["mesh", "info", &turned]);
-    assert!(info.code == 0 && info.stdout.contains("volume      0.001"), "{}", info.stdout);
+    assert!(info.code == 0 && info.stdout.contains("volume      1.000e-3 cm^3"), "{}", info.stdout);
 }
 
 #[test]
