@@ -36,7 +36,6 @@ use crate::prepare::Prepared;
 use crate::procedure::Solution;
 use crate::scenario::setup::Setup;
 use norms::{difference, exact_at, norms, relative};
-use stress::Recovered;
 
 pub(crate) use displacement::displacement;
 pub(crate) use modes::report as report_modes;
@@ -49,6 +48,7 @@ pub(crate) use request::Request;
 pub use request::{OwnError, Reference, Repeats};
 pub(crate) use states::states;
 pub(crate) use step_history::report as report_steps;
+pub(crate) use stress::Recovered;
 pub(crate) use surface::surface;
 pub(crate) use transfer::transfers;
 pub(crate) use warnings::warnings;
@@ -73,6 +73,7 @@ pub(crate) fn measure(
     metrics: &mut Vec<Metric>,
     run: &Solved,
     field: &Field,
+    recovered: Option<&Recovered>,
     request: &Request,
 ) -> Result<(), Failure> {
     let Solved { method, setup, prepared, solution } = *run;
@@ -84,7 +85,7 @@ pub(crate) fn measure(
         dilation: prepared.volume.groups.as_ref(),
     };
     if let Some(exact) = setup.exact.as_deref() {
-        errors_in_the_volume(metrics, run, exact)?;
+        errors_in_the_volume(metrics, run, recovered, exact)?;
     }
     errors_at_targets(metrics, run, &field.values, request);
     for (axis, entry) in [&metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z].into_iter().enumerate() {
@@ -129,7 +130,7 @@ pub(crate) fn measure(
     if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
-    if let Some(jump) = Recovered::new(run).and_then(|recovered| recovered.jump()) {
+    if let Some(jump) = recovered.and_then(Recovered::jump) {
         push(metrics, &metric::STRESS_JUMP, jump);
     }
     of_tables(metrics, prepared);
@@ -149,9 +150,14 @@ fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
 }
 
 /// Norms over the body against an exact solution.
-fn errors_in_the_volume(metrics: &mut Vec<Metric>, run: &Solved, exact: &dyn Exact) -> Result<(), Failure> {
+fn errors_in_the_volume(
+    metrics: &mut Vec<Metric>,
+    run: &Solved,
+    recovered: Option<&Recovered>,
+    exact: &dyn Exact,
+) -> Result<(), Failure> {
     let (fine, region) = run.prepared.fine_volume()?;
-    let n = norms(run, &fine, &region, exact);
+    let n = norms(run, recovered, &fine, &region, exact);
     let found = [
         (&metric::L2, n.l2),
         (&metric::ENERGY, n.energy),

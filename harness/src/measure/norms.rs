@@ -43,7 +43,13 @@ impl Ratio {
 
 /// Errors of a run, over `fine`, a quadrature of higher order than the solver's own, with the region of each point. Solutions at
 /// large strain state their own Cauchy stress, over the undeformed body, and no energy.
-pub(super) fn norms(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exact) -> Norms {
+pub(super) fn norms(
+    run: &Solved,
+    recovered: Option<&Recovered>,
+    fine: &VolumeRows,
+    fine_region: &[u16],
+    exact: &dyn Exact,
+) -> Norms {
     let Solved { setup, solution, .. } = *run;
     let mut l2 = Ratio::default();
     for ((x, w), u) in fine.points().iter().zip(fine.weights()).zip(fine.rows().apply(&solution.u)) {
@@ -53,7 +59,7 @@ pub(super) fn norms(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact:
     let small = setup.laws.iter().all(Law::is_small_strain);
     let found = Norms { l2: l2.root(l2.exact), ..Norms::default() };
     let comparable = small || exact.is_large_strain();
-    let Some(recovered) = Recovered::new(run).filter(|_| comparable) else { return found };
+    let Some(recovered) = recovered.filter(|_| comparable) else { return found };
     let (mut pressure, mut all, mut scale) = (Ratio::default(), Ratio::default(), 0.0);
     for (q, (x, &w)) in fine.points().iter().zip(fine.weights()).enumerate() {
         let region = fine_region.get(q).copied().unwrap_or(0);

@@ -29,7 +29,11 @@ pub(crate) fn check_probes(mesh: &Mesh, points: &[Point3]) -> Result<(), Failure
 }
 
 /// Values at `points` (m) that [`check_probes`] takes.
-pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Failure> {
+pub(crate) fn probes(
+    run: &Solved,
+    recovered: Option<&Recovered>,
+    points: &[Point3],
+) -> Result<Vec<Probe>, Failure> {
     let Solved { prepared, solution, .. } = *run;
     if points.is_empty() {
         return Ok(Vec::new());
@@ -37,9 +41,8 @@ pub(crate) fn probes(run: &Solved, points: &[Point3]) -> Result<Vec<Probe>, Fail
     let mesh = prepared.source.mesh();
     let cells = fem::nearest_cells(mesh, points)?;
     let (rows, _) = prepared.source.at_points(points)?;
-    let recovered = Recovered::new(run);
     let stress = cells.iter().zip(points).enumerate().map(|(k, (&(cell, _), x))| {
-        recovered.as_ref().map(|recovered| recovered.at(x, mesh.region(cell), rows.rows().row(k)))
+        recovered.map(|recovered| recovered.at(x, mesh.region(cell), rows.rows().row(k)))
     });
     let field = rows.rows().apply(&solution.u);
     let each = points.iter().zip(field).zip(stress).zip(&cells);

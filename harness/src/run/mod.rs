@@ -18,9 +18,9 @@ use reports::{Record, SurfaceField};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{
-    self, Field, OwnError, Reference, Request, check_probes, displacement, measure, of_tables, over_time,
-    picture, places, probe_errors, probe_history, probes, report_modes, report_steps, states, surface,
-    transfers, warnings,
+    self, Field, OwnError, Recovered, Reference, Request, check_probes, displacement, measure, of_tables,
+    over_time, picture, places, probe_errors, probe_history, probes, report_modes, report_steps, states,
+    surface, transfers, warnings,
 };
 use crate::outcome::timing::{Timed, Timings};
 use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
@@ -202,12 +202,13 @@ fn loaded(
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     conclude(&mut outcome.plan, solution, &counters);
-    compare(outcome, run, &displaced, request)?;
+    let recovered = Recovered::new(run);
+    compare(outcome, run, &displaced, recovered.as_ref(), request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     places(outcome, run)?;
     let over_time = over_time(run, &outcome.plan, request, &outcome.steps)?;
     outcome.metrics.extend(over_time);
-    outcome.probes = probes(run, request.probes)?;
+    outcome.probes = probes(run, recovered.as_ref(), request.probes)?;
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }
@@ -234,10 +235,11 @@ fn compare(
     outcome: &mut Outcome,
     run: &measure::Solved,
     field: &Field,
+    recovered: Option<&Recovered>,
     request: &Request,
 ) -> Result<(), Failure> {
     let solution = run.solution;
-    measure(&mut outcome.metrics, run, field, &request.at_end(solution.is_whole()))?;
+    measure(&mut outcome.metrics, run, field, recovered, &request.at_end(solution.is_whole()))?;
     if let Some(history) = &solution.history {
         let steps = report_steps(&mut outcome.metrics, run, history, request)?;
         if history.failure.is_none() && run.setup.procedure.ramp().is_some() {

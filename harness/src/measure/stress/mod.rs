@@ -11,4 +11,4 @@ mod recovered;
 use super::Solved;
 
 pub(super) use own::own_stress;
-pub(super) use recovered::Recovered;
+pub(crate) use recovered::Recovered;

@@ -32,7 +32,7 @@ const QUADRATIC_RIDGE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-20;
 
 /// The fits of a run.
-pub(in super::super) struct Recovered<'a> {
+pub(crate) struct Recovered<'a> {
     run: Solved<'a>,
     /// Stress at the quadrature points, Pa.
     own: Vec<Matrix3>,
