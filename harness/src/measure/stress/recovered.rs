@@ -13,8 +13,9 @@ use shape::{Matrix3, Point3, Vector3};
 use super::{Solved, own_stress};
 use crate::discretise::place;
 
-/// `s = [xx, yy, zz, xy, yz, zx]` of the factors of 1, x, y, z, xx, yy, zz, yz, zx, xy, coordinates over the patch size.
-type Fit = SMatrix<f64, 10, 6>;
+/// Factors of the first terms of 1, x, y, z, xx, yy, zz, yz, zx, xy in `[xx, yy, zz, xy, yz, zx]` of the stress, a column for each term.
+/// Coordinates are over the patch size.
+type Fit<const M: usize> = SMatrix<f64, 6, M>;
 
 /// Terms of a linear fit.
 const LINEAR: usize = 4;
@@ -45,9 +46,9 @@ pub(crate) struct Recovered<'a> {
 /// Polynomials around a node.
 struct Patch {
     /// The linear fit.
-    linear: Fit,
+    linear: Fit<LINEAR>,
     /// What a method of second order adds to it.
-    quadratic: Option<Fit>,
+    quadratic: Option<Fit<QUADRATIC>>,
     /// Of the coordinates, m.
     size: f64,
 }
@@ -144,8 +145,9 @@ impl<'a> Recovered<'a> {
         let mut left: Vec<SMatrix<f64, 1, 6>> =
             points.iter().map(|&(q, _)| components(&self.own[q])).collect();
         // The mean first: its rounding would be a slope across a plane.
-        let mut linear = nearest_fit::<1>(&bases, &mut left, 0.0, 1);
-        linear += nearest_fit::<LINEAR>(&bases, &mut left, RIDGE, PASSES);
+        let mean = nearest_fit::<1>(&bases, &mut left, 0.0, 1);
+        let mut linear = nearest_fit::<LINEAR>(&bases, &mut left, RIDGE, PASSES);
+        linear.set_column(0, &(mean + linear.column(0)));
         let second = self.run.method.order == 2;
         let quadratic = second.then(|| nearest_fit::<QUADRATIC>(&bases, &mut left, QUADRATIC_RIDGE, 1));
         Patch { linear, quadratic, size }
@@ -166,13 +168,14 @@ impl Patch {
     fn at(&self, r: &Vector3) -> Matrix3 {
         let linear = self.linear_at(r);
         let Some(quadratic) = &self.quadratic else { return linear };
-        let more = tensor(&(quadratic.transpose() * basis(r, self.size)));
+        let more = tensor(&(quadratic * basis(r, self.size)));
         linear + more - Matrix3::identity() * (more.trace() / 3.0)
     }
 
     /// The linear fit there.
     fn linear_at(&self, r: &Vector3) -> Matrix3 {
-        tensor(&(self.linear.transpose() * basis(r, self.size)))
+        let r = r / self.size;
+        tensor(&(self.linear * SVector::from([1.0, r.x, r.y, r.z])))
     }
 }
 
@@ -190,7 +193,7 @@ fn nearest_fit<const M: usize>(
     left: &mut [SMatrix<f64, 1, 6>],
     ridge: f64,
     passes: usize,
-) -> Fit {
+) -> Fit<M> {
     let mut matrix = SMatrix::<f64, M, M>::zeros();
     for (p, w) in bases {
         let p = p.fixed_rows::<M>(0);
@@ -199,7 +202,7 @@ fn nearest_fit<const M: usize>(
     for k in 1..M {
         matrix[(k, k)] += ridge * matrix[(0, 0)];
     }
-    let mut fit = Fit::zeros();
+    let mut fit = Fit::<M>::zeros();
     // Without: of points that weigh nothing.
     let Some(factor) = matrix.cholesky() else { return fit };
     for _ in 0..passes {
@@ -211,8 +214,7 @@ fn nearest_fit<const M: usize>(
         for ((p, _), s) in bases.iter().zip(left.iter_mut()) {
             *s -= p.fixed_rows::<M>(0).transpose() * more;
         }
-        let mut terms = fit.fixed_rows_mut::<M>(0);
-        terms += more;
+        fit += more.transpose();
     }
     fit
 }
