@@ -1,6 +1,7 @@
-//! Printing that never panics, and never hands a terminal what others would have it do. The macros of the standard library panic where
-//! stdout or stderr takes no more, which would cost the results that are still to be written, and pass on every character of a title or of
-//! a file's name. These take their place in the whole crate.
+//! Printing that never panics, and never hands a terminal what others would have it do. The macros of the
+//! standard library panic where stdout or stderr takes no more, which would cost the results that are still
+//! to be written, and pass on every character of a title or of a file's name. These take their place in the
+//! whole crate.
 
 use std::borrow::Cow;
 use std::fmt::Arguments;
@@ -58,8 +59,8 @@ impl Write for Stdout {
     }
 }
 
-/// Whether a terminal shows a character and does nothing else: control characters move, erase and send, others turn the direction of
-/// writing, so that a text reads as another one.
+/// Whether a terminal shows a character and does nothing else: control characters move, erase and send,
+/// others turn the direction of writing, so that a text reads as another one.
 fn is_plain(c: char) -> bool {
     match c {
         '\n' | '\t' => true,
@@ -68,7 +69,8 @@ fn is_plain(c: char) -> bool {
     }
 }
 
-/// The text with characters that are not plain written as `\u001b`, which is how JSON has them: within its strings they stay the same.
+/// The text with characters that are not plain written as `\u001b`, which is how JSON has them: within its
+/// strings they stay the same.
 pub(crate) fn shown(text: &str, coloured: bool) -> Cow<'_, str> {
     let Some(first) = text.find(|c| !is_plain(c)) else { return text.into() };
     let (plain, mut rest) = text.split_at(first);

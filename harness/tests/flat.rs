@@ -45,8 +45,9 @@ fn warned(run: &Value, code: &str) -> Option<f64> {
 const GAUSS: &str = "integration = { rule = \"gauss\", points = 4 }";
 const SMOOTHED: &str = "integration = { rule = \"cell-smoothed\", order = 2, points = 6 }";
 
-/// On a face of cells of 10,000 : 1 maximum entropy has gradients without a right digit: a stress of 1e10 Pa for 1e3. At a probe the stress
-/// is recovered from the points of the cells, which have right ones; the traction of Nitsche's method is made of the others.
+/// On a face of cells of 10,000 : 1 maximum entropy has gradients without a right digit: a stress of 1e10 Pa
+/// for 1e3. At a probe the stress is recovered from the points of the cells, which have right ones; the
+/// traction of Nitsche's method is made of the others.
 #[test]
 fn a_stress_of_bad_gradients_is_recovered_or_refused() {
     let probe = "output = { probes = [[\"21 mm\", \"23 mm\", \"0 mm\"]] }";

@@ -5,8 +5,8 @@ mod common;
 use common::blocks::{Blocks, Named, even};
 use common::{assert_fails, objects, tissuebench, write};
 
-/// A block of 30 x 8 x 16 mm that is pulled apart at its ends, cut in the middle from its top down to `tip` (mm), by `width`, along a
-/// curve that is `bend` away from the middle.
+/// A block of 30 x 8 x 16 mm that is pulled apart at its ends, cut in the middle from its top down to `tip`
+/// (mm), by `width`, along a curve that is `bend` away from the middle.
 fn slit(cells: usize, tip: f64, width: f64, bend: f64) -> String {
     let curve = |z: f64| bend * (std::f64::consts::PI * z / 16.0).sin();
     let places = |[x, y, z]: [f64; 3], middle: [f64; 3]| {

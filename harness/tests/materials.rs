@@ -43,7 +43,8 @@ fn metric(run: &Value, name: &str) -> f64 {
     run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {run}"))
 }
 
-/// A plain hexahedron holds one strain a layer to rounding. Means over the border made the stack 5 to 40 % too stiff.
+/// A plain hexahedron holds one strain a layer to rounding. Means over the border made the stack 5 to 40 %
+/// too stiff.
 #[test]
 fn no_mean_crosses_the_border_of_two_materials() {
     let near = CLOUD.replace("nodal-mean", "nodal-near").replace("\"cloud\"", "\"near\"");

@@ -1,4 +1,5 @@
-//! How far a reference is off itself: seen where it locks, small where it is good, unknown where nothing tells.
+//! The own error of a reference: large if it locks, small if it is good, unknown if there is nothing to
+//! compare it with.
 
 mod common;
 
@@ -54,7 +55,8 @@ fn a_reference_that_locks_is_seen_and_a_good_one_is_not_blamed() {
     let dir = tempfile::tempdir().unwrap();
     for element in ["tet4", "hex8"] {
         let bad = objects(&dir, &block(&LOCKING.replace("tet4", element)));
-        // Elements of second order are the nearest to the truth: the reference is off by about what they differ.
+        // Elements of second order are the nearest to the truth: the reference is off by about what they
+        // differ.
         let far = error(&bad[2], "relative-rms");
         let known = own(&bad[2], "relative-rms");
         assert!(far > 0.5 && known > 0.8 * far && known < 2.0 * far, "{element}: {known} of {far}");

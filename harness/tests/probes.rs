@@ -1,4 +1,5 @@
-//! Values at probes follow from the method's own: of the law at the place, of its projection, and marked where no mesh is.
+//! Values at probes follow from the method's own: of the law at the place, of its projection, and marked
+//! where no mesh is.
 
 mod common;
 
@@ -79,8 +80,9 @@ method = [
     }
 }
 
-/// The trace of the stress of a thick sphere is `3 p a^3 / (b^3 - a^3)` everywhere, 428.6 Pa. Between the points of reduced
-/// integration, and of plain quadratic elements, the derivative of the displacement is off by up to three times that.
+/// The trace of the stress of a thick sphere is `3 p a^3 / (b^3 - a^3)` everywhere, 428.6 Pa. Between the
+/// points of reduced integration, and of plain quadratic elements, the derivative of the displacement is off
+/// by up to three times that.
 #[test]
 fn stress_at_a_probe_is_recovered_from_the_points_of_the_method() {
     let text = |poisson: f64| {

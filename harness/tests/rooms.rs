@@ -156,8 +156,8 @@ fn no_meaning_is_read_out_of_names() {
     }
 }
 
-/// Readers take regular files up to a size, and no output replaces an input: this holds where one place opens them. The same of
-/// characters that a terminal obeys.
+/// Readers take regular files up to a size, and no output replaces an input: this holds where one place opens
+/// them. The same of characters that a terminal obeys.
 #[test]
 fn files_are_opened_and_text_is_printed_in_one_place_each() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();

@@ -171,7 +171,8 @@ fn stored_runs_do_nothing() {
     let reference = r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }"#;
     let scene = write(&dir, "block.toml", &format!("{BLOCK}\n{reference}\n"));
     let study = write(&dir, "study.toml", &format!("title = \"One\"\n[[run]]\nscene = '{scene}'\n"));
-    // The method and the reference it is compared with, which is held against a coarser mesh and elements of second order.
+    // The method and the reference it is compared with, which is held against a coarser mesh and elements of
+    // second order.
     assert_eq!(work(&study, &dir, false).factorisations, 4);
     assert_eq!(work(&study, &dir, true), Counters::default());
     assert_eq!(work(&study, &dir, false).factorisations, 4);

@@ -94,8 +94,8 @@ fn forces_and_pressures_drive_to_the_closure_that_carries_them() {
 
 #[test]
 fn slender_columns_go_on_past_their_critical_load() {
-    // The elastica of a column held at its foot, 60 degrees at its end: P over the critical load pi^2 EI / (4 L^2), and how far the
-    // end goes aside and down over L (Timoshenko and Gere 1961, table 2-4).
+    // The elastica of a column held at its foot, 60 degrees at its end: P over the critical load pi^2 EI / (4
+    // L^2), and how far the end goes aside and down over L (Timoshenko and Gere 1961, table 2-4).
     let (load, aside, down) = (1.1517, 0.5932, 0.2590);
     for (length, cells) in [(0.4, 25), (0.6, 30)] {
         let critical = std::f64::consts::PI.powi(2) * 1e6 / (12.0 * 4.0 * length * length) * 1e-4;

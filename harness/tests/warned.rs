@@ -1,4 +1,5 @@
-//! Answers that are wrong by their model or their mesh say so with numbers; the same scene done right says nothing.
+//! Answers that are wrong by their model or their mesh say so with numbers; the same scene done right says
+//! nothing.
 
 mod common;
 
@@ -89,7 +90,7 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [4
 "#
         ))
     };
-    // Where the supports meet they differ by rounding.
+    // The supports differ by rounding at their common edge.
     let meet = "support = [{ on = \"z-min\", move = [\"3.3 mm\", \"1.7 mm\", \"5.1 mm\"] }, { on = \"x-min\", move = [{ unit = \"mm\", of = \"3.3 + 1e-17 * y\" }, \"1.7 mm\", \"5.1 mm\"] }]";
     let shifted = moved(&format!("{meet}\nprocedure = {{ kind = \"static\", steps = 3 }}"));
     assert_eq!(shifted[0]["status"], "ok", "{shifted:?}");
@@ -170,7 +171,8 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
     assert!(warned(&bent("traction = [\"0 Pa\", \"0 Pa\", \"-3 Pa\"]"), "dead-pressure").is_none());
 }
 
-/// A column 20 times as long as wide, clamped at both ends, buckles at a strain of `pi^2 / 3 (w / L)^2` = 0.8 %; a block does not.
+/// A column 20 times as long as wide, clamped at both ends, buckles at a strain of `pi^2 / 3 (w / L)^2` = 0.8
+/// %; a block does not.
 #[test]
 fn a_straight_path_of_a_column_beyond_its_critical_load_is_told() {
     let pressed = |height: u32, closure: &str| {
@@ -218,7 +220,8 @@ fn a_law_of_small_strain_that_turns_far_is_told() {
     assert!(warned(&run(&cantilever("neo-hookean", steps, "2")), "large-rotation").is_none());
 }
 
-/// A bar of one reduced cell across has modes that its points do not see; full integration has none, and a free body six.
+/// A bar of one reduced cell across has modes that its points do not see; full integration has none, and a
+/// free body six.
 #[test]
 fn modes_without_energy_are_told() {
     let bar = |support: &str, method: &str| {
@@ -314,7 +317,8 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ file = "bl
 const SHEARED: &str =
     "load = [{ body = [\"0 N/m^3\", \"1000 N/m^3\", \"0 N/m^3\"] }]\nprocedure = { kind = \"linear\" }";
 
-/// Held at both ends, the middle of two blocks of stiffness `G A / L` each moves by `rho L^2 / (2 G)`: 10 um of 20 mm, which apart hang free.
+/// Held at both ends, the middle of two blocks of stiffness `G A / L` each moves by `rho L^2 / (2 G)`: 10 um
+/// of 20 mm, which apart hang free.
 #[test]
 fn touching_pieces_without_common_nodes_are_told_and_joined() {
     let dir = tempfile::tempdir().unwrap();
@@ -351,7 +355,8 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     );
 }
 
-/// A wall between two cells has no outer side: what goes by the normal is refused, what has a direction of its own acts.
+/// A wall between two cells has no outer side: what goes by the normal is refused, what has a direction of
+/// its own acts.
 #[test]
 fn pressure_on_a_wall_inside_the_body_is_refused() {
     let dir = tempfile::tempdir().unwrap();

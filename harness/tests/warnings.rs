@@ -167,7 +167,8 @@ method = [
     assert!(codes(&reduced).contains(&"folded") && !codes(&full).contains(&"folded"), "{full}");
 }
 
-/// A cloud folded between its points has a stress at them, which is of no use: two warnings, and an error beyond 100 %.
+/// A cloud folded between its points has a stress at them, which is of no use: two warnings, and an error
+/// beyond 100 %.
 #[test]
 fn a_folded_cloud_is_told() {
     let dir = tempfile::tempdir().unwrap();

@@ -38,7 +38,8 @@ pub(crate) fn not_run(py: Python<'_>, problem: impl ToString) -> PyErr {
     exception(py, "RunError", problem.to_string(), None)
 }
 
-/// All that is wrong with a file: the exception is of the first, with the text of all, and each is among its `errors`.
+/// All that is wrong with a file: the exception is of the first, with the text of all, and each is among its
+/// `errors`.
 pub(crate) fn of_scene(py: Python<'_>, errors: &[SceneError]) -> PyErr {
     let class = |invalid: bool| if invalid { "SceneError" } else { "RunError" };
     let is_invalid = |error: &SceneError| error.kind == ErrorKind::Invalid;

@@ -28,7 +28,8 @@ pub(crate) struct Problem {
     reference: Arc<Referenced>,
 }
 
-/// Part of the largest displacement that a prescribed one may be missed by: what a penalty of one's own gives way.
+/// Part of the largest displacement that a prescribed one may be missed by: what a penalty of one's own gives
+/// way.
 const OFF_SUPPORTS: f64 = 0.01;
 
 impl Problem {

@@ -19,8 +19,8 @@ impl Referenced {
         Arc::new(Referenced { scene, group: Mutex::default() })
     }
 
-    /// Does work with the scene and its reference, one at a time. A reference that ended early is a failure, and solved anew the
-    /// next time; so is one whose work panicked.
+    /// Does work with the scene and its reference, one at a time. A reference that ended early is a failure,
+    /// and solved anew the next time; so is one whose work panicked.
     pub(crate) fn with<T>(
         &self,
         repeats: Repeats,

@@ -93,7 +93,7 @@ impl Results {
     }
 }
 
-/// What records tell runs apart by.
+/// Columns of a record that identify its run.
 fn id(outcome: &Outcome) -> Option<String> {
     outcome.records().first().map(|record| record.run.clone())
 }

@@ -34,11 +34,11 @@ impl Reporter {
     }
 }
 
-/// Refuses work in a process that was forked after its parent had worked: the threads of the pool are the parent's, and a wait for
-/// them has no end.
+/// Refuses work in a process that was forked after its parent had worked: the threads of the pool are the
+/// parent's, and a wait for them has no end.
 ///
 /// # Errors
-/// That one.
+/// The failure of the worker.
 pub(crate) fn unforked(py: Python<'_>) -> PyResult<()> {
     static FIRST: OnceLock<u32> = OnceLock::new();
     let id = std::process::id();

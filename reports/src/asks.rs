@@ -49,7 +49,7 @@ pub(crate) struct Ask {
 }
 
 impl Ask {
-    /// What stands along the axis of times, in seconds.
+    /// Label of the time axis, in seconds.
     pub(crate) fn time(&self) -> String {
         match self.clock {
             Clock::First => format!("{} [s]", self.by.name()),

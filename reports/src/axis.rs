@@ -90,7 +90,8 @@ impl Verdict {
 const CLASSES: [f64; 2] = [0.01, 0.05];
 
 impl Axis {
-    /// What the colours of a map stand for: classes of error that is not wrong, the best first, then the ways of being wrong.
+    /// Meaning of the colours of a map: classes of error that is not wrong, the best first, then the ways of
+    /// being wrong.
     pub(crate) fn classes(&self) -> Vec<String> {
         let ends = self.ends();
         let per_cent = |e: f64| significant(100.0 * e, 1 + usize::from(e >= 0.1));
@@ -195,12 +196,12 @@ mod tests {
 
     #[test]
     fn a_wrong_result_is_silent_unless_it_warns_or_refuses() {
-        let told: &[&str] = &["stress-jump"];
+        let warnings: &[&str] = &["stress-jump"];
         let axis = axis(&[
             (Some(0.01), &[]),
             (Some(0.019), &[]),
             (Some(0.021), &[]),
-            (Some(0.3), told),
+            (Some(0.3), warnings),
             (Some(0.3), &[]),
             (Some(f64::NAN), &[]),
             (None, &[]),

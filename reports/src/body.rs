@@ -11,11 +11,11 @@ pub struct Body {
     pub points: String,
     /// Faces by their number of nodes.
     pub faces: Vec<Faces>,
-    /// How far each point is from where the reference or the exact solution has it at the end, metres, packed; empty where neither is
-    /// known.
+    /// How far each point is from where the reference or the exact solution has it at the end, metres,
+    /// packed; empty where neither is known.
     #[serde(default)]
     pub off: String,
-    /// What a cut through the body shows; `None` where that was left out.
+    /// Values shown by a cut through the body; `None` if they were left out.
     #[serde(default)]
     pub inside: Option<Inside>,
     /// Nodes of a cloud at the end, metres, packed; empty for elements, whose nodes their faces show.
@@ -84,8 +84,8 @@ pub struct BodyState {
     /// How deep the deepest point of the body lies within a tool, metres: contact does not act there.
     #[serde(default)]
     pub deepest_node: f64,
-    /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation gradient at each point, packed,
-    /// where they are known.
+    /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation
+    /// gradient at each point, packed, where they are known.
     pub values: Option<[String; 3]>,
 }
 

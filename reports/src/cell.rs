@@ -1,4 +1,5 @@
-//! Texts in cells of CSV: a spreadsheet takes one that begins with `=`, `+`, `-` or `@` for a formula and runs it.
+//! Texts in cells of CSV: a spreadsheet takes one that begins with `=`, `+`, `-` or `@` for a formula and
+//! runs it.
 
 use std::borrow::Cow;
 

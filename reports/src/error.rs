@@ -23,7 +23,7 @@ pub enum ReportError {
     Nothing {
         /// The folder.
         path: PathBuf,
-        /// What was to be done with them.
+        /// The action that was asked for.
         to: &'static str,
     },
     /// A record holds a number that isn't finite.

@@ -4,7 +4,8 @@ use crate::order::ROUNDING;
 use crate::select::Run;
 use crate::text::significant;
 
-/// Relative errors below this are drawn at it: what is exact to rounding would squeeze all others into a corner.
+/// Relative errors below this are drawn at it: what is exact to rounding would squeeze all others into a
+/// corner.
 pub(crate) const FLOOR: f64 = 1e-6;
 
 /// What a user wants right.
@@ -160,7 +161,8 @@ pub(crate) fn judged(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f6
 /// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
 const CHANCE: f64 = 3.0;
 
-/// The error that a page asks for at first, unless no run reaches it, and that tables of the cheapest runs are for.
+/// The error that a page asks for at first, unless no run reaches it, and that tables of the cheapest runs
+/// are for.
 pub(crate) const WANTED: f64 = 0.05;
 
 /// [`WANTED`] in words.
@@ -168,8 +170,9 @@ pub(crate) fn wanted() -> String {
     format!("{} %", significant(100.0 * WANTED, 1))
 }
 
-/// The error as which a run's answer counts: its own, or of a single number a third of that of the displacement where that is larger,
-/// and neither counts for less than the reference's own. Within what is asked for, a run answers if this is.
+/// The error as which a run's answer counts: its own, or of a single number a third of that of the
+/// displacement where that is larger, and neither counts for less than the reference's own. Within what is
+/// asked for, a run answers if this is.
 pub(crate) fn counts(
     run: &Run,
     question: &Question,

@@ -2,7 +2,8 @@
 //!
 //! The colour and the marker are those of its name, the dash and the filling those of its family; other people's solvers have a colour
 //! each and the marker of the element. What the table does not have goes by the
-//! beginning of its name, as `efg-gauss-lumped` by `efg-gauss`, and by a hash of the rest. Two labels of one figure never look alike:
+//! beginning of its name, as `efg-gauss-lumped` by `efg-gauss`, and by a hash of the rest. Two labels of one
+//! figure never look alike:
 //! [`distinct`] gives the one that is less known another marker or shade.
 
 use crate::record::Family;
@@ -123,7 +124,8 @@ impl Look {
 const SHADES: [f64; 4] = [0.0, 0.35, -0.3, 0.6];
 
 impl Look {
-    /// The `k`-th other look of the same family: first with other markers, then in another shade. The look itself is the 0-th.
+    /// The `k`-th other look of the same family: first with other markers, then in another shade. The look
+    /// itself is the 0-th.
     fn other(self, k: usize) -> Look {
         let shade = SHADES[k / MARKERS.len() % SHADES.len()];
         let mixed = |c: u8| match shade < 0.0 {
@@ -140,7 +142,8 @@ impl Look {
 
 /// Looks of labels, no two the same of labels that are drawn `together`.
 ///
-/// A name of the table keeps its look before one that goes by its beginning, and an earlier name of the table before a later one.
+/// A name of the table keeps its look before one that goes by its beginning, and an earlier name of the table
+/// before a later one.
 pub(crate) fn distinct(labels: &[(String, Family)], together: impl Fn(usize, usize) -> bool) -> Vec<Look> {
     let known = |label: &str| KNOWN.iter().position(|entry| entry.0 == label).unwrap_or(KNOWN.len());
     let mut order: Vec<usize> = (0..labels.len()).collect();
@@ -202,7 +205,8 @@ mod tests {
         for i in 0..looks.len() {
             assert!(looks[..i].iter().all(|look| *look != looks[i]), "{}", labels[i].0);
         }
-        // The first name of the table has its own look, and so has every label that shares no figure with another.
+        // The first name of the table has its own look, and so has every label that shares no figure with
+        // another.
         assert_eq!(looks[0], Look::of("efg", Family::Efg));
         assert_eq!(distinct(&labels, |_, _| false)[3], Look::of(&labels[3].0, Family::Efg));
     }

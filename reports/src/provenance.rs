@@ -37,7 +37,8 @@ impl Program {
 pub struct Machine {
     /// Processor model.
     pub cpu: String,
-    /// Its family, model and stepping, as far as the system says: names such as `AMD EPYC` are those of several generations.
+    /// Its family, model and stepping, as far as the system says: names such as `AMD EPYC` are those of
+    /// several generations.
     #[serde(default)]
     pub model: String,
     /// Its clock when the run began, GHz; `None` where it is not known.
@@ -51,8 +52,8 @@ pub struct Machine {
     pub load: Option<f64>,
     /// Whether at most a fifth of the processors was busy then: times of a machine that was not quiet are too long.
     pub quiet: Option<bool>,
-    /// Runs that were made at once by one process, of which the seconds of the processors are not told apart; 0 or 1 where each had the
-    /// process for itself.
+    /// Runs that were made at once by one process, of which the seconds of the processors are not told apart;
+    /// 0 or 1 where each had the process for itself.
     #[serde(default)]
     pub at_once: u32,
 }

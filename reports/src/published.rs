@@ -31,8 +31,8 @@ impl Publication {
 impl Published {
     /// Whether a run does what the number is of.
     ///
-    /// The published times of a solution are of contact with jaws, those of finite elements of explicit dynamics: a linear scene
-    /// with given loads has nothing to set against them.
+    /// The published times of a solution are of contact with jaws, those of finite elements of explicit
+    /// dynamics: a linear scene with given loads has nothing to set against them.
     pub(crate) fn is_of(&self, run: &Run) -> bool {
         let solves = self.quantity == "total" || self.quantity.contains("solve");
         !solves || (run.has_contact() && (self.family != Family::Fem || run.value("time-steps").is_some()))

@@ -161,8 +161,9 @@ pub struct Record {
     pub step: Option<u64>,
     /// Mode of vibration, 1 the lowest.
     pub mode: Option<u64>,
-    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9` (quantiles), the ends `low` and
-    /// `high` of an uncertainty, or `band`: the reference's own error in that quantity.
+    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9`
+    /// (quantiles), the ends `low` and `high` of an uncertainty, or `band`: the reference's own error in that
+    /// quantity.
     pub statistic: String,
     /// Which repeat of a timing, from 1.
     pub repeat: Option<u64>,

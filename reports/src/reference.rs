@@ -1,4 +1,4 @@
-//! What runs are compared with, and its own error.
+//! References of runs, and their own error.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::text::{list, percent};
 
-/// What the runs of a case are compared with, and how far that is off itself.
+/// The reference of a case's runs, with its own error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Case name.
@@ -37,7 +37,7 @@ impl Reference {
         }
     }
 
-    /// What it is and how far it is off, in a sentence without its full stop.
+    /// Its name and its own error, in a sentence without the full stop.
     pub fn sentence(&self) -> String {
         let name = self.name();
         if !self.unknown.is_empty() {

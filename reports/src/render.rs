@@ -40,8 +40,8 @@ pub fn render_over_commits(
     render_set(&read_numbers(results, "report")?, results, out, history)
 }
 
-/// Writes a run to a folder, and its report to `report` in it. The folder is marked as incomplete until both are there: whatever ends
-/// the program earlier, results do not pass as whole with an older page.
+/// Writes a run to a folder, and its report to `report` in it. The folder is marked as incomplete until both
+/// are there: whatever ends the program earlier, results do not pass as whole with an older page.
 pub fn write_with_report(dir: &Path, run: &RunSet, history: Option<&Path>) -> Result<Rendered, ReportError> {
     write_marked(dir, run)?;
     let rendered = render_set(&read_marked(dir)?, dir, &dir.join("report"), history)?;

@@ -60,7 +60,8 @@ pub struct Check {
     pub status: Status,
     /// Why it failed, is known to fail, or wasn't run; empty for a pass.
     pub reason: String,
-    /// Place of the check, `file:line` with the file as it was named; not stored, as results are the same wherever a study is.
+    /// Place of the check, `file:line` with the file as it was named; not stored, as results are the same
+    /// wherever a study is.
     #[serde(skip)]
     pub at: String,
 }
@@ -226,7 +227,7 @@ pub struct RunSet {
     pub failures: Vec<Failure>,
     /// What is to be said against the numbers.
     pub warnings: Vec<Warning>,
-    /// What the numbers are compared with.
+    /// References of the numbers.
     pub references: Vec<Reference>,
     /// How methods fare along axes.
     pub axes: Vec<Axis>,

@@ -1,7 +1,8 @@
 //! The seconds by which runs are compared.
 //!
-//! The clock on the wall says what a user waits for, as long as no other program has the processors. Otherwise it says how busy the machine was: the
-//! seconds of the processors are then nearer to what the method takes. This is decided here, for all runs of a case alike.
+//! The clock on the wall says what a user waits for, as long as no other program has the processors.
+//! Otherwise it says how busy the machine was: the seconds of the processors are then nearer to what the
+//! method takes. This is decided here, for all runs of a case alike.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +28,7 @@ pub enum Seconds {
     Least,
 }
 
-/// What one run took, the median of its repeats.
+/// Times of one run, medians of its repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Took {
     /// On the wall, s.
@@ -37,7 +38,8 @@ pub struct Took {
 }
 
 impl Took {
-    /// Seconds on the wall over those of the processors, where they show that other programs had the processors.
+    /// Seconds on the wall over those of the processors, where they show that other programs had the
+    /// processors.
     pub fn disturbed(&self) -> Option<f64> {
         let ratio = self.wall / self.cpu.filter(|cpu| *cpu > 0.0)?;
         (self.wall >= SHORTEST && ratio > DISTURBED).then_some(ratio)
@@ -45,8 +47,9 @@ impl Took {
 }
 
 impl Seconds {
-    /// By which seconds runs are compared that were made on a machine: the clock on the wall where that was quiet and no run was disturbed,
-    /// otherwise the processors. Of runs that were made at once the processors' seconds are not told apart, and the least repeat counts.
+    /// By which seconds runs are compared that were made on a machine: the clock on the wall where that was
+    /// quiet and no run was disturbed, otherwise the processors. Of runs that were made at once the
+    /// processors' seconds are not told apart, and the least repeat counts.
     pub fn of(machine: &Machine, took: impl IntoIterator<Item = Took>) -> Seconds {
         let mut took = took.into_iter();
         match machine {
@@ -56,7 +59,7 @@ impl Seconds {
         }
     }
 
-    /// What stands along an axis and in a table, without the unit.
+    /// Label on an axis and in a table, without the unit.
     pub fn name(self) -> &'static str {
         match self {
             Seconds::Wall => "run time, median",
@@ -75,7 +78,8 @@ impl Seconds {
     }
 }
 
-/// What a run took; `None` of a solver outside this program, whose start is waited for, and of what was not timed.
+/// Times of a run; `None` for a solver outside this program, whose start-up is part of its wall time, and for
+/// runs that were not timed.
 fn took(run: &Run) -> Option<Took> {
     if run.is.family == Family::External {
         return None;
@@ -173,7 +177,7 @@ mod tests {
         assert_eq!(totals(&calm, &loaded), [0.021]);
         assert_eq!(Busy::of(&calm, &loaded).unwrap().disturbed, 0);
         assert_eq!(totals(&calm, &Machine { at_once: 4, ..loaded.clone() }), [0.019]);
-        // What knows no seconds of the processors keeps those on the wall.
+        // Runs without processor seconds keep their wall time.
         assert_eq!(totals(&calm[..3], &loaded), [0.02]);
         let mut all = runs(&calm);
         decide(&mut all, &loaded);

@@ -43,8 +43,8 @@ impl<'a> Run<'a> {
         self.plain(quantity).map(|r| r.unit.as_str())
     }
 
-    /// A time in seconds by phase and statistic: of a phase whose median is not that of the clock on the wall the one that it is compared by,
-    /// and no spread.
+    /// A time in seconds by phase and statistic: of a phase whose median is not that of the clock on the wall
+    /// the one that it is compared by, and no spread.
     pub(crate) fn time(&self, phase: &str, statistic: &str) -> Option<f64> {
         let of = |quantity: &str, statistic: &str| {
             let fits = |r: &&&Record| r.quantity == quantity && r.phase == phase && r.statistic == statistic;

@@ -40,8 +40,9 @@ struct Mark {
     source: String,
 }
 
-/// Marks a folder as one whose results are being made, until they are written, with their report where they have one.
-/// Records of an earlier run there are no longer read: they would pass for the new ones if this run were killed.
+/// Marks a folder as one whose results are being made, until they are written, with their report where they
+/// have one. Records of an earlier run there are no longer read: they would pass for the new ones if this run
+/// were killed.
 pub fn begin(dir: &Path, source: &str) -> Result<(), ReportError> {
     make_dir(dir)?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })

@@ -1,15 +1,17 @@
-//! Which method is cheapest within an error, case by case: what the table and the performance profile are made of.
+//! The cheapest method within an error, case by case: the data of the table and of the performance profile.
 
 use crate::asks::{Ask, Line, asks};
 use crate::fronts::{Clock, WANTED};
 use crate::record::Family;
 use crate::select::Run;
 
-/// What is asked of one case: the force of its tool where that is known, or else the displacement.
+/// The quantity judged in a case: the force of its tool if an error of that is known, otherwise the
+/// displacement.
 pub(crate) struct Problem {
     /// The case, and that it is asked for the force.
     pub(crate) title: String,
-    /// Each method that was run, with the least time within the error, seconds, and with the run that took it.
+    /// Each method that was run, with the least time within the error, seconds, and with the run that took
+    /// it.
     pub(crate) methods: Vec<Cheapest>,
 }
 
@@ -60,8 +62,8 @@ pub(crate) fn methods(problems: &[Problem]) -> Vec<(String, Family)> {
     out
 }
 
-/// Times of a method over the least of any method, ascending, one for each problem that it solves within the error; and the
-/// number of problems that it was run on and that any method solves (Dolan and More 2002).
+/// Times of a method over the least of any method, ascending, one for each problem that it solves within the
+/// error; and the number of problems that it was run on and that any method solves (Dolan and More 2002).
 pub(crate) fn ratios(problems: &[Problem], label: &str) -> (Vec<f64>, usize) {
     let (mut out, mut of) = (Vec::new(), 0);
     for problem in problems {

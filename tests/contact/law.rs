@@ -301,7 +301,8 @@ fn a_tool_can_be_turned_to_any_axis() {
     }
 }
 
-/// A block 0.1 mm below a plate rises by 0.2 mm and goes 40 um along: it touches half way, and friction sees half of the 40 um.
+/// A block 0.1 mm below a plate rises by 0.2 mm and goes 40 um along: it touches half way, and friction sees
+/// half of the 40 um.
 #[test]
 fn friction_begins_at_the_touch() {
     let block = Block::new(CellKind::Hex8, [1, 1, 1]);

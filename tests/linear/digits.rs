@@ -180,8 +180,9 @@ fn a_free_body_is_refused_however_small_what_moves_it() {
     }
 }
 
-/// `A^-1 = diag(2, 1, 1, 1, 1) + c v v^T` with `v` across the vector of ones and the first axis. The rounds of the estimate look along these
-/// two alone, and find 2. The norm of the inverse is that of a later column, `1 + 4 c`.
+/// `A^-1 = diag(2, 1, 1, 1, 1) + c v v^T` with `v` across the vector of ones and the first axis. The rounds
+/// of the estimate look along these two alone, and find 2. The norm of the inverse is that of a later column,
+/// `1 + 4 c`.
 #[test]
 fn what_the_rounds_of_the_estimate_do_not_see_its_last_vector_does() {
     let (c, v) = (1e6, [0.0, 1.0, -1.0, 1.0, -1.0]);

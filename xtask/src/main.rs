@@ -77,8 +77,8 @@ enum Task {
     /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
     /// run twice or changed
     Survive,
-    /// The checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes of each fuzz target; where
-    /// cargo-deny, cargo-fuzz and a nightly compiler are installed
+    /// The checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes of
+    /// each fuzz target; where cargo-deny, cargo-fuzz and a nightly compiler are installed
     Nightly {
         /// Minutes for each fuzz target
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]

@@ -1,4 +1,5 @@
-//! Steps left out for want of a tool: each is reported, and with `CI=true` fails unless `.ci/skips` names the tool.
+//! Steps left out for want of a tool: each is reported, and with `CI=true` fails unless `.ci/skips` names the
+//! tool.
 
 use std::path::Path;
 

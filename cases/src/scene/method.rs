@@ -136,7 +136,8 @@ words! {
         ElementMean = "element-mean",
         /// One per node and material.
         NodalMean = "nodal-mean",
-        /// One per node and material, of the points at which it is among the four that count most: of a cloud fewer couplings.
+        /// One per node and material, of the points at which it is among the four that count most: of a cloud
+        /// fewer couplings.
         NodalNear = "nodal-near",
         /// An independent pressure field in each material.
         Mixed = "mixed",

@@ -59,8 +59,8 @@ impl<'t> Document<'t> {
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 
-    /// Puts a value at a key such as `method[].size.cells[0]`, or removes the key. Missing tables on the way are made. `driver` is named in
-    /// place of a file where the value is wrong.
+    /// Puts a value at a key such as `method[].size.cells[0]`, or removes the key. Missing tables on the way
+    /// are made. `driver` is named in place of a file where the value is wrong.
     pub fn set(&mut self, key: &str, value: Option<&'t str>, driver: &str) -> Result<(), Problem> {
         let value = value.map(|text| {
             self.files.add_override(driver.to_string());

@@ -1,5 +1,6 @@
-//! The files that a scene is read from: its own, and that of the shared methods it takes; then values that are set from outside. Their
-//! texts are one range of byte offsets, so that a span says which of them it is in.
+//! The files that a scene is read from: its own, and that of the shared methods it takes; then values that
+//! are set from outside. Their texts are one range of byte offsets, so that a span says which of them it is
+//! in.
 
 use std::ops::Range;
 
@@ -45,7 +46,7 @@ impl<'t> Sources<'t> {
         base
     }
 
-    /// Where the text begins that was added last.
+    /// Start of the text that was added last.
     pub fn last(&self) -> Place {
         Place { file: self.texts.len() - 1, line: 1, column: 1 }
     }

@@ -142,7 +142,8 @@ pub(crate) struct RunKeys {
     /// Part of the quick tier
     #[serde(default)]
     pub quick: bool,
-    /// The quick tier plays the scene's loops (`output.repeated`) of this run too, which it leaves out otherwise
+    /// The quick tier plays the scene's loops (`output.repeated`) of this run too, which it leaves out
+    /// otherwise
     #[serde(default)]
     pub loops: bool,
     /// Words to choose the run by: `tissuebench verify --tag WORD`, and `--not WORD` to leave it out

@@ -75,8 +75,8 @@ impl Found {
         Some(Manifest::parse(&text, &file).map(found).map_err(Failure::Input))
     }
 
-    /// Its files with their contents, by name, one at a time; those of folders inside its own are not among them, nor those that are
-    /// together more than one may be.
+    /// Its files with their contents, by name, one at a time; those of folders inside its own are not among
+    /// them, nor those that are together more than one may be.
     pub(crate) fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
         let shipped = self.shipped.iter().map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()));
         let entries = self.folder.iter().flat_map(std::fs::read_dir).flatten().flatten();

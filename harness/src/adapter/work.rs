@@ -27,7 +27,8 @@ fn folders() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes one where the system has its temporary files: under a name that nobody can know before, for this user alone.
+    /// Makes one where the system has its temporary files: under a name that nobody can know before, for this
+    /// user alone.
     pub(crate) fn new() -> Result<Folder, String> {
         let mut folders = folders();
         loop {
@@ -71,7 +72,8 @@ fn private(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Removes all folders, and lets no other one be made: for a program that is about to exit, and has ended what it started.
+/// Removes all folders, and lets no other one be made: for a program that is about to exit, and has ended
+/// what it started.
 pub(crate) fn remove_all() {
     let folders = folders();
     for path in folders.iter() {

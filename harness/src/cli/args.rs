@@ -33,7 +33,8 @@ pub struct Cli {
     /// several times)
     #[arg(long, global = true, value_name = "DIR")]
     pub adapters: Vec<PathBuf>,
-    /// Use no adapter from beside the scene or from ./adapters: only from --adapters, TISSUEBENCH_ADAPTERS and the program
+    /// Use no adapter from beside the scene or from ./adapters: only from --adapters, TISSUEBENCH_ADAPTERS
+    /// and the program
     #[arg(long, global = true)]
     pub no_local_adapters: bool,
     /// What to do
@@ -59,7 +60,7 @@ pub enum Command {
     Fields(FieldsArgs),
     /// Print the stages a scene needs, those it does not, and why
     Plan {
-        /// What is planned
+        /// The scene to plan
         #[command(flatten)]
         scene: SceneArgs,
         /// Plan what is estimated to take more than twice the memory of this machine or half a day
@@ -129,7 +130,7 @@ pub enum Command {
     /// An editor completes and checks a scene with it: run `tissuebench schema > scene.schema.json`, and begin the scene
     /// with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
     Schema {
-        /// Of what
+        /// The file or output
         #[arg(value_enum, default_value_t = SchemaOf::Scene, value_name = "WHAT")]
         of: SchemaOf,
         /// The same as `study`
@@ -165,8 +166,8 @@ pub struct SceneArgs {
     /// Only these methods; `*` stands for any text (may be given several times)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Set a key of the scene in place of the file, such as material.poisson=0.45 or "method[tet4].size.level=3" (may be given several
-    /// times)
+    /// Set a key of the scene in place of the file, such as material.poisson=0.45 or
+    /// "method[tet4].size.level=3" (may be given several times)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<Override>,
 }
@@ -174,7 +175,7 @@ pub struct SceneArgs {
 /// Arguments of `fields`.
 #[derive(Args)]
 pub struct FieldsArgs {
-    /// What is run
+    /// The scene to run
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Where to put a .pvd file and a folder for each method
@@ -188,7 +189,7 @@ pub struct FieldsArgs {
 /// Arguments of `run`.
 #[derive(Args, Clone)]
 pub struct RunArgs {
-    /// What is run
+    /// The scene to run
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Nothing on stderr but errors
@@ -211,7 +212,7 @@ pub struct RunArgs {
 /// Arguments of `reference`.
 #[derive(Args)]
 pub struct ReferenceArgs {
-    /// What is run; the last method's values are stored, all methods span the uncertainty
+    /// The scene to run; the last method's values are stored, all methods span the uncertainty
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Solve nothing: take the values of this reference of the same scene, made before
@@ -249,7 +250,8 @@ pub struct ExportArgs {
     /// The method: one of finite elements, or of another solver
     #[arg(long, value_name = "ID")]
     pub method: String,
-    /// Set a key of the scene in place of the file, such as material.poisson=0.45 (may be given several times)
+    /// Set a key of the scene in place of the file, such as material.poisson=0.45 (may be given several
+    /// times)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<Override>,
     /// The folder to write
@@ -286,7 +288,8 @@ pub struct CompareArgs {
     /// Relative difference from which on a number has changed
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-6)]
     pub tolerance: f64,
-    /// Pair runs that differ in this setting too, such as dilation, kernel, size, method or case (may be given several times)
+    /// Pair runs that differ in this setting too, such as dilation, kernel, size, method or case (may be
+    /// given several times)
     #[arg(long, value_name = "SETTING")]
     pub across: Vec<String>,
     /// Leave times out
@@ -297,7 +300,7 @@ pub struct CompareArgs {
     pub format: Format,
 }
 
-/// What has a schema.
+/// Inputs and outputs that have a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaOf {
     /// A scene file

@@ -20,7 +20,7 @@ pub enum HistoryAction {
         /// The folder of the history
         #[arg(long, value_name = "DIR", default_value = "history")]
         to: PathBuf,
-        /// What to call them beside their commit, such as v1.2 or "new assembly"
+        /// A name for them beside their commit, such as v1.2 or "new assembly"
         #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
         label: String,
     },

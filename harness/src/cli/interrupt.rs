@@ -11,7 +11,8 @@ type Last = Box<dyn FnMut() + Send>;
 /// Says or writes what is left.
 static LAST: Mutex<Option<Last>> = Mutex::new(None);
 
-/// From now on a signal ends the program with exit code 5, after what was set by [`at_last`], and without a trace of what it has started.
+/// From now on a signal ends the program with exit code 5, after what was set by [`at_last`], and without a
+/// trace of what it has started.
 pub(super) fn install() {
     let handler = || {
         match LAST.lock().ok().and_then(|mut last| last.take()) {

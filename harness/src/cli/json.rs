@@ -49,7 +49,7 @@ pub struct RunObject<'a> {
     /// Load steps of a static procedure, as far as it came; absent in a linear one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
-    /// What they are compared with, and its own error.
+    /// The reference of the numbers, with its own error.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'a Reference>,
     /// What is to be said against these numbers; empty in a run without any.

@@ -105,7 +105,7 @@ fn report_now_and_then(made: Arc<Mutex<Made>>) {
 
 /// What the methods of the scene have left so far.
 struct Made {
-    /// What is running.
+    /// Name of the running method or of the reference.
     now: String,
     args: RunArgs,
     case: String,

@@ -41,7 +41,7 @@ pub fn reference(stored: &Stored) -> String {
     text
 }
 
-/// What runs are compared with, how far that is off, and its warnings, a line each.
+/// The reference of the runs, its own error and its warnings, a line each.
 pub fn compared_with(reference: &Reference) -> String {
     let warnings = reference.warnings.iter();
     let warnings = warnings.map(|text| format!("warning: reference {}: {text}\n", reference.method));
@@ -76,7 +76,8 @@ fn judged(check: &Check) -> String {
     format!("{} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
 }
 
-/// A table of finished runs: sizes, errors, displacement, milliseconds per phase by the seconds that runs are compared by.
+/// A table of finished runs: sizes, errors, displacement, milliseconds per phase by the seconds that runs are
+/// compared by.
 pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     let columns: [(&str, &str, f64); 19] = [
         ("l2", "L2 [%]", 100.0),

@@ -159,7 +159,8 @@ impl Discretisation {
         self.mesh.region_names().len() > 1
     }
 
-    /// Finds the supports and fills the volume tables that the plan has; `alike` names the material of each region.
+    /// Finds the supports and fills the volume tables that the plan has; `alike` names the material of each
+    /// region.
     pub(crate) fn volume(
         &self,
         alike: &[u16],

@@ -92,7 +92,8 @@ pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
     Failure::input(self::key(place, key), "touches nothing of the body", &help)
 }
 
-/// Refuses faces between two cells for what acts at `key` along the outward normal: a wall inside the body has two sides.
+/// Refuses faces between two cells for what acts at `key` along the outward normal: a wall inside the body
+/// has two sides.
 pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(), Failure> {
     let Place::On(names) = place else { return Ok(()) };
     let boundary = mesh.boundary();

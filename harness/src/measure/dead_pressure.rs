@@ -1,4 +1,5 @@
-//! Faces under pressure that turn or stretch: the pressure keeps the direction and the area of the undeformed ones.
+//! Faces under pressure that turn or stretch: the pressure keeps the direction and the area of the undeformed
+//! ones.
 
 use catalogue::warning;
 use geometry::{Point3, Vector3};
@@ -9,7 +10,8 @@ use crate::discretise::place::{self, Patch};
 use crate::outcome::Warning;
 use crate::scenario::setup::{Applied, Load, ScalarField};
 
-/// Angle (degrees) of a face and relative change of its area from which on pressure on the deformed wall is another load.
+/// Angle (degrees) of a face and relative change of its area from which on pressure on the deformed wall is
+/// another load.
 const TURN: f64 = 10.0;
 const STRETCH: f64 = 0.1;
 
@@ -24,8 +26,8 @@ struct Dead {
     change: f64,
 }
 
-/// Warns of pressures whose faces turn or stretch beyond the limits in any recorded state. An exact solution states which load it
-/// is of.
+/// Warns of pressures whose faces turn or stretch beyond the limits in any recorded state. An exact solution
+/// states which load it is of.
 pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
     let mut found = Vec::new();
     for load in run.setup.loads.iter().filter(|_| run.setup.exact.is_none()) {

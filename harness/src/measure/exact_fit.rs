@@ -40,7 +40,8 @@ struct Covered {
 #[derive(Clone, Copy, Default)]
 struct Sums([f64; 3]);
 
-/// Part of the stress, as a displacement across the body, and of the displacement, as a stress, that is rounding of the other.
+/// Part of the stress, as a displacement across the body, and of the displacement, as a stress, that is
+/// rounding of the other.
 const ROUNDING: f64 = 1e-12;
 
 /// What is known of one surface.
@@ -85,7 +86,8 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     let each = surfaces(mesh).into_iter();
     let each = each.map(|(name, facets)| OnSurface::new(name, run, exact, &facets, [&held, &loaded]));
     let each: Vec<OnSurface> = each.collect::<Result<_, _>>()?;
-    // What compares with zero is relative to the largest of the body: a support that holds one axis of a plane has exactly none.
+    // Values compared with zero are relative to the largest of the body: a support that holds one axis of a
+    // plane has exactly none.
     let largest = |k: usize| each.iter().map(|s| (s.all[k] / s.area).sqrt()).fold(0.0, f64::max);
     let (low, high) = place::bounds(mesh);
     let stiffness = setup.materials.iter().map(|m| m.young()).fold(0.0, f64::max) / (high - low).norm();

@@ -8,14 +8,17 @@ use crate::Failure;
 use crate::discretise::place::{self, Patch};
 use crate::outcome::{Metric, Warning};
 
-/// Cells across below which it is told: three, less what cells that lie askew look wider.
+/// Cells across below which the warning is given: three, with a margin because cells that lie askew look
+/// wider.
 const FEW: f64 = 2.5;
-/// Jump of the stress below which few cells follow it: it is even, or linear as in a beam of quadratic cells. Few cells see less of their
-/// own error than many, and are told from a smaller jump on than those.
+/// Jump of the stress below which few cells are enough: the stress is even, or linear as in a beam of
+/// quadratic cells. Few cells see less of their own error than many, so this is below the limit of
+/// `stress-jump`.
 const EVEN: f64 = 0.15;
 /// Places that are looked at.
 const PLACES: usize = 64;
-/// Cosine of the angle between a face's normal and an axis from which on a support along the axis makes it a plane of symmetry.
+/// Cosine of the angle between a face's normal and an axis from which on a support along the axis makes it a
+/// plane of symmetry.
 const ALONG: f64 = 0.999;
 
 /// A flat piece of the surface.
@@ -27,9 +30,9 @@ struct Triangle {
     mirror: bool,
 }
 
-/// Warns if half of the strain energy is where the body has fewer than three cells between its two sides. They are counted along
-/// the displacement, which is across a body that bends or is pressed, and along one that is stretched or sheared. Errors against
-/// an exact solution need no such guess.
+/// Warns if half of the strain energy is where the body has fewer than three cells between its two sides.
+/// They are counted along the displacement, which is across a body that bends or is pressed, and along one
+/// that is stretched or sheared. Errors against an exact solution need no such guess.
 pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
     let jump = metrics.iter().find(|m| *m.entry == metric::STRESS_JUMP).map(|m| m.value);
     if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {
@@ -76,8 +79,8 @@ fn by_energy(run: &Solved, gradients: &[Matrix3]) -> Vec<usize> {
     (0..PLACES).map(|k| sums.partition_point(|&sum| sum < at(k)).min(sums.len() - 1)).collect()
 }
 
-/// Cells between the two sides of the body along the displacement of an integration point; infinite where it does not move, or
-/// between two planes of symmetry.
+/// Cells between the two sides of the body along the displacement of an integration point; infinite where it
+/// does not move, or between two planes of symmetry.
 fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
     let rows = &run.prepared.volume.rows;
     let (nodes, values) = rows.rows().row(q);
@@ -102,7 +105,8 @@ fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Extent (m) along a direction of the cell of these nodes, half of it where it is quadratic; the spacing of the nodes of a cloud.
+/// Extent (m) along a direction of the cell of these nodes, half of it where it is quadratic; the spacing of
+/// the nodes of a cloud.
 fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
     if !run.method.interpolates {
         return run.prepared.spacing;

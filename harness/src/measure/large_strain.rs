@@ -7,7 +7,8 @@ use super::Solved;
 
 /// Principal strain from which on it is: the stretches of linear and true strain then differ by a twentieth of the strain.
 pub(super) const LARGE: f64 = 0.1;
-/// Rotation (rad) from which on it is: a turn of a rigid body by `w` is a false strain of `w^2 / 2`, here 2 %.
+/// Rotation (rad) from which on it is: a turn of a rigid body by `w` is a false strain of `w^2 / 2`, here 2
+/// %.
 pub(super) const TURNED: f64 = 0.2;
 
 /// Of an eigenvalue and of the norm.
@@ -24,9 +25,9 @@ pub(super) struct Largest {
     pub share: f64,
 }
 
-/// The largest principal strain and the largest rotation of laws of small strain, over all integration points; `None` where no law
-/// is one. An exact solution of the linear equations states the small strain itself: against that the numbers are right at any
-/// strain.
+/// The largest principal strain and the largest rotation of laws of small strain, over all integration
+/// points; `None` where no law is one. An exact solution of the linear equations states the small strain
+/// itself: against that the numbers are right at any strain.
 pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     let Solved { setup, prepared, solution, .. } = *run;
     let small = |q: usize| {

@@ -13,8 +13,8 @@ use crate::procedure::Vibration;
 const SLOW: f64 = 0.9;
 /// Part of the frequency of a shear wave across the body below which a mode is rigid: rounding leaves 1e-6.
 const RIGID: f64 = 1e-3;
-/// Part of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a cantilever 1000 times as long as thick
-/// has 1e-8.
+/// Part of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a cantilever
+/// 1000 times as long as thick has 1e-8.
 const NO_ENERGY: f64 = 1e-9;
 /// Multiple of the exact frequency up to which its mode is looked for.
 const FAST: f64 = 1.5;

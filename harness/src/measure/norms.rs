@@ -41,8 +41,8 @@ impl Ratio {
     }
 }
 
-/// Errors of a run, over `fine`, a quadrature of higher order than the solver's own, with the region of each point. Solutions at
-/// large strain state their own Cauchy stress, over the undeformed body, and no energy.
+/// Errors of a run, over `fine`, a quadrature of higher order than the solver's own, with the region of each
+/// point. Solutions at large strain state their own Cauchy stress, over the undeformed body, and no energy.
 pub(super) fn norms(
     run: &Solved,
     recovered: Option<&Recovered>,
@@ -83,8 +83,8 @@ pub(super) fn norms(
     }
 }
 
-/// The energy of the stress error: of the law at the displacement's gradient, over `fine`; of the method's own stress, at its own
-/// points, where that is another, or much of the strain between them has no energy.
+/// The energy of the stress error: of the law at the displacement's gradient, over `fine`; of the method's
+/// own stress, at its own points, where that is another, or much of the strain between them has no energy.
 fn energy(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exact) -> Option<f64> {
     let Solved { method, setup, prepared, solution } = *run;
     let volume = &prepared.volume;

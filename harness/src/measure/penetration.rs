@@ -11,9 +11,10 @@ const DEEP: f64 = 0.05;
 /// Part of that way to which a larger penalty is to bring it.
 const GOOD: f64 = 0.01;
 
-/// Warns of tools that sink in so deep in any recorded state that their force is another. The way that tools close counts from the
-/// gaps that they start with, for all together: what one presses may lean on the next. A tool that sinks in deeper than that is a
-/// floor, on which loads press the body: it is compared with the body's narrowest extent.
+/// Warns of tools that sink in so deep in any recorded state that their force is another. The way that tools
+/// close counts from the gaps that they start with, for all together: what one presses may lean on the next.
+/// A tool that sinks in deeper than that is a floor, on which loads press the body: it is compared with the
+/// body's narrowest extent.
 pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
     let (points, tools) = (run.prepared.contact_points(), &run.setup.tools);
     let Some(history) = run.solution.history.as_ref().filter(|_| !points.is_empty()) else {

@@ -65,8 +65,8 @@ fn at_nodes(mesh: &Mesh, cells: &Tensors) -> Values {
     sums.into_iter().map(mean).collect()
 }
 
-/// How far points of the body are from the reference or the exact solution at the end: interpolated by inverse squares of distances
-/// from where that is known, most often at nodes.
+/// How far points of the body are from the reference or the exact solution at the end: interpolated by
+/// inverse squares of distances from where that is known, most often at nodes.
 fn off<'a>(
     run: &Solved,
     field: &Field,

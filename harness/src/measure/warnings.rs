@@ -13,9 +13,9 @@ use crate::adapter;
 use crate::discretise::{Essential, place};
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
-/// Of the norm of the stress. On the cases with an exact solution the jump is 0.5 to 0.95 of the energy error where a mesh is
-/// fine enough for its order and at least 0.2 where it locks; displacements are then off by 5 to 50 %. On a bonded punch, whose
-/// edge is singular, it is 0.07 to 0.4 of the root of the force's error.
+/// Of the norm of the stress. On the cases with an exact solution the jump is 0.5 to 0.95 of the energy error
+/// where a mesh is fine enough for its order and at least 0.2 where it locks; displacements are then off by 5
+/// to 50 %. On a bonded punch, whose edge is singular, it is 0.07 to 0.4 of the root of the force's error.
 const ROUGH_STRESS: f64 = 0.2;
 /// Factor of Nitsche's method over the needed one: at 2 three tenths of the energy are left.
 const FACTOR_TO_SPARE: f64 = 2.0;

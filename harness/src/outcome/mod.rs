@@ -201,7 +201,7 @@ pub struct Outcome {
     pub stalled: Option<Failure>,
     /// What is to be said against its numbers.
     pub warnings: Vec<Warning>,
-    /// What it is compared with.
+    /// The reference of its numbers.
     pub reference: Option<Reference>,
 }
 
@@ -259,7 +259,7 @@ impl Outcome {
         push(&mut self.metrics, &metric::WARNINGS, self.warnings.len() as f64);
     }
 
-    /// What the whole run took.
+    /// Time of the whole run.
     pub fn total(&self) -> Option<&Timed> {
         self.phases.iter().find(|timed| timed.phase == "total")
     }

@@ -32,7 +32,7 @@ impl Timed {
         Summary::of(&self.wall)
     }
 
-    /// What it takes, by the seconds that runs are compared by.
+    /// Its time, s, by the clock that runs are compared by.
     pub fn by(&self, seconds: Seconds) -> f64 {
         let wall = self.summary();
         match seconds {

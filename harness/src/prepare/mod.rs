@@ -268,8 +268,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node. Of values that differ by rounding the
-    /// first stays.
+    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node. Of values
+    /// that differ by rounding the first stays.
     fn constrain_nodes(
         &mut self,
         mesh: &Mesh,

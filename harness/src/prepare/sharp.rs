@@ -1,7 +1,7 @@
 //! Corners and edges of the body that a tool meets before it comes near the faces around them.
 //!
-//! The contact points of a face lie inside it. A tool that comes down on the tip of a pyramid would stand far in the body before it
-//! touched the first: there the faces have points at their corners and on their edges.
+//! The contact points of a face lie inside it. A tool that comes down on the tip of a pyramid would stand far
+//! in the body before it touched the first: there the faces have points at their corners and on their edges.
 
 use std::collections::BTreeMap;
 
@@ -93,7 +93,8 @@ fn beside(corners: &[u32], corner: u32) -> [u32; 2] {
     [corners[(k + 1) % n], corners[(k + n - 1) % n]]
 }
 
-/// Closure (m) at which a tool meets a place of a body of that size (m), which stays where it is; `None` where it passes by.
+/// Closure (m) at which a tool meets a place of a body of that size (m), which stays where it is; `None`
+/// where it passes by.
 fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
     let (mut closure, farthest) = (0.0, tool.gap(0.0, x) + 2.0 * size);
     for _ in 0..STEPS {

@@ -153,8 +153,8 @@ fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
 /// Of the largest energy.
 const ROUNDING: f64 = 1e-9;
 
-/// Largest energy that the balance lacks or has too much, over the largest of its terms so far. What is rounding of the largest of the
-/// whole motion does not count.
+/// Largest energy that the balance lacks or has too much, over the largest of its terms so far. What is
+/// rounding of the largest of the whole motion does not count.
 fn drift(steps: &[TimeStep]) -> f64 {
     let largest = |TimeStep { energy, .. }: &TimeStep| {
         let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];

@@ -67,7 +67,8 @@ pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
     Ok(Call { end, wall: watched.wall, cpu, memory: watched.memory, last_words })
 }
 
-/// Runs a program for so long at most, and ends all of its group; its status, and what it begins stdout and stderr with.
+/// Runs a program for so long at most, and ends all of its group; its status, and what it begins stdout and
+/// stderr with.
 pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(ExitStatus, [String; 2])> {
     let mut started =
         Started::new(program.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;

@@ -87,7 +87,8 @@ pub(crate) fn last_words(mut from: impl Read) -> String {
     String::from_utf8_lossy(&kept).into_owned()
 }
 
-/// Ends all groups, and lets no other one begin: for a program that is about to exit. A second call does nothing.
+/// Ends all groups, and lets no other one begin: for a program that is about to exit. A second call does
+/// nothing.
 pub(crate) fn end_all() {
     static ENDED: AtomicBool = AtomicBool::new(false);
     if ENDED.swap(true, Ordering::Relaxed) {

@@ -10,7 +10,8 @@ pub(crate) use call::{Call, End, Limits, call, said_within};
 pub(crate) use group::{Started, last_words};
 pub use leash::LeashArgs;
 
-/// Most bytes in memory that this process has had since [`forget_most_memory`], or since it began; `None` where the system does not say.
+/// Most bytes in memory that this process has had since [`forget_most_memory`], or since it began; `None`
+/// where the system does not say.
 pub(crate) fn most_memory() -> Option<u64> {
     #[cfg(target_os = "linux")]
     return Some(members::most(std::process::id())).filter(|bytes| *bytes > 0);

@@ -158,7 +158,8 @@ impl<'a> Group<'a> {
         self.reference.iter_mut().for_each(|reference| reference.own = own.clone());
     }
 
-    /// Runs a method that others are compared with, whose size may be the reference's own; also why it ended early, if it did.
+    /// Runs a method that others are compared with, whose size may be the reference's own; also why it ended
+    /// early, if it did.
     fn compared(
         &mut self,
         method: scene::Method,
@@ -283,7 +284,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// What the runs are compared with; `None` where that is nothing.
+    /// The reference of the runs; `None` if they have none.
     pub fn reference(&self) -> Option<reports::Reference> {
         let case = self.case.clone();
         if let Some(Reference::Exact { entry, .. }) = &self.scene.reference {

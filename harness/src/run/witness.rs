@@ -1,10 +1,12 @@
-//! The own error of a reference that is a method: its distance to the same method on a coarser mesh, and of a method of first order also to
-//! elements of second order.
+//! The own error of a reference that is a method: its distance to the same method on a coarser mesh, and of a
+//! method of first order also to elements of second order.
 //!
-//! The distance to a mesh of twice the spacing is what is left where errors fall with the spacing (Richardson's extrapolation at first order):
-//! slower orders are those of methods that lock. A method that locks changes little from size to size. Elements of second order on as many
-//! nodes lock less, so that both distances together see it. It is an estimate, no bound: on 24 blocks each the true error of a reference of first
-//! order was 0.19 to 0.95 times the sum at a Poisson's ratio of 0.3, up to 2.3 times at 0.495 (5 above 1, all sheared), up to 2.6 at 0.4999 (10 above 1).
+//! The distance to a mesh of twice the spacing is what is left where errors fall with the spacing
+//! (Richardson's extrapolation at first order): slower orders are those of methods that lock. A method that
+//! locks changes little from size to size. Elements of second order on as many nodes lock less, so that both
+//! distances together see it. It is an estimate, no bound: on 24 blocks each the true error of a reference of
+//! first order was 0.19 to 0.95 times the sum at a Poisson's ratio of 0.3, up to 2.3 times at 0.495 (5 above
+//! 1, all sheared), up to 2.6 at 0.4999 (10 above 1).
 
 use cases::scene::{Cloud, Dilation, Element, Family, Fem, Method, Size};
 use catalogue::Dimension;

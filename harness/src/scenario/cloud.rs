@@ -291,8 +291,8 @@ impl CloudMethod {
     }
 }
 
-/// Refuses nodes that lie beyond the cells to integrate over by more than their spacing: no cell would hold them. Coarse cells leave
-/// out thin parts of a body.
+/// Refuses nodes that lie beyond the cells to integrate over by more than their spacing: no cell would hold
+/// them. Coarse cells leave out thin parts of a body.
 fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
     let key = || Key::Method("background");
     let found = locate(background, &cloud.points)

@@ -116,7 +116,8 @@ impl Scenario<'_> {
         Ok(mesh.with_regions(regions, names.collect()))
     }
 
-    /// Refuses a cell that two regions name with different materials; of places by comparisons the later one counts.
+    /// Refuses a cell that two regions name with different materials; of places by comparisons the later one
+    /// counts.
     fn one_material(&self, regions: [usize; 2], cell: usize) -> Result<(), Failure> {
         let [first, second] = regions.map(|index| &self.scene.regions[index]);
         if !matches!((&first.place, &second.place), (scene::Place::On(_), scene::Place::On(_))) {

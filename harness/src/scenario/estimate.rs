@@ -58,8 +58,8 @@ impl Estimate {
 }
 
 /// Refuses a method of a scene that takes more than anyone means to spend, or the reference that it needs. What no `--force` lifts is
-/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps. Estimated seconds are multiplied by
-/// the factor that runs of the scene took before.
+/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps.
+/// Estimated seconds are multiplied by the factor that runs of the scene took before.
 pub fn too_large(scene: &Scene, method: &Method, factor: f64) -> Option<SceneError> {
     let of_reference = || {
         let (method, size) = reference(scene)?;

@@ -33,7 +33,7 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     found
 }
 
-/// What the file of the mesh has beside it.
+/// Parts of a mesh file that are no mesh.
 fn left_out(file: &Path) -> Option<Warning> {
     let mut parts = files::left_out(file);
     parts.retain(|part| part.kind != files::Kind::Values);

@@ -49,7 +49,8 @@ pub struct VerifyArgs {
     /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
-    /// Foresee what runs take by the times stored in these results of this machine, for --dry-run, --shard and refusals
+    /// Foresee what runs take by the times stored in these results of this machine, for --dry-run, --shard
+    /// and refusals
     #[arg(long, value_name = "DIR")]
     pub times: Option<PathBuf>,
     /// Also draw the errors and times over commits of this folder, which `history add` fills

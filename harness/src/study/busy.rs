@@ -1,9 +1,10 @@
-//! What is said where other programs had the processors while runs were timed.
+//! The warning that other programs used the processors while runs were timed.
 
 use catalogue::warning;
 use reports::{Busy, Machine, Record, RunSet, Seconds, Took, Warning};
 
-/// Adds a warning to results whose machine was busy: which seconds are compared instead, and how far those on the wall are off.
+/// Adds a warning to results whose machine was busy: which seconds are compared instead, and how far those on
+/// the wall are off.
 pub fn warn_if_busy(set: &mut RunSet) {
     let machine = &set.provenance.machine;
     set.warnings.extend(Busy::of(&set.records, machine).map(|busy| row(&busy, machine)));

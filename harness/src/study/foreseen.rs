@@ -1,5 +1,5 @@
-//! What the runs of a study are about to take: by what they took before where that is stored, otherwise by an estimate, which learns from the
-//! stored ones.
+//! Expected times of a study's runs: the stored time if there is one, otherwise an estimate that is scaled by
+//! the stored ones.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,14 @@ pub(super) struct Foreseen {
     seconds: Vec<f64>,
     /// Whether they are stored.
     known: Vec<bool>,
-    /// Seconds that were measured over those estimated, of the tasks of a scene that are stored; and of all of them.
+    /// Seconds that were measured over those estimated, of the tasks of a scene that are stored; and of all
+    /// of them.
     of_scene: BTreeMap<usize, f64>,
     of_all: f64,
 }
 
 impl Plan {
-    /// What the tasks take, with the times stored in the folder `--times`.
+    /// Expected seconds of the tasks, from the times stored in the folder `--times`.
     pub(super) fn foreseen(&self, args: &VerifyArgs) -> Foreseen {
         let estimated: Vec<f64> = self.tasks.iter().map(|task| self.estimated(task, args)).collect();
         let stored = args
@@ -76,7 +77,7 @@ impl Foreseen {
         self.known[task]
     }
 
-    /// What estimates of a scene are multiplied by.
+    /// Factor on the estimates of a scene.
     pub(super) fn factor(&self, scene: usize) -> f64 {
         self.of_scene.get(&scene).copied().unwrap_or(self.of_all)
     }

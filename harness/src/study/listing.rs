@@ -15,7 +15,7 @@ pub struct Planned {
     pub case: String,
     /// The method, with what the study changes of it.
     pub name: String,
-    /// What it is about to take, with all of its repeats.
+    /// Expected cost with all of its repeats.
     pub(crate) takes: Estimate,
     /// Whether its seconds are those that it took before.
     pub(crate) stored: bool,

@@ -19,7 +19,7 @@ pub struct TaskResult {
     pub plans: Vec<PlanEntry>,
     /// What is to be said against its numbers.
     pub warnings: Vec<Warning>,
-    /// What they are compared with.
+    /// The reference of the numbers.
     #[serde(default)]
     pub reference: Option<Reference>,
     /// Surface displacement, where asked for.

@@ -9,8 +9,8 @@ pub type Lines<'a> = [&'a [f64]; 3];
 /// A surface: its name, and where its points are, mm.
 pub type Named<'a> = (&'a str, &'a dyn Fn([f64; 3]) -> bool);
 
-/// Which cells there are, by their middles, and where the corners of each stand, from those of the grid: corners of several cells
-/// that stand in one place are one node.
+/// Cells of a grid, kept by their middles, with the places of their corners: corners of several cells in one
+/// place are one node.
 pub struct Blocks<'a> {
     pub lines: Lines<'a>,
     pub keeps: &'a dyn Fn([f64; 3]) -> bool,
@@ -19,7 +19,8 @@ pub struct Blocks<'a> {
     pub surfaces: &'a [Named<'a>],
 }
 
-/// Steps from the first to the last corner of a block, by axis: six tetrahedra (Kuhn 1960), and whether they are turned round.
+/// Steps from the first to the last corner of a block, by axis: six tetrahedra (Kuhn 1960), and whether they
+/// are turned round.
 const WAYS: [([usize; 3], bool); 6] = [
     ([0, 1, 2], false),
     ([0, 2, 1], true),

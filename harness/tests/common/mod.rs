@@ -47,7 +47,8 @@ pub fn moving(pressed: &str) -> String {
         .replace("kind = \"static\", steps = 2", "kind = \"explicit\", duration = \"20 ms\", steps = 4")
 }
 
-/// Reports that a test is left out for want of a tool; with `CI=true` it fails unless `.ci/skips` names the tool.
+/// Reports that a test is left out for want of a tool; with `CI=true` it fails unless `.ci/skips` names the
+/// tool.
 pub fn skipped(tool: &str, why: &str) {
     eprintln!("skipped: {why}");
     let list = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../.ci/skips")).unwrap();

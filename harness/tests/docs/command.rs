@@ -117,7 +117,8 @@ fn tissuebench(args: &[&str], step: &Step, dir: &Path, not_run: bool, exits: i32
     }
 }
 
-/// A line with every number replaced, as machines and times differ, and single spaces. On a busy machine times are of the processors.
+/// A line with every number replaced, as machines and times differ, and single spaces. On a busy machine
+/// times are of the processors.
 fn numberless(line: &str) -> String {
     let line = line.replace("[CPU ms]", "[ms]");
     let is_number = |word: &str| {

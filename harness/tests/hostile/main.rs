@@ -1,4 +1,5 @@
-//! Files from others, and files of the user in the way of outputs: nothing hangs, takes all memory, or destroys an input.
+//! Files from others, and files of the user in the way of outputs: nothing hangs, takes all memory, or
+//! destroys an input.
 
 #![cfg(unix)]
 

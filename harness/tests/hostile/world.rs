@@ -21,7 +21,7 @@ const BOX: &str = r#"body = { shape = "box", size = ["4 mm", "4 mm", "4 mm"] }"#
 const TET4: &str = r#"id = "tet4", family = "fem", element = "tet4""#;
 const ORGAN: &str = "v 0 0 0\nv 8 0 0\nv 0 8 0\nv 0 0 8\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-/// What a finished command left.
+/// Exit code and output of a finished command.
 pub struct Done {
     pub code: i32,
     pub stdout: String,

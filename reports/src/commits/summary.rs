@@ -19,7 +19,7 @@ use crate::store::write_text;
 pub struct Summary {
     /// Name of the study's or scene's file.
     pub source: String,
-    /// What whoever added them calls them, such as a version; empty where nothing was given.
+    /// Label given when they were added, such as a version; empty if none was given.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub label: String,
     /// Checks that did not hold.

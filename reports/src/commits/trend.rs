@@ -30,7 +30,7 @@ pub struct Point {
     pub number: u32,
     /// The commit, with `+` where the source was changed since.
     pub commit: String,
-    /// What the results were called when they were added; empty where nothing was given.
+    /// Label given when the results were added; empty if none was given.
     pub label: String,
     /// Results added.
     pub results: usize,

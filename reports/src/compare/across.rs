@@ -9,7 +9,7 @@ use crate::run_set::RunSet;
 /// Takes a setting out of a record.
 type Clear = fn(&mut Record);
 
-/// What can be stated, by the keys that scenes and records have for it.
+/// Settings that can be stated, under the keys of scenes and records.
 const SETTINGS: [(&str, Clear); 24] = [
     ("adapter", |r| r.adapter = None),
     ("basis", |r| r.basis = None),

@@ -1,6 +1,7 @@
 //! Two results against each other: numbers by a tolerance, times as paired ratios with their confidence.
 //!
-//! Runs are paired by their ids, or by all but a stated setting. A time is called only outside noise, which is what the pairs themselves scatter by.
+//! Runs are paired by their ids, or by all but a stated setting. A time is called only outside noise, which
+//! is what the pairs themselves scatter by.
 
 mod across;
 mod numbers;

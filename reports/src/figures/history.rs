@@ -1,5 +1,5 @@
-//! What happens while a tool closes, its force over the closure and over time and where the energy is; and how frequencies go
-//! wrong from mode to mode.
+//! What happens while a tool closes, its force over the closure and over time and where the energy is; and
+//! how frequencies go wrong from mode to mode.
 
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
@@ -27,8 +27,8 @@ const ENERGIES: [(&str, &str); 9] = [
     ("scheme-dissipation", "lost in the scheme"),
 ];
 
-/// Tool force of the finest run of every method: over the closure, over time where that went on, and minus the reference's at the
-/// same closure with its uncertainty.
+/// Tool force of the finest run of every method: over the closure, over time where that went on, and minus
+/// the reference's at the same closure with its uncertainty.
 pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
@@ -143,10 +143,10 @@ fn drawn(line: &Curve) -> bool {
     line.points.len() > 1
 }
 
-/// What a panel shows.
+/// Quantity of a panel.
 struct Pane {
     case: String,
-    /// What follows the case in the title.
+    /// Part of the title after the case.
     of: String,
     /// Names and units of both axes.
     axes: (&'static str, &'static str),

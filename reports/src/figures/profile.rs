@@ -1,4 +1,5 @@
-//! The performance profile: on which part of its cases a method is within an error, in how many times the least time of any method.
+//! The performance profile: on which part of its cases a method is within an error, in how many times the
+//! least time of any method.
 
 use super::axes::Axis;
 use super::grid::{Content, multiples};

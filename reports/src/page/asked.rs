@@ -22,7 +22,7 @@ pub(super) struct AskView {
     error: String,
     scalar: bool,
     kernels: bool,
-    /// What the runs are compared with, and its own error in words.
+    /// The reference of the runs and its own error, in words.
     reference: Option<String>,
     band: Option<f64>,
     /// The page begins with the question that has most of it.

@@ -113,7 +113,8 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
-/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a case keeps these.
+/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a
+/// case keeps these.
 fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
@@ -139,8 +140,8 @@ fn share(bodies: &mut [BodyView]) {
     }
 }
 
-/// Takes out large bodies that have a coarser sibling, then what only a cut shows of the largest, then states of the largest bodies,
-/// all but the last, until all have room; then the largest bodies.
+/// Takes out large bodies that have a coarser sibling, then what only a cut shows of the largest, then states
+/// of the largest bodies, all but the last, until all have room; then the largest bodies.
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
         let others = |b: &BodyView, is: &dyn Fn(&BodyView) -> bool| {

@@ -70,7 +70,7 @@ pub(super) struct MapView<'a> {
     wrong: f64,
     values: Vec<String>,
     methods: Vec<&'a str>,
-    /// What the colours stand for.
+    /// Meaning of the colours.
     classes: Vec<String>,
     cells: Vec<Cell>,
 }

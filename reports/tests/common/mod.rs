@@ -343,7 +343,7 @@ fn check(
     }
 }
 
-/// Where its numbers come from.
+/// Provenance of its numbers.
 fn provenance() -> Provenance {
     Provenance {
         source: "study.toml".into(),

@@ -1,4 +1,4 @@
-//! Which files are inputs of this process, whatever their names.
+//! Files that are inputs of this process, by device and inode.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, Metadata};
@@ -37,8 +37,8 @@ fn known() -> MutexGuard<'static, Known> {
     KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes that a file is an input of this process, read or yet to be read: from now on no output replaces it. An own output that is read
-/// again is none.
+/// Notes that a file is an input of this process, read or yet to be read: from now on no output replaces it.
+/// An own output that is read again is none.
 pub fn input(path: &Path) {
     let Some(identity) = Identity::of(path) else { return };
     let mut known = known();

@@ -11,7 +11,8 @@ pub struct Kind {
     pub(crate) name: &'static str,
     /// Most bytes that are read of it.
     pub(crate) most: u64,
-    /// Whether no output may replace it. What a command both reads and writes, such as results that it resumes, is replaced.
+    /// Whether no output may replace it. What a command both reads and writes, such as results that it
+    /// resumes, is replaced.
     pub(crate) input: bool,
 }
 
@@ -50,7 +51,7 @@ impl Kind {
     }
 }
 
-/// What a file is that is not regular.
+/// Name of a kind of file that is not regular.
 pub(crate) fn irregular(of: &Metadata) -> &'static str {
     #[cfg(unix)]
     {

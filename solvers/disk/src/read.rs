@@ -37,7 +37,8 @@ pub fn read_text(path: &Path, kind: Kind) -> io::Result<String> {
     String::from_utf8(read(path, kind)?).map_err(no_text)
 }
 
-/// Asked before the file is opened, as to open a device or a pipe has effects; and of the open file, which may be another by then.
+/// Asked before the file is opened, as to open a device or a pipe has effects; and of the open file, which
+/// may be another by then.
 fn opened(path: &Path, kind: Kind) -> io::Result<(File, u64)> {
     regular(&std::fs::metadata(path)?, kind)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;

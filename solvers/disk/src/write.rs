@@ -49,7 +49,8 @@ pub fn try_create(path: &Path) -> io::Result<()> {
     if exists { Ok(()) } else { fs::remove_file(path) }
 }
 
-/// Writes a file beside its place and renames it, so that what stands there is never half of it. A link there is replaced, not followed.
+/// Writes a file beside its place and renames it, so that what stands there is never half of it. A link there
+/// is replaced, not followed.
 ///
 /// # Errors
 /// An input of this process, a device or a pipe, or what the system has against it.

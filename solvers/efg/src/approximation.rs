@@ -46,7 +46,8 @@ pub struct Approximation {
     gaps: Option<Gaps>,
 }
 
-/// Makes the cells of the background that points are in, where these are known: only a body with gaps needs them.
+/// Makes the cells of the background that points are in, where these are known: only a body with gaps needs
+/// them.
 pub(crate) type Cells<'a> = Option<&'a dyn Fn() -> Vec<u32>>;
 
 /// What the shape functions are.
@@ -171,8 +172,9 @@ impl Approximation {
         Ok(Approximation { functions, ..self })
     }
 
-    /// With supports that reach through the body only, whose cells of tet4 these are: not across its slits, nor from one of its
-    /// pieces to another. Supports of a body that is convex stay as they are. Comes before [`Approximation::coupled`].
+    /// With supports that reach through the body only, whose cells of tet4 these are: not across its slits,
+    /// nor from one of its pieces to another. Supports of a body that is convex stay as they are. Comes
+    /// before [`Approximation::coupled`].
     pub fn within(self, background: &Mesh) -> Result<Approximation, EfgError> {
         let gaps = Gaps::find(&self, background)?;
         Ok(Approximation { gaps, ..self })
@@ -328,7 +330,8 @@ impl Approximation {
         Ok((rows, grads, tally.info()))
     }
 
-    /// Fills one chunk for every so many points, or tells the first that fails. There may be more cells than points, or none.
+    /// Fills one chunk for every so many points, or tells the first that fails. There may be more cells than
+    /// points, or none.
     fn fill_wave<const GRAD: bool>(
         &self,
         points: &[Point3],

@@ -1,18 +1,20 @@
 //! Gaps in the body that supports would reach across: slits, folds, and pieces that lie close together.
 //!
-//! Where two faces of the boundary that face each other lie within a support, the distance of a point from the node is taken through
-//! the body: the straight distance and a detour. At a vertex `v` of the background the detour is
+//! Where two faces of the boundary that face each other lie within a support, the distance of a point from
+//! the node is taken through the body: the straight distance and a detour. At a vertex `v` of the background
+//! the detour is
 //!
 //! ```text
 //! d_I(v) = 2 max(0, g_I(v) - 1.5 |v - x_I|)
 //! ```
 //!
-//! with the shortest way `g_I` along the edges of the cells, and within a cell it is linear between its corners. Weights stay
-//! continuous in the body, all points of a cell are cut by the same four numbers, and the shape functions reproduce what their basis
-//! does. A way that is less than half as long again as the straight one is no detour: edges zigzag, and around blunt inner corners
-//! supports stay as they are. Distances are relative to the support. A body without such faces is not touched.
-//! The detour around the end of a slit is that of the diffraction method: Organ, Fleming, Terry and Belytschko (1996),
-//! Computational Mechanics 18, 225-235.
+//! with the shortest way `g_I` along the edges of the cells, and within a cell it is linear between its
+//! corners. Weights stay continuous in the body, all points of a cell are cut by the same four numbers, and
+//! the shape functions reproduce what their basis does. A way that is less than half as long again as the
+//! straight one is no detour: edges zigzag, and around blunt inner corners supports stay as they are.
+//! Distances are relative to the support. A body without such faces is not touched. The detour around the end
+//! of a slit is that of the diffraction method: Organ, Fleming, Terry and Belytschko (1996), Computational
+//! Mechanics 18, 225-235.
 
 mod ways;
 
@@ -24,7 +26,8 @@ use crate::row_list::RowList;
 use crate::{Approximation, EfgError};
 use ways::{Graph, Ways};
 
-/// Faces whose normals have a smaller product than this face each other: at an inner corner of less than 84 degrees.
+/// Faces whose normals have a smaller product than this face each other: at an inner corner of less than 84
+/// degrees.
 const TURNED: f64 = -0.1;
 /// Faces overlap by rounding, over their size, where pieces touch.
 const TOUCHING: f64 = 1e-6;
@@ -35,7 +38,7 @@ const STEEP: f64 = 2.0;
 /// Relative length up to which ways are searched: what lies beyond is cut off even next to the node.
 const FARTHEST: f64 = STRAIGHT + 1.0 / STEEP;
 
-/// Which nodes have detours to which cells.
+/// Nodes with detours, cell by cell.
 pub(crate) struct Gaps {
     locator: Locator,
     graph: Graph,
@@ -55,7 +58,8 @@ struct Cut {
     at: [f64; 4],
 }
 
-/// What the way from a node to a point is longer by than the straight one, over the node's support radius, and its gradient (1/m).
+/// Detour from a node to a point (path through the body minus straight distance) over the node's support
+/// radius, and its gradient (1/m).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Detour {
     pub(crate) longer: f64,
@@ -166,8 +170,8 @@ impl Gaps {
         Ok(self.locator.locate(points)?.into_iter().map(|place| place.cell).collect())
     }
 
-    /// Appends the detour of every node of the last row, and drops the nodes that then lie beyond their supports. `relative` is the
-    /// straight distance over the support radius.
+    /// Appends the detour of every node of the last row, and drops the nodes that then lie beyond their
+    /// supports. `relative` is the straight distance over the support radius.
     pub fn cut(
         &self,
         x: &Point3,
@@ -204,7 +208,7 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// What the ways from a point in a cell to all nodes are longer by than the straight ones, m: infinite beyond `farthest`.
+    /// Detours from a point in a cell to all nodes, m: infinite beyond `farthest`.
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();

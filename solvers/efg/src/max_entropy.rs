@@ -319,7 +319,8 @@ impl Neighbours {
         Some(())
     }
 
-    /// Gradients where `s_a` is not along `r_a`: with a detour `d_a` it is `-2 beta_a (|r_a| + d_a) grad (|r_a| + d_a)`.
+    /// Gradients where `s_a` is not along `r_a`: with a detour `d_a` it is `-2 beta_a (|r_a| + d_a) grad
+    /// (|r_a| + d_a)`.
     #[cold]
     fn bent_gradients(&self, state: &State, inverse: &Matrix3, grads: &mut [Vector3]) {
         let mut slopes: Vec<Vector3> =

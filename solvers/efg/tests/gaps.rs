@@ -16,7 +16,8 @@ use shape::{Point3, PointRows, Vector3, VolumeRows};
 const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 const HALF: f64 = 0.02;
 
-/// A block of 40 x 10 x 20 mm with a slit from its top down to `tip`, in the middle, bent by `bend`; lengths in metres.
+/// A block of 40 x 10 x 20 mm with a slit from its top down to `tip`, in the middle, bent by `bend`; lengths
+/// in metres.
 fn slit(tip: f64, width: f64, bend: f64) -> Mesh {
     let top = Point3::new(2.0 * HALF, 0.01, 0.02);
     let plain = box_mesh(CellKind::Tet4, Point3::origin(), top, [12, 3, 6], [1.0; 3], None).unwrap();
@@ -61,7 +62,7 @@ const ALL: [(&str, Basis, Functions); 5] = [
     ("small supports", Basis::Linear, |mesh| on_mesh(mesh, 1.05, KERNEL, Basis::Linear)),
 ];
 
-/// Which side of the slit each cell is on.
+/// Side of the slit that each cell is on.
 fn is_left(mesh: &Mesh, cell: usize, middle: f64) -> bool {
     mesh.cell_points(cell).map(|p| p.x).sum::<f64>() < 4.0 * middle
 }

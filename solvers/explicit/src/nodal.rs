@@ -45,8 +45,8 @@ struct Constants {
 }
 
 impl Nodal {
-    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares, cut by part where there are
-    /// several. `chunks` has the distinct nodes of every chunk, and a chunk the points of one part.
+    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares, cut by part where
+    /// there are several. `chunks` has the distinct nodes of every chunk, and a chunk the points of one part.
     pub fn new(
         body: &ExplicitBody,
         groups: &DilationGroups,

@@ -28,7 +28,8 @@ pub(super) struct Tet4 {
 }
 
 impl Tet4 {
-    /// Of rows laid out as linear tetrahedra; none for groups other than one per node and part, weighted evenly.
+    /// Of rows laid out as linear tetrahedra; none for groups other than one per node and part, weighted
+    /// evenly.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Tet4> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let mut order = locality_order(volume.points());

@@ -337,8 +337,9 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Closure (m) of the first touch, to 1e-9 m or a millionth of the way to the body's far side; infinite if the tool passes by. The
-/// distance to a point changes by no more than the way gone, so going on by the gap never goes too far.
+/// Closure (m) of the first touch, to 1e-9 m or a millionth of the way to the body's far side; infinite if
+/// the tool passes by. The distance to a point changes by no more than the way gone, so going on by the gap
+/// never goes too far.
 fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
     let points = surface.rows().points();
     if points.is_empty() {

@@ -99,8 +99,8 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
 
 /// Linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`] with the same rule, over
 /// the corner nodes only, numbered in the order of the mesh: the continuous pressure of Taylor-Hood elements
-/// (tet10/P1; Taylor & Hood 1973). A corner between several materials has a pressure in each; `alike` names that of each
-/// region, and is empty where all are of one.
+/// (tet10/P1; Taylor & Hood 1973). A corner between several materials has a pressure in each; `alike` names
+/// that of each region, and is empty where all are of one.
 pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Rows, FemError> {
     let materials = alike.iter().max().map_or(1, |&material| usize::from(material) + 1);
     let place = |cell: usize, node: u32| {

@@ -1,4 +1,5 @@
-//! A mixed mesh in flat arrays, with named regions and further groups of cells, and named groups of boundary facets.
+//! A mixed mesh in flat arrays, with named regions and further groups of cells, and named groups of boundary
+//! facets.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;

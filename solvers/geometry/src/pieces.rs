@@ -1,10 +1,12 @@
-//! Pieces of a mesh without a node in common: how many, where their faces coincide, and how to join them there.
+//! Pieces of a mesh without a node in common: how many, where their faces coincide, and how to join them
+//! there.
 
 use std::collections::HashMap;
 
 use crate::{Facet, Mesh, Point3};
 
-/// Distance up to which nodes of two pieces are one, over the shortest edge of the faces around them: files round to five digits.
+/// Distance up to which nodes of two pieces are one, over the shortest edge of the faces around them: files
+/// round to five digits.
 const SAME: f64 = 1e-3;
 
 /// Sets of nodes, each by its lowest node.
@@ -53,8 +55,9 @@ pub fn coincident(mesh: &Mesh) -> usize {
     if count(mesh) > 1 { Twins::new(mesh).pairs.len() } else { 0 }
 }
 
-/// The mesh with the nodes of coincident faces of its pieces merged, and the number of such faces; `None` where no faces coincide.
-/// Nodes that only touch, at a vertex or along an edge, stay apart, and so do the two sides of a slit within a piece.
+/// The mesh with the nodes of coincident faces of its pieces merged, and the number of such faces; `None`
+/// where no faces coincide. Nodes that only touch, at a vertex or along an edge, stay apart, and so do the
+/// two sides of a slit within a piece.
 pub fn join(mesh: &Mesh) -> Option<(Mesh, usize)> {
     let Twins { mut same, pairs } = Twins::new(mesh);
     let faces = pairs.len();

@@ -69,7 +69,8 @@ fn a_cell_may_be_in_several_groups() {
     assert!(bad.contains("element 4 has the same nodes as element 3"), "{bad}");
 }
 
-/// A deck with a model of its own: all that a mesh does not have is named with its line, and what joins parts first.
+/// A deck with a model of its own: all that a mesh does not have is named with its line, and what joins parts
+/// first.
 #[test]
 fn what_a_deck_has_beside_its_mesh_is_named() {
     let deck = format!(

@@ -340,8 +340,8 @@ proptest! {
     }
 }
 
-/// A box whose one side has a corner in the middle of an edge of another, closed by a triangle without an area; and the same where two
-/// corners lie on the edge, so that one needle leans on another.
+/// A box whose one side has a corner in the middle of an edge of another, closed by a triangle without an
+/// area; and the same where two corners lie on the edge, so that one needle leans on another.
 #[test]
 fn needles_that_close_a_t_junction_are_no_crossing() {
     let corner = |x: f64, y: f64, z: f64| Point3::new(x, y, z);

@@ -6,8 +6,8 @@ use crate::{ShapeError, Vector3, VolumeRows};
 /// Nodes among which [`DilationGroups::near`] shares out a point: in three dimensions those of the tetrahedron around it.
 const NEAREST: usize = 4;
 
-/// Volume of a group over that of its shares taken positive, below which a part of a group that [`DilationGroups::by_part`]
-/// cuts is left out.
+/// Volume of a group over that of its shares taken positive, below which a part of a group that
+/// [`DilationGroups::by_part`] cuts is left out.
 const POSITIVE: f64 = 0.5;
 
 /// Groups of (point, share): group `a` averages the dilation of its points with the weights
@@ -158,11 +158,12 @@ impl DilationGroups {
         DilationGroups::new(rows.len(), offsets, points, shares)
     }
 
-    /// The same groups cut into one for each part among their points: a mean over the border of two materials mixes dilations
-    /// that jump there. `parts` has one entry for each point, `weights` (m^3) are those of the quadrature.
+    /// The same groups cut into one for each part among their points: a mean over the border of two materials
+    /// mixes dilations that jump there. `parts` has one entry for each point, `weights` (m^3) are those of
+    /// the quadrature.
     ///
-    /// The shares of a cloud can be negative. A piece of a cut group that has hardly a volume is left out, and its points are
-    /// shared out among their other groups.
+    /// The shares of a cloud can be negative. A piece of a cut group that has hardly a volume is left out,
+    /// and its points are shared out among their other groups.
     pub fn by_part(&self, parts: &[u16], weights: &[f64]) -> Result<DilationGroups, ShapeError> {
         for (what, found) in [("parts of points", parts.len()), ("weights", weights.len())] {
             if found != self.point_count {
@@ -274,7 +275,8 @@ mod tests {
             (0..groups.len()).flat_map(entries).filter(|(q, _)| **q == point).map(|(_, share)| share).sum()
         };
         assert!((0..3).all(|q| (sum(&cut, q) - 1.0).abs() < 1e-15));
-        // Node 4 counts for -0.05 of the first point: such a piece has no volume, and the others take it over.
+        // Node 4 counts for -0.05 of the first point: such a piece has no volume, and the others take it
+        // over.
         assert_eq!((0..cut.len()).filter(|&a| cut.group(a).1.iter().any(|share| *share < 0.0)).count(), 0);
         // Points of one part have the groups that they had.
         let uncut = whole.by_part(&[1; 3], volume.weights()).unwrap();

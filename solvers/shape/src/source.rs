@@ -56,8 +56,8 @@ pub trait RowSource: Send + Sync {
     /// One group of points for each cell; `None` where the quadrature does not go by cells.
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;
 
-    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family has none. It is
-    /// continuous in each material alone; `alike` names that of each region.
+    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family
+    /// has none. It is continuous in each material alone; `alike` names that of each region.
     fn pressure(&self, alike: &[u16]) -> Result<Option<Rows>, SourceError>;
 
     /// A coarser mesh whose functions the method's nodes hold exactly; `None` where there is none.
@@ -79,8 +79,8 @@ pub trait RowSource: Send + Sync {
         self.surface(facets)
     }
 
-    /// Values on the whole outer boundary, where tools may touch, with the points on parts of the facets: parts for each facet of the
-    /// boundary, or none for whole facets.
+    /// Values on the whole outer boundary, where tools may touch, with the points on parts of the facets:
+    /// parts for each facet of the boundary, or none for whole facets.
     fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError>;
 
     /// Values at the nodes of facets in ascending order, then at the middle of each; they carry no quadrature, but tell where the

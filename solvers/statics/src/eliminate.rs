@@ -68,7 +68,8 @@ fn connected(rows: &[Row], dofs: usize) -> Vec<Vec<usize>> {
     members
 }
 
-/// Eliminates the rows of one block; `prescribed` is the largest value of all rows, to which rounding is relative.
+/// Eliminates the rows of one block; `prescribed` is the largest value of all rows, to which rounding is
+/// relative.
 fn solve(
     rows: &[Row],
     members: Vec<usize>,

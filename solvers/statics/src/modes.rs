@@ -41,7 +41,8 @@ pub struct Modes {
     /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above. 0 where not all
     /// modes were looked for.
     pub massless: usize,
-    /// Rigid motions that the supports leave free, modes of frequency zero; further ones strain the body without energy.
+    /// Rigid motions that the supports leave free, modes of frequency zero; further ones strain the body
+    /// without energy.
     pub rigid: usize,
     /// Unknowns of the body.
     pub dofs: usize,

@@ -1,4 +1,5 @@
-//! Workflow commands of GitHub: an error at the line of the method that failed, or of the check that does not hold.
+//! Workflow commands of GitHub: an error at the line of the method that failed, or of the check that does not
+//! hold.
 
 use reports::Status;
 

@@ -153,7 +153,8 @@ mod tests {
         assert_eq!(text.matches("<testcase ").count(), 4);
     }
 
-    /// Of a run that ended with an error only the error counts; a run whose checks could not be asked is skipped.
+    /// Of a run that ended with an error only the error counts; a run whose checks could not be asked is
+    /// skipped.
     #[test]
     fn what_is_wrong_counts_once() {
         let runs = [

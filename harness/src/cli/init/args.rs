@@ -23,8 +23,8 @@ pub struct InitArgs {
     /// Poisson's ratio, 0 to below 0.5 (default: 0.45)
     #[arg(long, value_name = "NUMBER")]
     pub poisson: Option<String>,
-    /// The side from which the plate presses: top (z), bottom, left (x), right, front (y) or back (default: the first whose end
-    /// is blunt and stands on what is held)
+    /// The side from which the plate presses: top (z), bottom, left (x), right, front (y) or back (default:
+    /// the first whose end is blunt and stands on what is held)
     #[arg(long, value_name = "SIDE")]
     pub press_from: Option<String>,
     /// What is held: comparisons such as "z < 3 mm", or a surface that the file names (default: a fifth of the body, away from the

@@ -1,4 +1,5 @@
-//! The body as points of a grid: from which side a plate finds an end that it can press, and how much holds the other end.
+//! The body as points of a grid: from which side a plate finds an end that it can press, and how much holds
+//! the other end.
 
 use clap::ValueEnum;
 use geometry::Point3;
@@ -49,7 +50,8 @@ impl Filled {
         self.0.iter().filter(|inside| **inside).count().max(1) as f64
     }
 
-    /// Part of the height, from the side opposite to the plate on, that is held: `least`, or more where that is little of the body.
+    /// Part of the height, from the side opposite to the plate on, that is held: `least`, or more where that
+    /// is little of the body.
     pub fn held(&self, side: Side, least: f64) -> f64 {
         let mut sum = 0.0;
         let layers = (0..GRID).rev().take_while(|&layer| {
@@ -71,7 +73,8 @@ impl Filled {
         [pressed as f64 / self.all(), backed as f64 / ends.len().max(1) as f64]
     }
 
-    /// The side from which a plate presses best: the first whose end is blunt and stands on what is held, or else the one that comes nearest.
+    /// The side from which a plate presses best: the first whose end is blunt and stands on what is held, or
+    /// else the one that comes nearest.
     pub fn side(&self, least: f64) -> Side {
         let quality = |&side: &Side| {
             let [pressed, backed] = self.end(side, self.held(side, least));

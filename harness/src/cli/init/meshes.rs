@@ -1,4 +1,5 @@
-//! The meshes that the methods and the reference of a scene will have: what a scene names has to be there in each.
+//! The meshes that the methods and the reference of a scene will have: what a scene names has to be there in
+//! each.
 
 use std::sync::Arc;
 

@@ -32,7 +32,8 @@ use scene_text::{Drive, Hold, Size, Wanted};
 const HELD: f64 = 0.2;
 /// Part of the height by which the plate presses unless something else is said.
 const CLOSURE: f64 = 0.05;
-/// The sizes of each method as parts of the finest, and how many times as many nodes that has: the first that do are taken.
+/// The sizes of each method as parts of the finest, and how many times as many nodes that has: the first that
+/// do are taken.
 const FINENESS: [([f64; 3], f64); 7] = [
     ([0.25, 0.5, 1.0], 1.0),
     ([0.4, 0.6, 1.0], 1.0),
@@ -104,7 +105,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a mesh file has of a model, which the scene does not.
+/// Parts of a model in a mesh file that the scene leaves out.
 fn model_of(file: &Path) -> Vec<files::LeftOut> {
     let found = files::left_out(file).into_iter();
     found.filter(|part| part.kind != files::Kind::Values).collect()
@@ -136,7 +137,7 @@ fn sized(file: &Path, args: &InitArgs, ask: &mut Questions) -> Result<(Organ, Le
     Ok((if same { organ } else { read(unit)? }, unit))
 }
 
-/// What the scene says: as given or answered, and what fits the meshes that it makes.
+/// Values of the scene: given, answered, or fitted to the meshes that it makes.
 fn wanted(
     args: &InitArgs,
     ask: &mut Questions,
@@ -219,8 +220,8 @@ fn held_end(organ: &Organ, side: Side, part: f64, described: &dyn Fn(f64) -> Str
     format!("{} {than} {}", ["x", "y", "z"][side.axis()], described(end))
 }
 
-/// Makes sizes finer until every mesh reaches the plate and all its pieces reach what is held, of which `part` of the height is tried first.
-/// Leaves size and hold in `wanted`.
+/// Makes sizes finer until every mesh reaches the plate and all its pieces reach what is held, of which
+/// `part` of the height is tried first. Leaves size and hold in `wanted`.
 fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Result<Meshes, Failure> {
     let (size, side, height) = (wanted.size, wanted.side, organ.extent(wanted.side.axis()));
     let unit = wanted.unit;

@@ -82,7 +82,8 @@ impl Organ {
         inside.unwrap_or(middle)
     }
 
-    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points that all meshes have.
+    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points
+    /// that all meshes have.
     pub fn middle(&self, meshes: &Meshes) -> Point3 {
         let middle = nalgebra::center(&self.bounds[0], &self.bounds[1]);
         if self.depth(&middle) > 2.0 * BELOW * self.smallest_extent() && meshes.all_have(&middle) {

@@ -9,7 +9,7 @@ use crate::cli::args::{Format, SceneArgs};
 /// Arguments of `pick`.
 #[derive(Args)]
 pub struct PickArgs {
-    /// What is searched; the scene needs a reference
+    /// The scene to search; it needs a reference
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Largest error that will do, such as 3%

@@ -135,11 +135,11 @@ struct Answer<'a> {
     also: Vec<(&'a str, f64)>,
     /// The quickest run that keeps all of them.
     cheapest: Option<&'a Tried>,
-    /// Which seconds are compared: `wall`, `cpu` or `least`.
+    /// Clock whose seconds are compared: `wall`, `cpu` or `least`.
     by: Seconds,
     /// All runs, by time.
     runs: &'a [Tried],
-    /// What the runs are compared with, and its own error.
+    /// The reference of the runs, with its own error.
     reference: Option<&'a Reference>,
     /// The answer in words.
     sentence: String,

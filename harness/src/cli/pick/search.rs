@@ -23,7 +23,8 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    /// The quantity in which a reference is off itself by more than it may be, with its largest error and the reference's own.
+    /// The quantity in which a reference is off itself by more than it may be, with its largest error and the
+    /// reference's own.
     pub fn beyond(&self, reference: &Reference) -> Option<(&Quantity, f64, f64)> {
         let all =
             std::iter::once((&self.quantity, self.error)).chain(self.also.iter().map(|(q, most)| (q, *most)));
@@ -203,7 +204,8 @@ fn undisturbed(total: &Timed) -> f64 {
     cpu.map_or(wall, |cpu| cpu.min(wall))
 }
 
-/// Marks the runs that no other beats in time and error, and sorts all by time. No error counts for less than `band`, that of the reference.
+/// Marks the runs that no other beats in time and error, and sorts all by time. No error counts for less than
+/// `band`, that of the reference.
 fn mark_front(tried: &mut [Tried], band: f64) {
     tried.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     let mut least = f64::INFINITY;
@@ -244,7 +246,7 @@ mod tests {
             all.each_ref().map(|r| (r.seconds, r.front)),
             [(0.1, false), (0.5, false), (1.0, true), (2.0, false), (3.0, true)]
         );
-        // What a reference that is off by half itself cannot tell apart.
+        // A reference that is off by half itself cannot separate these.
         all.iter_mut().for_each(|run| run.front = false);
         mark_front(&mut all, 0.5);
         assert_eq!(all.iter().filter(|run| run.front).map(|run| run.seconds).collect::<Vec<_>>(), [1.0]);

@@ -1,10 +1,12 @@
-//! The smooth stress of a run, recovered from that at its quadrature points, and how far its own jumps around it.
+//! The smooth stress of a run, recovered from that at its quadrature points, and how far its own jumps around
+//! it.
 //!
-//! Stress is smooth inside one material, and a method's stress is the less so the worse it is: it jumps from element to element,
-//! and a mesh that locks has a pressure that changes its sign from one cell to the next. Around each node a
-//! polynomial of the method's order (of the pressure a linear one) is fitted to the stress at the points that the node reaches; the fits, weighted by the shape
-//! functions, are the smooth stress (Zienkiewicz & Zhu 1992, Int. J. Numer. Meth. Eng. 33, 1331, and of elements 1987, 24, 337).
-//! A fit sees one material only: across a border stress may jump.
+//! Stress is smooth inside one material, and a method's stress is the less so the worse it is: it jumps from
+//! element to element, and a mesh that locks has a pressure that changes its sign from one cell to the next.
+//! Around each node a polynomial of the method's order (of the pressure a linear one) is fitted to the stress
+//! at the points that the node reaches; the fits, weighted by the shape functions, are the smooth stress
+//! (Zienkiewicz & Zhu 1992, Int. J. Numer. Meth. Eng. 33, 1331, and of elements 1987, 24, 337). A fit sees
+//! one material only: across a border stress may jump.
 
 use material::LinearElastic;
 use nalgebra::{SMatrix, SVector};
@@ -13,8 +15,8 @@ use shape::{Matrix3, Point3, Vector3};
 use super::{Solved, own_stress};
 use crate::discretise::place;
 
-/// Factors of the first terms of 1, x, y, z, xx, yy, zz, yz, zx, xy in `[xx, yy, zz, xy, yz, zx]` of the stress, a column for each term.
-/// Coordinates are over the patch size.
+/// Factors of the first terms of 1, x, y, z, xx, yy, zz, yz, zx, xy in `[xx, yy, zz, xy, yz, zx]` of the
+/// stress, a column for each term. Coordinates are over the patch size.
 type Fit<const M: usize> = SMatrix<f64, 6, M>;
 
 /// Terms of a linear fit.
@@ -28,8 +30,8 @@ const PASSES: usize = 3;
 /// The same of the quadratic terms, which follow what a linear fit leaves: few points do not tell them apart.
 const QUADRATIC_RIDGE: f64 = 1e-3;
 
-/// Energy that is rounding, over that of the largest displacement taken as a strain across the body: a rigid motion has no more, and
-/// no stress to tell. In free fall the gradients themselves are rounding.
+/// Energy that is rounding, over that of the largest displacement taken as a strain across the body: a rigid
+/// motion has no more, and no stress to tell. In free fall the gradients themselves are rounding.
 const ROUNDING: f64 = 1e-20;
 
 /// The fits of a run.
@@ -47,14 +49,15 @@ pub(crate) struct Recovered<'a> {
 struct Patch {
     /// The linear fit.
     linear: Fit<LINEAR>,
-    /// What a method of second order adds to it.
+    /// Quadratic part, of methods of second order.
     quadratic: Option<Fit<QUADRATIC>>,
     /// Of the coordinates, m.
     size: f64,
 }
 
 impl<'a> Recovered<'a> {
-    /// `None` of tissue that relaxes, whose stress is that of its past and followed at quadrature points only.
+    /// `None` of tissue that relaxes, whose stress is that of its past and followed at quadrature points
+    /// only.
     pub fn new(run: &Solved<'a>) -> Option<Recovered<'a>> {
         if run.setup.relaxes() {
             return None;
@@ -92,8 +95,9 @@ impl<'a> Recovered<'a> {
         if whole > 0.0 { sum / whole } else { self.own[self.nearest(x, material)] }
     }
 
-    /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1; `None` without stress.
-    /// Here s* is of linear fits, whatever the method: quadratic ones follow the jumps.
+    /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1;
+    /// `None` without stress. Here s* is of linear fits, whatever the method: quadratic ones follow the
+    /// jumps.
     pub fn jump(&self) -> Option<f64> {
         let volume = &self.run.prepared.volume.rows;
         let u = &self.run.solution.u;
@@ -163,8 +167,9 @@ impl<'a> Recovered<'a> {
 }
 
 impl Patch {
-    /// At `r` (m) from the node. The pressure of nearly incompressible elements of second order alternates from point to point,
-    /// which a linear fit takes the mean of and a quadratic one follows (tet10 in a thick sphere: 1.8 and 3.6 % off).
+    /// At `r` (m) from the node. The pressure of nearly incompressible elements of second order alternates
+    /// from point to point, which a linear fit takes the mean of and a quadratic one follows (tet10 in a
+    /// thick sphere: 1.8 and 3.6 % off).
     fn at(&self, r: &Vector3) -> Matrix3 {
         let linear = self.linear_at(r);
         let Some(quadratic) = &self.quadratic else { return linear };
@@ -187,7 +192,8 @@ fn basis(r: &Vector3, size: f64) -> Basis {
     Basis::from([1.0, x, y, z, x * x, y * y, z * z, y * z, z * x, x * y])
 }
 
-/// The polynomial of the first `M` terms nearest to what is `left`, which it is taken from; each point has its weight.
+/// The polynomial of the first `M` terms nearest to what is `left`, which it is taken from; each point has
+/// its weight.
 fn nearest_fit<const M: usize>(
     bases: &[(Basis, f64)],
     left: &mut [SMatrix<f64, 1, 6>],

@@ -289,8 +289,9 @@ fn refined(
 }
 
 impl Factorization {
-    /// Solves in place and returns the relative residual: for a step of an iteration, which must follow its right-hand side. A
-    /// residual that rounding explains may be larger: near a singular matrix a step is many times longer than its right-hand side.
+    /// Solves in place and returns the relative residual: for a step of an iteration, which must follow its
+    /// right-hand side. A residual that rounding explains may be larger: near a singular matrix a step is
+    /// many times longer than its right-hand side.
     pub fn solve(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
         let Refined { x, rest, residual } = self.refine(b)?;
         let rounding = || self.backward_error(&Solved::new(residual, &rest, &x, b)) <= BACKWARD_LIMIT;

@@ -12,13 +12,14 @@ use crate::max_entropy::NoPoint;
 use crate::mls::Group;
 use crate::{Basis, EfgError};
 
-/// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand on the other side of
-/// a point have given way, and a row of that number sums to one within 1e-10. Elsewhere medians are 10 to 100.
+/// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand
+/// on the other side of a point have given way, and a row of that number sums to one within 1e-10. Elsewhere
+/// medians are 10 to 100.
 const MOST_CONDITION: f64 = 1e5;
 
 impl Approximation {
-    /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off on
-    /// purpose: it would change last bits from machine to machine.
+    /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off
+    /// on purpose: it would change last bits from machine to machine.
     pub(super) fn fill<const GRAD: bool>(
         &self,
         points: &[Point3],
@@ -62,7 +63,7 @@ impl Approximation {
                 }
             }
         }
-        // What is left there is written over.
+        // Older values are overwritten.
         rows.values.resize(rows.nodes.len(), 0.0);
         rows.grads.resize(if GRAD { rows.nodes.len() } else { 0 }, Vector3::zeros());
         let fit = match &self.functions {

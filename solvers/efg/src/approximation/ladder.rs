@@ -134,15 +134,16 @@ impl Approximation {
         left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
     }
 
-    /// What the ways through the body from a point to all nodes are longer by than the straight ones, m; empty in a body without gaps.
+    /// Detours from a point to all nodes, m: path through the body minus straight distance; empty in a body
+    /// without gaps.
     fn detours(&self, x: &Point3, cell: Option<u32>) -> Vec<f64> {
         let (Some(gaps), Some(cell)) = (&self.gaps, cell) else { return Vec::new() };
         gaps.detours(x, cell, &self.nodes[..self.balls.len()], MOST_ENLARGEMENT * self.widest())
     }
 }
 
-/// Factor on all support radii by which `count` of the nodes (all, if there are fewer) cover a point comfortably, from their
-/// relative distances.
+/// Factor on all support radii by which `count` of the nodes (all, if there are fewer) cover a point
+/// comfortably, from their relative distances.
 fn enlargement(relative: impl Fn(u32) -> f64, nodes: impl Iterator<Item = u32>, count: usize) -> f64 {
     let mut ratios: Vec<f64> = nodes.map(relative).collect();
     let Some(last) = count.min(ratios.len()).checked_sub(1) else { return 1.0 };

@@ -9,7 +9,8 @@ use shape::Point3;
 /// A way through a face may touch its edges: barycentric coordinates of rounding below zero.
 const ON_EDGE: f64 = -1e-9;
 
-/// Vertices and the straight ways between them: edges, and through a face from one side's vertex to the other's.
+/// Vertices and the straight ways between them: edges, and through a face from one side's vertex to the
+/// other's.
 pub(super) struct Graph {
     points: Vec<Point3>,
     offsets: Vec<usize>,

@@ -9,7 +9,7 @@ use super::error::Place;
 /// A part of a file that is not in the mesh, or not as the file has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
-    /// Where it is.
+    /// Its line.
     pub place: Place,
     /// Its name: a keyword of a deck, an array.
     pub what: String,
@@ -66,7 +66,7 @@ pub fn summary(parts: &[LeftOut]) -> Vec<String> {
     groups.into_iter().map(line).collect()
 }
 
-/// What the mesh of a file leaves out; nothing of a surface, or of a file that can't be read.
+/// Parts of a file that its mesh leaves out; none of a surface or of a file that can't be read.
 pub fn left_out(file: &Path) -> Vec<LeftOut> {
     let content = super::bytes(file).ok().and_then(|bytes| super::parse(&bytes, file).ok());
     content.map(super::Content::into_left_out).unwrap_or_default()

@@ -1,14 +1,16 @@
 //! Middle nodes of quadratic cells that a file lists in another order than its format has.
 //!
-//! Programs differ in it: Gmsh exchanges the last two of a tet10 against VTK and Abaqus. A node belongs to the edge whose middle it is
-//! nearest to. Where all cells of a kind have one order, and it is not that of the format, that order is meant.
+//! Programs differ in it: Gmsh exchanges the last two of a tet10 against VTK and Abaqus. A node belongs to
+//! the edge whose middle it is nearest to. Where all cells of a kind have one order, and it is not that of
+//! the format, that order is meant.
 
 use crate::{CellKind, Point3};
 
 /// A middle node is at most this part of its edge's length from the middle of the edge.
 const NEAR: f64 = 0.25;
 
-/// Puts the middle nodes of each kind in their places where the file has all of them in one other order; returns kinds and cells.
+/// Puts the middle nodes of each kind in their places where the file has all of them in one other order;
+/// returns kinds and cells.
 pub(super) fn put_in_order(
     kinds: &[CellKind],
     nodes: &mut [u32],

@@ -133,8 +133,8 @@ fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     }
 }
 
-/// The bytes without the mark of the encoding that some editors put in front, and without the zeros that some programs write behind a
-/// text.
+/// The bytes without the mark of the encoding that some editors put in front, and without the zeros that some
+/// programs write behind a text.
 fn unmarked(bytes: &[u8]) -> &[u8] {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());

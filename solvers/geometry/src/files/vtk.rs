@@ -39,7 +39,8 @@ struct Found {
 }
 
 impl Found {
-    /// Keeps single numbers of cells, which may be regions, and the names of other arrays; `place` is where they are described.
+    /// Keeps single numbers of cells, which may be regions, and the names of other arrays; `place` is where
+    /// they are described.
     fn keep(&mut self, of: Of, parts: usize, name: &str, place: Place, values: Vec<f64>) {
         // Blanks in names are written as %20.
         let array = Array { name: name.replace("%20", " "), place, values };

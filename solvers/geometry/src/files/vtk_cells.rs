@@ -34,7 +34,8 @@ pub(super) struct Array {
     pub values: Vec<f64>,
 }
 
-/// The first known array that a grid has of the regions of cells; `array` finds one by its name without regard to capitals.
+/// The first known array that a grid has of the regions of cells; `array` finds one by its name without
+/// regard to capitals.
 pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<Option<Array>> {
     for names in REGIONS {
         let found: Vec<Option<Array>> = names.iter().map(|name| array(name)).collect::<Parsed<_>>()?;
@@ -70,7 +71,7 @@ impl Array {
     }
 }
 
-/// What is lost with an array that is not taken; `taken` says whether another one has the regions.
+/// Meaning of an array that is not taken; `taken` says whether another one has the regions.
 pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
     let whole = array.values.iter().all(|value| value.fract() == 0.0);
     let (low, high) =

@@ -1,7 +1,9 @@
-//! Triangles without an area that close a T-junction, exchanged with their neighbours for triangles that have one.
+//! Triangles without an area that close a T-junction, exchanged with their neighbours for triangles that have
+//! one.
 //!
-//! Such a needle lies on the long edge of a neighbour, which ends at the needle's ends and passes its third corner. The two make a
-//! quadrilateral; cut along its other diagonal it is the same surface with the corner as a corner of both parts.
+//! Such a needle lies on the long edge of a neighbour, which ends at the needle's ends and passes its third
+//! corner. The two make a quadrilateral; cut along its other diagonal it is the same surface with the corner
+//! as a corner of both parts.
 
 use super::closed::{self, WELD};
 use super::{Soup, SurfaceProblem};

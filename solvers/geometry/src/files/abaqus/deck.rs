@@ -292,7 +292,7 @@ impl Deck {
     }
 }
 
-/// What is lost with a card that is read over.
+/// Meaning of a card that is not read.
 fn lost(card: &Card, depth: usize) -> Option<LeftOut> {
     let of_type = card.get("TYPE").filter(|name| matches!(element_type(name), Some(Type::Other)));
     let (kind, which) = match (card.keyword.as_str(), of_type) {

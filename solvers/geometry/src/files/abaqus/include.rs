@@ -6,10 +6,11 @@ use disk::Kind;
 
 /// Files that include files: a deck that includes itself ends here.
 pub(super) const DEEPEST: usize = 8;
-/// Most files that a deck includes: eight files that each include the next ten times would be a hundred million.
+/// Most files that a deck includes: eight files that each include the next ten times would be a hundred
+/// million.
 const MOST: usize = 1000;
 
-/// What a deck has included so far.
+/// Files that a deck has included so far.
 #[derive(Default)]
 pub(super) struct Includes {
     files: usize,
@@ -17,7 +18,8 @@ pub(super) struct Includes {
 }
 
 impl Includes {
-    /// Reads one more file; where it is, with its bytes, or why it is not read. All files together are no larger than one may be.
+    /// Reads one more file; where it is, with its bytes, or why it is not read. All files together are no
+    /// larger than one may be.
     pub(super) fn read(&mut self, folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), &'static str> {
         let path = within(folder, name)?;
         self.files += 1;

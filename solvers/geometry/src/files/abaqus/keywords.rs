@@ -25,7 +25,8 @@ pub(super) fn known(keyword: &str) -> Option<&'static str> {
     KNOWN.get(&letters(keyword)).copied()
 }
 
-/// Keywords that are read, or whose loss changes nothing of the body: headings, ends and what is to be printed.
+/// Keywords that are read, or whose loss changes nothing of the body: headings, ends and what is to be
+/// printed.
 const NO_LOSS: [&str; 31] = [
     "NODE",
     "ELEMENT",

@@ -316,7 +316,7 @@ impl Scope {
         }
         for key in &self.elsets.order {
             let (name, members) = &self.elsets.lists[key];
-            // What Abaqus/CAE makes for itself begins so.
+            // Abaqus/CAE names its internal sets so.
             if !name.starts_with('_') {
                 let cells: Vec<u32> =
                     members.iter().filter_map(|&number| self.content.cell_of(number)).collect();

@@ -1,5 +1,5 @@
-//! The writer of flat decks: a section for each region, a set for each further group of cells, a surface of elements' faces for each
-//! facet group.
+//! The writer of flat decks: a section for each region, a set for each further group of cells, a surface of
+//! elements' faces for each facet group.
 
 use std::fmt::Write;
 

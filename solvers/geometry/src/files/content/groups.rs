@@ -32,7 +32,7 @@ impl Content {
         self.left_out.extend(parts);
     }
 
-    /// What the mesh does not have of the file.
+    /// Parts of the file that the mesh leaves out.
     pub(in crate::files) fn into_left_out(mut self) -> Vec<LeftOut> {
         self.put_middles_in_order();
         self.left_out

@@ -1,7 +1,9 @@
 //! Gmsh's .msh files.
 //!
-//! The physical group of a solid element becomes its region, further ones groups of cells, those of a surface element facet groups;
-//! version 2 lists an element once for each of its groups. Groups without a name are called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh reference manual, "MSH file format".)
+//! The physical group of a solid element becomes its region, further ones groups of cells, those of a surface
+//! element facet groups; version 2 lists an element once for each of its groups. Groups without a name are
+//! called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh reference manual, "MSH file
+//! format".)
 
 mod groups;
 mod order;

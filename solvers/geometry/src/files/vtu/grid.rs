@@ -206,7 +206,7 @@ impl<'a> File<'a> {
                 }
                 let single =
                     of_cells && node.attribute("NumberOfComponents").is_none_or(|count| count.trim() == "1");
-                // What can't be read is not needed here.
+                // Unreadable values are not needed here.
                 let read = |_| self.array(node, cells).map(reals).unwrap_or_default();
                 let values = (taken.is_none() && single).then_some(()).map(read).unwrap_or_default();
                 found.push(lost(&Array { name: name.into(), place, values }, of_cells, taken.is_some()));

@@ -67,9 +67,9 @@ impl Newton<'_> {
         }
     }
 
-    /// Relative residual in a state of displacement `u`: forces on free degrees of freedom, volumes of the pressures, forces of driven
-    /// tools. Forces are relative to no less than what rounding of the displacement leaves of them: a body that moves as a whole has
-    /// no others.
+    /// Relative residual in a state of displacement `u`: forces on free degrees of freedom, volumes of the
+    /// pressures, forces of driven tools. Forces are relative to no less than what rounding of the
+    /// displacement leaves of them: a body that moves as a whole has no others.
     pub(super) fn residual(&self, balance: &Balance, u: &[Vector3], time: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);

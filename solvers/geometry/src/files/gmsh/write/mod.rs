@@ -55,7 +55,8 @@ fn further_tags(mesh: &Mesh) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Physical tag of a facet group by its place among the names: behind those of the cells, so that no tag is of both.
+/// Physical tag of a facet group by its place among the names: behind those of the cells, so that no tag is
+/// of both.
 fn group_tag(mesh: &Mesh, group: usize) -> usize {
     mesh.region_names().len() + mesh.cell_groups().count() + group + 1
 }

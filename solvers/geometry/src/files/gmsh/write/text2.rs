@@ -1,4 +1,5 @@
-//! Version 2.2: an element for each facet of each group, then one for each cell and each of its physical tags.
+//! Version 2.2: an element for each facet of each group, then one for each cell and each of its physical
+//! tags.
 
 use std::fmt::Write;
 

@@ -1,4 +1,5 @@
-//! Version 4.1: a volume entity for each set of groups that a cell is in, a surface entity for each that a facet is in.
+//! Version 4.1: a volume entity for each set of groups that a cell is in, a surface entity for each that a
+//! facet is in.
 //!
 //! An element belongs to one entity, an entity to any number of physical groups: facets of the same groups are one entity.
 
@@ -39,7 +40,8 @@ struct Volumes {
 impl Volumes {
     fn new(mesh: &Mesh) -> Volumes {
         let of_cells = cell_tags(mesh);
-        // Those of one region alone come first and in its order: a mesh without further groups has an entity for each region.
+        // Those of one region alone come first and in its order: a mesh without further groups has an entity
+        // for each region.
         let mut tags = of_cells.clone();
         tags.sort_unstable_by_key(|tags| (tags.len(), tags.clone()));
         tags.dedup();
