@@ -1,7 +1,7 @@
-//! Cell and face topology. Node order is that of VTK and Abaqus; faces are numbered so that their normals,
-//! by the right-hand rule over the corner nodes, point outwards.
+//! Cell and face topology. Node order is that of VTK and Abaqus. The corner nodes of each face are ordered so
+//! that its normal, by the right-hand rule, points outwards.
 
-/// The shapes a mesh may mix.
+/// Shapes that cells of a mesh may have, in any mixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CellKind {
     /// 4-node tetrahedron: corners.
@@ -83,7 +83,7 @@ impl CellKind {
         if matches!(self, CellKind::Tet4 | CellKind::Hex8) { 1 } else { 2 }
     }
 
-    /// Corner pairs of each edge; mid-edge nodes of the quadratic kinds follow this order.
+    /// Corner pairs of the edges. The mid-edge nodes of the quadratic kinds follow this order.
     pub fn edges(self) -> &'static [[usize; 2]] {
         if self.is_tet() { &TET_EDGES } else { &HEX_EDGES }
     }

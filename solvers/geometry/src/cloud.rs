@@ -1,4 +1,4 @@
-//! Node clouds: nodes without cells, each with the local spacing that supports are measured in.
+//! Node clouds: nodes without cells, each with a local spacing that support radii are multiples of.
 
 mod farthest;
 mod generate;
@@ -13,10 +13,10 @@ use rayon::prelude::*;
 
 use crate::{Mesh, Point3, Search};
 
-/// Neighbours whose mean distance is the spacing of a node in a cloud without a mesh: about as many as a node of a
-/// tetrahedral mesh has edges.
+/// Number of neighbours whose mean distance is the spacing of a node in a cloud without a mesh, close to the
+/// number of edges at a node of a tetrahedral mesh.
 const NEIGHBOURS: usize = 14;
-/// Nodes per parallel task at least.
+/// Smallest number of nodes per parallel task.
 const CHUNK: usize = 32;
 
 /// Nodes and their local spacing.
@@ -24,13 +24,16 @@ const CHUNK: usize = 32;
 pub struct Cloud {
     /// Node positions (m).
     pub points: Vec<Point3>,
-    /// Local spacing at each node (m): mean length of the mesh edges that meet there, or mean distance to the 14
-    /// nearest nodes (all others, if there are fewer).
+    /// Local spacing at each node (m): mean length of the mesh edges at the node, or mean distance to the 14
+    /// nearest nodes (to all others, if there are fewer).
     pub spacing: Vec<f64>,
 }
 
 impl Cloud {
-    /// Takes the nodes as they are and measures the spacing by nearest neighbours.
+    /// Creates a cloud from nodes and computes each spacing as the mean distance to the nearest neighbours.
+    ///
+    /// # Errors
+    /// Fewer than two nodes, a coordinate that is not finite, or two nodes at the same position.
     pub fn from_points(points: Vec<Point3>) -> Result<Cloud, CloudError> {
         if points.len() < 2 {
             return Err(CloudError::TooFew { nodes: points.len(), least: 2 });
@@ -53,8 +56,8 @@ impl Cloud {
     }
 }
 
-/// The nodes of a mesh, spacing = mean length of the edges that meet at each. In quadratic cells an edge counts as
-/// its two halves. A node that no cell uses gets the spacing 0.
+/// Nodes of a mesh as a cloud. The spacing at a node (m) is the mean length of the edges that meet there. An
+/// edge of a quadratic cell counts as its two halves. A node that no cell uses gets the spacing 0.
 pub fn cloud_from_mesh(mesh: &Mesh) -> Cloud {
     let points = mesh.points();
     let (mut total, mut count) = (vec![0.0; points.len()], vec![0u32; points.len()]);
@@ -69,7 +72,8 @@ pub fn cloud_from_mesh(mesh: &Mesh) -> Cloud {
     Cloud { points: points.to_vec(), spacing }
 }
 
-/// Every edge of the mesh once, by ascending nodes, the lower one first. In quadratic cells an edge counts as its two halves.
+/// Edges of the mesh as pairs of nodes, lower node first. Each edge occurs once, in ascending order. An edge
+/// of a quadratic cell counts as its two halves.
 pub fn edges(mesh: &Mesh) -> Vec<(u32, u32)> {
     let mut edges: Vec<(u32, u32)> = Vec::new();
     for cell in 0..mesh.cell_count() {

@@ -1,8 +1,9 @@
 //! Structured meshes: boxes, balls, cylinders, sphere shells and the kidney, in every cell kind.
 //!
-//! Each is laid out as hexahedra in a space of parameters, turned into the cell kind asked for there (tetrahedra by
-//! [`to_tets`], quadratic cells by [`raise_order`]), and only then mapped to its place. All nodes go through the
-//! same map, so mid-edge nodes lie on the curved body and quadratic cells keep their order on curved boundaries.
+//! Each mesh is laid out as hexahedra in a parameter space and converted there to the requested cell kind
+//! (tetrahedra by [`to_tets`], quadratic cells by [`raise_order`]). Only then all nodes are mapped to the
+//! body by the same map. So mid-edge nodes lie on the curved body, and quadratic cells keep their order on
+//! curved boundaries.
 
 mod ball;
 mod boxes;
@@ -20,38 +21,39 @@ pub use shell::{ShellExtent, sphere_shell_mesh};
 
 use crate::{CellKind, Mesh, MeshError, quality::InvertedElement};
 
-/// What makes a mesh impossible to generate.
+/// Errors of mesh generation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GenerateError {
     /// A number of cells that is zero or beyond what 32-bit indices can count.
     #[error("{what} is {found}; it has to be between 1 and {most}")]
     Cells {
-        /// Which count.
+        /// Name of the count.
         what: &'static str,
-        /// Its value.
+        /// Value of the count.
         found: usize,
-        /// The most there can be.
+        /// Largest admissible value.
         most: usize,
     },
     /// A length, ratio or fraction outside its range.
     #[error("{what} is {found}; it has to be {needed}")]
     Value {
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         found: f64,
-        /// The range it needs, in words.
+        /// Admissible range, in words.
         needed: &'static str,
     },
-    /// Jitter or grading so strong that a cell turned inside out.
+    /// A cell inverted by too strong jitter or grading.
     #[error(transparent)]
     Inverted(#[from] InvertedElement),
-    /// A mesh that breaks the rules of [`Mesh`].
+    /// A mesh that violates the invariants of [`Mesh`].
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
-/// Most cells along one direction, and in all: every node index of every generator stays within 32 bits.
+/// Largest number of cells along one direction, and in total. Every node index of every generator fits in 32
+/// bits.
 const MOST_CELLS: usize = 1 << 20;
 const MOST_CELLS_IN_ALL: usize = 1 << 25;
 
@@ -80,7 +82,7 @@ fn check_positive(what: &'static str, found: f64) -> Result<(), GenerateError> {
     }
 }
 
-/// Turns a hex8 mesh into the kind asked for, mid-edge nodes halfway between their corners.
+/// Converts a hex8 mesh to the requested kind, with mid-edge nodes halfway between their corners.
 fn into_kind(hexes: Mesh, kind: CellKind) -> Mesh {
     converted(hexes, kind).expect("hexahedra become any kind")
 }

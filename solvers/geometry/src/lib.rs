@@ -1,6 +1,7 @@
 //! Bodies in space: meshes, node clouds, quadrature, spatial search, mesh files and mesh quality.
 //!
-//! Everything is in metres and in flat arrays; nothing here knows an approximation or a material.
+//! All lengths are in metres, and all data are in flat arrays. The crate is independent of approximations and
+//! materials.
 //!
 //! ```
 //! use geometry::{CellKind, Kidney, Search, cloud, generate::kidney_mesh, quality};

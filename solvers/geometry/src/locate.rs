@@ -1,37 +1,37 @@
-//! Which tetrahedron holds a point: for barycentric transfer and for finding integration cells.
+//! Finds the tetrahedron that contains a point, for barycentric transfer and for integration cells.
 
 use rayon::prelude::*;
 
 use crate::triangle::closest_on_triangle;
 use crate::{Matrix3, Mesh, Point3, Vector3};
 
-/// Barycentric coordinates may be this negative and still count as inside: faces shared by two cells lose nothing
-/// to rounding.
+/// Tolerance on negative barycentric coordinates of a point inside a cell, so that rounding loses no point on
+/// a face between two cells.
 const TOLERANCE: f64 = 1e-10;
-/// Relative error of barycentric coordinates that the search for the closest cell allows for.
+/// Bound on the relative error of barycentric coordinates in the search for the closest cell.
 const SLACK: f64 = 1e-6;
 
-/// A point's place in a mesh of tetrahedra.
+/// Location of a point in a mesh of tetrahedra.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Location {
     /// Cell index.
     pub cell: u32,
-    /// Barycentric coordinates with respect to the cell's four corners; they sum to one. Outside the mesh they
-    /// belong to the point of the cell closest to the one asked for.
+    /// Barycentric coordinates with respect to the cell's four corners; they sum to one. For a point outside
+    /// the mesh they belong to the closest point of the cell.
     pub barycentric: [f64; 4],
-    /// Distance from the mesh (m); 0 inside.
+    /// Distance from the mesh (m); 0 for points inside.
     pub outside: f64,
 }
 
-/// What makes a mesh unlocatable.
+/// Errors of point location.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LocateError {
-    /// A cell that is no tetrahedron.
+    /// A cell that is not a tetrahedron.
     #[error("cell {cell} is a {kind}; points are located in tetrahedra (convert the mesh first)", kind = kind.name())]
     NotTetrahedron {
         /// Cell index.
         cell: usize,
-        /// Its kind.
+        /// Kind of the cell.
         kind: crate::CellKind,
     },
     /// A tetrahedron without volume.
@@ -39,7 +39,7 @@ pub enum LocateError {
     Flat {
         /// Cell index.
         cell: usize,
-        /// Its Jacobian determinant (m^3).
+        /// Jacobian determinant of the cell (m^3).
         det_j: f64,
     },
     /// A query that is not a finite position.
@@ -53,13 +53,18 @@ pub enum LocateError {
 /// Points per parallel task.
 const CHUNK: usize = 128;
 
-/// Locates each point among the tetrahedra of `mesh`, taken flat through their corners. Points in several cells go
-/// to the lowest-numbered one; points outside all go to the closest cell and carry their distance.
+/// Locates each point among the tetrahedra of `mesh`, with straight edges between their corners. A point in
+/// several cells is assigned to the one with the lowest number. A point outside all cells is assigned to the
+/// closest cell and has a positive distance.
+///
+/// # Errors
+/// A cell that is not a tetrahedron or has no volume, or a point that is not finite.
 pub fn locate(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
     Locator::new(mesh)?.locate(points)
 }
 
-/// Tetrahedra in a uniform grid of bins, taken flat through their corners: for points that come batch after batch.
+/// Tetrahedra in a uniform grid of bins, with straight edges between their corners, for repeated batches of
+/// points.
 pub struct Locator {
     corners: Vec<[Point3; 4]>,
     frames: Vec<Frame>,
@@ -73,7 +78,7 @@ pub struct Locator {
     members: Vec<u32>,
 }
 
-/// What barycentric coordinates in a cell are made of.
+/// Affine map from positions to barycentric coordinates of a cell.
 struct Frame {
     origin: Point3,
     inverse: Matrix3,
@@ -91,37 +96,42 @@ impl Frame {
         [-(x + y + z), x, y, z]
     }
 
-    /// The squared distance of a point from the cell, or less: that from the farthest plane of a face that it lies beyond.
+    /// Lower bound of the squared distance (m^2) of a point from the cell: its largest squared distance
+    /// beyond a face plane.
     fn beyond(&self, p: &Point3) -> f64 {
         let slopes = self.slopes().map(|slope| slope.norm_squared());
-        // Nearer by far more than rounding: a cell that is as close as another must not be taken for one farther away.
+        // The slack far exceeds rounding, so that of two equally close cells neither counts as farther away.
         let past = |l: f64| (l + SLACK * (1.0 - l)).min(0.0);
         let of_face = self.barycentric(p).into_iter().zip(slopes).map(|(l, square)| past(l).powi(2) / square);
         of_face.fold(0.0, f64::max)
     }
 }
 
-/// What the search for the closest cell reuses from point to point.
+/// Buffers of the search for the closest cell, reused from point to point.
 #[derive(Default)]
 struct Scratch {
     stamp: usize,
-    /// Stamp of the last point that met each cell: most cells are in several bins. Empty until a point lies outside.
+    /// Stamp of the last point for which each cell was visited, because most cells are in several bins. Empty
+    /// until a point lies outside.
     seen: Vec<usize>,
-    /// A squared distance (m^2) that the cell is not nearer than, and the cell.
+    /// Lower bound of the squared distance (m^2) to the cell, and the cell.
     near: Vec<(f64, usize)>,
 }
 
 /// The closest cell so far.
 struct Closest {
-    /// Squared distance, m^2.
+    /// Squared distance to the cell, m^2.
     square: f64,
-    /// The point of the cell there.
+    /// Closest point of the cell.
     at: Point3,
     cell: usize,
 }
 
 impl Locator {
     /// Sorts the cells of a mesh into bins.
+    ///
+    /// # Errors
+    /// A cell that is not a tetrahedron or has no volume.
     pub fn new(mesh: &Mesh) -> Result<Locator, LocateError> {
         let count = mesh.cell_count();
         let mut cells = Locator {
@@ -156,7 +166,7 @@ impl Locator {
         let boxes = &cells.boxes;
         cells.low = boxes.iter().fold(boxes[0][0], |low, b| low.inf(&b[0]));
         let high = boxes.iter().fold(boxes[0][1], |high, b| high.sup(&b[1]));
-        // About one bin per cell, no bin much longer than it is wide.
+        // About one bin per cell, with bins nearly cubic.
         let extent = high - cells.low;
         let side = (extent.product() / count as f64).cbrt();
         cells.bins = std::array::from_fn(|d| ((extent[d] / side).ceil() as usize).clamp(1, 256));
@@ -186,7 +196,7 @@ impl Locator {
         (self.offsets, self.members) = (offsets, members);
     }
 
-    /// Bin of a position along each axis; positions outside go to the nearest bin.
+    /// Bin of a position along each axis, or the nearest bin for positions outside the grid.
     fn bin(&self, p: &Point3) -> [usize; 3] {
         std::array::from_fn(|d| {
             // The cast saturates: negative numbers become 0.
@@ -209,7 +219,7 @@ impl Locator {
         &self.corners[cell]
     }
 
-    /// Barycentric coordinates of any point with respect to a cell; some are negative outside it.
+    /// Barycentric coordinates of any point with respect to a cell. Outside the cell some are negative.
     pub fn barycentric(&self, cell: usize, p: &Point3) -> [f64; 4] {
         self.frames[cell].barycentric(p)
     }
@@ -219,7 +229,10 @@ impl Locator {
         self.frames[cell].slopes()
     }
 
-    /// As the function [`locate`], of these cells.
+    /// Locates points as the function [`locate`] does.
+    ///
+    /// # Errors
+    /// A point that is not finite.
     pub fn locate(&self, points: &[Point3]) -> Result<Vec<Location>, LocateError> {
         if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
             return Err(LocateError::NotFinite { point });
@@ -244,8 +257,9 @@ impl Locator {
         &self.members[self.offsets[bin]..self.offsets[bin + 1]]
     }
 
-    /// The closest cell to a point outside all (of several, the lowest-numbered): cubes of bins about the point's own grow until
-    /// they hold cells, then all bins are searched that the ball to the closest of these touches.
+    /// Finds the closest cell to a point outside all cells; of several equally close, the lowest-numbered.
+    /// Cubes of bins around the point's bin grow until they hold cells. Then all bins that the ball to the
+    /// closest of these cells touches are searched.
     fn closest(&self, p: &Point3, scratch: &mut Scratch) -> Location {
         scratch.stamp += 1;
         scratch.seen.resize(self.corners.len(), 0);
@@ -259,7 +273,7 @@ impl Locator {
                 break;
             }
         }
-        // Beyond the ball by far more than rounding.
+        // The margin beyond the ball far exceeds rounding.
         let reach =
             Vector3::repeat(best.square.sqrt() * (1.0 + 1e-9) + 1e-9 * self.width.iter().sum::<f64>());
         self.search(p, self.bin(&(p - reach)), self.bin(&(p + reach)), &mut best, scratch);
@@ -267,8 +281,8 @@ impl Locator {
         Location { cell: best.cell as u32, barycentric, outside: best.square.sqrt() }
     }
 
-    /// Looks among the cells of some bins that have not been looked at for this point. The nearest by its planes goes first: mostly
-    /// it is the closest, and one comparison dismisses any other.
+    /// Searches the cells in a range of bins that have not been visited for this point. The cell with the
+    /// smallest lower bound comes first: it mostly is the closest, and one comparison dismisses any other.
     fn search(
         &self,
         p: &Point3,
@@ -305,7 +319,7 @@ impl Locator {
         }
     }
 
-    /// Squared distance to the faces of a cell, and the point there.
+    /// Squared distance (m^2) to the faces of a cell, and the closest point.
     fn closest_on_cell(&self, cell: usize, p: &Point3) -> (f64, Point3) {
         let mut best = (f64::INFINITY, self.corners[cell][0]);
         for face in crate::CellKind::Tet4.faces() {
@@ -339,8 +353,8 @@ mod tests {
             let cells = Locator::new(&mesh).unwrap();
             let [low, high] = [cells.low, cells.boxes.iter().fold(cells.low, |high, b| high.sup(&b[1]))];
             let (middle, extent) = (nalgebra::center(&low, &high), high - low);
-            // Low-discrepancy points in three times the box, by multiples of irrational steps, and nodes moved off the mesh by whole
-            // extents, to which several cells are as close.
+            // Low-discrepancy points in three times the box, by multiples of irrational steps, and mesh nodes
+            // moved by whole extents, which are equally close to several cells.
             let at =
                 |q: usize, d: usize| ((q as f64 * [0.8191725, 0.6710436, 0.5497005][d]).fract() - 0.5) * 3.0;
             let scattered =

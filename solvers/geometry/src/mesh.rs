@@ -1,5 +1,5 @@
-//! A mixed mesh in flat arrays, with named regions and further groups of cells, and named groups of boundary
-//! facets.
+//! A mixed mesh in flat arrays, with named regions, further named groups of cells and named groups of
+//! boundary facets.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -15,7 +15,7 @@ pub struct Facet {
     pub face: u8,
 }
 
-/// What makes a mesh unusable.
+/// Errors of mesh construction.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// A mesh with no cells or no points.
@@ -76,12 +76,12 @@ pub struct Mesh {
     boundary: Boundary,
 }
 
-/// Found when first asked for: every load and every support asks, and with 6190 tetrahedra it takes a fifth of the time that a cloud
-/// of 83 nodes takes to prepare.
+/// Cached boundary facets, computed on first use. Every load and every essential condition needs them, and
+/// for 6190 tetrahedra they take a fifth of the time to prepare a cloud of 83 nodes.
 #[derive(Clone, Debug, Default)]
 struct Boundary(OnceLock<Vec<Facet>>);
 
-/// Cells tell the boundary: meshes do not differ by whether anybody has asked.
+/// The cells determine the boundary, so two meshes are equal whether or not it has been computed.
 impl PartialEq for Boundary {
     fn eq(&self, _: &Boundary) -> bool {
         true
@@ -89,15 +89,29 @@ impl PartialEq for Boundary {
 }
 
 impl Mesh {
-    /// A mesh of one region named "body", without facet groups. `cells` are (kind, node indices) pairs; the
-    /// number of indices must be the kind's own (a programming error otherwise, hence a panic).
+    /// Creates a mesh of one region named "body", without facet groups. `cells` are (kind, node indices)
+    /// pairs.
+    ///
+    /// # Errors
+    /// No cells or points, a coordinate that is not finite, or a node that is out of range or repeated within
+    /// a cell.
+    ///
+    /// # Panics
+    /// A cell whose number of indices is not that of its kind.
     pub fn new(points: Vec<Point3>, cells: &[(CellKind, Vec<u32>)]) -> Result<Mesh, MeshError> {
         let kinds = cells.iter().map(|(kind, _)| *kind).collect();
         let nodes = cells.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
         Mesh::from_flat(points, kinds, nodes)
     }
 
-    /// As [`Mesh::new`] from flat arrays: the kind of each cell and all connectivities one after another.
+    /// Creates a mesh as [`Mesh::new`] does, from flat arrays: the kind of each cell, and the concatenated
+    /// node indices.
+    ///
+    /// # Errors
+    /// As for [`Mesh::new`].
+    ///
+    /// # Panics
+    /// As for [`Mesh::new`].
     pub fn from_flat(points: Vec<Point3>, kinds: Vec<CellKind>, nodes: Vec<u32>) -> Result<Mesh, MeshError> {
         if points.is_empty() || kinds.is_empty() {
             return Err(MeshError::Empty { points: points.len(), cells: kinds.len() });
@@ -153,7 +167,7 @@ impl Mesh {
         self
     }
 
-    /// Adds (or replaces) a named group of cells, which have their regions all the same.
+    /// Adds (or replaces) a named group of cells. The regions of the cells are unaffected.
     pub fn with_cell_group(mut self, name: &str, mut cells: Vec<u32>) -> Mesh {
         assert!(cells.iter().all(|&cell| (cell as usize) < self.kinds.len()), "cells of the mesh");
         cells.sort_unstable();
@@ -163,6 +177,9 @@ impl Mesh {
     }
 
     /// Adds (or replaces) a named group of facets.
+    ///
+    /// # Errors
+    /// A facet of a cell or face that does not exist.
     pub fn with_group(mut self, name: &str, facets: Vec<Facet>) -> Result<Mesh, MeshError> {
         for f in &facets {
             let known = self.kinds.get(f.cell as usize).is_some_and(|k| (f.face as usize) < k.faces().len());
@@ -189,7 +206,7 @@ impl Mesh {
         self.kinds[cell]
     }
 
-    /// The one kind of all cells, or `None` in a mixed mesh.
+    /// The common kind of all cells, or `None` in a mixed mesh.
     pub fn uniform_kind(&self) -> Option<CellKind> {
         self.kinds.iter().all(|k| *k == self.kinds[0]).then_some(self.kinds[0])
     }
@@ -214,12 +231,12 @@ impl Mesh {
         &self.region_names
     }
 
-    /// Groups of cells across the regions, sorted by name, with their cells in order.
+    /// Groups of cells, which may cross regions, sorted by name, each with its cells in ascending order.
     pub fn cell_groups(&self) -> impl Iterator<Item = (&str, &[u32])> {
         self.cell_groups.iter().map(|(name, cells)| (name.as_str(), cells.as_slice()))
     }
 
-    /// Whether a cell is in the region or in the group of cells of a name.
+    /// Whether a cell is in the region or the cell group with this name.
     pub fn is_in(&self, cell: usize, name: &str) -> bool {
         let group =
             || self.cell_groups.get(name).is_some_and(|cells| cells.binary_search(&(cell as u32)).is_ok());
@@ -242,7 +259,7 @@ impl Mesh {
         self.kind(facet.cell as usize).faces()[facet.face as usize].iter().map(|&local| cell[local])
     }
 
-    /// All facets that belong to one cell only, in cell order.
+    /// Facets that belong to only one cell, in cell order.
     pub fn boundary(&self) -> Vec<Facet> {
         self.boundary.0.get_or_init(|| self.find_boundary()).clone()
     }
@@ -253,7 +270,7 @@ impl Mesh {
         for (cell, kind) in self.kinds.iter().enumerate() {
             for face in 0..kind.faces().len() {
                 let facet = Facet { cell: cell as u32, face: face as u8 };
-                // u32::MAX pads triangles, so that one type serves both face shapes.
+                // `u32::MAX` pads triangles, so that one type represents both face shapes.
                 let mut nodes = [u32::MAX; 4];
                 for (slot, node) in
                     nodes.iter_mut().zip(self.facet_nodes(facet).take(kind.face_kind().corner_count()))
@@ -265,7 +282,7 @@ impl Mesh {
                 faces.push((nodes, facet));
             }
         }
-        // By smallest node first: sorting all faces at once takes three times as long.
+        // Bucket sort by smallest node: sorting all faces at once takes three times as long.
         for node in 0..self.points.len() {
             starts[node + 1] += starts[node];
         }
@@ -286,7 +303,7 @@ impl Mesh {
         faces.iter().zip(inner).filter(|(_, inner)| !inner).map(|((_, facet), _)| *facet).collect()
     }
 
-    /// Sorted node indices that any of the facets touches.
+    /// Sorted indices of the nodes of the given facets.
     pub fn facet_group_nodes(&self, facets: &[Facet]) -> Vec<u32> {
         let mut nodes: Vec<u32> = facets.iter().flat_map(|&f| self.facet_nodes(f)).collect();
         nodes.sort_unstable();
@@ -294,13 +311,16 @@ impl Mesh {
         nodes
     }
 
-    /// The same cells, regions and groups over other nodes; `number` gives the new number of an old node.
+    /// The same cells, regions and groups over other nodes; `number` maps an old node index to the new index.
     pub(crate) fn renumbered(&self, points: Vec<Point3>, number: impl Fn(u32) -> u32) -> Mesh {
         let nodes = self.nodes.iter().map(|&node| number(node)).collect();
         Mesh { points, nodes, boundary: Default::default(), ..self.clone() }
     }
 
-    /// The same topology at other positions (one per node).
+    /// The same topology with every position mapped by `map`.
+    ///
+    /// # Errors
+    /// A mapped coordinate that is not finite.
     pub fn moved(&self, map: impl Fn(&Point3) -> Point3) -> Result<Mesh, MeshError> {
         let points: Vec<Point3> = self.points.iter().map(map).collect();
         match points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {

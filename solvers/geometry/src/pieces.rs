@@ -1,15 +1,15 @@
-//! Pieces of a mesh without a node in common: how many, where their faces coincide, and how to join them
-//! there.
+//! Connected pieces of a mesh, which share no nodes: their number, their coincident faces, and joining them
+//! along these.
 
 use std::collections::HashMap;
 
 use crate::{Facet, Mesh, Point3};
 
-/// Distance up to which nodes of two pieces are one, over the shortest edge of the faces around them: files
-/// round to five digits.
+/// Largest distance of coinciding nodes of two pieces, relative to the shortest edge of the adjacent faces.
+/// Files round coordinates to five digits.
 const SAME: f64 = 1e-3;
 
-/// Sets of nodes, each by its lowest node.
+/// Disjoint sets of nodes, each represented by its lowest node.
 struct Sets(Vec<u32>);
 
 impl Sets {
@@ -30,7 +30,7 @@ impl Sets {
         self.0[a.max(b) as usize] = a.min(b);
     }
 
-    /// The nodes of each cell in one set.
+    /// Joins the nodes of each cell.
     fn pieces(mesh: &Mesh) -> Sets {
         let mut sets = Sets::new(mesh.points().len());
         for cell in 0..mesh.cell_count() {
@@ -41,7 +41,7 @@ impl Sets {
     }
 }
 
-/// Number of pieces of a mesh that have no node in common.
+/// Number of pieces of a mesh, which share no nodes.
 pub fn count(mesh: &Mesh) -> usize {
     let mut sets = Sets::pieces(mesh);
     let mut roots: Vec<u32> = (0..mesh.cell_count()).map(|cell| sets.of(mesh.cell(cell)[0])).collect();
@@ -55,9 +55,9 @@ pub fn coincident(mesh: &Mesh) -> usize {
     if count(mesh) > 1 { Twins::new(mesh).pairs.len() } else { 0 }
 }
 
-/// The mesh with the nodes of coincident faces of its pieces merged, and the number of such faces; `None`
-/// where no faces coincide. Nodes that only touch, at a vertex or along an edge, stay apart, and so do the
-/// two sides of a slit within a piece.
+/// Merges the nodes of coincident faces of different pieces. Returns the mesh and the number of such faces,
+/// or `None` if no faces coincide. Nodes that only touch, at a vertex or along an edge, stay apart, and so do
+/// the two sides of a slit within a piece.
 pub fn join(mesh: &Mesh) -> Option<(Mesh, usize)> {
     let Twins { mut same, pairs } = Twins::new(mesh);
     let faces = pairs.len();
@@ -83,7 +83,7 @@ pub fn join(mesh: &Mesh) -> Option<(Mesh, usize)> {
     Some((mesh.renumbered(points, |node| number[node as usize]), faces))
 }
 
-/// Nodes of different pieces at one place, and the faces that they make coincide.
+/// Coinciding nodes of different pieces, and the pairs of faces that coincide.
 struct Twins {
     same: Sets,
     pairs: Vec<[Facet; 2]>,
@@ -97,7 +97,7 @@ impl Twins {
         let nodes: Vec<u32> =
             (0..reach.len() as u32).filter(|&node| reach[node as usize].is_finite()).collect();
         let widest = nodes.iter().map(|&node| reach[node as usize]).fold(0.0, f64::max);
-        // Boxes so wide that twins lie in neighbours.
+        // Boxes are wide enough that coinciding nodes lie in the same or in neighbouring boxes.
         let place = |x: &Point3| [x.x, x.y, x.z].map(|c| (c / widest).floor() as i64);
         let mut boxes: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         let mut same = Sets::new(reach.len());
@@ -122,7 +122,7 @@ impl Twins {
             let mut key: Vec<u32> = corners(mesh, facet).map(|node| same.of(node)).collect();
             key.sort_unstable();
             let other = *seen.entry(key).or_insert(facet);
-            // The sides of a slit have the same key where its nodes are those of another piece.
+            // The sides of a slit have the same key if their nodes coincide with those of another piece.
             if pieces.of(mesh.cell(other.cell as usize)[0]) != pieces.of(mesh.cell(facet.cell as usize)[0]) {
                 pairs.push([other, facet]);
             }
@@ -135,7 +135,7 @@ fn corners(mesh: &Mesh, facet: Facet) -> impl Iterator<Item = u32> + '_ {
     mesh.facet_nodes(facet).take(mesh.kind(facet.cell as usize).face_kind().corner_count())
 }
 
-/// Distance (m) within which each node of the boundary has its twin; infinite inside.
+/// Largest distance (m) of a coinciding node, for each node of the boundary; infinite inside.
 fn reaches(mesh: &Mesh, boundary: &[Facet]) -> Vec<f64> {
     let mut reach = vec![f64::INFINITY; mesh.points().len()];
     for &facet in boundary {
@@ -149,7 +149,7 @@ fn reaches(mesh: &Mesh, boundary: &[Facet]) -> Vec<f64> {
     reach
 }
 
-/// A box and its neighbours.
+/// Offsets of a box and its neighbours.
 fn around() -> impl Iterator<Item = [i64; 3]> {
     (0..27).map(|k| [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1])
 }
@@ -160,7 +160,7 @@ mod tests {
     use crate::CellKind;
     use crate::generate::box_mesh;
 
-    /// Two boxes side by side along x, the second `off` (m) beyond the first.
+    /// Two boxes side by side along x, with a gap of `off` (m).
     fn two(kind: CellKind, off: f64, cells: [usize; 3]) -> Mesh {
         let block = |low: f64, cells: [usize; 3]| {
             let (min, max) = (Point3::new(low, 0.0, 0.0), Point3::new(low + 1.0, 1.0, 1.0));

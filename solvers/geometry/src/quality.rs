@@ -1,16 +1,16 @@
-//! Mesh quality: volumes, Jacobians, dihedral angles, aspect; the worst element is always named.
+//! Mesh quality: volumes, Jacobians, dihedral angles and aspect, each with the worst element.
 
 use crate::{CellKind, Mesh, Point3, Vector3, element, quadrature};
 
-/// A mesh with cells whose map folds over itself, by the first of them.
+/// Error of a mesh with inverted cells; names the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("element {element} is inverted: det J = {det_j:e} m^3 (it has to be positive)")]
 pub struct InvertedElement {
     /// Cell index.
     pub element: usize,
-    /// Smallest Jacobian determinant found in it, in m^3.
+    /// Smallest Jacobian determinant in this cell, m^3.
     pub det_j: f64,
-    /// Number of such cells.
+    /// Number of inverted cells.
     pub inverted: usize,
     /// Number of all cells.
     pub cells: usize,
@@ -25,7 +25,7 @@ pub struct Extreme {
     pub value: f64,
 }
 
-/// What [`check`] measures.
+/// Result of [`check`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     /// Volume of the whole mesh (m^3), curved cells included.
@@ -38,15 +38,20 @@ pub struct Quality {
     pub min_det_j: Extreme,
     /// Smallest ratio of lowest to highest `det J` within a cell; 1 for every straight tetrahedron.
     pub min_det_ratio: Extreme,
-    /// Smallest angle (degrees) between two faces, taken flat through their corners at the common edge.
+    /// Smallest angle (degrees) between two faces, each taken as the plane through its corners at the common
+    /// edge.
     pub min_dihedral: Extreme,
     /// Largest such angle (degrees).
     pub max_dihedral: Extreme,
-    /// Largest aspect: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the cube.
+    /// Largest aspect: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and
+    /// the cube.
     pub max_aspect: Extreme,
 }
 
-/// Measures a mesh; fails on elements with `det J <= 0` at any node or quadrature point.
+/// Measures the quality of a mesh.
+///
+/// # Errors
+/// An element with `det J <= 0` at a node or quadrature point.
 pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     let mut quality: Option<Quality> = None;
     let mut folded: Option<InvertedElement> = None;
@@ -66,7 +71,8 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
             let d = det(xi);
             (low, high) = (low.min(d), high.max(d));
         }
-        // Rounding leaves a flat cell a determinant of 1e-17 rather than 0: compare with the cell's own size.
+        // Rounding leaves a flat cell a determinant of 1e-17 rather than 0, so the threshold is relative to
+        // the cell's size.
         let longest = longest_edge(kind, &points);
         if low.is_nan() || low <= 1e-12 * longest.powi(3) {
             let first = InvertedElement { element, det_j: low, inverted: 0, cells: mesh.cell_count() };
@@ -97,7 +103,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     }
 }
 
-/// Longest edge times surface over volume, 1 for the regular tetrahedron and the cube.
+/// Longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the cube.
 fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
     let regular = if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
     longest_edge(kind, points) * surface(kind, points) / volume / regular
@@ -106,15 +112,15 @@ fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
 /// Shape of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellShape {
-    /// Volume (m^3), negative where the cell is inverted.
+    /// Volume (m^3), negative if the cell is inverted.
     pub volume: f64,
-    /// As [`Quality::max_aspect`]; infinite where the volume is not positive.
+    /// Aspect, as [`Quality::max_aspect`]; infinite if the volume is not positive.
     pub aspect: f64,
     /// Smallest and largest angle (degrees) between two faces.
     pub angles: [f64; 2],
 }
 
-/// Shapes of all cells, inverted ones too.
+/// Shapes of all cells, including inverted cells.
 pub fn shapes(mesh: &Mesh) -> Vec<CellShape> {
     let shape = |(cell, volume): (usize, f64)| {
         let kind = mesh.kind(cell);
@@ -126,7 +132,7 @@ pub fn shapes(mesh: &Mesh) -> Vec<CellShape> {
     volumes(mesh).into_iter().enumerate().map(shape).collect()
 }
 
-/// Volume of every cell (m^3), curved cells included; negative where a cell is inverted.
+/// Volume of every cell (m^3), curved cells included; negative if a cell is inverted.
 pub fn volumes(mesh: &Mesh) -> Vec<f64> {
     let probes = CellKind::ALL.map(probe_points);
     (0..mesh.cell_count())
@@ -158,8 +164,8 @@ impl Quality {
     }
 }
 
-/// A rule that integrates `det J` exactly (tet4: constant, tet10: degree 3, hex8: degree 2 and hex20: at most 7 per
-/// coordinate), and the nodes.
+/// Quadrature rule that integrates `det J` exactly, and the nodes. The degrees are 0 (tet4) and 3 (tet10),
+/// and per coordinate 2 (hex8) and at most 7 (hex20).
 fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, Vec<[f64; 3]>) {
     let rule = match kind {
         CellKind::Tet4 => quadrature::tet(1),
@@ -174,7 +180,7 @@ fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {
     kind.edges().iter().map(|&[a, b]| nalgebra::distance(&points[a], &points[b])).fold(0.0, f64::max)
 }
 
-/// Area of the corner polygons, each as the sum of the triangles around its corners' mean.
+/// Area of the faces, each as the sum of the triangles around the mean of its corners.
 fn surface(kind: CellKind, points: &[Point3]) -> f64 {
     let corners = kind.face_kind().corner_count();
     let face_area = |face: &[usize]| -> f64 {
@@ -189,8 +195,8 @@ fn surface(kind: CellKind, points: &[Point3]) -> f64 {
     kind.faces().iter().map(|face| face_area(face)).sum()
 }
 
-/// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a hexahedron each face is
-/// taken as the plane through the edge and the corner next to its start.
+/// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a hexahedron each
+/// face is taken as the plane through the edge and the corner adjacent to its start.
 fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
     let corners = kind.face_kind().corner_count();
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);

@@ -1,7 +1,7 @@
 //! Nearest-neighbour and radius search over a fixed set of points.
 //!
-//! A k-d tree (kiddo) finds candidates; order and ties are settled here, on distances computed one way only, so that
-//! results depend on the points and nothing else.
+//! A k-d tree (kiddo) finds candidates. Distances are recomputed here in one way only, and ties are resolved
+//! by index, so that results depend only on the points.
 
 use std::num::NonZeroUsize;
 
@@ -9,13 +9,13 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 use crate::Point3;
 
-/// Points prepared for searching.
+/// Search structure over a set of points.
 pub struct Search {
     tree: ImmutableKdTree<f64, 3>,
     points: Vec<[f64; 3]>,
 }
 
-/// A point found, and how far away it is.
+/// A point found by a search, with its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbour {
     /// Index of the point.
@@ -24,10 +24,10 @@ pub struct Neighbour {
     pub distance: f64,
 }
 
-/// What makes points unsearchable.
+/// Errors of building a search structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SearchError {
-    /// No points, or more than 32-bit indices can count.
+    /// No points, or more points than 32-bit indices allow.
     #[error("{count} points cannot be searched; there have to be 1 to {}", u32::MAX)]
     Count {
         /// Number of points.
@@ -43,6 +43,9 @@ pub enum SearchError {
 
 impl Search {
     /// Builds the tree.
+    ///
+    /// # Errors
+    /// No points, too many points, or a coordinate that is not finite.
     pub fn new(points: &[Point3]) -> Result<Search, SearchError> {
         let count = points.len();
         if count == 0 || u32::try_from(count).is_err() {
@@ -61,16 +64,16 @@ impl Search {
         self.points.len()
     }
 
-    /// Never true: an empty set can't be built.
+    /// Whether there are no points: always false, since an empty set is an error.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// The `k` nearest points (all of them if there are fewer), by distance, equal distances by index.
+    /// The `k` nearest points (all points if there are fewer), ordered by distance, equal distances by index.
     pub fn nearest(&self, at: &Point3, k: usize) -> Vec<Neighbour> {
         let Some(k) = NonZeroUsize::new(k) else { return Vec::new() };
         let query = [at.x, at.y, at.z];
-        // One more than asked: if it is no farther than the k-th, there is a tie to settle.
+        // One more point than requested: if it is no farther than the k-th, there is a tie to resolve.
         let items = self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(k.saturating_add(1)).execute();
         let mut found: Vec<(f64, u32)> =
             items.iter().map(|i| (self.square(&query, i.item), i.item)).collect();
@@ -87,26 +90,27 @@ impl Search {
         found.into_iter().map(|(square, index)| Neighbour { index, distance: square.sqrt() }).collect()
     }
 
-    /// The nearest point; which of several equally near ones is settled by the tree (the same on every run).
+    /// Index of the nearest point. The tree resolves ties, in the same way on every run.
     pub(crate) fn nearest_one(&self, at: &Point3) -> usize {
         self.tree.query(&[at.x, at.y, at.z]).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize
     }
 
-    /// Indices of all points within `radius` (m), the sphere included, ascending.
+    /// Indices of all points at a distance of at most `radius` (m), ascending.
     pub fn within(&self, at: &Point3, radius: f64) -> Vec<u32> {
         let mut found = Vec::new();
         self.within_into(at, radius, &mut found);
         found
     }
 
-    /// As [`Search::within`], into a list that is cleared first: nothing is allocated once it is long enough.
+    /// Writes the result of [`Search::within`] to `found`, which is cleared first and reuses its allocation.
     pub fn within_into(&self, at: &Point3, radius: f64, found: &mut Vec<u32>) {
         found.clear();
         if radius.is_nan() || radius < 0.0 {
             return;
         }
         let square = radius * radius;
-        // The tree may round a squared distance otherwise than we do: look a little farther, then decide here.
+        // The tree may round a squared distance differently. The search uses a slightly larger radius and
+        // decides here.
         self.visit(&[at.x, at.y, at.z], square * (1.0 + 1e-12), |s, index| {
             if s <= square {
                 found.push(index);

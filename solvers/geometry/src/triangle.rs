@@ -1,22 +1,23 @@
-//! The closest point of a triangle.
+//! Closest point on a triangle.
 
 use crate::Point3;
 
-/// The part of a triangle that is closest to a point.
+/// The feature of a triangle that is closest to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Feature {
     Corner(usize),
-    /// From this corner to the next.
+    /// The edge from this corner to the next.
     Edge(usize),
     Face,
 }
 
-/// The point of a triangle closest to `p`.
+/// The point of a triangle that is closest to `p`.
 pub fn closest_on_triangle(p: &Point3, corners: &[Point3; 3]) -> Point3 {
     closest_on(p, corners).1
 }
 
-/// The closest point of a triangle and the part of it that has it (Ericson, Real-time collision detection, 5.1.5).
+/// The closest point on a triangle and the feature that it lies on (Ericson, Real-Time Collision Detection,
+/// 5.1.5).
 pub(crate) fn closest_on(p: &Point3, [a, b, c]: &[Point3; 3]) -> (Feature, Point3) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
@@ -47,7 +48,7 @@ pub(crate) fn closest_on(p: &Point3, [a, b, c]: &[Point3; 3]) -> (Feature, Point
         return (Feature::Edge(1), b + (c - b) * t);
     }
     let sum = va + vb + vc;
-    // Of a triangle without an area rounding decides; an edge is as close as its face.
+    // For a triangle without area rounding decides; the edge is as close as the face.
     if !(sum > 0.0) {
         return (Feature::Edge(0), a + ab * (d1 / ab.norm_squared()).clamp(0.0, 1.0));
     }

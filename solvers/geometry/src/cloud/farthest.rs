@@ -1,12 +1,12 @@
-//! Farthest-point sampling: from many candidates, again and again the one farthest from all chosen so far.
+//! Farthest-point sampling: repeatedly chooses the candidate farthest from all points chosen so far.
 
 use crate::Point3;
 
 /// Candidates with the distance to the nearest chosen point, measured in local target spacings.
 ///
-/// Candidates lie sorted by bucket, and each bucket knows its largest gap: a choice skips every bucket that is
-/// farther from the new point than that, so `n` choices from `C` candidates cost about `C log n` distances rather
-/// than `C n`.
+/// Candidates are sorted by bucket, and each bucket stores its largest gap. A choice skips every bucket that
+/// is farther from the new point than that gap. So `n` choices from `C` candidates cost about `C log n`
+/// distances rather than `C n`.
 pub(super) struct Farthest {
     candidates: Vec<Candidate>,
     buckets: Vec<Bucket>,
@@ -24,13 +24,13 @@ struct Bucket {
     end: usize,
     low: Point3,
     high: Point3,
-    /// Largest gap in the bucket and the first candidate that has it.
+    /// Largest gap in the bucket, and the index of the first candidate with this gap.
     largest: (f64, usize),
 }
 
 impl Farthest {
-    /// `size`: target spacing of each candidate up to a common factor, at most 1. `side` (m): bucket width, about
-    /// the final distance between chosen points.
+    /// Sorts the candidates into buckets. `size` is the target spacing at each candidate up to a common
+    /// factor, at most 1. `side` (m) is the bucket width, about the final distance between chosen points.
     pub(super) fn new(
         points: impl Iterator<Item = Point3>,
         size: impl Fn(&Point3) -> f64,
@@ -45,7 +45,7 @@ impl Farthest {
                 )
             })
             .collect();
-        // Stable: equal keys keep the order in which the candidates were drawn.
+        // The sort is stable: equal keys keep the order in which the candidates were drawn.
         keyed.sort_by_key(|(key, _)| *key);
         let mut buckets: Vec<Bucket> = Vec::new();
         let mut last = None;
@@ -62,7 +62,8 @@ impl Farthest {
         Farthest { candidates: keyed.into_iter().map(|(_, c)| c).collect(), buckets }
     }
 
-    /// The candidate with the largest gap and that gap (in target spacings); `None` without candidates.
+    /// Returns the candidate with the largest gap and that gap (in target spacings), or `None` without
+    /// candidates.
     pub(super) fn farthest(&self) -> Option<(Point3, f64)> {
         let first = self.buckets.first()?.largest;
         let best =
@@ -70,13 +71,14 @@ impl Farthest {
         Some((self.candidates[best.1].at, best.0.sqrt()))
     }
 
-    /// Chooses `p` (a candidate or not): gaps shrink accordingly.
+    /// Chooses `p`, which need not be a candidate, and updates the gaps.
     pub(super) fn choose(&mut self, p: &Point3) {
         let mut start = 0;
         for bucket in &mut self.buckets {
             let range = start..bucket.end;
             start = bucket.end;
-            // Scales are at least 1, so the plain distance to the bucket's box bounds every scaled one from below.
+            // Scales are at least 1, so the unscaled distance to the bucket's box is a lower bound of every
+            // scaled distance.
             let away = (bucket.low - p).sup(&(p - bucket.high)).map(|c| c.max(0.0)).norm_squared();
             if away >= bucket.largest.0 {
                 continue;

@@ -6,22 +6,23 @@ use crate::search::{Search, SearchError};
 use crate::shapes::Shape;
 use crate::{Point3, Vector3};
 
-/// Candidates per node. Smallest over mean nearest distance, averaged over kidney clouds of 83 to 1330 nodes: 0.70
-/// with 20, 0.75 with 60, 0.75 with 200 (and five times the run time of 60).
+/// Number of random candidates per node. The smallest over the mean nearest distance, averaged over kidney
+/// clouds of 83 to 1330 nodes, is 0.70 with 20 candidates, 0.75 with 60 and 0.75 with 200 (at five times the
+/// run time of 60).
 const CANDIDATES_PER_NODE: usize = 60;
-/// Rounds of moving each node to the mean of the candidates nearest to it (Lloyd 1982); 8 change nothing in the
-/// second digit of the distances above.
+/// Rounds of Lloyd's relaxation (Lloyd 1982), which moves each node to the mean of the candidates nearest to
+/// it. With 8 rounds the ratio above is the same to two digits.
 const ROUNDS: usize = 4;
 const FEWEST: usize = 4;
 const MOST: usize = 1 << 20;
 
-/// Nodes drawn closer together around a point: the target spacing is divided by `ratio` within `radius` of `centre`
-/// and grows linearly back to its full size over a further `reach`.
+/// A region of closer nodes around a point. The target spacing is divided by `ratio` within `radius` of
+/// `centre` and grows linearly back to its full size over a further distance `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
     /// Centre of the refined ball (m).
     pub centre: Point3,
-    /// Its radius (m), 0 or more.
+    /// Radius of the refined ball (m), 0 or more.
     pub radius: f64,
     /// Width of the transition (m), positive.
     pub reach: f64,
@@ -29,10 +30,10 @@ pub struct Refinement {
     pub ratio: f64,
 }
 
-/// What makes a cloud impossible.
+/// Errors of cloud generation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CloudError {
-    /// Too few nodes to be of use.
+    /// Fewer nodes than the least number.
     #[error("a cloud of {nodes} nodes was asked for; at least {least} are needed")]
     TooFew {
         /// Number asked for.
@@ -40,7 +41,7 @@ pub enum CloudError {
         /// Least number.
         least: usize,
     },
-    /// More nodes than the generator takes on.
+    /// More nodes than the generator supports.
     #[error("a cloud of {nodes} nodes was asked for; at most {most} can be generated")]
     TooMany {
         /// Number asked for.
@@ -53,14 +54,14 @@ pub enum CloudError {
     Refinement {
         /// Index in the list given.
         index: usize,
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         found: f64,
-        /// The range it needs.
+        /// Admissible range, in words.
         needed: &'static str,
     },
-    /// A body with no extent, or none that is finite.
+    /// A body whose bounding box is empty or not finite.
     #[error("the body's bounding box measures {x} x {y} x {z} m; a cloud needs a body with an inside")]
     NoExtent {
         /// Extent along x (m).
@@ -70,7 +71,7 @@ pub enum CloudError {
         /// Extent along z (m).
         z: f64,
     },
-    /// Two nodes in one place.
+    /// Two nodes at the same position.
     #[error("nodes {first} and {second} are in the same place")]
     Coincident {
         /// Lower index.
@@ -78,16 +79,20 @@ pub enum CloudError {
         /// Higher index.
         second: usize,
     },
-    /// Nodes that can't be searched.
+    /// Nodes that cannot be searched.
     #[error(transparent)]
     Search(#[from] SearchError),
 }
 
-/// Exactly `n` quasi-uniform nodes in `shape`, its surface included; denser within `refinements`.
+/// Generates exactly `n` quasi-uniform nodes in `shape` and on its surface, denser within `refinements`.
 ///
-/// Corners first, then edges, surface and inside by farthest-point sampling over seeded random candidates, then a
-/// few rounds of Lloyd's relaxation, each node within its own class (surface nodes are projected back). The same
-/// arguments give the same bits. Surface nodes come before inner ones.
+/// Corners are placed first. Nodes on edges, on the surface and inside follow by farthest-point sampling over
+/// random candidates drawn with `seed`. A few rounds of Lloyd's relaxation then move each node within its own
+/// class (surface nodes are projected back). Equal arguments give bitwise equal clouds. Surface nodes come
+/// before inner nodes.
+///
+/// # Errors
+/// `n` out of range, a refinement parameter out of range, or a body without an inside.
 pub fn cloud(
     shape: &(impl Shape + ?Sized),
     n: usize,
@@ -100,7 +105,10 @@ pub fn cloud(
     generate(shape, n, seed, finest, |p| target_size(refinements, p))
 }
 
-/// As [`cloud`], with nodes as close as `sizes` has it.
+/// Generates a cloud as [`cloud`] does, with the relative spacing given by `sizes`.
+///
+/// # Errors
+/// `n` out of range, or a body without an inside.
 pub fn cloud_of_sizes(
     shape: &(impl Shape + ?Sized),
     n: usize,
@@ -111,7 +119,7 @@ pub fn cloud_of_sizes(
     generate(shape, n, seed, sizes.finest(), |p| sizes.at(p))
 }
 
-/// `size`: target spacing over the coarsest, from `finest` to 1.
+/// Generates `n` nodes. `size` is the target spacing relative to the coarsest, from `finest` to 1.
 fn generate(
     shape: &(impl Shape + ?Sized),
     n: usize,
@@ -123,7 +131,8 @@ fn generate(
     let mut unit = || random.unit();
     let count = CANDIDATES_PER_NODE * n;
 
-    // Candidates as dense as the nodes shall be: drawn uniformly, kept with the chance (finest / size)^dimension.
+    // Candidates with the density required of the nodes: drawn uniformly, kept with probability (finest /
+    // size)^dimension.
     let mut draw =
         |dimension: i32, count: usize, sample: &mut dyn FnMut(&mut dyn FnMut() -> f64) -> Point3| {
             let mut points = Vec::with_capacity(count);
@@ -148,8 +157,8 @@ fn generate(
         Farthest::new(points.iter().flat_map(|list| list.iter().copied()), size, spacing)
     };
 
-    // The spacing that n nodes can have when surface and inside are taken alike; edges and surface get as many
-    // nodes as keep to it, the inside gets the rest.
+    // The spacing that `n` nodes reach if surface and inside are sampled together. Edges and surface get as
+    // many nodes as this spacing allows; the inside gets the rest.
     let mut both = farthest(&[&edges, &surface, &volume]);
     let mut seeds = shape.corners();
     seeds.truncate(n);
@@ -177,7 +186,7 @@ fn generate(
     Cloud::from_points(nodes)
 }
 
-/// Adds candidates while one is farther than `least` from all nodes, up to `n` nodes.
+/// Adds candidates, up to `n` nodes, until no candidate is farther than `least` from all nodes.
 fn grow(nodes: &mut Vec<Point3>, mut candidates: Farthest, n: usize, least: f64) {
     for p in nodes.iter() {
         candidates.choose(p);
@@ -193,8 +202,8 @@ fn grow(nodes: &mut Vec<Point3>, mut candidates: Farthest, n: usize, least: f64)
     }
 }
 
-/// Moves the nodes of `range` to the mean of the samples nearer to them than to any other of the first `present`
-/// nodes. A node that no sample is nearest to stays.
+/// Moves each node of `range` to the mean of the samples that are nearer to it than to any other of the first
+/// `present` nodes. A node without such samples stays.
 fn relax(
     nodes: &mut [Point3],
     range: std::ops::Range<usize>,
@@ -221,7 +230,7 @@ fn relax(
     Ok(())
 }
 
-/// Target spacing at `p` as a share of the coarsest, in (0, 1].
+/// Target spacing at `p` relative to the coarsest, in (0, 1].
 fn target_size(refinements: &[Refinement], p: &Point3) -> f64 {
     refinements.iter().fold(1.0, |size: f64, r| {
         let away = ((nalgebra::distance(p, &r.centre) - r.radius) / r.reach).clamp(0.0, 1.0);

@@ -1,42 +1,43 @@
-//! Node positions in a text file: x, y, z per line, between commas, with or without a line of column names.
+//! Reads node positions from text files: x, y and z per line, separated by commas, with an optional line of
+//! column names.
 
 use std::path::{Path, PathBuf};
 
 use crate::Point3;
 
-/// Positions and the lines they stand on.
+/// Positions with their line numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointFile {
     /// Positions (m).
     pub points: Vec<Point3>,
-    /// Line of each, from 1.
+    /// Line number of each position, from 1.
     pub lines: Vec<usize>,
 }
 
-/// A file of positions that can't be read.
+/// Errors of reading a file of positions.
 #[derive(Debug, thiserror::Error)]
 pub enum PointFileError {
-    /// The operating system refused, or the file is no text.
+    /// A file that the operating system cannot read, or that is not text.
     #[error("{file}: {source}", file = file.display())]
     Io {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A line that is no position.
+    /// A line that is not a position.
     #[error("{file}:{line}: column {column} {problem}", file = file.display())]
     Line {
         /// The file.
         file: PathBuf,
         /// Line number from 1.
         line: usize,
-        /// Which of the values between commas, from 1.
+        /// Column number among the comma-separated values, from 1.
         column: usize,
-        /// What is wrong there.
+        /// The problem in this column.
         problem: PointProblem,
     },
-    /// No positions.
+    /// A file without positions.
     #[error("{file}: holds no positions", file = file.display())]
     Empty {
         /// The file.
@@ -44,19 +45,19 @@ pub enum PointFileError {
     },
 }
 
-/// What is wrong with a value.
+/// A problem with one value of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PointProblem {
     /// Text where a number belongs.
     #[error("has '{found}' where a number belongs")]
     NotANumber {
-        /// What is there.
+        /// Text found.
         found: String,
     },
     /// A number that is not finite.
     #[error("is {found}, which is not finite")]
     NotFinite {
-        /// What is there.
+        /// Number found, as written.
         found: String,
     },
     /// A line that ends too early.
@@ -75,15 +76,15 @@ pub enum PointProblem {
         /// Values needed.
         expected: usize,
     },
-    /// Column names without one that is needed.
+    /// Column names that lack x, y or z.
     #[error("should be named {name}: of the columns none is")]
     NoColumn {
-        /// The name.
+        /// Name of the missing column.
         name: &'static str,
     },
 }
 
-/// Which columns hold x, y and z, and how many there are.
+/// Columns of x, y and z, and the number of columns.
 struct Columns {
     of_axis: [usize; 3],
     count: usize,
@@ -91,15 +92,22 @@ struct Columns {
 
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
-/// Reads a file of positions; `unit` is metres per unit of its numbers. Blank lines and those that start with `#` are passed over.
-/// A first line without any number names the columns: those named x, y and z count, in any order and among others.
+/// Reads a file of positions. `unit` is the number of metres per unit of the file. Blank lines and lines that
+/// start with `#` are skipped. A first line without any number holds column names: only the columns x, y and
+/// z are read, in any order.
+///
+/// # Errors
+/// A file that cannot be read, a line that is not a position, or a file without positions.
 pub fn read_points(file: &Path, unit: f64) -> Result<PointFile, PointFileError> {
     let text = disk::read_text(file, disk::Kind::MESH)
         .map_err(|source| PointFileError::Io { file: file.to_path_buf(), source })?;
     read_points_text(&text, file, unit)
 }
 
-/// As [`read_points`], from text in memory; `file` is the name used in errors.
+/// Reads positions as [`read_points`] does, from text in memory. `file` is the name used in errors.
+///
+/// # Errors
+/// A line that is not a position, or a text without positions.
 pub fn read_points_text(text: &str, file: &Path, unit: f64) -> Result<PointFile, PointFileError> {
     let wrong = |line, (column, problem): (usize, PointProblem)| PointFileError::Line {
         file: file.to_path_buf(),

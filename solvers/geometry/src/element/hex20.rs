@@ -5,9 +5,10 @@ use super::Element;
 /// 20-node serendipity hexahedron on the cube `[-1, 1]^3`: the corners of [`super::Hex8`], then mid-edges
 /// 01 12 23 30, 45 56 67 74, 04 15 26 37.
 ///
-/// With `X = x x_a` and so on: corners `N_a = (1 + X)(1 + Y)(1 + Z)(X + Y + Z - 2) / 8`; the middle of an edge
-/// along x `N_a = (1 - x^2)(1 + Y)(1 + Z) / 4`, and alike along y and z. Holds all quadratics on cells whose map is
-/// affine. Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1, section on serendipity families.
+/// With `X = x x_a` and so on, `N_a = (1 + X)(1 + Y)(1 + Z)(X + Y + Z - 2) / 8` at the corners and `N_a = (1
+/// - x^2)(1 + Y)(1 + Z) / 4` at the middle of an edge along x; y and z are analogous. The space contains all
+/// quadratics on cells with an affine map. Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1,
+/// section on serendipity families.
 pub struct Hex20;
 
 impl Element<20> for Hex20 {
@@ -38,7 +39,7 @@ impl Element<20> for Hex20 {
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 20] {
         Self::NODES.map(|[a, b, c]| {
-            // Along the axis of a mid-edge node its coordinate is 0 and the bubble replaces the linear factor.
+            // The coordinate of a mid-edge node along its edge is 0; the bubble replaces the linear factor.
             let (fx, fy, fz) = (factor(a, x), factor(b, y), factor(c, z));
             if a * b * c == 0.0 {
                 0.25 * fx * fy * fz
@@ -67,13 +68,13 @@ impl Element<20> for Hex20 {
     }
 }
 
-/// `1 + a x` for an end node (`a` = +-1), the bubble `1 - x^2` for a middle one (`a` = 0).
+/// `1 + a x` for an end node (`a` = +-1), the bubble `1 - x^2` for a mid-edge node (`a` = 0).
 #[inline]
 fn factor(a: f64, x: f64) -> f64 {
     if a == 0.0 { 1.0 - x * x } else { 1.0 + a * x }
 }
 
-/// Derivative of [`factor`] by x.
+/// Derivative of [`factor`] with respect to x.
 #[inline]
 fn slope(a: f64, x: f64) -> f64 {
     if a == 0.0 { -2.0 * x } else { a }

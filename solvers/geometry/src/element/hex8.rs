@@ -4,7 +4,7 @@ use super::Element;
 
 /// 8-node trilinear hexahedron on the cube `[-1, 1]^3`: bottom 0123 counter-clockwise seen from above, 4567 above.
 ///
-/// `N_a = (1 + x x_a)(1 + y y_a)(1 + z z_a) / 8`, with `(x_a, y_a, z_a)` the node's own coordinates.
+/// `N_a = (1 + x x_a)(1 + y y_a)(1 + z z_a) / 8`, where `(x_a, y_a, z_a)` are the coordinates of node `a`.
 pub struct Hex8;
 
 impl Element<8> for Hex8 {

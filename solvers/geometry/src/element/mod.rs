@@ -1,5 +1,5 @@
-//! The shape functions of elements, one file each, for quality checks, point location, tables and kernels alike. A new element
-//! is a file, a line in `with_element` and a [`CellKind`].
+//! Shape functions of the elements, one file each, used by quality checks, point location, tables and
+//! kernels. A new element needs a file, a line in `with_element` and a [`CellKind`].
 
 mod hex20;
 mod hex8;
@@ -16,7 +16,7 @@ use crate::{CellKind, Matrix3, Point3, Vector3};
 /// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1) or
 /// the cube `[-1, 1]^3`. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
 pub trait Element<const N: usize> {
-    /// The mesh cell it belongs to; node order is that of the kind.
+    /// Kind of mesh cell, which also defines the node order.
     const KIND: CellKind;
     /// Reference coordinates of the nodes, (N, 3).
     const NODES: [[f64; 3]; N];
@@ -24,7 +24,7 @@ pub trait Element<const N: usize> {
     /// Shape functions at `xi`, (N), dimensionless.
     fn shape(xi: [f64; 3]) -> [f64; N];
 
-    /// Their gradients by `xi`, (N, 3), dimensionless.
+    /// Gradients of the shape functions with respect to `xi`, (N, 3), dimensionless.
     fn shape_grad(xi: [f64; 3]) -> [[f64; 3]; N];
 }
 
@@ -40,7 +40,7 @@ pub const HEX_CORNERS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// Runs `$body` with `$E` the element type of a cell kind and `$N` its number of nodes.
+/// Runs `$body` with `$E` bound to the element type of a cell kind and `$N` to its number of nodes.
 #[macro_export]
 macro_rules! with_element {
     ($kind:expr, $E:ident, $N:ident => $body:expr) => {
@@ -61,7 +61,7 @@ macro_rules! with_element {
 }
 pub use crate::with_element;
 
-/// How far `xi` lies outside the reference cell of a kind, in reference units; negative inside.
+/// Distance of `xi` outside the reference cell of a kind, in reference units; negative inside.
 pub fn excess(kind: CellKind, xi: [f64; 3]) -> f64 {
     let [x, y, z] = xi;
     if kind.is_tet() {
@@ -84,7 +84,8 @@ pub fn nodes(kind: CellKind) -> &'static [[f64; 3]] {
     })
 }
 
-/// Position of the reference point `xi` and the Jacobian `J_ij = dx_i / dxi_j` (m) there, of a cell with these nodes (m).
+/// Position of the reference point `xi` and Jacobian `J_ij = dx_i / dxi_j` (m), for a cell with the given
+/// nodes (m).
 pub(crate) fn map(kind: CellKind, nodes: &[Point3], xi: [f64; 3]) -> (Point3, Matrix3) {
     with_element!(kind, E, N => {
         let (values, grads) = (<E as Element<N>>::shape(xi), <E as Element<N>>::shape_grad(xi));

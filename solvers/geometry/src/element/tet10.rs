@@ -4,8 +4,8 @@ use super::{Element, Tet4};
 
 /// 10-node quadratic tetrahedron: the corners of [`Tet4`], then mid-edges 01, 12, 20, 03, 13, 23.
 ///
-/// With the barycentric coordinates `L` of the corners: `N_a = L_a (2 L_a - 1)` at corner `a`,
-/// `N_ab = 4 L_a L_b` at the middle of edge `ab`. Complete quadratic.
+/// With the barycentric coordinates `L` of the corners, `N_a = L_a (2 L_a - 1)` at corner `a` and `N_ab = 4
+/// L_a L_b` at the middle of edge `ab`. The basis is complete to degree 2.
 pub struct Tet10;
 
 /// Corners of each mid-edge node, as in [`CellKind::edges`].

@@ -4,8 +4,8 @@ use super::Element;
 
 /// 4-node linear tetrahedron: corners (0,0,0), (1,0,0), (0,1,0), (0,0,1).
 ///
-/// `N = (1 - x - y - z, x, y, z)`. Gradients are constant over the cell: one point integrates its stiffness
-/// exactly. Locks in nearly incompressible materials.
+/// `N = (1 - x - y - z, x, y, z)`. Gradients are constant over the cell, so one point integrates the
+/// stiffness exactly. The element locks in nearly incompressible materials.
 pub struct Tet4;
 
 impl Element<4> for Tet4 {

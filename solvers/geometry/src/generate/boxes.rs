@@ -6,19 +6,22 @@ use crate::{CellKind, Facet, Mesh, Point3, quality, random::Uniform};
 /// A seeded random shift of inner nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jitter {
-    /// Largest shift per axis as a share of the local node spacing, in [0, 0.5).
+    /// Largest shift per axis as a fraction of the local node spacing, in [0, 0.5).
     pub fraction: f64,
     /// Seed of the ChaCha8 stream.
     pub seed: u64,
 }
 
-/// A box from `min` to `max` (m) of `cells` hexahedra along x, y, z, or six tetrahedra in each of them.
+/// Meshes a box from `min` to `max` (m) with `cells` hexahedra along x, y, z, or with six tetrahedra in each
+/// of them.
 ///
-/// `grading` is the ratio of the last to the first interval per axis (1: uniform; spacing grows geometrically).
-/// `jitter` moves corner nodes inside the box by up to `fraction` of the smaller adjoining interval, per axis; mid-
-/// edge nodes stay halfway. Facet groups: [`surfaces::BOX`](super::surfaces::BOX). Corner nodes are
-/// numbered with x fastest. Fails when jitter or grading leaves a cell
-/// inside out or flat.
+/// `grading` is the ratio of the last to the first interval per axis (1: uniform; spacing grows
+/// geometrically). `jitter` moves corner nodes inside the box by up to `fraction` of the smaller adjoining
+/// interval, per axis. Mid-edge nodes stay halfway. Facet groups: [`surfaces::BOX`](super::surfaces::BOX).
+/// Corner nodes are numbered with x fastest.
+///
+/// # Errors
+/// A parameter out of range, or cells that jitter or grading leave inverted or flat.
 pub fn box_mesh(
     kind: CellKind,
     min: Point3,

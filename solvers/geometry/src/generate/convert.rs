@@ -1,4 +1,4 @@
-//! Hexahedra to tetrahedra, and linear to quadratic cells.
+//! Converts hexahedra to tetrahedra, and linear to quadratic cells.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,8 @@ use crate::{CellKind, Facet, Mesh};
 const HEX: CellKind = CellKind::Hex8;
 const TET: CellKind = CellKind::Tet4;
 
-/// Whether every cell can become one of `kind`: any can become tetrahedra with straight edges, linear cells quadratic ones of their form.
+/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4; linear cells can
+/// become quadratic cells of the same shape, and hexahedra tet10.
 pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
     let all = |kinds: &[CellKind]| (0..mesh.cell_count()).all(|c| kinds.contains(&mesh.kind(c)));
     all(&[kind])
@@ -20,7 +21,7 @@ pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
         }
 }
 
-/// The same body in cells of `kind`, if they can become those ([`is_convertible`]).
+/// Returns the same body in cells of `kind`, or `None` if they cannot be converted ([`is_convertible`]).
 pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
     is_convertible(&mesh, kind).then(|| match kind {
         _ if mesh.uniform_kind() == Some(kind) => mesh,
@@ -30,12 +31,12 @@ pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
     })
 }
 
-/// Linear tetrahedra over the same body: every hexahedron becomes six, tetrahedra keep their corners. Regions and
-/// facet groups come along; nodes that only quadratic cells used are dropped.
+/// Divides a mesh into linear tetrahedra. Every hexahedron becomes six; tetrahedra keep their corners.
+/// Regions and groups are kept; nodes that only quadratic cells used are dropped.
 ///
-/// Each hexahedron is a cone from its lowest-numbered node over the three faces away from that node, and every face
-/// is cut through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
-/// conforming whatever the arrangement. In a box numbered along its axes this is Kuhn's subdivision.
+/// Each hexahedron is a cone from its lowest-numbered node over the three opposite faces. Every face is cut
+/// through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
+/// conforming for any arrangement. In a box numbered along its axes this is Kuhn's subdivision.
 pub fn to_tets(mesh: &Mesh) -> Mesh {
     let mut cells: Vec<[u32; 4]> = Vec::new();
     let mut regions = Vec::new();
@@ -91,8 +92,8 @@ fn cut_hexahedron(nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
         }
         let start = (0..4).min_by_key(|&i| n[i]).unwrap_or(0);
         let around = |i: usize| n[(start + i) % 4];
-        // Seen from outside the face turns counter-clockwise, so from the apex inside it turns clockwise:
-        // listing the face backwards makes the volume positive.
+        // Seen from outside, the face is counter-clockwise. From the apex inside it is clockwise: the
+        // reversed face gives a positive volume.
         cells.push([around(0), around(2), around(1), lowest]);
         cells.push([around(0), around(3), around(2), lowest]);
     }
@@ -116,12 +117,13 @@ fn facets_within(mesh: &Mesh, facet: Facet, cells: &[[u32; 4]], first: &[usize])
     found
 }
 
-/// Quadratic cells with the same corners: tet4 becomes tet10, hex8 becomes hex20, quadratic cells stay as they are.
-/// New nodes lie halfway along their edges and are numbered after the corners, in the order cells first meet them.
+/// Raises cells to quadratic order with the same corners: tet4 becomes tet10, hex8 becomes hex20, quadratic
+/// cells are unchanged. New nodes lie halfway along their edges. They are numbered after the existing nodes,
+/// in the order in which cells first use them.
 pub fn raise_order(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points().to_vec();
     let mut middle: HashMap<(u32, u32), u32> = HashMap::new();
-    // Mid-edge nodes that are there already, so that a mixed-order mesh stays conforming.
+    // Existing mid-edge nodes, so that a mixed-order mesh stays conforming.
     for cell in (0..mesh.cell_count()).filter(|&c| mesh.kind(c).order() == 2) {
         let (kind, nodes) = (mesh.kind(cell), mesh.cell(cell));
         for (edge, &[a, b]) in kind.edges().iter().enumerate() {
@@ -157,12 +159,13 @@ pub fn raise_order(mesh: &Mesh) -> Mesh {
     with_cell_groups(rebuilt(mesh, points, kinds, nodes, regions, groups), mesh)
 }
 
-/// The groups of cells of a mesh on one with the same cells.
+/// Copies the cell groups of `of` to a mesh with the same cells.
 fn with_cell_groups(mesh: Mesh, of: &Mesh) -> Mesh {
     of.cell_groups().fold(mesh, |mesh, (name, cells)| mesh.with_cell_group(name, cells.to_vec()))
 }
 
-/// The same mesh with the corners of each cell in the mirrored order: what makes a mirrored mesh right.
+/// Returns the mesh with the corners of each cell in mirrored order, which corrects the orientation of a
+/// mirrored mesh.
 pub fn turned(mesh: &Mesh) -> Mesh {
     let (mut kinds, mut nodes, mut faces) = (Vec::new(), Vec::new(), HashMap::new());
     for cell in 0..mesh.cell_count() {
@@ -171,14 +174,14 @@ pub fn turned(mesh: &Mesh) -> Mesh {
         kinds.push(kind);
         nodes.extend(corners.iter().map(|&corner| own[corner]));
         if kind.order() == 2 {
-            // A middle node goes with its edge.
+            // A mid-edge node keeps its edge.
             nodes.extend(kind.edges().iter().map(|&[a, b]| {
                 let ends = [corners[a], corners[b]];
                 let edge = kind.edges().iter().position(|edge| ends.iter().all(|end| edge.contains(end)));
                 own[kind.corner_count() + edge.unwrap_or(0)]
             }));
         }
-        // The face of ours that has the corners of one before.
+        // Maps each old face to the new face with the same corners.
         let count = kind.face_kind().corner_count();
         faces.entry(kind.is_tet()).or_insert_with(|| {
             kind.faces()
@@ -205,7 +208,7 @@ fn ordered(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// A mesh with the names of `source`; valid because the source is.
+/// Builds a mesh with the region names of `source`. The mesh is valid because `source` is.
 fn rebuilt(
     source: &Mesh,
     points: Vec<crate::Point3>,

@@ -1,19 +1,24 @@
-//! Upright cylinders as five blocks: a square core and four sectors around it.
+//! Upright cylinders in five blocks: a square core and four sectors around it.
 
 use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3};
 
-/// Half side of the inner square in parameters, where the section is the square [-1, 1]^2.
+/// Half side of the inner square in the parameter space, where the section is the square [-1, 1]^2.
 const INNER: f64 = 0.5;
-/// Radius at which the core's sides cross the axes, and how far its corners are drawn in (0: square, 1: disc).
+/// Radius at which the core's sides cross the axes, and the fraction by which its corners are drawn in (0:
+/// square, 1: disc).
 const CORE: f64 = 0.5;
 const BULGE: f64 = 0.35;
 
-/// A cylinder of `radius` and `height` (m) on the plane z = 0 around the z axis.
+/// Meshes a cylinder of `radius` and `height` (m) on the plane z = 0 around the z axis.
 ///
-/// `cells = [across, along]`: hexahedra along each side of the core square (with `(across + 1) / 2` layers around
-/// it), and along the height. `grading` is the ratio of the last to the first interval along the height (1:
-/// uniform). Facet groups: [`surfaces::CYLINDER`]. Quadratic nodes of the side lie on the cylinder.
+/// `cells = [across, along]` are the hexahedra along each side of the core square, which has `(across + 1) /
+/// 2` layers around it, and along the height. `grading` is the ratio of the last to the first interval along
+/// the height (1: uniform). Facet groups: [`surfaces::CYLINDER`]. Quadratic nodes of the side lie on the
+/// cylinder.
+///
+/// # Errors
+/// A radius, height, grading or number of cells out of range.
 pub fn cylinder_mesh(
     kind: CellKind,
     radius: f64,
@@ -43,7 +48,7 @@ pub fn cylinder_mesh(
     for side in 0..4 {
         for (i, layer, k) in lattice::triples([n, layers, along]) {
             let key = |(a, b, c): (usize, usize, usize)| {
-                // (around, outwards, up) is right-handed when 'around' runs clockwise seen from above.
+                // (around, outwards, up) is right-handed if 'around' runs clockwise as seen from above.
                 let i = i + a;
                 let [x, y] = [[n - i, 0], [n, n - i], [i, n], [0, i]][side];
                 [x, y, k + c, layer + b].map(|v| v as u32)
@@ -63,7 +68,8 @@ pub fn cylinder_mesh(
     })?)
 }
 
-/// The square [-1, 1]^2 onto the unit disc: continuous, smooth within each of the five blocks.
+/// Maps the square [-1, 1]^2 onto the unit disc. The map is continuous, and smooth within each of the five
+/// blocks.
 fn onto_disc(x: f64, y: f64) -> [f64; 2] {
     let size = x.abs().max(y.abs());
     if size <= INNER {
@@ -78,7 +84,7 @@ fn onto_disc(x: f64, y: f64) -> [f64; 2] {
     [cx * (1.0 - t) + a / length * t, cy * (1.0 - t) + b / length * t]
 }
 
-/// The square onto the core: between a square and a disc, so that no corner is flat.
+/// Maps the square onto the core, a blend of a square and a disc in which no corner is flat.
 fn core(u: f64, v: f64) -> [f64; 2] {
     let round = [u * (1.0 - v * v / 2.0).sqrt(), v * (1.0 - u * u / 2.0).sqrt()];
     [CORE * (u * (1.0 - BULGE) + round[0] * BULGE), CORE * (v * (1.0 - BULGE) + round[1] * BULGE)]

@@ -1,4 +1,4 @@
-//! Nodes of block-structured meshes, merged where blocks meet by their integer lattice positions.
+//! Nodes of block-structured meshes. Nodes of adjoining blocks are merged by their integer lattice positions.
 
 use std::collections::HashMap;
 
@@ -8,10 +8,10 @@ use crate::{CellKind, Facet, Mesh, MeshError, Point3};
 pub(super) const CORNERS: [(usize, usize, usize); 8] =
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
 
-/// A key that is the same for the same node in every block.
+/// Lattice key of a node, the same in every block.
 pub(super) type Key = [u32; 4];
 
-/// A name for boundary facets and what holds at all of their corners.
+/// Name of a facet group, and the predicate that holds at all corners of its facets.
 pub(super) type Group<'a> = (&'a str, &'a dyn Fn(&Point3) -> bool);
 
 /// A hexahedral mesh under construction.
@@ -23,7 +23,7 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Adds a hexahedron by its corner keys; `place` gives the position of a key met for the first time.
+    /// Adds a hexahedron by its corner keys. `place` returns the position of a new key.
     pub(super) fn hexahedron(&mut self, corners: [Key; 8], place: impl Fn(Key) -> Point3) {
         for key in corners {
             let node = *self.number.entry(key).or_insert_with(|| {
@@ -34,8 +34,8 @@ impl Lattice {
         }
     }
 
-    /// The finished mesh with facet groups: a boundary facet belongs to every group whose predicate holds at all of
-    /// its corners.
+    /// Returns the mesh with its facet groups. A boundary facet belongs to every group whose predicate holds
+    /// at all its corners.
     pub(super) fn finish(self, groups: &[Group]) -> Result<Mesh, MeshError> {
         let mut mesh = Mesh::from_flat(self.points, vec![CellKind::Hex8; self.nodes.len() / 8], self.nodes)?;
         let boundary = mesh.boundary();
@@ -49,14 +49,14 @@ impl Lattice {
     }
 }
 
-/// All (i, j, k) below the counts, i fastest.
+/// Iterates over all (i, j, k) below the counts, i fastest.
 pub(super) fn triples(counts: [usize; 3]) -> impl Iterator<Item = (usize, usize, usize)> {
     let [nx, ny, nz] = counts;
     (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j, k))))
 }
 
-/// Lattice position (0 to `n` in each coordinate) of place (i, j) on a side of the cube, sides x-, x+, y-, y+, z-, z+;
-/// (i, j, outwards) is right-handed on each.
+/// Lattice position (0 to `n` in each coordinate) of cell corner (i, j) on a side of the cube. Sides are x-,
+/// x+, y-, y+, z-, z+, and (i, j, outwards) is right-handed on each.
 pub(super) fn on_cube_side(side: usize, n: [usize; 3], i: usize, j: usize) -> [usize; 3] {
     match side {
         0 => [0, j, i],
@@ -68,7 +68,7 @@ pub(super) fn on_cube_side(side: usize, n: [usize; 3], i: usize, j: usize) -> [u
     }
 }
 
-/// Number of places along i and j on a side of the cube.
+/// Number of cells along i and j on a side of the cube.
 pub(super) fn side_cells(side: usize, n: [usize; 3]) -> [usize; 2] {
     match side {
         0 => [n[2], n[1]],
@@ -80,8 +80,8 @@ pub(super) fn side_cells(side: usize, n: [usize; 3]) -> [usize; 2] {
     }
 }
 
-/// A point on the surface of the cube [-1, 1]^3 onto the unit sphere by equal angles (the equiangular cubed sphere:
-/// Ronchi, Iacono & Paolucci 1996): neighbouring cells differ less in size than under a plain central projection.
+/// Maps the surface of the cube [-1, 1]^3 onto the unit sphere by equal angles (the equiangular cubed sphere:
+/// Ronchi, Iacono & Paolucci 1996). Neighbouring cells differ less in size than under a central projection.
 pub(super) fn onto_sphere(u: &crate::Vector3) -> crate::Vector3 {
     u.map(|c| if c.abs() == 1.0 { c } else { (std::f64::consts::FRAC_PI_4 * c).tan() }).normalize()
 }

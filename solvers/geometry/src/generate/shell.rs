@@ -3,21 +3,24 @@
 use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3};
 
-/// How much of a sphere shell to mesh.
+/// Part of a sphere shell to mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShellExtent {
-    /// All of it.
+    /// The whole shell.
     Whole,
     /// The part with x, y, z >= 0; its cut faces are the groups "x-min", "y-min" and "z-min".
     Octant,
 }
 
-/// The shell between the radii `inner` and `outer` (m) around the origin.
+/// Meshes the shell between the radii `inner` and `outer` (m) around the origin.
 ///
-/// `cells = [around, through]`: hexahedra along each edge of the six cube faces blown up to the sphere (for an
-/// octant: along each half edge, three quarter faces), and through the thickness. `grading` is the ratio of the
-/// outermost to the innermost interval (1: uniform). Facet groups: "inner", "outer", and the cuts of an octant.
-/// Quadratic nodes lie exactly on the two spheres.
+/// `cells = [around, through]` are the hexahedra along each edge of the six cube faces projected to the
+/// sphere (for an octant: along each half edge, on three quarter faces), and through the thickness. `grading`
+/// is the ratio of the outermost to the innermost interval (1: uniform). Facet groups: "inner", "outer", and
+/// the cuts of an octant. Quadratic nodes lie exactly on the two spheres.
+///
+/// # Errors
+/// A radius, grading or number of cells out of range.
 pub fn sphere_shell_mesh(
     kind: CellKind,
     inner: f64,
@@ -32,7 +35,7 @@ pub fn sphere_shell_mesh(
     let [around, through] = cells;
     check_cells("the number of cells around the shell", around)?;
     check_cells("the number of cells through the shell", through)?;
-    // The lattice of a whole cube edge; an octant uses its upper half.
+    // Lattice of a whole cube edge, of which an octant uses the upper half.
     let (n, start, sides): (usize, usize, &[usize]) = match extent {
         ShellExtent::Whole => (around, 0, &[0, 1, 2, 3, 4, 5]),
         ShellExtent::Octant => (2 * around, around, &[1, 3, 5]),
@@ -40,7 +43,7 @@ pub fn sphere_shell_mesh(
     check_total([sides.len() * around, around, through])?;
 
     let thickness = graded(through, grading);
-    // Parameters: a point on the cube's surface, scaled by 1 (inside) to 2 (outside).
+    // Parameters: a point on the cube's surface, scaled by 1 (inner sphere) to 2 (outer sphere).
     let place = |key: lattice::Key| {
         let scale = 1.0 + thickness[key[3] as usize];
         let q = |c: u32| scale * (2.0 * c as f64 / n as f64 - 1.0);

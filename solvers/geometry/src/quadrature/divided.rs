@@ -1,35 +1,35 @@
-//! Rules on equal parts of the reference triangle or square, for what changes within a face.
+//! Rules on equal parts of the reference triangle or square, for integrands that vary within a face.
 
 use super::Rule;
 
-/// The equal parts, n along each edge, that a face's points lie on.
+/// Division of a face into equal parts, n along each edge, and the location of the points on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parts {
-    /// Each part has the points of the rule, which lie inside.
+    /// The rule's points, which lie inside, on each part.
     Inside(usize),
-    /// Each part has its corners, those of the face and places on its edges among them.
+    /// The corners of each part, including corners of the face and points on its edges.
     Corners(usize),
 }
 
 impl Parts {
-    /// The face as it is.
+    /// The undivided face.
     pub const WHOLE: Parts = Parts::Inside(1);
 
-    /// The points on a triangle, of a rule for the whole.
+    /// Points and weights on the parts of a triangle. `rule` is the rule on the whole triangle.
     pub fn tri(self, rule: &Rule<2>) -> Rule<2> {
         match self {
             Parts::Inside(1) => rule.clone(),
             Parts::Inside(parts) => divided_tri(rule, parts),
             Parts::Corners(parts) => corners(parts, |i, j| {
                 let on_edges = [i == 0, j == 0, i + j == parts].into_iter().filter(|on| *on).count();
-                // Corners of one, three or six of the triangles, each of which gives a third.
+                // Each of the adjacent triangles (one, three or six) contributes a third of its area.
                 let around = [6.0, 3.0, 1.0].get(on_edges).filter(|_| i + j <= parts)?;
                 Some(([i, j].map(|k| k as f64 / parts as f64), around / 6.0))
             }),
         }
     }
 
-    /// The points on a square, of a rule for the whole.
+    /// Points and weights on the parts of a square. `rule` is the rule on the whole square.
     pub fn quad(self, rule: &Rule<2>) -> Rule<2> {
         match self {
             Parts::Inside(1) => rule.clone(),
@@ -42,7 +42,8 @@ impl Parts {
     }
 }
 
-/// Points on a lattice of `parts` steps each way, of weights over the square of the step.
+/// Points on a lattice of `parts` steps along each axis. `at` returns the weights relative to the square of
+/// the step.
 fn corners(parts: usize, at: impl Fn(usize, usize) -> Option<([f64; 2], f64)>) -> Rule<2> {
     let mut out = Rule { points: Vec::new(), weights: Vec::new() };
     for (j, i) in (0..=parts).flat_map(|j| (0..=parts).map(move |i| (j, i))) {
@@ -54,7 +55,7 @@ fn corners(parts: usize, at: impl Fn(usize, usize) -> Option<([f64; 2], f64)>) -
     out
 }
 
-/// The rule on each of the `parts` x `parts` triangles into which equal steps along its edges divide the triangle.
+/// Applies the rule to each of the `parts` x `parts` triangles of a triangle with equally divided edges.
 fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
     let step = 1.0 / parts as f64;
     let mut out = Rule { points: Vec::new(), weights: Vec::new() };
@@ -62,7 +63,7 @@ fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
         for column in 0..parts - row {
             let (x, y) = (column as f64 * step, row as f64 * step);
             push(rule, [x, y], step, &mut out);
-            // The one beside it, upside down.
+            // The adjacent triangle, upside down.
             if column + row + 1 < parts {
                 push(rule, [x + step, y + step], -step, &mut out);
             }
@@ -71,7 +72,7 @@ fn divided_tri(rule: &Rule<2>, parts: usize) -> Rule<2> {
     out
 }
 
-/// The rule on each of the `parts` x `parts` squares into which equal steps along its edges divide the square.
+/// Applies the rule to each of the `parts` x `parts` squares of a square with equally divided edges.
 fn divided_quad(rule: &Rule<2>, parts: usize) -> Rule<2> {
     let step = 1.0 / parts as f64;
     let mut out = Rule { points: Vec::new(), weights: Vec::new() };
@@ -84,7 +85,7 @@ fn divided_quad(rule: &Rule<2>, parts: usize) -> Rule<2> {
     out
 }
 
-/// The rule's points times `scale` from `origin` on.
+/// Appends the rule, scaled by `scale` and moved to `origin`.
 fn push(rule: &Rule<2>, origin: [f64; 2], scale: f64, out: &mut Rule<2>) {
     out.points.extend(rule.points.iter().map(|p| [0, 1].map(|a| origin[a] + scale * p[a])));
     out.weights.extend(rule.weights.iter().map(|w| w * scale * scale));

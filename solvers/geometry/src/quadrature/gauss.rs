@@ -2,9 +2,9 @@
 
 use super::Rule;
 
-/// Points (ascending, in [-1, 1]) and weights (summing to 2) of the `n`-point Gauss-Legendre rule, exact to degree
-/// `2 n - 1`. Newton iteration on the Legendre polynomial from Chebyshev-like first guesses; the halves are
-/// mirrored, so the rule is symmetric to the last bit. Empty for `n = 0`.
+/// Points (ascending, in [-1, 1]) and weights (sum 2) of the `n`-point Gauss-Legendre rule, exact to degree
+/// `2 n - 1`. Newton's method finds the roots of the Legendre polynomial from Chebyshev-like first guesses.
+/// The halves are mirrored, so the rule is symmetric to the last bit. Empty for `n = 0`.
 pub fn gauss_legendre(n: usize) -> (Vec<f64>, Vec<f64>) {
     let mut points = vec![0.0; n];
     let mut weights = vec![0.0; n];
@@ -31,7 +31,7 @@ pub fn gauss_legendre(n: usize) -> (Vec<f64>, Vec<f64>) {
     (points, weights)
 }
 
-/// `P_n(x)` and its derivative by the three-term recurrence.
+/// `P_n(x)` and its derivative, by the three-term recurrence.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut here) = (1.0, x);
     for k in 2..=n {

@@ -1,15 +1,16 @@
 //! Symmetric rules on the triangle and the tetrahedron, stored by orbit.
 //!
-//! A symmetric rule is a list of orbits: one representative in barycentric coordinates and all its distinct
-//! permutations. The orbit parameters solve the moment equations (all barycentric monomials of the rule's degree)
-//! and were polished by Newton iteration in 40-digit arithmetic to a residual below 1e-39. Classic members: the
-//! degree-5 triangle (Radon 1948), the 4-, 14- and 24-point tetrahedra (Hammer & Stroud 1956, Walkington 2000,
-//! Keast 1986). The symmetric 11-point degree-4 tetrahedron has a negative weight (Keast 1986) and a random search
-//! over its five parameters finds no positive solution, so it is not offered: 14 points give degree 5.
+//! A symmetric rule is a list of orbits: one representative in barycentric coordinates with all its distinct
+//! permutations. The orbit parameters solve the moment equations (all barycentric monomials of the rule's
+//! degree). They were refined by Newton's method in 40-digit arithmetic to a residual below 1e-39. Classic
+//! rules among them are the degree-5 triangle (Radon 1948) and the 4-, 14- and 24-point tetrahedra (Hammer &
+//! Stroud 1956, Walkington 2000, Keast 1986). The symmetric 11-point degree-4 tetrahedron has a negative
+//! weight (Keast 1986), and a random search over its five parameters finds no positive solution. It is not
+//! offered: 14 points give degree 5.
 
 use super::Rule;
 
-/// Weight (as a share of the reference measure) and one representative in barycentric coordinates.
+/// Weight (as a fraction of the reference measure) and a representative in barycentric coordinates.
 type Orbit<const N: usize> = (f64, [f64; N]);
 
 const fn s31(weight: f64, a: f64) -> Orbit<4> {
@@ -96,14 +97,15 @@ const TRI25: [Orbit<3>; 6] = [
     s111(0.03735985623430527, 0.029946031954170886, 0.3587401418644315),
 ];
 
-/// (points, degree) of every tetrahedron rule.
+/// (Points, degree) of every tetrahedron rule.
 pub const TET_RULES: [(usize, usize); 8] =
     [(1, 1), (4, 2), (8, 3), (14, 5), (15, 5), (24, 6), (35, 7), (46, 8)];
 
-/// (points, degree) of every triangle rule.
+/// (Points, degree) of every triangle rule.
 pub const TRI_RULES: [(usize, usize); 7] = [(1, 1), (3, 2), (6, 4), (7, 5), (12, 6), (16, 8), (25, 10)];
 
-/// The tetrahedron rule with this many points (one of [`TET_RULES`]), weights summing to 1/6.
+/// Returns the tetrahedron rule with this number of points, or `None` if [`TET_RULES`] has no such rule. The
+/// weights sum to 1/6.
 pub fn tet(points: usize) -> Option<Rule<3>> {
     let orbits: &[Orbit<4>] = match points {
         1 => &TET1,
@@ -121,7 +123,8 @@ pub fn tet(points: usize) -> Option<Rule<3>> {
     Some(Rule { points, weights })
 }
 
-/// The triangle rule with this many points (one of [`TRI_RULES`]), weights summing to 1/2.
+/// Returns the triangle rule with this number of points, or `None` if [`TRI_RULES`] has no such rule. The
+/// weights sum to 1/2.
 pub fn tri(points: usize) -> Option<Rule<2>> {
     let orbits: &[Orbit<3>] = match points {
         1 => &TRI1,

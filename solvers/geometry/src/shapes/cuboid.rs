@@ -17,7 +17,7 @@ impl Cuboid {
         self.max - self.min
     }
 
-    /// The point at a share of each side; exact at 0 and 1.
+    /// The point at a fraction of each side; exact at 0 and 1.
     fn at(&self, share: [f64; 3]) -> Point3 {
         Point3::from(Vector3::from_fn(|d, _| match share[d] {
             1.0 => self.max[d],
@@ -26,7 +26,7 @@ impl Cuboid {
     }
 }
 
-/// An index drawn with chances proportional to `sizes`, and 0 or 1 at random.
+/// A random index 0, 1 or 2 with probabilities proportional to `sizes`.
 fn pick(sizes: [f64; 3], unit: &mut dyn FnMut() -> f64) -> usize {
     let u = unit() * (sizes[0] + sizes[1] + sizes[2]);
     if u < sizes[0] {
@@ -56,7 +56,7 @@ impl Shape for Cuboid {
     fn project_to_surface(&self, p: &Point3) -> Point3 {
         let mut q = Point3::from(Vector3::from_fn(|d, _| p[d].clamp(self.min[d], self.max[d])));
         if q == *p {
-            // Inside: move to the nearest of six faces.
+            // Inside, move to the nearest of the six faces.
             let mut best = (f64::INFINITY, 0, 0.0);
             for d in 0..3 {
                 for side in [self.min[d], self.max[d]] {

@@ -15,13 +15,13 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// The point at `p`'s direction from the axis with this radius and height.
+    /// The point in the direction of `p` from the axis, at this radius and height.
     fn at(&self, p: &Point3, radius: f64, z: f64) -> Point3 {
         let v = super::along(Vector3::new(p.x, p.y, 0.0), radius);
         Point3::new(v.x, v.y, z)
     }
 
-    /// Uniform in the unit disc; the hair's breadth left out in its middle is of no account.
+    /// A random point, uniform in the unit disc without the negligible disc of radius 1e-6 at its centre.
     fn disc(unit: &mut dyn FnMut() -> f64) -> Point3 {
         loop {
             let (x, y) = (2.0 * unit() - 1.0, 2.0 * unit() - 1.0);
@@ -68,7 +68,7 @@ impl Shape for Cylinder {
     }
 
     fn surface_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
-        // Side 2 pi r h, two ends of pi r^2 each.
+        // The side has the area 2 pi r h, each of the two ends pi r^2.
         let u = unit() * (self.height + self.radius);
         if u < self.height {
             let p = Self::disc(unit);

@@ -1,11 +1,12 @@
-//! A kidney-like bean: the unit ball bent along its long axis; and its upper half.
+//! The kidney, a bean-like body: the unit ball bent along its long axis; and its upper half.
 
 use super::{Shape, along, unit_ball, unit_sphere};
 use crate::{Point3, Vector3};
 
-/// The body `((x - k (y/b)^2)/a)^2 + (y/b)^2 + (z/c)^2 <= 1` with a = k = 160/9 mm, b = 37.5 mm, c = 15 mm: 40 x 75
-/// x 30 mm along x (lateral), y (long axis), z (anterior), hilum on +x, volume `4/3 pi 10^4` mm^3. It is the image of
-/// the unit ball under `(X, Y, Z) -> (a X + k Y^2, b Y, c Z)`, a smooth bijection.
+/// The kidney `((x - k (y/b)^2)/a)^2 + (y/b)^2 + (z/c)^2 <= 1` with a = k = 160/9 mm, b = 37.5 mm, c = 15 mm.
+/// Its dimensions are 40 x 75 x 30 mm along x (lateral), y (long axis) and z (anterior), with the hilum on +x
+/// and a volume of `4/3 pi 10^4` mm^3. It is the image of the unit ball under `(X, Y, Z) -> (a X + k Y^2, b
+/// Y, c Z)`, a smooth bijection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kidney;
 
@@ -17,12 +18,12 @@ impl Kidney {
     /// Half thickness along z, in metres.
     pub const C: f64 = 0.015;
 
-    /// Position (m) of a point of the unit ball.
+    /// Image (m) of a point of the unit ball.
     pub fn map(&self, ball: &Point3) -> Point3 {
         Point3::new(Self::A * (ball.x + ball.y * ball.y), Self::B * ball.y, Self::C * ball.z)
     }
 
-    /// The point that [`Kidney::map`] takes to `p` (m); inside the unit ball when `p` is inside the kidney.
+    /// Preimage of `p` (m) under [`Kidney::map`], inside the unit ball if `p` is inside the kidney.
     pub fn preimage(&self, p: &Point3) -> Point3 {
         let y = p.y / Self::B;
         Point3::new(p.x / Self::A - y * y, y, p.z / Self::C)
@@ -49,13 +50,14 @@ impl Shape for Kidney {
     }
 
     fn volume_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
-        // The map's Jacobian determinant is a b c everywhere: uniform stays uniform.
+        // The map's Jacobian determinant is a b c everywhere, so the image of a uniform distribution is
+        // uniform.
         self.map(&unit_ball(unit).into())
     }
 
     fn surface_sample(&self, unit: &mut dyn FnMut() -> f64) -> Point3 {
-        // Area scales by |cof(D) n| = a b c |D^-T n| with D the map's gradient; draw by rejection. On the sphere
-        // |D^-T n|^2 = (X/a)^2 + ((Y - 2 X Y)/b)^2 + (Z/c)^2, at most 1/c^2.
+        // Area scales by |cof(D) n| = a b c |D^-T n|, where D is the map's gradient; samples are drawn by
+        // rejection. On the sphere, |D^-T n|^2 = (X/a)^2 + ((Y - 2 X Y)/b)^2 + (Z/c)^2 is at most 1/c^2.
         loop {
             let n = unit_sphere(unit);
             let stretch =
@@ -72,7 +74,7 @@ impl Shape for Kidney {
 pub struct HalfKidney;
 
 impl HalfKidney {
-    /// Area (m^2) of the curved part, by numbers: half of the kidney's.
+    /// Area (m^2) of the curved part, half of the kidney's area, computed numerically.
     const CURVED: f64 = 33.506e-4;
     /// Area (m^2) of the plane face.
     const FACE: f64 = std::f64::consts::PI * Kidney::A * Kidney::B;
@@ -81,7 +83,7 @@ impl HalfKidney {
         Point3::new(p.x, p.y, p.z.abs())
     }
 
-    /// The image of the unit disc; its map preserves areas but for a factor.
+    /// A random point of the plane face: the image of the unit disc, whose map scales all areas equally.
     fn on_face(unit: &mut dyn FnMut() -> f64) -> Point3 {
         loop {
             let (x, y) = (2.0 * unit() - 1.0, 2.0 * unit() - 1.0);
@@ -97,7 +99,7 @@ impl Shape for HalfKidney {
         Kidney.volume() / 2.0
     }
 
-    /// The kidney's own above the plane; below, the depth counts in the same measure.
+    /// The kidney's level function above the plane, combined with `-z/c` below; dimensionless.
     fn level(&self, p: &Point3) -> f64 {
         Kidney.level(p).max(-p.z / Kidney::C)
     }
@@ -129,7 +131,8 @@ impl Shape for HalfKidney {
     }
 
     fn edge_sample(&self, unit: &mut dyn FnMut() -> f64) -> Option<Point3> {
-        // (X, Y) of the unit circle goes along (a (-Y + 2 X Y), b X), at most 41 mm; draw by rejection.
+        // (X, Y) on the unit circle moves along (a (-Y + 2 X Y), b X), at most 41 mm; samples are drawn by
+        // rejection.
         loop {
             let rim = Kidney.preimage(&Kidney.project_to_surface(&HalfKidney::on_face(unit)));
             let along = (Kidney::A * rim.y * (2.0 * rim.x - 1.0)).hypot(Kidney::B * rim.x);

@@ -1,4 +1,4 @@
-//! Where a surface cuts the edges of a lattice, and which of its points are moved there.
+//! Cuts of lattice edges by a surface, and the lattice points moved to such cuts.
 
 use std::collections::HashMap;
 
@@ -7,19 +7,20 @@ use rayon::prelude::*;
 use super::stencil::Side;
 use crate::{Point3, Surface};
 
-/// A point is moved to a cut nearer than this part of the edge: the values that give the best angles (Labelle and Shewchuk 2007, table 1).
+/// Fraction of a long or short edge within which a point is moved to the cut. These values give the best
+/// angles (Labelle and Shewchuk 2007, table 1).
 const LONG: f64 = 0.24999;
 const SHORT: f64 = 0.41189;
-/// Edges per parallel task at least.
+/// Smallest number of edges per parallel task.
 const CHUNK: usize = 32;
 
-/// The lattice with points moved to the surface, and the cuts that are left.
+/// The lattice with points moved to the surface, and the remaining cuts.
 pub(super) struct Cuts {
-    /// Points of the lattice, then cuts.
+    /// Points of the lattice, followed by the cuts.
     pub points: Vec<Point3>,
-    /// Of the points of the lattice.
+    /// Sides of the lattice points.
     pub sides: Vec<Side>,
-    /// Place of the cut among the points, by the ends of its edge, inside and outside.
+    /// Index of each cut among the points, by the ends of its edge (inside, outside).
     pub nodes: HashMap<[u32; 2], u32>,
 }
 
@@ -28,12 +29,13 @@ struct Edge {
     inside: u32,
     outside: u32,
     long: bool,
-    /// From the inside, as a part of its length.
+    /// Position of the cut, as a fraction of the edge from its inner end.
     cut: f64,
 }
 
 impl Cuts {
-    /// `distances` (m) are of the points from the surface, negative inside.
+    /// Moves points and cuts edges. `distances` (m) are the signed distances of the points from the surface,
+    /// negative inside.
     pub(super) fn new(
         surface: &Surface,
         tets: &[[u32; 4]],
@@ -82,7 +84,7 @@ impl Cuts {
     }
 }
 
-/// The edges of regular tetrahedra with one end inside and the other outside, each once.
+/// Edges of regular tetrahedra from a point inside to a point outside, without duplicates.
 fn edges(tets: &[[u32; 4]], sides: &[Side]) -> Vec<Edge> {
     let mut edges = Vec::new();
     for tet in tets {
@@ -102,7 +104,7 @@ fn edges(tets: &[[u32; 4]], sides: &[Side]) -> Vec<Edge> {
     edges.into_iter().map(edge).collect()
 }
 
-/// The points at which edges end, ascending, each with its edges.
+/// End points of the edges, ascending, each with the indices of its edges.
 fn at_ends(edges: &[Edge]) -> Vec<(u32, Vec<u32>)> {
     let ends =
         edges.iter().enumerate().flat_map(|(at, edge)| [(edge.inside, at as u32), (edge.outside, at as u32)]);

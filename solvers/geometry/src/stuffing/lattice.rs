@@ -1,19 +1,21 @@
-//! Tetrahedra between the middles and the corners of cubes (Labelle and Shewchuk 2007, section 3).
+//! Lattice of tetrahedra between the centres and corners of cubes (Labelle and Shewchuk 2007, section 3).
 //!
-//! Two cubes of one size that share a face have four between them, one for each edge of the face: all their angles are 60 or
-//! 90 degrees. Where sizes change these are cut in two or four, or a pyramid on the smaller face is cut in two.
+//! Two cubes of equal size that share a face have four tetrahedra between them, one for each edge of the
+//! face. All their angles are 60 or 90 degrees. Where the cube size changes, these tetrahedra are cut into
+//! two or four parts, or a pyramid on the smaller face is cut into two.
 
 use std::collections::HashMap;
 
 use super::octree::{Cube, Octree, State, middle};
 
-/// Points in halves of the smallest cube, and tetrahedra between them.
+/// Points in units of half the smallest cube, and the tetrahedra between them.
 #[derive(Default)]
 pub(super) struct Lattice {
     pub points: Vec<[i32; 3]>,
-    /// Between two smallest cubes: two middles, then two corners. The first edge and the last are as long as a cube, the others shorter.
+    /// Tetrahedra between two smallest cubes: two centres, then two corners. The first and the last edge are
+    /// as long as a cube, the others shorter.
     pub regular: Vec<[u32; 4]>,
-    /// All others.
+    /// All other tetrahedra.
     pub coarse: Vec<[u32; 4]>,
     index: HashMap<[i32; 3], u32>,
 }
@@ -24,12 +26,12 @@ struct Face {
     cube: Cube,
     level: usize,
     axis: usize,
-    /// -1 or 1.
+    /// Side of the cube along the axis, -1 or 1.
     side: i32,
 }
 
 impl Face {
-    /// The cube of the same size on the other side.
+    /// The adjacent cube of the same size across the face.
     fn across(&self) -> Cube {
         let mut cube = self.cube;
         cube[self.axis] += self.side;
@@ -41,7 +43,7 @@ impl Face {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
 
-    /// Corners one after another around the face, in halves of the smallest cube.
+    /// Corners in order around the face, in halves of the smallest cube.
     fn corners(&self) -> [[i32; 3]; 4] {
         let half = 1 << self.level;
         let [u, v] = self.within();
@@ -54,7 +56,7 @@ impl Face {
         })
     }
 
-    /// The step to the cube beyond each edge, from a corner to the next.
+    /// Step to the adjacent cube across an edge, which runs from a corner to the next.
     fn beyond(&self, edge: usize) -> [i32; 3] {
         let [u, v] = self.within();
         let mut step = [0; 3];
@@ -88,7 +90,7 @@ impl Lattice {
     fn face(&mut self, octree: &Octree, face: Face) {
         let own = middle(face.cube, face.level);
         match octree.state(face.across(), face.level) {
-            // Once for both cubes.
+            // Each face between equal cubes is added only once.
             Some(State::Leaf) if face.side == 1 => self.equal(octree, face),
             Some(State::Leaf) => {}
             Some(State::Divided) => {
@@ -106,7 +108,7 @@ impl Lattice {
                 if octree.state(parent, face.level + 1) != Some(State::Leaf) {
                     return;
                 }
-                // The diagonal is at the middle of the larger face.
+                // The diagonal starts at the centre of the larger face.
                 let larger = middle(parent, face.level + 1);
                 let corners = face.corners();
                 let is_centre =
@@ -119,7 +121,8 @@ impl Lattice {
         }
     }
 
-    /// Between two cubes of one size; edges of the face that smaller cubes halve are halved here too.
+    /// Adds the tetrahedra between two cubes of equal size. Edges of the face that smaller cubes halve are
+    /// halved here too.
     fn equal(&mut self, octree: &Octree, face: Face) {
         let across = face.across();
         let (own, other) = (middle(face.cube, face.level), middle(across, face.level));

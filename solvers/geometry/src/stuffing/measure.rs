@@ -1,23 +1,24 @@
-//! How close a mesh is to the surface it was made of.
+//! Distance between a mesh and the surface that it fills.
 
 use rayon::prelude::*;
 
 use crate::surface::{Tree, triangles_of};
 use crate::{Mesh, Point3, Surface, Vector3, quality};
 
-/// Points per parallel task at least.
+/// Smallest number of points per parallel task.
 const CHUNK: usize = 64;
-/// Points on a triangle are no farther apart than this part of the box around the surface.
+/// Largest spacing of sample points on a triangle, as a fraction of the diagonal of the surface's bounding
+/// box.
 const APART: f64 = 1.0 / 200.0;
-/// Parts of an edge at most.
+/// Largest number of parts of an edge.
 const MOST: usize = 32;
 
-/// How close a mesh is to a surface.
+/// Difference between a mesh and the surface that it fills.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Volume of the mesh, m^3.
     pub volume: f64,
-    /// That within the surface, m^3.
+    /// Volume within the surface, m^3.
     pub of_surface: f64,
     /// The largest distance of points on the mesh's boundary from the surface, m.
     pub mesh_to_surface: f64,
@@ -26,13 +27,13 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The larger of the two distances, m: the Hausdorff distance of the points.
+    /// Larger of the two distances, m: the Hausdorff distance of the sample points.
     pub fn hausdorff(&self) -> f64 {
         self.mesh_to_surface.max(self.surface_to_mesh)
     }
 }
 
-/// Measures the volumes and, at corners, middles and points between on both, the distances.
+/// Measures the volumes, and the distances at corners, centres and grid points of the triangles on both.
 pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
     let boundary: Vec<[u32; 3]> = (mesh.boundary().iter())
         .flat_map(|&facet| {
@@ -58,7 +59,7 @@ pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
     }
 }
 
-/// The corners, and in each triangle its middle and points of a grid along its edges.
+/// Corners, and for each triangle its centre and the points of a regular grid.
 fn samples(points: &[Point3], triangles: &[[u32; 3]], apart: f64) -> Vec<Point3> {
     let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();
@@ -73,7 +74,7 @@ fn samples(points: &[Point3], triangles: &[[u32; 3]], apart: f64) -> Vec<Point3>
         for i in 0..=parts {
             for j in 0..=parts - i {
                 let k = parts - i - j;
-                // Corners are there already.
+                // Corners are already included.
                 if i.max(j).max(k) < parts {
                     add((a * i as f64 + b * j as f64 + c * k as f64) / parts as f64);
                 }

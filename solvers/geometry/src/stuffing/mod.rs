@@ -1,9 +1,10 @@
-//! From a closed surface to tetrahedra inside: isosurface stuffing (Labelle and Shewchuk 2007).
+//! Isosurface stuffing: fills a closed surface with tetrahedra (Labelle and Shewchuk 2007).
 //!
-//! A lattice of cubes, body-centred, is laid over the surface. Where the surface cuts an edge close to its end, the end is moved
-//! there; the tetrahedra that are still cut are replaced by their parts inside. Angles between faces are proven to be
-//! between 10.7 and 164.8 degrees, since all tetrahedra along the surface are of one size. Inside they may be larger. Sharp
-//! edges are rounded off at the size of a cell.
+//! A body-centred lattice of cubes is laid over the surface. If the surface cuts an edge close to its end,
+//! the end is moved to the cut. Tetrahedra that are still cut are replaced by their parts inside. All
+//! tetrahedra along the surface have the same size, so the angles between faces are proven to lie between
+//! 10.7 and 164.8 degrees. Inside, tetrahedra may be larger. Sharp edges are rounded off at the size of a
+//! cell.
 
 mod cuts;
 mod lattice;
@@ -26,70 +27,73 @@ use stencil::{Side, Tet};
 pub use measure::{Fit, fit};
 pub use nodes::{stuff_with_nodes, stuff_with_quadratic_nodes};
 
-/// Mean length of the edges of the lattice over the edge of its cubes: at each node six of it and eight of half a diagonal.
+/// Mean edge length of the lattice over the edge of its cubes: each node has six edges of a full edge length
+/// and eight of half a diagonal.
 pub const MEAN_EDGE: f64 = (6.0 + 4.0 * 1.732_050_807_568_877_2) / 14.0;
-/// Cubes are at most 2^3 times as large inside as at the surface.
+/// Largest number of doublings: cubes inside are at most 2^3 times as large as at the surface.
 pub const LARGEST: u32 = 3;
-/// Points per parallel task at least.
+/// Smallest number of points per parallel task.
 const CHUNK: usize = 64;
-/// Nodes that no machine here takes.
+/// Largest estimated number of nodes.
 const MOST: f64 = 2e7;
 
-/// How a surface is filled.
+/// Parameters of [`stuff`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stuffing {
-    /// Mean length of edges at the surface, m.
+    /// Mean edge length at the surface, m.
     pub spacing: f64,
-    /// How often the size doubles inside at most: 0 for cells of one size.
+    /// Largest number of doublings of the cell size towards the inside; 0 gives cells of one size.
     pub doublings: u32,
 }
 
 /// Tetrahedra inside a surface.
 #[derive(Clone, Debug)]
 pub struct Stuffed {
-    /// The mesh, its boundary the group "surface". Groups of the surface are groups of it, which replace one of that name; a group much
-    /// smaller than the cells may have no facet.
+    /// The mesh, with its boundary as the group "surface". Groups of the surface become facet groups, and one
+    /// named "surface" replaces the boundary. A group much smaller than the cells may have no facets.
     pub mesh: Mesh,
-    /// Parts of less than eight nodes of the lattice that are left out: tips that the surface cuts off from the rest.
+    /// Number of omitted parts with fewer than eight lattice nodes inside, tips that the surface cuts off
+    /// from the rest.
     pub left_out: usize,
 }
 
-/// Why a surface can't be filled.
+/// Errors of filling a surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StuffingError {
-    /// A spacing that is no length.
+    /// A spacing that is not positive and finite.
     #[error("a spacing of {spacing} m is none; it has to be positive")]
     Spacing {
-        /// As given.
+        /// Spacing, m.
         spacing: f64,
     },
-    /// More nodes than can be made.
+    /// Too many nodes.
     #[error("a spacing of {spacing} m makes about {nodes:.1e} nodes")]
     TooFine {
-        /// As given.
+        /// Spacing, m.
         spacing: f64,
-        /// Estimated nodes.
+        /// Estimated number of nodes.
         nodes: f64,
     },
-    /// Cells larger than the body is thick.
+    /// Cells larger than the thickness of the body.
     #[error("a spacing of {spacing} m is too large for the surface: no part of it holds eight nodes")]
     TooCoarse {
-        /// As given.
+        /// Spacing, m.
         spacing: f64,
     },
 }
 
-/// About how many nodes cells of one size have in a volume (m^3) within an area (m^2).
+/// Estimates the number of nodes of cells of uniform size, with `spacing` in m, in a volume (m^3) within an
+/// area (m^2).
 pub fn expected_nodes(volume: f64, area: f64, spacing: f64) -> f64 {
     let edge = spacing / MEAN_EDGE;
-    // Two in a cube, and half a layer at the surface.
+    // Two nodes per cube, and half a layer at the surface.
     2.0 * volume / edge.powi(3) + area / edge.powi(2)
 }
 
 /// Fills a surface with tetrahedra.
 ///
 /// # Errors
-/// A spacing that is no length, too fine or too coarse for the surface.
+/// A spacing that is not positive and finite, or too fine or too coarse for the surface.
 pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError> {
     let Stuffing { spacing, doublings } = how;
     if !(spacing > 0.0 && spacing.is_finite()) {
@@ -114,7 +118,7 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
         let tet = Tet { corners, sides: corners.map(|p| sides[p as usize]) };
         tet.inside(|a, b| nodes[&[a, b]], apart, |part| tets.push(part));
     }
-    // None of the others has a corner on the surface: nothing is smaller beside them.
+    // No other tetrahedron has a corner on the surface, since they touch only larger cubes.
     let all_inside = |tet: &[u32; 4]| tet.iter().all(|&p| sides[p as usize] == Side::Inside);
     tets.extend(lattice.coarse.into_iter().filter(all_inside));
     let parts = parts::connected(&tets, &sides);
@@ -124,7 +128,8 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
     Ok(Stuffed { mesh: named(surface, mesh(&points, &parts)), left_out: parts.left_out })
 }
 
-/// The mesh of the parts: nodes in the order in which cells have them, corners turned to a positive volume.
+/// Builds the mesh of the parts. Nodes are numbered in the order in which cells use them, and corners are
+/// ordered for a positive volume.
 fn mesh(points: &[Point3], parts: &parts::Parts) -> Mesh {
     let mut index = std::collections::HashMap::new();
     let (mut kept, mut nodes) = (Vec::new(), Vec::with_capacity(4 * parts.tets.len()));
@@ -133,7 +138,8 @@ fn mesh(points: &[Point3], parts: &parts::Parts) -> Mesh {
         let turned = (b - a).cross(&(c - a)).dot(&(d - a)) < 0.0;
         let order = if turned { [0, 2, 1, 3] } else { [0, 1, 2, 3] };
         for corner in order {
-            // Parts that meet at a node or an edge alone would hinge there.
+            // Nodes are separate for each part. Otherwise, parts that touch only at a node or an edge would
+            // form a hinge.
             nodes.push(*index.entry((part, tet[corner])).or_insert_with(|| {
                 kept.push(points[tet[corner] as usize]);
                 kept.len() as u32 - 1

@@ -1,11 +1,11 @@
-//! Names of the surface that was filled, for the boundary of the mesh.
+//! Transfers the groups of the surface to the boundary of the mesh.
 
 use rayon::prelude::*;
 
 use super::CHUNK;
 use crate::{Facet, Mesh, Point3, Surface, Vector3};
 
-/// Puts each facet of the boundary into the groups of the surface's triangle that is closest to its middle.
+/// Adds each boundary facet to the groups of the surface triangle closest to its centre.
 pub(super) fn named(surface: &Surface, mut mesh: Mesh) -> Mesh {
     let groups = surface.groups();
     if groups.names().is_empty() {

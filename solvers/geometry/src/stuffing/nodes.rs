@@ -1,36 +1,42 @@
-//! The spacing that makes so many nodes.
+//! Finds the spacing that gives a requested number of nodes.
 //!
-//! Inside thin walls the number of nodes jumps, and does not always grow as the spacing shrinks. So the spacings that are tried come from
-//! one tree, which the surface alone decides: from coarse to fine, then by halves between the first with enough nodes and the one before it,
-//! then some beyond. The wanted number decides only which branch is taken. Where the ways of two numbers part, both have tried a spacing
-//! whose nodes lie between them: more nodes wanted are never fewer nodes made.
+//! Inside thin walls the number of nodes jumps, and does not always grow as the spacing shrinks. The spacings
+//! tried therefore come from one tree that depends only on the surface. They go from coarse to fine, then by
+//! bisection between the first spacing with enough nodes and the one before, then over some finer spacings.
+//! The requested number decides only which branch is taken. At the point where the branches of two requests
+//! part, both have tried a spacing whose number of nodes lies between them. So a larger request never gives
+//! fewer nodes.
 
 use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, stuff};
 use crate::{Mesh, Surface, quality};
 
-/// Spacings that have half the last: each step makes about 1.4 times the nodes.
+/// Number of steps that halve the spacing. Each step increases the number of nodes by a factor of about 1.4.
 const STEPS: f64 = 6.0;
-/// Halves between two steps, to about a twentieth of the nodes. More would only close in on spacings where the number jumps, as the
-/// lattice meets a plane face there: such a mesh is the worst one of its size.
+/// Number of bisections between two steps, which resolves the number of nodes to about a twentieth. More
+/// bisections would only approach spacings at which the number jumps because the lattice meets a plane face.
+/// Such a mesh is the worst of its size.
 const HALVES: usize = 3;
-/// Parts of a step, and how many of them are tried beyond the first step with enough nodes where none is close: the number often falls
-/// again behind a jump.
+/// Size, as a fraction of a step, and number of the spacings tried beyond the first step with enough nodes if
+/// none is close. The number of nodes often decreases again after a jump.
 const PART: f64 = 0.25;
 const BEYOND: usize = 6;
-/// Steps that are always tried from the first on that fills the body: inside thin walls a finer one often has fewer nodes.
+/// Number of steps that are always tried from the first that fills the body. Inside thin walls a finer step
+/// often has fewer nodes.
 const AHEAD: usize = 4;
-/// Parts of the wanted number that are close enough.
+/// Relative difference from the requested number at which the search stops.
 const CLOSE: f64 = 0.02;
-/// A mesh with less of the surface's volume is not the body: cells larger than a wall is thick fill it here and there.
+/// Smallest fraction of the surface's volume that a mesh must fill. Cells larger than the thickness of a wall
+/// fill it only in places.
 const WHOLE: f64 = 0.75;
-/// No finer spacing is tried than one that makes about so many nodes, and so many times those wanted, while none has filled the body.
+/// Number of nodes, and multiple of the requested number, beyond which no finer spacing is tried if none has
+/// filled the body.
 const HOPELESS: [f64; 2] = [2e5, 16.0];
 
-/// Fills a surface with about so many nodes: of the spacings that are tried the one whose nodes are nearest by their ratio. More nodes
-/// wanted never make fewer.
+/// Fills a surface with about `nodes` nodes. Returns the mesh and its spacing (m). Of the spacings tried, the
+/// one whose number of nodes has the ratio closest to 1 is chosen. A larger request never gives fewer nodes.
 ///
 /// # Errors
-/// As [`stuff`].
+/// As for [`stuff`].
 pub fn stuff_with_nodes(
     surface: &Surface,
     nodes: usize,
@@ -39,16 +45,17 @@ pub fn stuff_with_nodes(
     Search::new(surface, nodes, doublings, |mesh| mesh.points().len()).nearest()
 }
 
-/// The same, for so many nodes of quadratic tetrahedra: corners and the middles of edges.
+/// Fills a surface with tetrahedra that have about `nodes` nodes as quadratic cells: corners and mid-edge
+/// nodes.
 ///
 /// # Errors
-/// As [`stuff`].
+/// As for [`stuff`].
 pub fn stuff_with_quadratic_nodes(surface: &Surface, nodes: usize) -> Result<Stuffed, StuffingError> {
     let count = |mesh: &Mesh| mesh.points().len() + edge_count(mesh);
     Search::new(surface, nodes, 0, count).nearest().map(|(stuffed, _)| stuffed)
 }
 
-/// Edges of tetrahedra.
+/// Number of edges of a tetrahedral mesh.
 fn edge_count(mesh: &Mesh) -> usize {
     let of_cell = |cell: usize| {
         let nodes = mesh.cell(cell);
@@ -66,11 +73,12 @@ struct Search<'a, F> {
     wanted: f64,
     doublings: u32,
     count: F,
-    /// How far the nodes of the best mesh are off, the mesh and its spacing.
+    /// Best mesh so far: the logarithm of its ratio of nodes to the requested number, the mesh and its
+    /// spacing (m).
     best: Option<(f64, Stuffed, f64)>,
 }
 
-/// What a spacing has against the wanted number.
+/// Number of nodes at a spacing, compared with the requested number.
 enum Found {
     Fewer,
     Close,
@@ -82,7 +90,7 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
         Search { surface, wanted: nodes.max(1) as f64, doublings, count, best: None }
     }
 
-    /// The spacing of a step, from that of the body's size on.
+    /// Spacing (m) of a step; step 0 is about the size of the body.
     fn spacing(&self, step: f64) -> f64 {
         2.0 * MEAN_EDGE * (2.0 * self.surface.volume()).cbrt() * (-step / STEPS).exp2()
     }
@@ -95,7 +103,7 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
                 Found::More => enough = enough.or(Some(step)),
                 Found::Fewer => {}
             }
-            // The body is filled from here on.
+            // The body is filled from this step on.
             ahead -= usize::from(self.best.is_some() && ahead > 0);
             step += 1.0;
         }
@@ -122,13 +130,13 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
         self.best.map(|(_, stuffed, spacing)| (stuffed, spacing)).ok_or(StuffingError::TooCoarse { spacing })
     }
 
-    /// Fills the surface at a spacing, and keeps the mesh if it is the best.
+    /// Fills the surface at the spacing of a step, and keeps the mesh if it is the best.
     fn attempt(&mut self, step: f64) -> Result<Found, StuffingError> {
         let spacing = self.spacing(step);
         let stuffed = match stuff(self.surface, Stuffing { spacing, doublings: self.doublings }) {
             Ok(stuffed) if self.is_whole(&stuffed.mesh) => stuffed,
             Ok(_) | Err(StuffingError::TooCoarse { .. }) => return self.hoped(spacing),
-            // What is there is the best.
+            // The best mesh so far is used.
             Err(StuffingError::TooFine { .. }) if self.best.is_some() => return Ok(Found::More),
             Err(bad) => return Err(bad),
         };
@@ -148,7 +156,10 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
         quality::volumes(mesh).iter().sum::<f64>() >= WHOLE * self.surface.volume()
     }
 
-    /// A spacing that does not fill the body has no nodes, unless no spacing will do.
+    /// Treats a spacing that does not fill the body as one with too few nodes.
+    ///
+    /// # Errors
+    /// [`StuffingError::TooCoarse`] if no finer spacing is worth trying.
     fn hoped(&self, spacing: f64) -> Result<Found, StuffingError> {
         let nodes = expected_nodes(self.surface.volume(), self.surface.area(), spacing);
         let [at_least, times] = HOPELESS;

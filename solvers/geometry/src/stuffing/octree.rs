@@ -1,4 +1,5 @@
-//! Cubes of several sizes: the smallest along a surface, larger ones inside, none more than twice as large as one it touches.
+//! Octree of cubes: the smallest along a surface, larger ones inside, with a ratio of at most two between
+//! touching cubes.
 
 use std::collections::HashMap;
 
@@ -6,27 +7,28 @@ use rayon::prelude::*;
 
 use crate::{Point3, Surface, Vector3};
 
-/// Cubes nearer to the surface than this are of the smallest size, over their edge: all tetrahedra at a node that may be moved, which
-/// is no farther from the surface than 0.36, lie between cubes whose middles are at most 1 farther.
+/// Distance from the surface, over the edge of the smallest cube, within which cubes have the smallest size.
+/// A node that may be moved is at most 0.36 from the surface. All tetrahedra at such a node lie between cubes
+/// whose centres are at most 1 farther.
 const NEAR: f64 = 1.4;
-/// Cubes along the longest extent at the level that the search begins with.
+/// Number of cubes along the longest extent at the level at which the subdivision begins.
 const FIRST: f64 = 6.0;
-/// Cubes per parallel task at least.
+/// Smallest number of cubes per parallel task.
 const CHUNK: usize = 64;
 
-/// Number of a cube along x, y and z, among those of its size.
+/// Index of a cube along x, y and z, among the cubes of its size.
 pub(super) type Cube = [i32; 3];
 
-/// What a cube is.
+/// State of a cube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
     /// Not divided.
     Leaf,
-    /// Divided into eight of the next smaller size.
+    /// Divided into eight cubes of the next smaller size.
     Divided,
 }
 
-/// Where the cubes are.
+/// Position and scale of the cubes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub origin: Point3,
@@ -35,24 +37,24 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The position of a point given in halves of the smallest cube.
+    /// Position (m) of a point given in halves of the smallest cube.
     pub(super) fn place(&self, key: [i32; 3]) -> Point3 {
         self.origin + Vector3::from(key.map(|x| f64::from(x) * self.half))
     }
 }
 
-/// Cubes by level, 0 the smallest. Those far outside are left out.
+/// Cubes by level, level 0 the smallest. Cubes far outside are omitted.
 pub(super) struct Octree {
     pub levels: Vec<HashMap<Cube, State>>,
 }
 
-/// The middle of a cube, in halves of the smallest.
+/// Centre of a cube, in halves of the smallest cube.
 pub(super) fn middle(cube: Cube, level: usize) -> [i32; 3] {
     cube.map(|x| (x << (level + 1)) + (1 << level))
 }
 
 impl Octree {
-    /// Cubes around and in a surface, those inside up to the level `coarsest`.
+    /// Divides cubes in and around a surface. Cubes inside are at most of the level `coarsest`.
     pub(super) fn new(surface: &Surface, frame: Frame, coarsest: usize) -> Octree {
         let edge = 2.0 * frame.half;
         let [low, high] = surface.bounds();
@@ -72,7 +74,7 @@ impl Octree {
         let mut levels: Vec<HashMap<Cube, State>> = vec![HashMap::new(); top + 1];
         for level in (0..=top).rev() {
             let size = edge * f64::from(1 << level);
-            // From the middle of a cube to that of its farthest smallest cube.
+            // Distance from the centre of a cube to that of its farthest smallest cube, plus the margin.
             let reach = NEAR * edge + 0.5 * 3f64.sqrt() * (size - edge);
             let state = |cube: &Cube| {
                 let distance = surface.signed_distance(&frame.place(middle(*cube, level)));
@@ -93,7 +95,7 @@ impl Octree {
         octree
     }
 
-    /// What a cube is; `None` if it is a part of a larger one, or far outside.
+    /// State of a cube; `None` if it is part of a larger cube, or far outside.
     pub(super) fn state(&self, cube: Cube, level: usize) -> Option<State> {
         self.levels.get(level)?.get(&cube).copied()
     }
@@ -106,7 +108,8 @@ impl Octree {
         leaves
     }
 
-    /// Divides cubes until none touches one of less than half its size: every cube around a divided one is of its size at the most.
+    /// Divides cubes until no cube touches one of less than half its size: cubes around a divided cube are at
+    /// most as large.
     fn balance(&mut self) {
         for level in 1..self.levels.len() {
             let divided = self.levels[level].iter().filter(|(_, state)| **state == State::Divided);
@@ -120,7 +123,7 @@ impl Octree {
         }
     }
 
-    /// Divides the larger cube that a cube is a part of, if there is one.
+    /// Divides the larger cube that contains the given cube, if there is one.
     fn make(&mut self, cube: Cube, level: usize) {
         if level + 1 >= self.levels.len() || self.levels[level].contains_key(&cube) {
             return;

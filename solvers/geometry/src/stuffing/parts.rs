@@ -1,20 +1,21 @@
-//! Parts of a mesh that no face connects, and those too small to be meant.
+//! Face-connected parts of a mesh, without those that the lattice does not resolve.
 
 use super::stencil::Side;
 
-/// A part with fewer points of the lattice inside is a tip that the lattice does not resolve.
+/// Smallest number of lattice points inside a part. A part with fewer is a tip that the lattice does not
+/// resolve.
 const FEWEST: usize = 8;
 
 /// Tetrahedra of the parts that are kept.
 pub(super) struct Parts {
     pub tets: Vec<[u32; 4]>,
-    /// Part of each.
+    /// Part of each tetrahedron.
     pub part: Vec<u32>,
-    /// Number of parts that are not kept.
+    /// Number of parts that are omitted.
     pub left_out: usize,
 }
 
-/// Finds the parts; `sides` are those of the points of the lattice, cuts have higher numbers.
+/// Finds the connected parts. `sides` are those of the lattice points; cuts have higher indices.
 pub(super) fn connected(tets: &[[u32; 4]], sides: &[Side]) -> Parts {
     let mut faces: Vec<([u32; 3], u32)> = Vec::with_capacity(4 * tets.len());
     for (at, tet) in tets.iter().enumerate() {
@@ -51,7 +52,7 @@ pub(super) fn connected(tets: &[[u32; 4]], sides: &[Side]) -> Parts {
     Parts { tets, part, left_out }
 }
 
-/// The lowest tetrahedron of a part, by paths that are halved on the way.
+/// Lowest tetrahedron of a part, with path halving.
 fn find(root: &mut [u32], mut at: u32) -> u32 {
     while root[at as usize] != at {
         root[at as usize] = root[root[at as usize] as usize];

@@ -1,6 +1,7 @@
-//! The part of a tetrahedron inside a surface that cuts its edges, in tetrahedra (Labelle and Shewchuk 2007, figure 3).
+//! Decomposition of the inner part of a cut tetrahedron into tetrahedra (Labelle and Shewchuk 2007, figure
+//! 3).
 
-/// Where a corner is.
+/// Position of a corner relative to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Inside,
@@ -8,7 +9,7 @@ pub(super) enum Side {
     Outside,
 }
 
-/// A tetrahedron of a lattice: corners with their sides, the edges 01 and 23 longer than the others.
+/// A tetrahedron of a lattice: corners with their sides. The edges 01 and 23 are longer than the others.
 pub(super) struct Tet {
     pub corners: [u32; 4],
     pub sides: [Side; 4],
@@ -20,8 +21,9 @@ fn long(a: usize, b: usize) -> bool {
 }
 
 impl Tet {
-    /// Calls `add` with each tetrahedron of the part inside, in any order of corners; `cut` gives the node where the surface cuts
-    /// the edge from a corner inside to one outside. `apart` measures the distance of two nodes.
+    /// Calls `add` with each tetrahedron of the part inside, whose corners may be in any order. `cut` returns
+    /// the node where the surface cuts the edge from an inner to an outer corner. `apart` returns the
+    /// distance of two nodes.
     pub(super) fn inside(
         &self,
         cut: impl Fn(u32, u32) -> u32,
@@ -60,7 +62,8 @@ impl Tet {
                 let (a, b) = if self.halved_from(a, b, c) { (a, b) } else { (b, a) };
                 let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
                 add([node(a), node(b), bc, bd]);
-                // The quadrilateral on the surface is this tetrahedron's own.
+                // The quadrilateral on the surface belongs to this tetrahedron alone, so the shorter diagonal
+                // is free to choose.
                 if apart(ac, bd) <= apart(ad, bc) {
                     add([node(a), ac, ad, bd]);
                     add([node(a), ac, bc, bd]);
@@ -93,8 +96,9 @@ impl Tet {
         }
     }
 
-    /// Whether the quadrilateral of two corners inside and the cuts on their edges to `d` is halved from `a`; the tetrahedron on the other
-    /// side says the same. The cut of a long edge takes the diagonal; where both edges are short, the corner of the lower number.
+    /// Whether the diagonal of the quadrilateral between two inner corners and the cuts on their edges to `d`
+    /// starts at `a`. The adjacent tetrahedron makes the same choice: the diagonal ends at the cut of the
+    /// long edge, or starts at the corner with the lower number if both edges are short.
     fn halved_from(&self, a: usize, b: usize, d: usize) -> bool {
         if long(a, b) { self.corners[a] < self.corners[b] } else { long(b, d) }
     }
