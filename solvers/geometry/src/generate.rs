@@ -87,7 +87,8 @@ fn into_kind(hexes: Mesh, kind: CellKind) -> Mesh {
     converted(hexes, kind).expect("hexahedra become any kind")
 }
 
-/// Positions in [0, 1] of `cells + 1` nodes whose spacing grows geometrically; `ratio` = last / first interval.
+/// Positions in [0, 1] of `cells + 1` nodes whose spacing grows geometrically; `ratio` = last / first
+/// interval.
 fn graded(cells: usize, ratio: f64) -> Vec<f64> {
     let growth = if cells > 1 { ratio.powf(1.0 / (cells as f64 - 1.0)) } else { 1.0 };
     if (growth - 1.0).abs() < 1e-12 {

@@ -2,7 +2,8 @@ use crate::CellKind;
 
 use super::Element;
 
-/// 8-node trilinear hexahedron on the cube `[-1, 1]^3`: bottom 0123 counter-clockwise seen from above, 4567 above.
+/// 8-node trilinear hexahedron on the cube `[-1, 1]^3`: bottom 0123 counter-clockwise seen from above, 4567
+/// above.
 ///
 /// `N_a = (1 + x x_a)(1 + y y_a)(1 + z z_a) / 8`, where `(x_a, y_a, z_a)` are the coordinates of node `a`.
 pub struct Hex8;

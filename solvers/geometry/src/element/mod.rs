@@ -13,8 +13,8 @@ pub use tet10::Tet10;
 
 use crate::{CellKind, Matrix3, Point3, Vector3};
 
-/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1) or
-/// the cube `[-1, 1]^3`. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
+/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1)
+/// or the cube `[-1, 1]^3`. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
 pub trait Element<const N: usize> {
     /// Kind of mesh cell, which also defines the node order.
     const KIND: CellKind;
@@ -28,7 +28,8 @@ pub trait Element<const N: usize> {
     fn shape_grad(xi: [f64; 3]) -> [[f64; 3]; N];
 }
 
-/// Corners of the reference cube in VTK order, which is the node order of hex8: bottom counter-clockwise, then top.
+/// Corners of the reference cube in VTK order, which is the node order of hex8: bottom counter-clockwise,
+/// then top.
 pub const HEX_CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],

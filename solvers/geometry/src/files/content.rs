@@ -1,4 +1,4 @@
-//! What a mesh file holds, as the readers find it, and the mesh that it makes.
+//! Content of a mesh file as collected by the readers, and its conversion to a mesh.
 
 mod groups;
 
@@ -13,15 +13,15 @@ use super::overlap::Cells;
 use super::rows::Row;
 use crate::{CellKind, Facet, Mesh, Point3};
 
-/// What a file holds so far. Nodes and elements are named by the file's own numbers.
+/// Content of a file read so far. Nodes and elements are identified by the numbers of the file.
 #[derive(Clone, Default)]
 pub(super) struct Content {
     node_numbers: Numbers,
     points: Vec<Point3>,
-    /// For each node its row, and whether anything but a cell uses it.
+    /// Row of each node, and whether something other than a cell uses the node.
     node_rows: Vec<(Row, bool)>,
     element_numbers: Numbers,
-    /// For each numbered element its cell; `u32::MAX` of others.
+    /// Cell of each numbered element; `u32::MAX` for other elements.
     cell_of_element: Vec<u32>,
     kinds: Vec<CellKind>,
     nodes: Vec<u32>,
@@ -33,23 +33,23 @@ pub(super) struct Content {
     facets: Vec<(usize, Facet)>,
     free: Vec<Free>,
     node_sets: Vec<(String, Vec<u32>)>,
-    /// Elements of the file have nodes of their own inside.
+    /// Whether unused nodes are dropped, because elements of the file have interior nodes.
     leaves_unused_out: bool,
-    /// Cells that are in a further region, which is a group of cells then.
+    /// Cells in additional regions, which become groups of cells.
     also: Vec<(u32, u16)>,
-    /// A cell may be listed once for each of its regions.
+    /// Whether a cell may be listed once for each of its regions.
     repeats: bool,
     left_out: Vec<LeftOut>,
 }
 
-/// What a name is of.
+/// Kind of item that a name belongs to.
 #[derive(Clone, Copy)]
 pub(super) enum Named {
     Region,
     Surface,
 }
 
-/// A group that has the free faces of some cells, known when all cells are.
+/// A group of the free faces of some cells, which are determined once all cells are known.
 #[derive(Clone)]
 struct Free {
     place: Place,
@@ -57,29 +57,29 @@ struct Free {
     cells: Vec<u32>,
 }
 
-/// What becomes of nodes that neither elements nor sets name.
+/// Treatment of nodes that no element or set uses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unused {
     Refused,
     LeftOut,
 }
 
-/// The region of a cell that has none yet.
+/// Region index of a cell without a region.
 pub(super) const NO_REGION: u16 = u16::MAX;
 
-/// A surface element waiting for its cell; corners sorted, filled up with `u32::MAX`.
+/// A surface element whose cell is not yet known; corners sorted and padded with `u32::MAX`.
 #[derive(Clone)]
 struct Face {
     place: Place,
     element: u64,
     corners: [u32; 4],
     group: usize,
-    /// May be no face of a solid: a shell of its own.
+    /// Whether the face need not belong to a solid, as for a shell.
     loose: bool,
 }
 
 impl Content {
-    /// Adds a node, in the file's unit.
+    /// Adds a node, with its position in the unit of the file.
     pub(super) fn node(&mut self, place: Place, number: u64, at: Point3) -> Parsed<()> {
         if !at.coords.iter().all(|c| c.is_finite()) {
             return Err((place, Problem::NotFinite { number }));
@@ -98,14 +98,14 @@ impl Content {
         self.points.len()
     }
 
-    /// How much there is of it: nodes, nodes of cells, faces and members of sets.
+    /// Total size: the number of nodes, cell nodes, faces and set members.
     pub(super) fn extent(&self) -> usize {
         let sets: usize = self.node_sets.iter().map(|(_, nodes)| nodes.len()).sum();
         let free: usize = self.free.iter().map(|free| free.cells.len()).sum();
         self.points.len() + self.nodes.len() + self.facets.len() + self.faces.len() + free + sets
     }
 
-    /// Number of elements so far, cells or not.
+    /// Number of elements so far, including those that are not cells.
     pub(super) fn element_count(&self) -> usize {
         self.cell_of_element.len()
     }
@@ -115,7 +115,7 @@ impl Content {
         self.kinds.len()
     }
 
-    /// Notes an element that becomes no cell.
+    /// Adds an element that does not become a cell.
     pub(super) fn element(&mut self, row: Row, list: &[u64]) -> Parsed<()> {
         self.numbered(row.place, row.tag, u32::MAX)?;
         for &node in list {
@@ -126,12 +126,12 @@ impl Content {
         Ok(())
     }
 
-    /// Nodes that nothing names are left out: elements of the file have nodes inside.
+    /// Drops unused nodes, because elements of the file have interior nodes.
     pub(super) fn leave_unused_out(&mut self) {
         self.leaves_unused_out = true;
     }
 
-    /// Notes that a node is wanted, whether a cell has it or not; `false` if there is none of this number.
+    /// Marks a node as used, and returns whether a node with this number exists.
     pub(super) fn touch(&mut self, number: u64) -> bool {
         let node = self.node_numbers.get(number);
         if let Some(node) = node {
@@ -149,7 +149,8 @@ impl Content {
         Ok(())
     }
 
-    /// Adds a cell of a region; `list` are node numbers in the file's order, whose place g is our `order[g]`.
+    /// Adds a cell of a region. `list` has the node numbers in the order of the file; entry g becomes node
+    /// `order[g]` of the cell.
     pub(super) fn cell(
         &mut self,
         row: Row,
@@ -176,13 +177,13 @@ impl Content {
         Ok(())
     }
 
-    /// The cell of an element number.
+    /// Cell with this element number.
     pub(super) fn cell_of(&self, number: u64) -> Option<u32> {
         let element = self.element_numbers.get(number)? as usize;
         Some(self.cell_of_element[element]).filter(|&cell| cell != u32::MAX)
     }
 
-    /// Puts the cells without a region into one of this name.
+    /// Assigns all cells without a region to the region of this name.
     pub(super) fn fill_regions(&mut self, name: &str) -> Parsed<()> {
         if let Some(first) = self.regions.iter().position(|&region| region == NO_REGION) {
             let region = self.region(self.rows[first].place, name)?;
@@ -191,24 +192,25 @@ impl Content {
         Ok(())
     }
 
-    /// Puts a cell into another region.
+    /// Assigns a cell to another region.
     pub(super) fn set_region(&mut self, cell: u32, region: u16) {
         self.regions[cell as usize] = region;
     }
 
-    /// The region of a name, made where it is new.
+    /// Region of this name, added if it is new.
     pub(super) fn region(&mut self, place: Place, name: &str) -> Parsed<u16> {
         let at = self.region_names.place(name);
         let region = u16::try_from(at).ok().filter(|&region| region != NO_REGION);
         region.ok_or((place, Problem::TooMany { what: "regions", count: at }))
     }
 
-    /// The facet group of a name, made where it is new.
+    /// Facet group of this name, added if it is new.
     pub(super) fn group(&mut self, name: &str) -> usize {
         self.group_names.place(name)
     }
 
-    /// Adds a surface element of some groups by the numbers of its nodes, the corners first; its cell may come later.
+    /// Adds a surface element to some groups by its node numbers, the corners first. Its cell may be added
+    /// later.
     pub(super) fn face(&mut self, row: Row, groups: &[usize], list: &[u64], corners: usize) -> Parsed<()> {
         self.element(row, list)?;
         let corners = self.corners(row, &list[..corners])?;
@@ -217,14 +219,14 @@ impl Content {
         Ok(())
     }
 
-    /// Adds a shell, whose number is known, to a group if it is the face of a cell.
+    /// Adds a shell whose number is known to a group if it lies on the face of a cell.
     pub(super) fn shell(&mut self, row: Row, group: usize, corners: &[u64]) -> Parsed<()> {
         let corners = self.corners(row, corners)?;
         self.faces.push(Face { place: row.place, element: row.tag, corners, group, loose: true });
         Ok(())
     }
 
-    /// Nodes by number, sorted and filled up.
+    /// Indices of nodes by number, sorted and padded with `u32::MAX`.
     fn corners(&self, row: Row, numbers: &[u64]) -> Parsed<[u32; 4]> {
         let mut sorted = [u32::MAX; 4];
         for (place, &number) in numbers.iter().enumerate() {
@@ -240,7 +242,7 @@ impl Content {
         Ok(sorted)
     }
 
-    /// Adds the face of a cell with these local corners to a group; `false` if the cell has no such face.
+    /// Adds the cell face with these local corners to a group; returns `false` if the cell has no such face.
     pub(super) fn facet(&mut self, group: usize, cell: u32, corners: &[usize]) -> bool {
         let kind = self.kinds[cell as usize];
         let corner_count = kind.face_kind().corner_count();
@@ -254,7 +256,7 @@ impl Content {
         found.is_some()
     }
 
-    /// Gives a group the faces of some cells that no other cell has.
+    /// Adds to a group those faces of some cells that belong to no other cell.
     pub(super) fn free_faces(&mut self, place: Place, group: usize, cells: Vec<u32>) {
         self.free.push(Free { place, group, cells });
     }
@@ -264,34 +266,35 @@ impl Content {
         self.kinds[cell as usize]
     }
 
-    /// Whether an element of that number is known, cell or not.
+    /// Whether an element with this number exists, as a cell or otherwise.
     pub(super) fn knows_element(&self, number: u64) -> bool {
         self.element_numbers.get(number).is_some()
     }
 
-    /// The place of a node number.
+    /// Index of the node with this number.
     pub(super) fn node_of(&self, number: u64) -> Option<u32> {
         self.node_numbers.get(number)
     }
 
-    /// Nodes whose name the faces of the surface get that have all their corners among them.
+    /// Adds a node set, which names the boundary faces that have all their corners in it.
     pub(super) fn node_set(&mut self, name: &str, nodes: Vec<u32>) {
         self.node_sets.push((name.into(), nodes));
     }
 
-    /// Names of regions.
+    /// Names of the regions.
     pub(super) fn regions(&self) -> impl Iterator<Item = &str> {
         self.region_names.list.iter().map(String::as_str)
     }
 
-    /// Names of facet groups and of sets of nodes, which become such groups.
+    /// Names of facet groups and of node sets, which become facet groups.
     pub(super) fn surfaces(&self) -> impl Iterator<Item = &str> {
         let sets = self.node_sets.iter().map(|(name, _)| name.as_str());
         self.group_names.list.iter().map(String::as_str).chain(sets)
     }
 
-    /// Adds all of another content, moved, its names changed by `named`: the first node and the first cell of it here. Its numbers stay
-    /// its own.
+    /// Appends another content with its points mapped by `moved` and its names by `named`. Returns the
+    /// indices of its first node and its first cell. The node and element numbers of `other` are not taken
+    /// over.
     pub(super) fn append(
         &mut self,
         place: Place,
@@ -337,8 +340,10 @@ impl Content {
         Ok((first_node, first_cell))
     }
 
-    /// The mesh, with lengths times `unit`, and the row of each cell.
-    /// Nodes that nothing names are refused unless they are to be left out.
+    /// Returns the mesh, with lengths multiplied by `unit`, and the row of each cell.
+    ///
+    /// # Errors
+    /// A file without a valid mesh, or unused nodes unless `unused` drops them.
     pub(super) fn into_mesh(
         mut self,
         unit: f64,
@@ -377,7 +382,7 @@ impl Content {
         }
         for (name, nodes) in &self.node_sets {
             let facets = faces_of(&mesh, nodes.iter().map(|&node| used[node as usize]));
-            // A set of a few nodes is no surface.
+            // A set of a few nodes has no face and is not a surface.
             if !facets.is_empty() {
                 groups.entry(name.clone()).or_default().extend(facets);
             }
@@ -399,7 +404,7 @@ impl Content {
         Ok((mesh, self.rows))
     }
 
-    /// Refuses nodes that nothing names: they are left from elements that the file has lost.
+    /// Rejects unused nodes, which indicate that elements of the file have been lost.
     fn refuse_unused(&self, used: &[u32]) -> Parsed<()> {
         let mut named: Vec<bool> = self.node_rows.iter().map(|(_, touched)| *touched).collect();
         self.node_sets.iter().flat_map(|(_, nodes)| nodes).for_each(|&node| named[node as usize] = true);
@@ -410,7 +415,7 @@ impl Content {
         Err((place, Problem::UnusedNode { number, others: all.count() }))
     }
 
-    /// Refuses cells that lie on one another: their volume would count twice.
+    /// Rejects overlapping cells, whose volume would count twice.
     fn refuse_overlaps(&self) -> Parsed<()> {
         let cells = Cells { kinds: &self.kinds, nodes: &self.nodes, points: &self.points };
         if let Some([first, second]) = cells.twins().map(|pair| pair.map(|cell| self.rows[cell])) {
@@ -426,12 +431,12 @@ impl Content {
         }
     }
 
-    /// Finds the cell face of every surface element; between two cells, that of the first.
+    /// Finds the cell face of every surface element; of two cells, the face of the first.
     fn attach(&mut self) -> Parsed<()> {
         if self.faces.is_empty() {
             return Ok(());
         }
-        // Of a large mesh most faces touch no surface: those are passed by without a look into the table.
+        // Most faces of a large mesh touch no surface: the flags skip the table look-up for these.
         let mut near = vec![false; self.points.len()];
         let mut owners: HashMap<[u32; 4], Option<Facet>> = HashMap::with_capacity(self.faces.len());
         for face in &self.faces {
@@ -467,7 +472,7 @@ impl Content {
     }
 }
 
-/// The boundary faces with all corners among some nodes.
+/// Boundary faces with all corners among the given nodes.
 fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
     let mut within = vec![false; mesh.points().len()];
     nodes.filter(|&node| node != u32::MAX).for_each(|node| within[node as usize] = true);
@@ -478,14 +483,14 @@ fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
     mesh.boundary().iter().copied().filter(all).collect()
 }
 
-/// The boundary faces of a cell, of all in the order of their cells.
+/// Boundary faces of a cell; `boundary` is sorted by cell.
 fn of_cell(boundary: &[Facet], cell: u32) -> impl Iterator<Item = Facet> {
     let start = boundary.partition_point(|facet| facet.cell < cell);
     boundary[start..].iter().take_while(move |facet| facet.cell == cell).copied()
 }
 
 fn index(place: Place, what: &'static str, count: usize) -> Parsed<u32> {
-    // The last value means none.
+    // The last value is reserved for "none".
     let index = u32::try_from(count).ok().filter(|&index| index != u32::MAX);
     index.ok_or((place, Problem::TooMany { what, count }))
 }

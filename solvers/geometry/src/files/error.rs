@@ -1,23 +1,23 @@
-//! What can be wrong with a mesh file, and where.
+//! Errors of mesh files, with the place in the file.
 
 use std::fmt;
 use std::path::PathBuf;
 
 use crate::MeshError;
 
-/// A result whose error knows its place.
+/// A result whose error has a place in the file.
 pub(super) type Parsed<T> = Result<T, (Place, Problem)>;
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Line number from 1; one past the last line where the file ends too early.
+    /// Line number from 1; one past the last line for a file that ends too early.
     Line(usize),
-    /// Byte number from 0, of a binary file.
+    /// Byte number from 0, in a binary file.
     Byte(usize),
-    /// Cell number from 0, of a file that has arrays of cells.
+    /// Cell number from 0, in a file with arrays of cells.
     Cell(usize),
-    /// Node number from 0, of a file that has arrays of nodes.
+    /// Node number from 0, in a file with arrays of nodes.
     Node(usize),
 }
 
@@ -32,36 +32,36 @@ impl fmt::Display for Place {
     }
 }
 
-/// A mesh file that can't be read or written.
+/// Errors of reading or writing a mesh file.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The operating system refused.
+    /// A file that the operating system cannot read or write.
     #[error("{file}: {source}", file = file.display())]
     Io {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// What the file holds breaks its format.
+    /// Content that violates the file format.
     #[error("{file}:{place}: {problem}", file = file.display(), place = short(*place))]
     At {
         /// The file.
         file: PathBuf,
-        /// Where.
+        /// Place in the file.
         place: Place,
-        /// What is wrong there.
+        /// Problem found there.
         problem: Problem,
     },
-    /// The cells make no valid mesh.
+    /// Cells that do not form a valid mesh.
     #[error("{file}: {source}", file = file.display())]
     Mesh {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// Problem of the mesh.
         source: MeshError,
     },
-    /// A region or group name that the format can't hold.
+    /// A region or group name that the format cannot represent.
     #[error("{file}: the name {name:?} is empty, holds a quotation mark or a line break, or for .inp a comma, blanks at an end, a letter that is not ASCII, or differs from another in its case alone", file = file.display())]
     Name {
         /// The file.
@@ -77,7 +77,7 @@ pub enum FileError {
         /// Metres per unit of the file.
         unit: f64,
     },
-    /// A name from which no format follows.
+    /// A file name whose suffix belongs to no format.
     #[error("{file}: meshes are written as .msh (Gmsh 2.2 or 4.1), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
     Suffix {
         /// The file.
@@ -85,7 +85,7 @@ pub enum FileError {
     },
 }
 
-/// A line as compilers name it, `file:12`; a byte by its word.
+/// Place in the style of compilers: a line as `12` in `file:12`, other places in words.
 fn short(place: Place) -> String {
     match place {
         Place::Line(line) => line.to_string(),
@@ -93,10 +93,10 @@ fn short(place: Place) -> String {
     }
 }
 
-/// What is wrong with a place in a file.
+/// A problem at a place in a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
-    /// None of the formats that are read.
+    /// A file in none of the supported formats.
     #[error(
         "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile) are, and surfaces: STL, OBJ, PLY"
     )]
@@ -104,69 +104,69 @@ pub enum Problem {
         /// The beginning of the file.
         found: String,
     },
-    /// A surface where a mesh is wanted.
+    /// A surface instead of a mesh.
     #[error("is a surface, not a mesh; `tissuebench mesh make` fills it with tetrahedra")]
     Surface,
-    /// A version of a format that is not understood.
+    /// An unsupported version of a format.
     #[error("format '{found}'; of Gmsh 1, 2.2, 4.0 and 4.1 are read")]
     Version {
-        /// The line found.
+        /// Line found.
         found: String,
     },
-    /// Not what comes next in the format.
+    /// Content other than the format expects.
     #[error("expected {expected}, found '{found}'")]
     Expected {
-        /// What belongs here.
+        /// Expected item.
         expected: &'static str,
-        /// What is there.
+        /// Text found.
         found: String,
     },
-    /// The file stops in the middle.
+    /// A file that ends too early.
     #[error("the file ends where {expected} should come")]
     End {
-        /// What belongs here.
+        /// Expected item.
         expected: &'static str,
     },
-    /// A part that comes twice.
+    /// A section that occurs twice.
     #[error("section {section} comes a second time")]
     Repeated {
-        /// Its name.
+        /// Name of the section.
         section: &'static str,
     },
-    /// A part that is needed is not there.
+    /// A required section that is missing.
     #[error("the file has no {section} section")]
     Missing {
-        /// Its name.
+        /// Name of the section.
         section: &'static str,
     },
-    /// A number given twice.
+    /// A number that is used twice.
     #[error("{what} {number} comes a second time")]
     Duplicate {
         /// Node or element.
         what: &'static str,
-        /// Its number in the file.
+        /// Number in the file.
         number: u64,
     },
-    /// Two solids of the same nodes: their volume would count twice.
+    /// Two solids with the same nodes, whose volume would count twice.
     #[error("element {element} has the same nodes as element {first} ({place})")]
     SameNodes {
         /// Number of the later element in the file.
         element: u64,
-        /// Number of the first one.
+        /// Number of the first element.
         first: u64,
-        /// Where the first one is.
+        /// Place of the first element.
         place: Place,
     },
-    /// Two solids on the same side of a face that they share: they overlap.
+    /// Two overlapping solids, on the same side of a face that they share.
     #[error(
         "element {element} shares a face with element {first} ({place}) and lies on the same side of it: they overlap"
     )]
     SameSide {
         /// Number of the later element in the file.
         element: u64,
-        /// Number of the first one.
+        /// Number of the first element.
         first: u64,
-        /// Where the first one is.
+        /// Place of the first element.
         place: Place,
     },
     /// A coordinate that is not finite.
@@ -181,57 +181,57 @@ pub enum Problem {
         /// Number of the triangle in the file, from 1.
         number: u64,
     },
-    /// A face whose corner isn't in the file.
+    /// A face with a corner that is not in the file.
     #[error("face {face} names corner {node}, which the file does not have")]
     UnknownCorner {
         /// Number of the face in the file, from 1.
         face: u64,
-        /// The corner as the file has it.
+        /// Corner as written in the file.
         node: i64,
     },
-    /// A face that isn't one plane piece.
+    /// A face that is not a simple polygon.
     #[error(
         "edges {} and {} of face {face}, from its corners of these numbers on, cross or touch: give each corner once, in order around the face, or cut it into triangles", edges[0], edges[1]
     )]
     CrossedFace {
         /// Number of the face in the file, from 1.
         face: u64,
-        /// The edges, from 1.
+        /// Numbers of the two edges, from 1.
         edges: [usize; 2],
     },
-    /// A concave face of too many corners.
+    /// A concave face with too many corners.
     #[error(
         "face {face} is concave and has {corners} corners; cut concave faces of more than 1000 into triangles"
     )]
     LargeFace {
         /// Number of the face in the file, from 1.
         face: u64,
-        /// How many it has.
+        /// Number of corners.
         corners: usize,
     },
-    /// A file of another size than its own counts make.
+    /// A file whose size contradicts its counts.
     #[error("{count} {what} take {expected} bytes, but the file has {found}")]
     Size {
-        /// Of what.
+        /// Kind of items counted.
         what: &'static str,
-        /// How many the file says there are.
+        /// Number of items according to the file.
         count: usize,
-        /// Bytes these take.
+        /// Size of these items in bytes.
         expected: usize,
-        /// Bytes there are.
+        /// Size of the file in bytes.
         found: usize,
     },
-    /// Parts that have not as many together as the file says.
+    /// Blocks whose total contradicts the count of the section.
     #[error("the section says that it has {claimed} {what}, but its blocks have {found}")]
     Count {
         /// Nodes or elements.
         what: &'static str,
-        /// How many the file says there are.
+        /// Number according to the file.
         claimed: u64,
-        /// How many there are.
+        /// Number found.
         found: usize,
     },
-    /// An element whose node isn't in the file.
+    /// An element with a node that is not in the file.
     #[error("element {element} names node {node}, which the file does not have")]
     UnknownNode {
         /// Element number in the file.
@@ -239,7 +239,7 @@ pub enum Problem {
         /// Node number in the file.
         node: u64,
     },
-    /// A node of no element.
+    /// A node that no element uses.
     #[error(
         "no element names node {number}{}; leave such nodes out: tissuebench mesh convert --drop-unused", match others {
             0 => String::new(),
@@ -249,7 +249,7 @@ pub enum Problem {
     UnusedNode {
         /// Node number in the file.
         number: u64,
-        /// How many more there are.
+        /// Number of further such nodes.
         others: usize,
     },
     /// An element that names one node twice.
@@ -260,14 +260,14 @@ pub enum Problem {
         /// Node number in the file.
         node: u64,
     },
-    /// An element type that is not understood.
+    /// An unsupported element type.
     #[error("element {element} has type {kind}; {known}")]
     UnknownType {
         /// Element number in the file.
         element: u64,
-        /// The type as the file has it.
+        /// Type as written in the file.
         kind: String,
-        /// The types that are.
+        /// Types that are supported, in words.
         known: &'static str,
     },
     /// An element with too few or too many numbers.
@@ -275,72 +275,72 @@ pub enum Problem {
     Length {
         /// Element number in the file.
         element: u64,
-        /// The type as the file has it.
+        /// Type as written in the file.
         kind: String,
         /// Numbers found.
         found: usize,
         /// Numbers needed.
         expected: usize,
     },
-    /// A surface element that is no face of a cell.
+    /// A surface element that is not a face of a cell.
     #[error("surface element {element} is not a face of any cell")]
     LooseFace {
         /// Element number in the file.
         element: u64,
     },
-    /// A set or a group that names what the file does not have.
+    /// A set or group that refers to something the file does not have.
     #[error("{what} '{name}' names {of} {number}, which the file does not have")]
     UnknownMember {
-        /// Set or surface.
+        /// Kind of the set or surface.
         what: &'static str,
-        /// Its name.
+        /// Name of the set or surface.
         name: String,
-        /// Element or set.
+        /// Kind of the member: element or set.
         of: &'static str,
-        /// What it names.
+        /// The member as written.
         number: String,
     },
-    /// A surface by the free faces of elements that have none.
+    /// A surface of the free faces of elements that have no free face.
     #[error(
         "surface '{name}' has no face: give the faces (S1, S2, ..), or elements with a face that no other element has"
     )]
     NoFreeFace {
-        /// Its name.
+        /// Name of the surface.
         name: String,
     },
-    /// An instance whose name another has.
+    /// An instance with the name of another instance.
     #[error("instance '{name}' comes a second time; give each its own name")]
     SameInstance {
-        /// Its name.
+        /// Name of the instance.
         name: String,
     },
-    /// A keyword of the format that changes the mesh and is not read.
+    /// A keyword of the format that changes the mesh and is not supported.
     #[error("{what} is not read; {help}")]
     Unread {
         /// The keyword.
         what: String,
-        /// What to do.
+        /// Advice, in words.
         help: &'static str,
     },
-    /// A keyword that neither Abaqus nor CalculiX has.
+    /// A keyword that neither Abaqus nor CalculiX knows.
     #[error("*{found} is no keyword of Abaqus or CalculiX{}", match nearest {
         Some(nearest) => format!("; did you mean *{nearest}?"),
         None => String::new(),
     })]
     UnknownKeyword {
-        /// As the file has it, in capitals.
+        /// Keyword as in the file, in upper case.
         found: String,
-        /// The one that is spelled most like it, if any is.
+        /// Known keyword with the most similar spelling, if any is similar.
         nearest: Option<&'static str>,
     },
-    /// Numbers beyond those that the head of a section claims.
+    /// Numbers outside the range stated at the head of a section.
     #[error("the section says that its {what} are numbered {} to {}, but they are {} to {}", claimed[0], claimed[1], found[0], found[1])]
     Range {
         /// Nodes or elements.
         what: &'static str,
-        /// The least and the largest number that the file says there are.
+        /// Smallest and largest number according to the file.
         claimed: [u64; 2],
-        /// Those there are.
+        /// Smallest and largest number found.
         found: [u64; 2],
     },
     /// A block of elements whose type has another dimension than their entity.
@@ -348,40 +348,40 @@ pub enum Problem {
         "a block of an entity of dimension {entity} has elements of type {kind}, whose dimension is {dimension}"
     )]
     Dimension {
-        /// That of the block.
+        /// Dimension of the entity.
         entity: i64,
-        /// The type as the file has it.
+        /// Type as written in the file.
         kind: i64,
-        /// That of the type.
+        /// Dimension of the type.
         dimension: i64,
     },
-    /// Text that is no XML.
+    /// Text that is not valid XML.
     #[error("{problem}")]
     Xml {
-        /// What the parser says.
+        /// Message of the parser.
         problem: String,
     },
-    /// An array of another length than its file says elsewhere.
+    /// An array whose length contradicts the file.
     #[error("an array of {found} where {expected} should be (numbers in text, bytes else)")]
     ArrayLength {
-        /// Its length.
+        /// Length found.
         found: usize,
-        /// The length wanted.
+        /// Length required.
         expected: usize,
     },
-    /// An array that numbers regions or surfaces with other than whole numbers.
+    /// An array of region or surface numbers with values that are not whole numbers.
     #[error(
         "cell {cell} has {value} in the array '{array}', which numbers regions or surfaces: give whole numbers, or give the array another name"
     )]
     NotWhole {
-        /// The array's name.
+        /// Name of the array.
         array: String,
-        /// The cell, from 0.
+        /// Cell number, from 0.
         cell: usize,
-        /// Its value.
+        /// Value at the cell.
         value: String,
     },
-    /// Two arrays that number regions, each in its own way.
+    /// Two arrays of region numbers that disagree.
     #[error(
         "cell {cell} is in region {} by the array '{}' and in {} by '{}': leave one of the two out, or give it another name",
         values[0], arrays[0], values[1], arrays[1]
@@ -389,30 +389,30 @@ pub enum Problem {
     TwoRegions {
         /// Names of the arrays.
         arrays: [String; 2],
-        /// The first cell where they differ, from 0.
+        /// Number of the first cell at which they differ, from 0.
         cell: usize,
-        /// Its values.
+        /// Values of the two arrays at this cell.
         values: [i64; 2],
     },
-    /// Something in a file that this one includes.
+    /// A problem in an included file.
     #[error("in {file}, {place}: {problem}")]
     Included {
-        /// The included file as it is named.
+        /// Name of the included file, as written.
         file: String,
-        /// Where in it.
+        /// Place in the included file.
         place: Place,
-        /// What is wrong there.
+        /// Problem found there.
         problem: Box<Problem>,
     },
-    /// No cells.
+    /// A file without cells.
     #[error("the file has no tetrahedra or hexahedra")]
     NoCells,
-    /// More than can be counted, or than the file has bytes for.
+    /// More items than can be indexed, or than the file has bytes for.
     #[error("too many {what}: {count}")]
     TooMany {
-        /// Of what.
+        /// Kind of items.
         what: &'static str,
-        /// How many.
+        /// Number of items.
         count: usize,
     },
 }

@@ -1,27 +1,27 @@
-//! The formats that are written, and which a file's name means.
+//! Output formats, and the choice of a format by file name.
 
 use std::path::Path;
 
 use super::{FileError, GmshVersion, suffix};
 
-/// A format that meshes are written in.
+/// An output format of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Gmsh's .msh in text.
+    /// Text .msh file of Gmsh.
     Gmsh(GmshVersion),
-    /// A flat deck of Abaqus and CalculiX, .inp.
+    /// Flat .inp deck of Abaqus and CalculiX.
     Abaqus,
-    /// VTK's .vtu.
+    /// VTK .vtu file.
     Vtu,
-    /// The boundary alone, as binary .stl.
+    /// Binary .stl file of the boundary alone.
     Stl,
 }
 
 impl Format {
-    /// The format of a file's suffix; of Gmsh's versions 2.2.
+    /// Returns the format that belongs to a file's suffix; `.msh` is Gmsh 2.2.
     ///
     /// # Errors
-    /// A suffix that none has.
+    /// A suffix that belongs to no format.
     pub fn of(file: &Path) -> Result<Format, FileError> {
         Ok(match suffix(file).as_str() {
             "msh" => Format::Gmsh(GmshVersion::default()),

@@ -1,4 +1,5 @@
-//! Parts of a file that a mesh does not have, so that nobody takes it for the model that the file is.
+//! Parts of a file that are not in its mesh, reported so that the mesh is not mistaken for the complete
+//! model.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,29 +7,29 @@ use std::path::Path;
 
 use super::error::Place;
 
-/// A part of a file that is not in the mesh, or not as the file has it.
+/// A part of a file that is not in the mesh, or that is changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
-    /// Its line.
+    /// Place of the part.
     pub place: Place,
-    /// Its name: a keyword of a deck, an array.
+    /// Name of the part, such as a keyword or an array.
     pub what: String,
-    /// How it matters.
+    /// Consequence of the omission.
     pub kind: Kind,
 }
 
-/// How a part that is left out matters.
+/// Consequence of an omitted part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// Joins or carries parts of the body: without it the answer is another.
+    /// The part joins or supports parts of the body, so its omission changes the result.
     Joins,
-    /// Material, supports, loads or steps: a scene has its own.
+    /// Material, supports, loads or steps, which a scene defines itself.
     Model,
-    /// Numbers of cells that may mean regions.
+    /// Whole numbers of cells that may denote regions.
     Regions,
-    /// Other numbers of cells or nodes.
+    /// Other values of cells or nodes.
     Values,
-    /// Read, but in another way than it is written.
+    /// The part is read, but differently from the format.
     Changed,
 }
 
@@ -53,7 +54,7 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// Parts of the same kind and name in a line each, with all their places.
+/// Describes omitted parts, one line for each kind and name, with all places.
 pub fn summary(parts: &[LeftOut]) -> Vec<String> {
     let mut groups: BTreeMap<(Kind, &str), Vec<String>> = BTreeMap::new();
     for part in parts {
@@ -66,7 +67,7 @@ pub fn summary(parts: &[LeftOut]) -> Vec<String> {
     groups.into_iter().map(line).collect()
 }
 
-/// Parts of a file that its mesh leaves out; none of a surface or of a file that can't be read.
+/// Parts of a file that are not in its mesh; empty for a surface or for a file that cannot be read.
 pub fn left_out(file: &Path) -> Vec<LeftOut> {
     let content = super::bytes(file).ok().and_then(|bytes| super::parse(&bytes, file).ok());
     content.map(super::Content::into_left_out).unwrap_or_default()

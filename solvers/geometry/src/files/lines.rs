@@ -1,10 +1,10 @@
-//! Lines of a text file with their numbers, and complaints that carry them.
+//! Numbered lines of a text file, and errors with line numbers.
 
 use std::str::FromStr;
 
 use super::error::{Parsed, Place, Problem};
 
-/// Lines with their numbers.
+/// Iterator over lines with line numbers.
 pub(super) struct Lines<'a> {
     lines: std::str::Lines<'a>,
     number: usize,
@@ -15,7 +15,7 @@ impl<'a> Lines<'a> {
         Lines { lines: text.lines(), number: 0 }
     }
 
-    /// The next line that isn't blank; after the last one, the place is one past the end.
+    /// Next line that is not blank. After the last line, the place is one past the end.
     pub(super) fn next(&mut self) -> Option<&'a str> {
         loop {
             self.number += 1;
@@ -26,7 +26,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Where the last line was.
+    /// Place of the last line returned.
     pub(super) fn place(&self) -> Place {
         Place::Line(self.number)
     }

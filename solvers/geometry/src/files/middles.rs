@@ -1,16 +1,16 @@
-//! Middle nodes of quadratic cells that a file lists in another order than its format has.
+//! Restores the order of mid-edge nodes that a file lists in another order than its format.
 //!
-//! Programs differ in it: Gmsh exchanges the last two of a tet10 against VTK and Abaqus. A node belongs to
-//! the edge whose middle it is nearest to. Where all cells of a kind have one order, and it is not that of
-//! the format, that order is meant.
+//! Programs differ: Gmsh swaps the last two mid-edge nodes of a tet10 compared with VTK and Abaqus. A node
+//! belongs to the edge whose midpoint is nearest. If all cells of a kind have the same order, and this is not
+//! the order of the format, the nodes are reordered.
 
 use crate::{CellKind, Point3};
 
-/// A middle node is at most this part of its edge's length from the middle of the edge.
+/// Largest distance of a mid-edge node from the midpoint of its edge, as a fraction of the edge's length.
 const NEAR: f64 = 0.25;
 
-/// Puts the middle nodes of each kind in their places where the file has all of them in one other order;
-/// returns kinds and cells.
+/// Reorders the mid-edge nodes of each kind whose cells all have the same other order. Returns the kinds that
+/// were reordered with their numbers of cells.
 pub(super) fn put_in_order(
     kinds: &[CellKind],
     nodes: &mut [u32],
@@ -44,7 +44,7 @@ fn of_kind(kind: CellKind, kinds: &[CellKind], nodes: &mut [u32], points: &[Poin
     Some(starts.len())
 }
 
-/// For each edge of a cell the place of its middle node among those listed; `None` where that is not clear.
+/// Index of the mid-edge node of each edge in the list of the cell; `None` if it is ambiguous.
 fn order(kind: CellKind, cell: &[u32], points: &[Point3]) -> Option<Vec<usize>> {
     let at = |local: usize| points[cell[local] as usize];
     let corners = kind.corner_count();
@@ -54,7 +54,7 @@ fn order(kind: CellKind, cell: &[u32], points: &[Point3]) -> Option<Vec<usize>> 
         let (middle, length) = (nalgebra::center(&at(a), &at(b)), nalgebra::distance(&at(a), &at(b)));
         let far = |place: usize| nalgebra::distance(&at(corners + place), &middle);
         let nearest = (0..taken.len()).min_by(|&p, &q| far(p).total_cmp(&far(q)))?;
-        // False where the distance is no number.
+        // A distance that is not a number compares as false.
         let near = far(nearest) <= NEAR * length;
         if !near || std::mem::replace(&mut taken[nearest], true) {
             return None;

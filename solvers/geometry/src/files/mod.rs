@@ -1,8 +1,9 @@
-//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk); closed surfaces: STL, OBJ, PLY.
+//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk). Closed
+//! surfaces: STL, OBJ, PLY.
 //!
-//! Groups and sets are kept: those of cells as regions, those of faces as facet groups. Every reader fills one `Content`,
-//! which alone makes the mesh, so that every format is refused for the same faults, each by the place and the number that the
-//! file has for it.
+//! Groups and sets are kept: those of cells become regions, those of faces facet groups. Every reader fills a
+//! `Content`, which alone builds the mesh. All formats are therefore checked for the same errors, which are
+//! reported with the place and number in the file.
 
 mod abaqus;
 mod content;
@@ -36,11 +37,11 @@ pub use rows::{Row, inverted, row_of_cell};
 pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 pub use vtu::write::{Values, solution_vtu, surface_vtu};
 
-/// What [`read`] takes, for messages.
+/// Mesh formats accepted by [`read`], for messages.
 pub const READ: &str =
     "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
 
-/// Whether a file is a mesh by its name, where it may be a list of points too.
+/// Whether a file is a mesh according to its suffix, in contexts that also accept lists of points.
 pub fn is_mesh(file: &Path) -> bool {
     ["msh", "inp", "vtu", "vtk"].iter().any(|known| suffix(file) == *known)
 }
@@ -49,26 +50,31 @@ fn suffix(file: &Path) -> String {
     file.extension().map(|s| s.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// The files that a mesh file includes, by their names in it, as far as they can be read; most have none.
+/// Files included by a mesh file, by their names in it, as far as they can be read. Most files include none.
 pub fn included(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
     let is_deck = suffix(file) == "inp";
     if is_deck { abaqus::included(file, &folder) } else { Vec::new() }
 }
 
-/// Reads a mesh file by what it holds, whatever its name; `unit` is the length of the file's unit in metres (0.001 for millimetres).
+/// Reads a mesh file; its content, not its name, determines the format. `unit` is the length of the file's
+/// unit in metres (0.001 for millimetres).
 ///
-/// Points, lines and parts of a file that are no mesh are read over, and so are nodes that only these or sets name. Nodes and cells keep
-/// the order of the file.
+/// Points, lines and parts of a file that do not belong to a mesh are skipped, and so are nodes that only
+/// these or sets use. Nodes and cells keep the order of the file.
 ///
 /// # Errors
-/// A file that is none of the formats, broken, or no valid mesh: with the line or the byte, and the file's own number of the node or
-/// the element.
+/// A file in none of the formats, with a violation of its format or without a valid mesh. The error has the
+/// line or byte and the number of the node or element in the file.
 pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     Ok(read_bytes(&bytes(file)?, file, unit)?.0)
 }
 
-/// As [`read`], from memory, with the place of every cell; `file` is the name used in errors.
+/// Reads a mesh as [`read`] does, from memory. Also returns the row of every cell; `file` is the name used in
+/// errors.
+///
+/// # Errors
+/// As for [`read`].
 pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row>), FileError> {
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
@@ -76,7 +82,10 @@ pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row
     content.into_mesh(unit, file, Unused::Refused)
 }
 
-/// As [`read`], but nodes that nothing names are left out.
+/// Reads a mesh as [`read`] does, and drops unused nodes instead of rejecting them.
+///
+/// # Errors
+/// As for [`read`], except unused nodes.
 pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
@@ -84,19 +93,20 @@ pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     Ok(content.into_mesh(unit, file, Unused::LeftOut)?.0)
 }
 
-/// Writes a mesh in the [`Format`] of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary as `.stl`.
+/// Writes a mesh in the [`Format`] of the file's suffix: `.msh` (Gmsh 2.2), `.inp` or `.vtu`, or its boundary
+/// as `.stl`. `unit` is the length of the file's unit in metres.
 ///
 /// # Errors
-/// Another suffix, a name that the format can't hold, or a folder that can't be written.
+/// Another suffix, a name that the format cannot represent, or a file that cannot be written.
 pub fn write(mesh: &Mesh, file: &Path, unit: f64) -> Result<(), FileError> {
     write_as(mesh, file, unit, Format::of(file)?)
 }
 
-/// As [`write()`], in a format of one's own choice. Numbers of all but STL are written so that they read back to the same bits (for
-/// `unit = 1`; else to the rounding of one division and one product).
+/// Writes a mesh as [`write()`] does, in an explicit format. Except in STL, numbers are written so that they
+/// read back to the same bits for `unit = 1`, and otherwise to the rounding of one division and one product.
 ///
 /// # Errors
-/// A name that the format can't hold, or a folder that can't be written.
+/// A name that the format cannot represent, or a file that cannot be written.
 pub fn write_as(mesh: &Mesh, file: &Path, unit: f64, format: Format) -> Result<(), FileError> {
     check_unit(file, unit)?;
     let bytes = match format {
@@ -118,7 +128,8 @@ fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     disk::read(file, disk::Kind::MESH).map_err(|source| FileError::Io { file: file.to_path_buf(), source })
 }
 
-/// By what a file begins with: `$` is Gmsh's, `*KEYWORD` Abaqus's, `<` XML, `# vtk` VTK's older format.
+/// Parses a file by its first characters: `$` for Gmsh, `*KEYWORD` for Abaqus, `<` for XML, `# vtk` for
+/// legacy VTK.
 fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     let whole = bytes;
     let bytes = unmarked(bytes);
@@ -133,8 +144,7 @@ fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     }
 }
 
-/// The bytes without the mark of the encoding that some editors put in front, and without the zeros that some
-/// programs write behind a text.
+/// Removes the byte order mark at the beginning and the zero bytes that some programs append to a text.
 fn unmarked(bytes: &[u8]) -> &[u8] {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
@@ -142,7 +152,7 @@ fn unmarked(bytes: &[u8]) -> &[u8] {
     if behind_text { &bytes[..end] } else { bytes }
 }
 
-/// Names what a file begins with that is none of the formats.
+/// Returns the error for a file in none of the formats, with its first line.
 fn unknown<T>(bytes: &[u8]) -> Parsed<T> {
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     let line = bytes[start..].split(|&b| b == b'\n').next().unwrap_or_default();
@@ -150,7 +160,7 @@ fn unknown<T>(bytes: &[u8]) -> Parsed<T> {
     Err((Place::Line(line_of(bytes, start)), Problem::Format { found }))
 }
 
-/// The text of a file in UTF-8, or else in Latin-1, in which every byte is a letter.
+/// Decodes a text in UTF-8, or else in Latin-1, in which every byte is a character.
 fn text(bytes: &[u8]) -> Parsed<Cow<'_, str>> {
     let Err(bad) = std::str::from_utf8(bytes) else { return Ok(String::from_utf8_lossy(bytes)) };
     if bytes.contains(&0) {
@@ -160,7 +170,7 @@ fn text(bytes: &[u8]) -> Parsed<Cow<'_, str>> {
     Ok(bytes.iter().map(|&byte| char::from(byte)).collect())
 }
 
-/// The number of the line, from 1, that holds a byte.
+/// Line number, from 1, of a byte.
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at.min(bytes.len())].iter().filter(|&&b| b == b'\n').count()
 }

@@ -1,8 +1,8 @@
-//! Names of regions and groups by their numbers.
+//! Names of regions and groups by their indices.
 
 use std::collections::HashMap;
 
-/// Names in the order in which they come: a file may have thousands.
+/// Names in order of appearance, with a hash map because a file may have thousands.
 #[derive(Clone, Default)]
 pub(super) struct Names {
     pub(super) list: Vec<String>,
@@ -10,7 +10,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// The place of a name in the list, added at the end if it is new.
+    /// Index of a name in the list; a new name is appended.
     pub(super) fn place(&mut self, name: &str) -> usize {
         if let Some(&place) = self.places.get(name) {
             return place;
@@ -21,7 +21,7 @@ impl Names {
     }
 }
 
-/// Regions that no cell has are left out.
+/// Removes regions without cells.
 pub(super) fn without_empty(regions: Vec<u16>, names: Vec<String>) -> (Vec<u16>, Vec<String>) {
     let mut has = vec![false; names.len()];
     regions.iter().for_each(|&r| has[r as usize] = true);

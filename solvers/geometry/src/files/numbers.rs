@@ -1,8 +1,8 @@
-//! The numbers that a file gives its nodes or elements, and their places in our lists.
+//! Node or element numbers of a file, and their indices.
 
 use std::collections::HashMap;
 
-/// Numbers to places. Most files count 1, 2, 3, ..: such a run takes no table.
+/// Map from numbers to indices. Most files count 1, 2, 3, ..., and such a sequence needs no table.
 #[derive(Clone, Default)]
 pub(super) struct Numbers {
     first: u64,
@@ -11,7 +11,7 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// Adds a number at the next place; `false` if it is known.
+    /// Adds a number with the next index; returns `false` if it is known.
     pub(super) fn add(&mut self, number: u64, place: u32) -> bool {
         if self.run == 0 && self.others.is_empty() {
             (self.first, self.run) = (number, 1);
@@ -31,13 +31,13 @@ impl Numbers {
         true
     }
 
-    /// The first number at another place than 0: no run.
+    /// Adds a first number whose index is not 0, which starts no sequence.
     fn moved(&mut self, number: u64, place: u32) -> bool {
         self.run = 0;
         self.others.insert(number, place).is_none()
     }
 
-    /// The place of a number.
+    /// Index of a number.
     pub(super) fn get(&self, number: u64) -> Option<u32> {
         match number.checked_sub(self.first) {
             Some(place) if place < self.run => Some(place as u32),

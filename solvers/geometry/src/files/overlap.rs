@@ -1,29 +1,31 @@
-//! Cells that lie on one another: of the same corners, or on the same side of a face that they share.
+//! Finds overlapping cells: cells with the same corners, or on the same side of a shared face.
 //!
-//! Mostly none do, so the first look goes by short hashes in buckets, which takes 12 to 15 % of the time of reading a million
-//! tetrahedra (41 ms of 280 to 340), twins included; to sort all twins alone took as long. What comes twice there is compared in full.
+//! Most meshes have none, so the first pass compares short hashes in buckets. It takes 12 to 15 % of the time
+//! to read a million tetrahedra (41 ms of 280 to 340), including the search for twins; sorting for twins
+//! alone took as long. Repeated hashes are compared in full.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::{CellKind, Point3, Vector3};
 
-/// Buckets of more entries are sorted; within others all pairs are compared.
+/// Largest bucket in which all pairs are compared; larger buckets are sorted.
 const FEW: usize = 64;
-/// Parts of a length to the third power that are rounding: such cells are flat, which is refused elsewhere.
+/// Relative height below which a cell counts as flat, as a fraction of a length cubed. Flat cells are
+/// rejected elsewhere.
 const FLAT: f64 = 1e-12;
 
-/// Cells of a mesh as a file has them.
+/// Cells of a mesh as a file lists them.
 pub(super) struct Cells<'a> {
     pub kinds: &'a [CellKind],
     pub nodes: &'a [u32],
     pub points: &'a [Point3],
 }
 
-/// What is compared first: the lowest corner, and a hash of the others.
+/// Key for the first comparison: the lowest corner, and a hash of the others.
 type Key = (u32, u32);
 
 impl Cells<'_> {
-    /// The first cell whose corners an earlier one has too, behind that one.
+    /// First cell with the same corners as an earlier cell, as [earlier, later].
     pub(super) fn twins(&self) -> Option<[usize; 2]> {
         let mut keys: Vec<Key> = Vec::with_capacity(self.kinds.len());
         self.each(|_, kind, nodes| keys.push(set_key(&nodes[..kind.corner_count()])));
@@ -40,12 +42,13 @@ impl Cells<'_> {
         first(groups)
     }
 
-    /// The first cell that is on the same side of a face as an earlier one, behind that one.
+    /// First cell on the same side of a face as an earlier cell, as [earlier, later].
     pub(super) fn same_side(&self) -> Option<[usize; 2]> {
         let mut keys: Vec<Key> = Vec::with_capacity(4 * self.kinds.len());
         self.each(|_, kind, nodes| faces(kind, nodes, |_, face| keys.push(face.key())));
         let repeated = repeated(&keys, self.points.len());
-        // Cells whose faces turn the same way are on one side, unless one of them is inverted: that is said of it elsewhere.
+        // Cells whose faces have the same orientation are on the same side, unless one is inverted, which is
+        // reported elsewhere.
         let mut groups: HashMap<(Face, bool), Vec<usize>> = HashMap::new();
         self.each_of(&repeated, |cell, kind, nodes| {
             faces(kind, nodes, |at, face| {
@@ -59,7 +62,7 @@ impl Cells<'_> {
         first(groups)
     }
 
-    /// Whether a cell is where the normal of its face points to; `None` if it is flat.
+    /// Whether a cell is on the side that the normal of its face points to; `None` if the cell is flat.
     fn side(&self, kind: CellKind, nodes: &[u32], face: usize) -> Option<bool> {
         let point = |local: usize| self.points[nodes[local] as usize].coords;
         let mean = |list: &mut dyn ExactSizeIterator<Item = usize>| {
@@ -68,7 +71,7 @@ impl Cells<'_> {
         };
         let corners = &kind.faces()[face][..kind.face_kind().corner_count()];
         let middle = mean(&mut corners.iter().copied());
-        // Across the diagonals of a quadrilateral.
+        // The normal of a quadrilateral is the cross product of its diagonals.
         let [a, b, c] = [corners[0], corners[1], corners[2]].map(point);
         let normal = match corners.get(3) {
             None => (b - a).cross(&(c - a)),
@@ -79,7 +82,7 @@ impl Cells<'_> {
         (height.abs() > FLAT * size.powi(3)).then_some(height > 0.0)
     }
 
-    /// Calls with the cell, its kind and its nodes.
+    /// Calls `call` with each cell, its kind and its nodes.
     fn each(&self, mut call: impl FnMut(usize, CellKind, &[u32])) {
         let mut start = 0;
         for (cell, &kind) in self.kinds.iter().enumerate() {
@@ -89,7 +92,7 @@ impl Cells<'_> {
         }
     }
 
-    /// As [`Cells::each`], unless there is nothing to look for.
+    /// Calls [`Cells::each`] unless `looked_for` is empty.
     fn each_of(&self, looked_for: &HashSet<Key>, call: impl FnMut(usize, CellKind, &[u32])) {
         if !looked_for.is_empty() {
             self.each(call);
@@ -97,7 +100,7 @@ impl Cells<'_> {
     }
 }
 
-/// A face by its corners, the lowest first, in the order in which they are seen from outside; `u32::MAX` behind those of a triangle.
+/// Corners of a face, in the order seen from outside with the lowest first; `u32::MAX` pads triangles.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Face([u32; 4]);
 
@@ -108,7 +111,7 @@ impl Face {
     }
 }
 
-/// Calls with each face of a cell and its place.
+/// Calls `call` with each face of a cell and its index.
 fn faces(kind: CellKind, nodes: &[u32], mut call: impl FnMut(usize, Face)) {
     if kind.is_tet() {
         for (at, face) in kind.faces().iter().enumerate() {
@@ -129,20 +132,20 @@ fn faces(kind: CellKind, nodes: &[u32], mut call: impl FnMut(usize, Face)) {
     }
 }
 
-/// Key of corners in any order.
+/// Key of corners independent of their order.
 fn set_key(corners: &[u32]) -> Key {
     let lowest = corners.iter().copied().min().unwrap_or(0);
     (lowest, corners.iter().fold(0, |sum: u32, &corner| sum.wrapping_add(mixed(corner))))
 }
 
-/// A number whose bits all depend on all of another one's (the end of MurmurHash3).
+/// Mixes all bits of a number (the finaliser of MurmurHash3).
 fn mixed(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85eb_ca6b);
     x = (x ^ (x >> 13)).wrapping_mul(0xc2b2_ae35);
     x ^ (x >> 16)
 }
 
-/// Keys that come twice or more, their first parts below `lowest`.
+/// Keys that occur more than once; their first parts are below `lowest`.
 fn repeated(keys: &[Key], lowest: usize) -> HashSet<Key> {
     let mut starts = vec![0u32; lowest + 1];
     for (lowest, _) in keys {
@@ -176,7 +179,7 @@ fn repeated(keys: &[Key], lowest: usize) -> HashSet<Key> {
     found
 }
 
-/// Of all groups with two cells or more the two of which the later one is the first in the file.
+/// The pair of cells, over all groups of two or more, whose later cell comes first in the file.
 fn first<K>(groups: HashMap<K, Vec<usize>>) -> Option<[usize; 2]> {
     let pairs = groups.values().filter_map(|cells| Some([*cells.first()?, *cells.get(1)?]));
     pairs.min_by_key(|&[a, b]| (b, a))

@@ -1,4 +1,4 @@
-//! Cells of a mesh by their places in the file that it was read from.
+//! Rows: the places of cells in the file that a mesh was read from.
 
 use std::fmt;
 use std::path::Path;
@@ -7,32 +7,32 @@ use super::error::Place;
 use super::{bytes, read_bytes};
 use crate::quality::InvertedElement;
 
-/// Where a file has a cell.
+/// Place and number of a cell in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
     /// Line, byte or cell.
     pub place: Place,
-    /// The number that the file gives the element.
+    /// Element number in the file.
     pub tag: u64,
 }
 
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {
-            // Such files have no other number.
+            // Files with cell places have no other element number.
             Place::Cell(_) => write!(f, "{}", self.place),
             _ => write!(f, "{}, element {}", self.place, self.tag),
         }
     }
 }
 
-/// The row of a cell in a file that [`read`](super::read) takes; `None` if the file has no such cell.
+/// Row of a cell in a file that [`read`](super::read) accepts; `None` if the file has no such cell.
 pub fn row_of_cell(file: &Path, cell: usize) -> Option<Row> {
     let (_, rows) = read_bytes(&bytes(file).ok()?, file, 1.0).ok()?;
     rows.get(cell).copied()
 }
 
-/// How many cells of a file are inverted, and where the first one is.
+/// Message about the number of inverted cells in a file, with the place of the first.
 pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
     let row = row_of_cell(file, bad.element).map_or_else(String::new, |row| row.to_string());
     match (bad.inverted, bad.cells) {

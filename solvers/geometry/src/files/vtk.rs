@@ -1,23 +1,23 @@
-//! VTK's older format (.vtk) of unstructured grids: versions 1 to 5.1, as text or binary with the highest byte first.
+//! Legacy VTK format (.vtk) of unstructured grids: versions 1 to 5.1, in text or big-endian binary.
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
 use super::vtk_cells::{Array, Cells, lost, regions};
 use crate::Point3;
 
-/// The newest version that there is.
+/// Newest supported version.
 const NEWEST: f64 = 5.1;
 
-/// Words one after another, and numbers as text or bytes.
+/// Scanner of words, and of numbers in text or binary.
 struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Line of that place, from 1; of text only.
+    /// Line of the position, from 1; meaningful in text only.
     line: usize,
     binary: bool,
 }
 
-/// What a part of the file is about.
+/// Kind of items that a section describes, with their number.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Of {
     Grid,
@@ -25,22 +25,22 @@ enum Of {
     Points(usize),
 }
 
-/// What is found so far.
+/// Content found so far.
 #[derive(Default)]
 struct Found {
     points: Option<Vec<f64>>,
     ends: Option<Vec<usize>>,
     list: Vec<i64>,
     types: Option<Vec<i64>>,
-    /// Single numbers of cells.
+    /// Arrays with one number per cell.
     arrays: Vec<Array>,
-    /// All other arrays, without their numbers, and whether they are of cells.
+    /// All other arrays, without their values, and whether they belong to cells.
     others: Vec<(Array, bool)>,
 }
 
 impl Found {
-    /// Keeps single numbers of cells, which may be regions, and the names of other arrays; `place` is where
-    /// they are described.
+    /// Keeps an array with one number per cell, which may hold regions, or only the name of another array.
+    /// `place` is the place of its description.
     fn keep(&mut self, of: Of, parts: usize, name: &str, place: Place, values: Vec<f64>) {
         // Blanks in names are written as %20.
         let array = Array { name: name.replace("%20", " "), place, values };
@@ -82,7 +82,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     content(&scanner, found)
 }
 
-/// Reads a part that begins with this word; returns what the next ones are about.
+/// Reads the section that begins with this word, and returns the kind of items described by the next ones.
 fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Parsed<Of> {
     let values = match of {
         Of::Grid => 0,
@@ -166,7 +166,8 @@ fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Pars
     Ok(of)
 }
 
-/// `CELLS n size` with the length of each before its points, or from version 5.1 on offsets and points apart.
+/// Reads `CELLS n size`, in which each length precedes its points; from version 5.1 on, offsets and points
+/// are separate.
 fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
     let (count, size) = (scanner.count()?, scanner.count()?);
     if scanner.peek().is_some_and(|word| word.eq_ignore_ascii_case("OFFSETS")) {
@@ -259,7 +260,7 @@ impl Scanner<'_> {
         self.at += 1;
     }
 
-    /// The rest of a line, and on to the next one.
+    /// Rest of the line; moves to the next line.
     fn rest_of_line(&mut self) -> String {
         let start = self.at;
         while self.at < self.bytes.len() && self.bytes[self.at] != b'\n' {
@@ -288,7 +289,7 @@ impl Scanner<'_> {
         Some(String::from_utf8_lossy(&self.bytes[start..end]).into_owned())
     }
 
-    /// The next word, which stays.
+    /// Next word, which is not consumed.
     fn peek(&mut self) -> Option<String> {
         let (at, line) = (self.at, self.line);
         let word = self.word();
@@ -322,7 +323,7 @@ impl Scanner<'_> {
         }
     }
 
-    /// Numbers of a type; whole ones up to 2^53 are exact.
+    /// Reads numbers of a type; integers up to 2^53 are exact.
     fn numbers(&mut self, count: usize, kind: &str) -> Parsed<Vec<f64>> {
         let size = match kind {
             "char" | "unsigned_char" | "vtktypeint8" | "vtktypeuint8" => 1,
@@ -331,7 +332,7 @@ impl Scanner<'_> {
             "long" | "unsigned_long" | "double" | "vtktypeint64" | "vtktypeuint64" => 8,
             _ => return self.fail("a type of numbers, such as double or int (no bits, no text)", kind),
         };
-        // Each takes a byte and what parts it from the next, or its size.
+        // Each number takes at least one byte in text, or its size in binary.
         let room = (self.bytes.len() - self.at) / if self.binary { size } else { 1 };
         if count > room {
             return Err((
@@ -342,7 +343,7 @@ impl Scanner<'_> {
         if !self.binary {
             return (0..count).map(|_| self.number()).collect();
         }
-        // The bytes begin behind the end of the line.
+        // The binary data begin after the line break.
         self.rest_of_line();
         let Some(bytes) = self.bytes.get(self.at..self.at + count * size) else {
             return Err((self.place(), Problem::End { expected: "the rest of an array" }));
@@ -372,7 +373,7 @@ impl Scanner<'_> {
         word.parse().or_else(|_| self.fail("a number", word))
     }
 
-    /// Past a blank line, which ends descriptions of arrays.
+    /// Skips past a blank line, which ends descriptions of arrays.
     fn skip_to_blank_line(&mut self) {
         self.rest_of_line();
         while self.at < self.bytes.len() && !self.rest_of_line().is_empty() {}

@@ -1,4 +1,4 @@
-//! Cells by their VTK types, as `.vtu` and `.vtk` files have them.
+//! Cells by VTK type, as in `.vtu` and `.vtk` files.
 
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
@@ -6,8 +6,9 @@ use super::left_out::{Kind, LeftOut};
 use super::rows::Row;
 use crate::CellKind;
 
-/// Arrays of cells that number regions, by the programs that write them; ours first. Capitals don't count. Those of one row mean the same:
-/// where a grid has several of them, they have to agree.
+/// Names of cell arrays that number regions, by the programs that write them, compared without regard to
+/// case. The first row is the name used by this crate. Names in one row are synonyms: several such arrays in
+/// one grid have to agree.
 const REGIONS: [&[&str]; 8] = [
     &["region"],
     &["gmsh:physical"],
@@ -19,23 +20,23 @@ const REGIONS: [&[&str]; 8] = [
     &["ElementBlockIds"],
 ];
 
-/// Types whose cells are read, for the message of one whose are not.
+/// Cell types that are read, for the message about other types.
 const KNOWN: &str = "types 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points are read";
 
-/// The order of nodes is ours.
+/// Node order of the files, which is that of [`CellKind`].
 const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
 
-/// One number for each cell.
+/// An array with one number per cell.
 #[derive(Clone)]
 pub(super) struct Array {
     pub name: String,
-    /// Where its numbers are.
+    /// Place of the numbers.
     pub place: Place,
     pub values: Vec<f64>,
 }
 
-/// The first known array that a grid has of the regions of cells; `array` finds one by its name without
-/// regard to capitals.
+/// Finds the first known array of region numbers in a grid; `array` looks up an array by name, without regard
+/// to case.
 pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<Option<Array>> {
     for names in REGIONS {
         let found: Vec<Option<Array>> = names.iter().map(|name| array(name)).collect::<Parsed<_>>()?;
@@ -49,9 +50,12 @@ pub(super) fn regions(array: impl Fn(&str) -> Parsed<Option<Array>>) -> Parsed<O
 }
 
 impl Array {
-    /// The numbers, which have to be whole: some programs write those of regions as reals.
+    /// Values as integers. Some programs write region numbers as reals.
+    ///
+    /// # Errors
+    /// A value that is not whole.
     pub fn whole(&self) -> Parsed<Vec<i64>> {
-        // Beyond 2^53 reals have no halves.
+        // Reals beyond 2^53 have no fractional part.
         let is_whole = |value: f64| value.fract() == 0.0 && value.abs() <= 9_007_199_254_740_992.0;
         match self.values.iter().position(|&value| !is_whole(value)) {
             None => Ok(self.values.iter().map(|&value| value as i64).collect()),
@@ -62,7 +66,7 @@ impl Array {
         }
     }
 
-    /// Refuses another array that has other numbers.
+    /// Rejects another array with different numbers.
     fn agree(&self, other: &Array) -> Parsed<()> {
         let (own, others) = (self.whole()?, other.whole()?);
         let Some(cell) = own.iter().zip(&others).position(|(a, b)| a != b) else { return Ok(()) };
@@ -71,7 +75,7 @@ impl Array {
     }
 }
 
-/// Meaning of an array that is not taken; `taken` says whether another one has the regions.
+/// Describes an array that is not used; `taken` states whether another array provides the regions.
 pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
     let whole = array.values.iter().all(|value| value.fract() == 0.0);
     let (low, high) =
@@ -85,21 +89,21 @@ pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
 
 /// Cells of a grid.
 pub(super) struct Cells {
-    /// Number of the grid's first point.
+    /// Index of the grid's first point.
     pub first: u64,
     pub types: Vec<i64>,
-    /// Where the points of each cell end in the list.
+    /// End of the points of each cell in `list`.
     pub ends: Vec<usize>,
     pub list: Vec<i64>,
-    /// Numbers of regions, and of named surfaces.
+    /// Region numbers and surface numbers of the cells.
     pub regions: Option<Vec<i64>>,
     pub surfaces: Option<Vec<i64>>,
-    /// Groups of cells across the regions: a number above zero of each cell that is in it.
+    /// Groups of cells across the regions: a positive number for each member.
     pub further: Vec<(String, Vec<i64>)>,
 }
 
 impl Cells {
-    /// Adds solids and faces; names are by the numbers of regions and surfaces.
+    /// Adds solids and faces; names are indexed by the numbers of regions and surfaces.
     pub(super) fn add_to(
         &self,
         content: &mut Content,
@@ -156,7 +160,7 @@ impl Cells {
     }
 }
 
-/// What a VTK cell is: its number of nodes, and what it becomes.
+/// Number of nodes and class of a VTK cell type.
 fn of_type(kind: i64) -> Option<(usize, What)> {
     Some(match kind {
         10 => (4, What::Cell(CellKind::Tet4)),
@@ -173,11 +177,11 @@ fn of_type(kind: i64) -> Option<(usize, What)> {
 
 enum What {
     Cell(CellKind),
-    /// With so many corners.
+    /// A face with its number of corners.
     Face(usize),
 }
 
-/// Points and lines.
+/// Types of points and lines.
 const THIN: [i64; 5] = [1, 2, 3, 4, 21];
 
 fn name_of(names: &[String], value: i64, plain: &str) -> String {

@@ -41,7 +41,8 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     (here, n as f64 * (x * here - before) / (x * x - 1.0))
 }
 
-/// `n x n x n` Gauss points on the cube [-1, 1]^3, exact to degree `2 n - 1` in each coordinate; x runs fastest.
+/// `n x n x n` Gauss points on the cube [-1, 1]^3, exact to degree `2 n - 1` in each coordinate; x runs
+/// fastest.
 pub fn hex(n: usize) -> Rule<3> {
     let (x, w) = gauss_legendre(n);
     let mut rule = Rule { points: Vec::with_capacity(n * n * n), weights: Vec::with_capacity(n * n * n) };
@@ -56,7 +57,8 @@ pub fn hex(n: usize) -> Rule<3> {
     rule
 }
 
-/// `n x n` Gauss points on the square [-1, 1]^2, exact to degree `2 n - 1` in each coordinate; x runs fastest.
+/// `n x n` Gauss points on the square [-1, 1]^2, exact to degree `2 n - 1` in each coordinate; x runs
+/// fastest.
 pub fn quad(n: usize) -> Rule<2> {
     let (x, w) = gauss_legendre(n);
     let mut rule = Rule { points: Vec::with_capacity(n * n), weights: Vec::with_capacity(n * n) };

@@ -1,4 +1,4 @@
-//! Sets and surfaces of an assembly, which name nodes and elements of its instances.
+//! Sets and surfaces of an assembly, which refer to nodes and elements of its instances.
 
 use std::collections::HashMap;
 
@@ -10,10 +10,11 @@ use super::ranges::Range;
 use super::scope::Scope;
 use crate::CellKind;
 
-/// Members of all sets, and numbers of all ranges: sets of sets can double with every line.
+/// Largest number of members of all sets, and of numbers in all ranges. Sets of sets can double with every
+/// line.
 const MOST: usize = 1 << 23;
 
-/// A part where it was placed.
+/// An instance: a part placed in the assembly.
 pub(super) struct Placed<'a> {
     /// Name of the instance.
     pub name: &'a str,
@@ -22,7 +23,7 @@ pub(super) struct Placed<'a> {
     pub first_cell: u32,
 }
 
-/// A card that waits for all instances to be placed.
+/// A card that is processed after all instances have been placed.
 pub(super) struct Waiting {
     place: Place,
     keyword: String,
@@ -34,7 +35,7 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// `None` of a surface of another kind than of faces or of nodes.
+    /// Stores a card, or returns `None` for a surface that consists of neither element faces nor nodes.
     pub(super) fn new(card: &Card) -> Parsed<Option<Waiting>> {
         let by_nodes = card.get("TYPE").is_some_and(|t| t.eq_ignore_ascii_case("NODE"));
         let known = card.get("TYPE").is_none_or(|t| t.eq_ignore_ascii_case("ELEMENT") || by_nodes);
@@ -58,7 +59,7 @@ impl Waiting {
         }))
     }
 
-    /// The name of a set of nodes or of a surface.
+    /// Name of the surface or node set, `None` for an element set.
     pub(super) fn surface(&self) -> Option<&str> {
         (self.keyword != "ELSET").then_some(&self.name)
     }
@@ -73,14 +74,15 @@ impl Waiting {
     }
 }
 
-/// Sets so far, as nodes and cells of the whole, by names in capitals.
+/// Sets defined so far, as nodes and cells of the whole mesh, by upper-case name.
 struct Sets<'a> {
     placed: &'a [Placed<'a>],
     nodes: HashMap<String, Vec<u32>>,
     cells: HashMap<String, Vec<u32>>,
 }
 
-/// Adds the sets and surfaces of an assembly to the whole; nodes and elements outside of instances are those of its own numbers.
+/// Adds the sets and surfaces of an assembly to the whole mesh. Nodes and elements outside of instances are
+/// referred to by the assembly's own numbers.
 pub(super) fn add(whole: &mut Content, waiting: &[Waiting], placed: &[Placed]) -> Parsed<()> {
     let mut sets = Sets { placed, nodes: HashMap::new(), cells: HashMap::new() };
     let (mut names, mut members, mut ranges): (Vec<&str>, usize, usize) = (Vec::new(), 0, 0);
@@ -98,7 +100,7 @@ pub(super) fn add(whole: &mut Content, waiting: &[Waiting], placed: &[Placed]) -
         if of_nodes && !lists.contains_key(&key) {
             names.push(&card.name);
         }
-        // A region of a part keeps its name for itself.
+        // A part's region keeps its name, so an assembly set of the same name adds no group.
         if !of_nodes
             && !card.name.starts_with('_')
             && !whole.regions().any(|name| name.eq_ignore_ascii_case(&card.name))
@@ -118,7 +120,7 @@ impl Sets<'_> {
         self.placed.iter().find(|placed| placed.name.eq_ignore_ascii_case(name))
     }
 
-    /// Nodes or cells that a set lists; `ranges` counts the numbers of all ranges.
+    /// Nodes or cells listed by a set. `ranges` counts the numbers of all ranges.
     fn members(
         &self,
         whole: &Content,
@@ -153,7 +155,7 @@ impl Sets<'_> {
         Ok(found)
     }
 
-    /// What a word names: a number, a set, or either of an instance before a dot.
+    /// Members denoted by a word: a number or a set, optionally prefixed by an instance and a dot.
     fn one(
         &self,
         whole: &Content,
@@ -224,7 +226,7 @@ fn few_enough(place: Place, count: usize) -> Parsed<()> {
     if count <= MOST { Ok(()) } else { Err((place, Problem::TooMany { what: "members of sets", count })) }
 }
 
-/// Nodes or cells of numbers, where the instance was placed.
+/// Indices of nodes or cells in the whole mesh, from their numbers in an instance.
 fn placed(content: &Content, instance: Option<&Placed>, of_nodes: bool, numbers: &[u64]) -> Vec<u32> {
     let (node, cell) = instance.map_or((0, 0), |placed| (placed.first_node, placed.first_cell));
     let one = |&number: &u64| {

@@ -1,4 +1,4 @@
-//! A deck as cards: a keyword with its parameters and the data lines below.
+//! Cards of a deck: a keyword line with its parameters and the data lines below.
 
 use super::super::error::{Parsed, Place, Problem};
 use super::keywords;
@@ -6,10 +6,10 @@ use super::keywords;
 /// A keyword line with the data below it.
 pub(super) struct Card<'a> {
     pub(super) place: Place,
-    /// In capitals, with single spaces; a known one as it is written in full.
+    /// Upper-case keyword with single spaces; a known keyword in its full spelling.
     pub(super) keyword: String,
     parameters: Vec<(String, String)>,
-    /// Data lines with their places; blank ones and comments are left out.
+    /// Data lines with their places, without blank lines and comments.
     pub(super) data: Vec<(Place, &'a str)>,
 }
 
@@ -46,7 +46,7 @@ pub(super) fn cards(text: &str) -> Parsed<Vec<Card<'_>>> {
 
 type Open<'a> = (Option<(Place, String)>, Vec<Card<'a>>);
 
-/// A keyword line that ends with a comma goes on below.
+/// Finishes a keyword line, or keeps it open if it ends with a comma and so continues on the next line.
 fn closed(place: Place, line: String, mut cards: Vec<Card>) -> Parsed<Open> {
     if line.ends_with(',') {
         return Ok((Some((place, line)), cards));
@@ -65,7 +65,7 @@ fn closed(place: Place, line: String, mut cards: Vec<Card>) -> Parsed<Open> {
     Ok((None, cards))
 }
 
-/// Words between commas, but for commas in quotes.
+/// Splits a line at commas outside of quotes.
 pub(super) fn split(line: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut quoted = false;
@@ -82,24 +82,24 @@ pub(super) fn split(line: &str) -> Vec<String> {
     words.into_iter().map(|word| word.trim().to_string()).collect()
 }
 
-/// A name without its quotes.
+/// Removes the quotes around a name.
 pub(super) fn unquoted(name: &str) -> String {
     let name = name.trim();
     name.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(name).to_string()
 }
 
 impl Card<'_> {
-    /// The value of a parameter, empty where it has none.
+    /// Value of a parameter, empty for a parameter without a value.
     pub(super) fn get(&self, key: &str) -> Option<&str> {
         self.parameters.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
 
-    /// The values of all parameters.
+    /// Values of all parameters.
     pub(super) fn values(&self) -> Vec<String> {
         self.parameters.iter().map(|(_, value)| value.clone()).collect()
     }
 
-    /// The value of a parameter that has to be there.
+    /// Value of a required parameter.
     pub(super) fn need(&self, key: &'static str) -> Parsed<&str> {
         match self.get(key).filter(|value| !value.is_empty()) {
             Some(value) => Ok(value),
@@ -110,15 +110,15 @@ impl Card<'_> {
     }
 }
 
-/// A whole number.
+/// Parses a whole number.
 pub(super) fn whole(place: Place, word: &str, expected: &'static str) -> Parsed<u64> {
     word.parse().map_err(|_| (place, Problem::Expected { expected, found: word.into() }))
 }
 
-/// A number, also as Fortran writes it: `1.5D-3`.
+/// Parses a number, also in Fortran notation: `1.5D-3`.
 pub(super) fn real(place: Place, word: &str, expected: &'static str) -> Parsed<f64> {
     let plain = word.replace(['d', 'D'], "e");
-    // "infinity", "nan" are no numbers of a deck.
+    // "infinity" and "nan" are not numbers of a deck.
     let number = plain.parse::<f64>().ok().filter(|_| plain.bytes().all(|b| b"0123456789+-.eE".contains(&b)));
     number.ok_or((place, Problem::Expected { expected, found: word.into() }))
 }

@@ -1,4 +1,4 @@
-//! A deck as a whole: parts, instances and files that it includes.
+//! A whole deck: parts, instances and included files.
 
 use std::path::{Path, PathBuf};
 
@@ -15,22 +15,22 @@ use super::scope::Scope;
 use super::text;
 use crate::{Point3, Vector3};
 
-/// Nodes, nodes of elements and members of sets that instances may place, whatever the size of the deck.
+/// Largest number of nodes, element nodes and set members that instances may place for a deck of any size.
 const MOST_PLACED: usize = 1 << 23;
 
-/// What adds to the part of the instance that it stands in.
+/// Keywords that add to the part of the enclosing instance.
 const ADDED: [&str; 6] = ["NODE", "ELEMENT", "ELSET", "NSET", "SURFACE", "SOLID SECTION"];
 
 pub(super) struct Deck {
     folder: PathBuf,
     includes: Includes,
-    /// What stands outside of parts.
+    /// Content outside of parts.
     flat: Scope,
-    /// The part that is being read.
+    /// Part being read.
     open: Option<(String, Scope)>,
     /// Whether the last instance is being read.
     placing: bool,
-    /// Extent of the parts that instances add to.
+    /// Total extent of the parts copied because instances add to them.
     copied: usize,
     parts: Vec<(String, Scope)>,
     instances: Vec<Instance>,
@@ -41,7 +41,7 @@ pub(super) struct Deck {
     left_out: Vec<LeftOut>,
 }
 
-/// A part placed in the assembly: moved, then turned about a line by an angle.
+/// An instance of a part in the assembly: shifted, then rotated by an angle about a line.
 struct Instance {
     place: Place,
     name: String,
@@ -67,7 +67,7 @@ impl Deck {
         }
     }
 
-    /// Reads a deck's text; `depth` counts the files that include it.
+    /// Reads the text of a deck; `depth` is the number of nested includes.
     pub(super) fn read(&mut self, text: &str, depth: usize) -> Parsed<()> {
         for card in cards(text)? {
             self.left_out.extend(lost(&card, depth));
@@ -93,7 +93,7 @@ impl Deck {
             }
             "NODE" => scope.nodes(card),
             "ELEMENT" => scope.elements(card),
-            // Sets of the assembly name instances.
+            // Sets of the assembly refer to instances.
             "ELSET" | "NSET" | "SURFACE" if placed || card.get("INSTANCE").is_some() => {
                 self.waiting.extend(Waiting::new(card)?);
                 Ok(())
@@ -145,7 +145,7 @@ impl Deck {
         Ok(())
     }
 
-    /// What an instance adds to its part makes a part of its own.
+    /// Copies the part of the last instance, because the instance adds to it.
     fn own_part(&mut self, place: Place) -> Parsed<(String, Scope)> {
         let part = &self.parts[self.instances.last().map_or(0, |instance| instance.part)];
         self.copied += part.1.content.extent();
@@ -164,7 +164,7 @@ impl Deck {
         }
     }
 
-    /// `*INSTANCE, NAME, PART` with a shift, and a line to turn about with an angle in degrees.
+    /// Reads `*INSTANCE, NAME, PART` with a shift, and an axis of rotation with an angle in degrees.
     fn instance(&mut self, card: &Card) -> Parsed<()> {
         if self.placing {
             let expected = "*END INSTANCE before the next *INSTANCE";
@@ -200,7 +200,7 @@ impl Deck {
             let expected = "two different points of an axis";
             return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
         }
-        // Without a name of its own it has that of its part.
+        // An instance without a name has the name of its part.
         let name =
             card.get("NAME").filter(|name| !name.is_empty()).unwrap_or(&self.parts[part].0).to_string();
         if self.instances.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
@@ -211,7 +211,7 @@ impl Deck {
         Ok(())
     }
 
-    /// Another file in place of the line; it has to lie in the deck's folder.
+    /// Reads an included file in place of the line. The file has to lie in the folder of the deck.
     fn include(&mut self, card: &Card, depth: usize) -> Parsed<()> {
         let name = card.need("INPUT")?.to_string();
         let unread = |help| Err((card.place, Problem::Unread { what: format!("*INCLUDE of {name}"), help }));
@@ -228,7 +228,7 @@ impl Deck {
         })
     }
 
-    /// Refuses instances that make a mesh of eight million numbers and more out of a small deck.
+    /// Rejects instances that turn a small deck into a mesh of more than eight million numbers.
     fn few_enough(&self) -> Parsed<()> {
         let written: usize = self.parts.iter().map(|(_, part)| part.content.extent()).sum();
         let most = MOST_PLACED.max(8 * written.saturating_sub(self.copied));
@@ -243,7 +243,7 @@ impl Deck {
         Ok(())
     }
 
-    /// The whole mesh: the instances, or the flat deck.
+    /// Returns the whole mesh: the instances, or the flat deck.
     pub(super) fn finish(mut self) -> Parsed<Content> {
         let end = Place::Line(1);
         if let Some(instance) = self.instances.last().filter(|_| self.placing) {
@@ -258,7 +258,7 @@ impl Deck {
         self.parts.iter_mut().try_for_each(|(_, part)| part.close())?;
         let mut whole = std::mem::take(&mut self.flat.content);
         if self.instances.is_empty() && self.parts.len() == 1 {
-            // A part that is placed nowhere is meant as it is.
+            // A single part without an instance is used as it is.
             let (name, part) = &self.parts[0];
             let shared = Shared::new([&whole, &part.content].into_iter(), std::iter::empty());
             whole.append(end, &part.content, |x| *x, |of, own| shared.full(name, of, own))?;
@@ -292,7 +292,7 @@ impl Deck {
     }
 }
 
-/// Meaning of a card that is not read.
+/// Describes a card that is not read and whose loss matters.
 fn lost(card: &Card, depth: usize) -> Option<LeftOut> {
     let of_type = card.get("TYPE").filter(|name| matches!(element_type(name), Some(Type::Other)));
     let (kind, which) = match (card.keyword.as_str(), of_type) {

@@ -1,16 +1,16 @@
-//! Files that a deck includes: which, and how much of them.
+//! Files included by a deck, and limits on their number and size.
 
 use std::path::{Component, Path, PathBuf};
 
 use disk::Kind;
 
-/// Files that include files: a deck that includes itself ends here.
+/// Largest depth of nested includes; a deck that includes itself ends here.
 pub(super) const DEEPEST: usize = 8;
-/// Most files that a deck includes: eight files that each include the next ten times would be a hundred
-/// million.
+/// Largest number of files that a deck may include. Eight files that each include the next one ten times
+/// would give a hundred million.
 const MOST: usize = 1000;
 
-/// Files that a deck has included so far.
+/// Number and size of the files included so far.
 #[derive(Default)]
 pub(super) struct Includes {
     files: usize,
@@ -18,8 +18,8 @@ pub(super) struct Includes {
 }
 
 impl Includes {
-    /// Reads one more file; where it is, with its bytes, or why it is not read. All files together are no
-    /// larger than one may be.
+    /// Reads another file and returns its path and bytes, or the reason for its rejection. All files together
+    /// may be as large as a single mesh file.
     pub(super) fn read(&mut self, folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), &'static str> {
         let path = within(folder, name)?;
         self.files += 1;
@@ -34,7 +34,8 @@ impl Includes {
     }
 }
 
-/// A file in the folder of the deck. Links are resolved before it is judged: one may lead anywhere.
+/// Path of a file in the folder of the deck. Links are resolved before the check, because they may lead
+/// outside.
 fn within(folder: &Path, name: &str) -> Result<PathBuf, &'static str> {
     const OUTSIDE: &str = "it has to lie in the folder of the deck";
     if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {

@@ -1,32 +1,32 @@
-//! The keywords of Abaqus and CalculiX: one that neither has is a typing error, behind which nodes or elements may be lost.
+//! Keywords of Abaqus and CalculiX. A keyword that neither program knows is a typing error that may hide
+//! nodes or elements.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use super::super::left_out::Kind;
 
-/// Those of Abaqus's keyword reference, those of CalculiX, and some that older versions of either had; one a line.
+/// Keywords of Abaqus's keyword reference, of CalculiX and of some older versions of both, one per line.
 const LIST: &str = include_str!("keywords.txt");
 
-/// Longer ones are no typing errors.
+/// Longest keyword for which a correction is suggested.
 const LONGEST: usize = 60;
 
-/// Keywords by their letters.
+/// Keywords by their letters without blanks and hyphens.
 static KNOWN: LazyLock<HashMap<String, &str>> =
     LazyLock::new(|| LIST.lines().map(|keyword| (letters(keyword), keyword)).collect());
 
-/// Blanks and hyphens do not count: CalculiX leaves blanks out.
+/// Removes blanks and hyphens; CalculiX omits blanks.
 fn letters(keyword: &str) -> String {
     keyword.chars().filter(|c| !matches!(c, ' ' | '-')).collect()
 }
 
-/// A keyword in capitals as it is written in full; `None` if there is none.
+/// Full spelling of an upper-case keyword, or `None` for an unknown keyword.
 pub(super) fn known(keyword: &str) -> Option<&'static str> {
     KNOWN.get(&letters(keyword)).copied()
 }
 
-/// Keywords that are read, or whose loss changes nothing of the body: headings, ends and what is to be
-/// printed.
+/// Keywords that are read, or whose loss does not affect the body: headings, ends and output requests.
 const NO_LOSS: [&str; 31] = [
     "NODE",
     "ELEMENT",
@@ -61,7 +61,7 @@ const NO_LOSS: [&str; 31] = [
     "FILE FORMAT",
 ];
 
-/// Keywords that join nodes or parts, or carry loads beside the solids.
+/// Keywords that join nodes or parts, or carry loads in addition to the solids.
 const JOINS: [&str; 23] = [
     "TIE",
     "EQUATION",
@@ -88,7 +88,7 @@ const JOINS: [&str; 23] = [
     "TRANSFORM",
 ];
 
-/// How the loss of a keyword matters; `None` where nothing is lost.
+/// Consequence of the loss of a keyword, `None` if nothing is lost.
 pub(super) fn lost(keyword: &str) -> Option<Kind> {
     match keyword {
         _ if NO_LOSS.contains(&keyword) => None,
@@ -97,7 +97,7 @@ pub(super) fn lost(keyword: &str) -> Option<Kind> {
     }
 }
 
-/// The keyword that takes the fewest changes of a letter, if these are few.
+/// Closest known keyword by edit distance, `None` if no keyword is close.
 pub(super) fn nearest(keyword: &str) -> Option<&'static str> {
     if keyword.len() > LONGEST {
         return None;
@@ -108,7 +108,7 @@ pub(super) fn nearest(keyword: &str) -> Option<&'static str> {
     (3 * away(&best) <= found.len()).then_some(best)
 }
 
-/// Letters to change, add or leave out, or neighbours to exchange, to make one word of the other.
+/// Edit distance: letters to change, insert or remove, or adjacent letters to swap.
 fn changes(a: &[char], b: &[char]) -> usize {
     let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
     for i in 1..=a.len() {

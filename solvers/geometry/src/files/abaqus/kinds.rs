@@ -1,17 +1,17 @@
-//! Element types of decks, and what face numbers mean. Corners and mid-edge nodes have our order.
+//! Element types of decks and their face numbers. Corners and mid-edge nodes have the order of [`CellKind`].
 
 use crate::CellKind;
 
-/// Types whose elements are read, for the message of one whose are not.
+/// Element types that are read, for the message about other types.
 pub(super) const KNOWN: &str = "C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, M) are read, shells as faces, beams and others \
                                 are read over";
 
-/// What an element type is.
+/// Class of an element type.
 pub(super) enum Type {
     Cell(CellKind),
-    /// A shell or a plane element, which may lie on a face of a solid: corners, nodes.
+    /// A shell or plane element, which may lie on a face of a solid: numbers of corners and of nodes.
     Face(usize, usize),
-    /// Has neither volume nor area: read over.
+    /// An element without volume or area, which is skipped.
     Other,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn element_type(name: &str) -> Option<Type> {
     thin.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
 }
 
-/// Name of a type.
+/// Name of the element type of a cell kind.
 pub(super) fn name(kind: CellKind) -> &'static str {
     match kind {
         CellKind::Tet4 => "C3D4",
@@ -58,7 +58,7 @@ pub(super) fn name(kind: CellKind) -> &'static str {
     }
 }
 
-/// Corners of faces S1, S2, ..
+/// Corners of the faces S1, S2, ...
 pub(super) fn faces(kind: CellKind) -> &'static [&'static [usize]] {
     if kind.is_tet() {
         &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]

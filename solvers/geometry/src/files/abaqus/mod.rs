@@ -1,10 +1,11 @@
 //! Abaqus and CalculiX .inp decks: the mesh with its sets and surfaces, flat or in parts and instances.
 //!
-//! An element's region is the set of its `*SOLID SECTION`; without sections the smallest set it is in, of equally large ones the last;
-//! else "body". What an instance adds to its part, be it the whole mesh, is its own. `*SURFACE`, `*NSET` and sets of shells on the faces of solids become facet groups. What several instances call the same
-//! is named `INSTANCE.NAME`. Reading ends at the first `*STEP`;
-//! before it a keyword that neither program has is refused. (Abaqus keywords reference; CalculiX
-//! CrunchiX manual, chapter 7.)
+//! The region of an element is the set of its `*SOLID SECTION`. In a deck without sections the region is the
+//! smallest set that contains the element, the last of equally large sets, or else "body". Content that an
+//! instance adds to its part, even the whole mesh, belongs to this instance alone. `*SURFACE`, `*NSET` and
+//! sets of shells on the faces of solids become facet groups. Names that occur in several instances become
+//! `INSTANCE.NAME`. Reading ends at the first `*STEP`. Before this line, a keyword unknown to both programs
+//! is rejected. (Abaqus keywords reference; CalculiX CrunchiX manual, chapter 7.)
 
 mod assembly;
 mod cards;
@@ -30,7 +31,7 @@ pub(super) fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
     deck.finish()
 }
 
-/// Files below a deck, in the order of their lines.
+/// Files included by a deck, in the order of their lines.
 pub(super) fn included(file: &Path, folder: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = disk::read(file, disk::Kind::MESH) else { return Vec::new() };
     let mut found = Vec::new();

@@ -1,13 +1,13 @@
-//! `GENERATE`: the nodes or elements of a set from one number to another.
+//! `GENERATE`: ranges of node or element numbers in a set.
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::cards::whole;
 
-/// Numbers that one line may generate: more than decks have, and made in a moment.
+/// Largest count of numbers that one line may generate, more than real decks have.
 const MOST: u64 = 10_000_000;
 
-/// Numbers in equal steps.
+/// A range of equally spaced numbers.
 pub(super) struct Range {
     first: u64,
     step: u64,
@@ -15,7 +15,8 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// `first, last, step`, the step 1 unless given; the last number is one of the range.
+    /// Reads `first, last, step`, with a default step of 1. The steps from the first number have to reach the
+    /// last.
     pub(super) fn read(place: Place, words: &[String]) -> Parsed<Range> {
         let word = |k: usize| words.get(k).map(String::as_str).filter(|word| !word.is_empty());
         let first = whole(place, word(0).unwrap_or(""), "the first number")?;
@@ -35,13 +36,15 @@ impl Range {
         Ok(Range { first, step, count: steps + 1 })
     }
 
-    /// How many numbers it has.
+    /// Count of numbers in the range.
     pub(super) fn count(&self) -> usize {
         self.count as usize
     }
 
-    /// The numbers that nodes or elements have; those between that none has are left out, as Abaqus does. The first or the last number
-    /// if none has that.
+    /// Numbers of existing nodes or elements in the range; the others are left out, as in Abaqus.
+    ///
+    /// # Errors
+    /// The first or the last number, if no node or element has this number.
     pub(super) fn members(&self, content: &Content, of_elements: bool) -> Result<Vec<u64>, u64> {
         let known = |number: u64| {
             if of_elements { content.knows_element(number) } else { content.node_of(number).is_some() }

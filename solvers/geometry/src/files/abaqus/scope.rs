@@ -1,4 +1,4 @@
-//! A part of a deck, or a flat deck: nodes, elements, sets and surfaces under numbers of their own.
+//! A part of a deck, or a flat deck: nodes, elements, sets and surfaces with their own numbering.
 
 use std::collections::HashMap;
 
@@ -10,22 +10,22 @@ use super::kinds::{KNOWN, Type, element_type, faces};
 use super::ranges::Range;
 use crate::{CellKind, Point3};
 
-/// Nodes, elements and what names them. Names count without their case; what is kept is as first written.
+/// Nodes, elements, sets and surfaces. Names are compared without regard to case and kept as first written.
 #[derive(Clone, Default)]
 pub(super) struct Scope {
     pub(super) content: Content,
     kinds: Vec<CellKind>,
     elsets: Sets,
     nsets: Sets,
-    /// Sets that decide the region of their elements.
+    /// Sets that determine the region of their elements.
     sections: Vec<(Place, String)>,
-    /// Shells, by number: where they are and their corners.
+    /// Places and corners of the shells, by element number.
     shells: HashMap<u64, (Place, Vec<u64>)>,
-    /// Members of all sets so far.
+    /// Number of members of all sets so far.
     members: u64,
 }
 
-/// Members by name in capitals, with the name as written.
+/// Names as written and members of sets, by upper-case name.
 #[derive(Clone, Default)]
 struct Sets {
     lists: HashMap<String, (String, Vec<u64>)>,
@@ -60,7 +60,7 @@ impl Scope {
             let number = whole(place, &words[0], "a node number")?;
             let mut at = Point3::origin();
             for d in 0..3 {
-                // Coordinates left out are 0.
+                // Omitted coordinates are 0.
                 match words.get(d + 1).map(String::as_str) {
                     None | Some("") => {}
                     Some(word) => at[d] = real(place, word, "a coordinate")?,
@@ -96,7 +96,7 @@ impl Scope {
                 Type::Face(_, nodes) => Some(nodes),
                 Type::Other => None,
             };
-            // A list goes on below where it is too short, or ends with a comma.
+            // A node list continues on the next line if it is too short or ends with a comma.
             let short = |words: &Vec<String>| {
                 let open = words.last().is_some_and(String::is_empty);
                 wanted.map_or(open, |nodes| words.iter().filter(|word| !word.is_empty()).count() <= nodes)
@@ -108,7 +108,7 @@ impl Scope {
             words.retain(|word| !word.is_empty());
             numbers.push(number);
             let Some(nodes) = wanted else {
-                // Their numbers are nodes, and may be more: properties, other elements.
+                // Numbers of such elements are nodes, and possibly properties or other elements.
                 self.content.element(Row { place, tag: number }, &[])?;
                 self.touch(&words[1..]);
                 continue;
@@ -140,20 +140,21 @@ impl Scope {
         Ok(())
     }
 
-    /// Notes that nodes are wanted whose numbers are among these words.
+    /// Marks nodes as used if their numbers are among these words.
     fn touch(&mut self, words: &[String]) {
         for number in words.iter().filter_map(|word| word.parse().ok()) {
             self.content.touch(number);
         }
     }
 
-    /// A card that is read over: reference points of rigid bodies, couplings and the like are named there alone.
+    /// Marks the nodes of a skipped card as used: some, such as reference points of rigid bodies, occur
+    /// nowhere else.
     pub(super) fn read_over(&mut self, card: &Card) {
         self.touch(&card.values());
         card.data.iter().for_each(|(_, line)| self.touch(&split(line)));
     }
 
-    /// `*ELSET` and `*NSET`.
+    /// Reads `*ELSET` and `*NSET`.
     pub(super) fn set(&mut self, card: &Card) -> Parsed<()> {
         let of_elements = card.keyword == "ELSET";
         let name = card.need(if of_elements { "ELSET" } else { "NSET" })?;
@@ -163,7 +164,7 @@ impl Scope {
             let words = split(line);
             if card.get("GENERATE").is_some() {
                 let range = Range::read(place, &words)?;
-                // A range takes as long as it is, whatever of it is there.
+                // The time for a range depends on its length, even if few of its numbers exist.
                 ranges += range.count();
                 self.few_enough(place, found.len() + ranges)?;
                 let unknown = |number: u64| {
@@ -209,7 +210,7 @@ impl Scope {
         Ok(())
     }
 
-    /// Sets of sets can double with every line.
+    /// Limits the number of set members, because sets of sets can double with every line.
     fn few_enough(&self, place: Place, more: usize) -> Parsed<()> {
         let count = self.members + more as u64;
         let problem = Problem::TooMany { what: "members of sets", count: count as usize };
@@ -227,7 +228,7 @@ impl Scope {
         Ok(())
     }
 
-    /// `*SURFACE` by faces of elements, or by nodes.
+    /// Reads `*SURFACE` by faces of elements, or by nodes.
     pub(super) fn surface(&mut self, card: &Card) -> Parsed<()> {
         let name = card.need("NAME")?;
         let by_nodes = card.get("TYPE").is_some_and(|t| t.eq_ignore_ascii_case("NODE"));
@@ -278,7 +279,7 @@ impl Scope {
         Ok(())
     }
 
-    /// Adds the faces of elements that no other element has to a surface, and shells on faces.
+    /// Adds to a surface the element faces that belong to no other element, and shells on faces.
     fn free_faces(&mut self, place: Place, name: &str, numbers: &[u64]) -> Parsed<()> {
         let group = self.content.group(name);
         let cells = numbers.iter().filter_map(|&number| self.content.cell_of(number)).collect();
@@ -289,11 +290,11 @@ impl Scope {
         Ok(())
     }
 
-    /// Gives elements their regions, and node sets to the content.
+    /// Assigns the regions of the elements, and adds the node sets to the content.
     pub(super) fn close(&mut self) -> Parsed<()> {
         let mut deciding = self.sections.clone();
         if deciding.is_empty() {
-            // What comes later overwrites: the smallest last.
+            // Later sets overwrite earlier ones, so the smallest comes last.
             let cells = |key: &String| {
                 let members = &self.elsets.lists[key].1;
                 members.iter().filter(|&&number| self.content.cell_of(number).is_some()).count()
@@ -316,7 +317,7 @@ impl Scope {
         }
         for key in &self.elsets.order {
             let (name, members) = &self.elsets.lists[key];
-            // Abaqus/CAE names its internal sets so.
+            // Names of this form are internal sets of Abaqus/CAE.
             if !name.starts_with('_') {
                 let cells: Vec<u32> =
                     members.iter().filter_map(|&number| self.content.cell_of(number)).collect();
@@ -336,13 +337,13 @@ impl Scope {
     }
 }
 
-/// Whether an element with incompatible modes has nodes for these too, behind the eight of its corners.
+/// Whether an element with incompatible modes lists nodes for them after its eight corners.
 fn has_inner_nodes(name: &str, corners: usize, nodes: usize) -> bool {
     name.eq_ignore_ascii_case("C3D8I") && (corners + 1..=corners + 3).contains(&nodes)
 }
 
-/// Members of all sets and numbers of all ranges.
+/// Largest number of members of all sets, and of numbers in all ranges.
 const MOST: u64 = 20_000_000;
 
-/// Corners and mid-edge nodes as they are.
+/// Node order of the decks, which is that of [`CellKind`].
 const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];

@@ -1,12 +1,15 @@
-//! The writer of flat decks: a section for each region, a set for each further group of cells, a surface of
-//! elements' faces for each facet group.
+//! Writer of flat decks. Each region becomes a section, each further group of cells a set, and each facet
+//! group a surface of element faces.
 
 use std::fmt::Write;
 
 use super::kinds::{faces, name};
 use crate::{CellKind, Mesh};
 
-/// The file's text, in lengths of `unit` metres; or a name that it can't hold.
+/// Returns the text of the file with lengths in units of `unit` metres.
+///
+/// # Errors
+/// A name that the format cannot represent.
 pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     let further: Vec<&str> = mesh.cell_groups().map(|(name, _)| name).collect();
     let of_cells: Vec<&str> = mesh.region_names().iter().map(String::as_str).chain(further).collect();
@@ -17,7 +20,7 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     if let Some(name) = names.iter().find(bad) {
         return Err((*name).into());
     }
-    // Names of sets count without their case.
+    // Set names are compared without regard to case.
     let regions = mesh.region_names();
     let twin =
         |(at, name): &(usize, &&str)| of_cells[..*at].iter().any(|other| other.eq_ignore_ascii_case(name));
@@ -25,14 +28,14 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
         return Err(name.to_string());
     }
     let mut out = String::from("*HEADING\nwritten by tissuebench\n*NODE\n");
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     macro_rules! line {
         ($($arg:tt)*) => { let _ = writeln!(out, $($arg)*); };
     }
     for (node, p) in mesh.points().iter().enumerate() {
         line!("{}, {:e}, {:e}, {:e}", node + 1, p.x / unit, p.y / unit, p.z / unit);
     }
-    // Cells keep their order: a block ends where the kind or the region changes.
+    // Cells keep their order: a block ends at a change of kind or region.
     let key = |cell: usize| (mesh.kind(cell), mesh.region(cell));
     for cell in 0..mesh.cell_count() {
         let (kind, region) = key(cell);
@@ -40,7 +43,7 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
             line!("*ELEMENT, TYPE={}, ELSET=\"{}\"", name(kind), mesh.region_names()[region as usize]);
         }
         let nodes: Vec<String> = mesh.cell(cell).iter().map(|node| (node + 1).to_string()).collect();
-        // At most 16 numbers a line.
+        // A line holds at most 16 numbers.
         let lines: Vec<String> =
             [vec![(cell + 1).to_string()], nodes].concat().chunks(15).map(|chunk| chunk.join(", ")).collect();
         line!("{}", lines.join(",\n"));
@@ -52,7 +55,7 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
             line!("{}", chunk.join(", "));
         }
     }
-    // Sections keep the regions in order. Their materials are for others to add.
+    // Sections preserve the order of the regions. Their materials have to be added elsewhere.
     let mut has = vec![false; regions.len()];
     (0..mesh.cell_count()).for_each(|cell| has[mesh.region(cell) as usize] = true);
     for (name, _) in regions.iter().zip(has).filter(|(_, has)| *has) {
@@ -68,7 +71,7 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     Ok(out)
 }
 
-/// The number that decks give a face of ours.
+/// Face number in a deck of a face index of [`CellKind::faces`].
 fn number(kind: CellKind, face: usize) -> usize {
     let corners = &kind.faces()[face][..kind.face_kind().corner_count()];
     let same = |theirs: &&[usize]| theirs.iter().all(|corner| corners.contains(corner));

@@ -1,4 +1,4 @@
-//! Cells in several groups, and what a mesh does not have of its file.
+//! Cells in several groups, and the parts of a file that are not in the mesh.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -8,17 +8,17 @@ use super::super::middles;
 use super::{Cells, Content};
 
 impl Content {
-    /// A cell may be listed once for each of its regions.
+    /// Allows a cell to be listed once for each of its regions.
     pub(in crate::files) fn repeat_cells(&mut self) {
         self.repeats = true;
     }
 
-    /// Puts a cell into a further region.
+    /// Adds a cell to an additional region.
     pub(in crate::files) fn also_in(&mut self, cell: u32, region: u16) {
         self.also.push((cell, region));
     }
 
-    /// Puts cells into a further region of a name.
+    /// Adds cells to an additional region of this name.
     pub(in crate::files) fn also(&mut self, place: Place, name: &str, cells: &[u32]) -> Parsed<()> {
         if !cells.is_empty() {
             let region = self.region(place, name)?;
@@ -27,18 +27,18 @@ impl Content {
         Ok(())
     }
 
-    /// Notes parts of the file that are not in the mesh.
+    /// Records parts of the file that are not in the mesh.
     pub(in crate::files) fn leave_out(&mut self, parts: impl IntoIterator<Item = LeftOut>) {
         self.left_out.extend(parts);
     }
 
-    /// Parts of the file that the mesh leaves out.
+    /// Parts of the file that are not in the mesh.
     pub(in crate::files) fn into_left_out(mut self) -> Vec<LeftOut> {
         self.put_middles_in_order();
         self.left_out
     }
 
-    /// Puts middle nodes in their places that the file has in another order.
+    /// Reorders mid-edge nodes that the file lists in another order than its format.
     pub(super) fn put_middles_in_order(&mut self) {
         let orders = middles::put_in_order(&self.kinds, &mut self.nodes, &self.points);
         self.left_out.extend(orders.into_iter().map(|(kind, cells)| LeftOut {
@@ -51,7 +51,7 @@ impl Content {
         }));
     }
 
-    /// Groups of cells across the regions, each with a cell at least whose region is another.
+    /// Groups of cells across the regions. A group whose cells all have it as their region is omitted.
     pub(super) fn further(&self) -> BTreeMap<String, Vec<u32>> {
         let mut cells: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
         for &(cell, region) in &self.also {
@@ -64,7 +64,7 @@ impl Content {
             .collect()
     }
 
-    /// Joins cells that are listed once for each of their regions: the first is in all of them.
+    /// Merges cells that are listed once for each of their regions; the first cell is in all these regions.
     pub(super) fn join_repeated(&mut self) {
         let cells = Cells { kinds: &self.kinds, nodes: &self.nodes, points: &self.points };
         if !self.repeats || cells.twins().is_none() {
@@ -79,7 +79,7 @@ impl Content {
             start += list.len();
             let next = self.kinds.len() as u32;
             let of = *first.entry(list).or_insert(next);
-            // Twice in one region is a fault of the file, which is found later.
+            // A cell listed twice in one region is an error of the file, which is found later.
             if known.insert((of, regions[cell])) && of != next {
                 self.also.push((of, regions[cell]));
                 continue;

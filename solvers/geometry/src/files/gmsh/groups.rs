@@ -1,4 +1,4 @@
-//! Physical groups: their names, and what they become.
+//! Physical groups of Gmsh: their names, and their conversion to regions and facet groups.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use super::super::lines::Lines;
 pub(super) struct Names(HashMap<(u64, u64), String>);
 
 impl Names {
-    /// Adds a name; regions keep the order of the names.
+    /// Adds a name. Regions keep the order of the names.
     pub(super) fn add(
         &mut self,
         content: &mut Content,
@@ -27,7 +27,7 @@ impl Names {
         }
     }
 
-    /// The region of a solid's physical tag; 0 is none.
+    /// Region of a solid's physical tag; the tag 0 gives "body".
     pub(super) fn region(&self, content: &mut Content, place: Place, tag: u64) -> Parsed<u16> {
         match self.0.get(&(3, tag)) {
             _ if tag == 0 => content.region(place, "body"),
@@ -36,7 +36,7 @@ impl Names {
         }
     }
 
-    /// The facet group of a surface's physical tag.
+    /// Facet group of a surface's physical tag.
     pub(super) fn group(&self, content: &mut Content, tag: u64) -> usize {
         match self.0.get(&(2, tag)) {
             Some(name) => content.group(name),
@@ -45,7 +45,7 @@ impl Names {
     }
 }
 
-/// Reads `DIMENSION TAG "NAME"`.
+/// Parses `DIMENSION TAG "NAME"`.
 pub(super) fn named(lines: &Lines, line: &str) -> Parsed<(u64, u64, String)> {
     let mut tokens = line.splitn(3, char::is_whitespace);
     let dimension = lines.number(tokens.next(), "the dimension of a physical name")?;

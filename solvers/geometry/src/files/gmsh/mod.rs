@@ -1,9 +1,9 @@
 //! Gmsh's .msh files.
 //!
-//! The physical group of a solid element becomes its region, further ones groups of cells, those of a surface
-//! element facet groups; version 2 lists an element once for each of its groups. Groups without a name are
-//! called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh reference manual, "MSH file
-//! format".)
+//! The physical group of a solid element becomes its region, and further groups become groups of cells. The
+//! groups of a surface element become facet groups. Version 2 lists an element once for each of its groups.
+//! Groups without a name are called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh
+//! reference manual, "MSH file format".)
 
 mod groups;
 mod order;
@@ -19,10 +19,11 @@ pub(super) use write::text;
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
 
-/// Types whose elements are read, for the message of one whose are not.
+/// Element types that are read, for the message about other types.
 const KNOWN: &str = "types 4, 5, 11, 17 (solids), 2, 3, 9, 16 (faces) and lines and points are read";
 
-/// Version 2 in text goes by lines, as its writers and people who mend files by hand do; all others by numbers.
+/// Parses a file of any version. Version 2 in text is read line by line, so that hand-edited files keep line
+/// numbers in errors; all other versions are read number by number.
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     let mut lines = bytes.split(|&b| b == b'\n').enumerate();
     let mut next = || {
@@ -34,7 +35,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
         ))
     };
     let (mut place, mut found) = next().unwrap_or((Place::Line(1), String::new()));
-    // Other sections, such as $Comments, may stand before.
+    // Other sections, such as $Comments, may come first.
     while let Some(name) = found.strip_prefix('$').filter(|_| found != "$MeshFormat" && found != "$NOD") {
         let end = format!("$End{name}");
         let Some(_) = std::iter::from_fn(&mut next).find(|(_, line)| line.eq_ignore_ascii_case(&end)) else {

@@ -1,7 +1,8 @@
-//! Gmsh's element types and node orders beside ours.
+//! Gmsh's element types and node orders, compared with [`CellKind`].
 //!
-//! Gmsh lists the mid-edge nodes of a tet10 on edges 01 12 02 03 23 13 (ours: .. 03 13 23) and those of a hex20 on
-//! edges 01 03 04 12 15 23 26 37 45 47 56 67 (Gmsh reference manual, section "Node ordering").
+//! Gmsh lists the mid-edge nodes of a tet10 on edges 01 12 02 03 23 13 ([`CellKind`]: .. 03 13 23). It lists
+//! those of a hex20 on edges 01 03 04 12 15 23 26 37 45 47 56 67 (Gmsh reference manual, section "Node
+//! ordering").
 
 use crate::CellKind;
 
@@ -9,16 +10,16 @@ const TET10: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 const HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14];
 const PLAIN: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/// What an element of the file becomes.
+/// Class of an element of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::files) enum Element {
     Cell(CellKind),
-    /// A face with this many corners and nodes.
+    /// A face, with its numbers of corners and nodes.
     Face {
         corners: usize,
         nodes: usize,
     },
-    /// A point or line: read over.
+    /// A point or line, which is skipped.
     Ignored {
         nodes: usize,
     },
@@ -42,7 +43,7 @@ pub(super) fn element(kind: u64) -> Option<Element> {
 }
 
 impl Element {
-    /// 0 of a point to 3 of a solid.
+    /// Topological dimension, from 0 (point) to 3 (solid).
     pub(super) fn dimension(self) -> i64 {
         match self {
             Element::Cell(_) => 3,
@@ -60,7 +61,7 @@ impl Element {
     }
 }
 
-/// Gmsh's type number of a cell and of its faces.
+/// Gmsh's type numbers of a cell and of its faces.
 pub(super) fn type_numbers(kind: CellKind) -> (u64, u64) {
     match kind {
         CellKind::Tet4 => (4, 2),
@@ -70,7 +71,7 @@ pub(super) fn type_numbers(kind: CellKind) -> (u64, u64) {
     }
 }
 
-/// Entry g: the place in our list of the node at place g in Gmsh's, `ours[order[g]] = gmsh[g]`.
+/// Permutation from Gmsh's node order: node g of Gmsh's list is node `order[g]` of the cell.
 pub(super) fn order(kind: CellKind) -> &'static [usize] {
     match kind {
         CellKind::Tet4 => &PLAIN[..4],

@@ -1,14 +1,14 @@
-//! Numbers of a file in text or in binary, and the lines between them.
+//! Scanner of a file in text or binary: numbers, and the lines between them.
 
 use super::super::error::{Parsed, Place, Problem};
 
-/// A place in the file and how its numbers are written.
+/// Position in the file and encoding of its numbers.
 pub(super) struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
     binary: bool,
-    /// Written on a machine of the other byte order.
+    /// Whether the file has the opposite byte order.
     swapped: bool,
 }
 
@@ -17,7 +17,7 @@ impl<'a> Scanner<'a> {
         Scanner { bytes, at: 0, line: 1, binary, swapped: false }
     }
 
-    /// The line in text, the byte in binary.
+    /// Current place: the line in text, the byte in binary.
     pub(super) fn place(&self) -> Place {
         if self.binary { Place::Byte(self.at) } else { Place::Line(self.line) }
     }
@@ -33,7 +33,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The next line that isn't blank; `None` at the end.
+    /// Next line that is not blank, or `None` at the end.
     pub(super) fn line(&mut self) -> Option<String> {
         self.skip_blanks();
         let rest = &self.bytes[self.at..];
@@ -53,7 +53,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Goes on behind the section of a name.
+    /// Skips to the end of the section of this name.
     pub(super) fn skip(&mut self, name: &str) -> Parsed<()> {
         let end = format!("$End{name}");
         let rest = &self.bytes[self.at..];
@@ -65,9 +65,9 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// Finds the byte order by the 1 that stands behind the version.
+    /// Detects the byte order by the number 1 after the version.
     pub(super) fn byte_order(&mut self) -> Parsed<()> {
-        // The line break behind the version.
+        // Skips the line break after the version.
         self.at += 1;
         match self.take::<4>("the number 1 of the byte order")? {
             [1, 0, 0, 0] => self.swapped = false,
@@ -80,7 +80,7 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// Behind the line of a count or a section's name, where binary numbers begin.
+    /// Skips the line break after a count or section name, before binary numbers.
     pub(super) fn behind_line(&mut self) {
         if self.binary && self.bytes.get(self.at) == Some(&b'\n') {
             self.at += 1;
@@ -115,7 +115,7 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
-    /// A 32-bit number in binary.
+    /// Reads an integer, 32 bits wide in binary.
     pub(super) fn int(&mut self, expected: &'static str) -> Parsed<i64> {
         if !self.binary {
             return self.token(expected);
@@ -123,7 +123,7 @@ impl<'a> Scanner<'a> {
         Ok(i32::from_le_bytes(self.take(expected)?).into())
     }
 
-    /// A number of 64 bits without sign in binary.
+    /// Reads an unsigned integer, 64 bits wide in binary.
     pub(super) fn size(&mut self, expected: &'static str) -> Parsed<u64> {
         if self.binary { Ok(u64::from_le_bytes(self.take(expected)?)) } else { self.token(expected) }
     }
@@ -132,7 +132,7 @@ impl<'a> Scanner<'a> {
         if self.binary { Ok(f64::from_le_bytes(self.take(expected)?)) } else { self.token(expected) }
     }
 
-    /// A number that can't be negative: of 32 bits, or of 64.
+    /// Reads a non-negative integer, 64 bits wide in binary if `wide`, else 32.
     pub(super) fn tag(&mut self, wide: bool, expected: &'static str) -> Parsed<u64> {
         if wide {
             return self.size(expected);
@@ -141,7 +141,8 @@ impl<'a> Scanner<'a> {
         u64::try_from(found).or_else(|_| self.fail(Problem::Expected { expected, found: found.to_string() }))
     }
 
-    /// How many of something come, which the rest of the file has to have room for: `least` bytes each in binary, two in text.
+    /// Checks a count against the rest of the file: each item takes at least `least` bytes in binary, or two
+    /// in text.
     pub(super) fn counted(&self, count: u64, least: usize, what: &'static str) -> Parsed<usize> {
         let least = if self.binary { least } else { 2 };
         let room = (self.bytes.len() - self.at) / least + 1;

@@ -1,4 +1,4 @@
-//! Versions 4.0 and 4.1 in text and in binary, and version 2 in binary: number by number.
+//! Reader of versions 4.0 and 4.1 in text and binary, and of version 2 in binary, number by number.
 
 use std::collections::HashMap;
 
@@ -13,24 +13,24 @@ use super::scanner::Scanner;
 use super::text2::add;
 use crate::Point3;
 
-/// What the versions differ by.
+/// Format version.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Version {
-    /// Elements by type, with their physical tag.
+    /// Elements grouped by type, each with its physical tag.
     Two,
-    /// Blocks of an entity, with 32-bit tags.
+    /// Blocks of entities, with 32-bit tags.
     Four,
-    /// The same with 64-bit tags, all tags of a block before its coordinates.
+    /// Blocks of entities with 64-bit tags; all tags of a block come before its coordinates.
     FourOne,
 }
 
 /// Physical tags by dimension and tag of an entity.
 type Entities = HashMap<(u64, i64), Vec<u64>>;
 
-/// The least and the largest number that a section says it has, and where it says so.
+/// Smallest and largest number stated by a section, and the place of this statement.
 type Claim = (Place, [u64; 2]);
 
-/// The least and the largest number so far.
+/// Smallest and largest number so far.
 #[derive(Clone, Copy, Default)]
 struct Range(Option<[u64; 2]>);
 
@@ -122,7 +122,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Text in binary files too.
+    /// Reads the physical names, which are text in binary files too.
     fn physical_names(&mut self) -> Parsed<()> {
         let expected = "the number of physical names";
         let Some(line) = self.scanner.line() else {
@@ -142,7 +142,7 @@ impl Reader<'_> {
         self.scanner.exactly("$EndPhysicalNames")
     }
 
-    /// Which physical groups points, curves, surfaces and volumes are of.
+    /// Reads the physical groups of points, curves, surfaces and volumes.
     fn entities(&mut self) -> Parsed<()> {
         self.scanner.behind_line();
         let mut counts = [0; 4];
@@ -169,7 +169,7 @@ impl Reader<'_> {
         self.scanner.exactly("$EndEntities")
     }
 
-    /// A number and so many others.
+    /// Reads a count followed by as many integers.
     fn list(&mut self, expected: &'static str) -> Parsed<Vec<i64>> {
         let claimed = self.scanner.size(expected)?;
         let count = self.scanner.counted(claimed, 4, "tags of an entity")?;
@@ -191,7 +191,7 @@ impl Reader<'_> {
         let (claimed, claimed_range) = self.totals("the number of nodes")?;
         let mut range = Range::default();
         for _ in 0..blocks {
-            // Dimension and tag of the entity, in an order that the versions differ in.
+            // Dimension and tag of the entity, in an order that depends on the version.
             let [first, second, parametric] = self.ints("the head of a block of nodes")?;
             let dimension = if wide { first } else { second };
             let count = self.scanner.size("the number of nodes of a block")?;
@@ -217,7 +217,7 @@ impl Reader<'_> {
         self.scanner.exactly("$EndNodes")
     }
 
-    /// How many there are in all blocks, and in version 4.1 the least and the largest number.
+    /// Reads the total number in all blocks, and in version 4.1 the smallest and largest number.
     fn totals(&mut self, expected: &'static str) -> Parsed<(u64, Option<Claim>)> {
         let claimed = self.scanner.size(expected)?;
         if self.version != Version::FourOne {
@@ -227,7 +227,7 @@ impl Reader<'_> {
         Ok((claimed, Some((self.scanner.place(), range))))
     }
 
-    /// Refuses other numbers than the section says.
+    /// Rejects numbers that differ from the stated range.
     fn within(&self, what: &'static str, claimed: Option<Claim>, Range(found): Range) -> Parsed<()> {
         match (claimed, found) {
             (Some((place, claimed)), Some(found)) if claimed != found => {
@@ -237,7 +237,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Refuses blocks that have more or fewer together than the section says.
+    /// Rejects blocks whose total differs from the stated count.
     fn whole(&self, what: &'static str, claimed: u64, found: usize) -> Parsed<()> {
         if claimed == found as u64 {
             Ok(())
@@ -246,7 +246,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A number and where the node is.
+    /// Reads the number and position of a node.
     fn node(&mut self) -> Parsed<()> {
         let number = self.scanner.tag(false, "a node number")?;
         let at = self.point()?;
@@ -261,7 +261,7 @@ impl Reader<'_> {
         Ok(at)
     }
 
-    /// Coordinates on a curve or a surface, which nodes may have beside those in space.
+    /// Skips parametric coordinates on a curve or surface, which may follow the position of a node.
     fn parameters(&mut self, parametric: i64, dimension: i64) -> Parsed<()> {
         for _ in 0..if parametric == 0 { 0 } else { dimension.clamp(0, 3) } {
             self.scanner.real("a parametric coordinate")?;
@@ -273,7 +273,7 @@ impl Reader<'_> {
         Ok([self.scanner.int(expected)?, self.scanner.int(expected)?, self.scanner.int(expected)?])
     }
 
-    /// A count as a line of text, which stands before binary numbers in version 2.
+    /// Reads a count in a line of text, which precedes binary numbers in version 2.
     fn count_line(&mut self, expected: &'static str) -> Parsed<u64> {
         let found = self.scanner.line();
         let count = found.as_deref().map(str::parse);
@@ -318,7 +318,7 @@ impl Reader<'_> {
         self.scanner.exactly("$EndElements")
     }
 
-    /// Version 2: heads of type, number of elements and number of tags.
+    /// Reads version 2 blocks, each with a head of type, number of elements and number of tags.
     fn elements_by_type(&mut self) -> Parsed<()> {
         self.content.repeat_cells();
         let all = self.count_line("the number of elements")?;
@@ -348,7 +348,7 @@ impl Reader<'_> {
         self.scanner.exactly("$EndElements")
     }
 
-    /// One element's nodes.
+    /// Reads the nodes of an element.
     fn element(&mut self, number: u64, kind: i64, groups: &[u64], wide: bool) -> Parsed<()> {
         let row = Row { place: self.scanner.place(), tag: number };
         let Some(element) = u64::try_from(kind).ok().and_then(element) else {

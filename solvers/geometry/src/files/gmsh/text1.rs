@@ -1,4 +1,4 @@
-//! Version 1: `$NOD` and `$ELM`; the physical region of an element is its group, without a name.
+//! Reader of version 1: `$NOD` and `$ELM`. The physical region of an element is its group, which has no name.
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Problem};

@@ -1,4 +1,4 @@
-//! Version 2 in text: one pass over the lines, every complaint with its line number.
+//! Reader of version 2 in text: one pass over the lines, with a line number in every error.
 
 use super::super::content::Content;
 use super::super::error::{Parsed, Problem};
@@ -46,7 +46,7 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
     Ok(content)
 }
 
-/// Goes on behind the line that begins the file's first section, past others such as `$Comments`.
+/// Moves past the line that begins the first required section, skipping sections such as `$Comments`.
 pub(super) fn begin(lines: &mut Lines, first: &'static str) -> Parsed<()> {
     loop {
         match lines.need(first)? {
@@ -116,7 +116,7 @@ fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Par
         for tag in 0..tags {
             let value: i64 = lines.number(tokens.next(), "a tag")?;
             if tag == 0 {
-                // Gmsh marks a reversed surface by a negative tag.
+                // A negative tag marks a reversed surface in Gmsh.
                 group = value.unsigned_abs();
             }
         }
@@ -130,7 +130,7 @@ fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Par
     if content.cell_count() == 0 { lines.fail(Problem::NoCells) } else { Ok(()) }
 }
 
-/// Adds an element of physical groups, 0 being none; the first is a solid's region.
+/// Adds an element with its physical groups, where 0 means none; the first group is a solid's region.
 pub(super) fn add(
     content: &mut Content,
     names: &Names,

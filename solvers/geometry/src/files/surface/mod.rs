@@ -13,19 +13,23 @@ use crate::surface::{PolygonFault, Soup, SurfaceError};
 
 pub(super) use stl::write;
 
-/// What [`read_surface`] takes, for messages.
+/// Surface formats accepted by [`read_surface`], for messages.
 pub const SURFACES: &str = "give a closed surface: STL (.stl), OBJ (.obj) or PLY (.ply)";
 
-/// Reads a closed surface by what its file holds; `unit` is the length of the file's unit in metres.
+/// Reads a closed surface; the content of the file determines the format. `unit` is the length of the file's
+/// unit in metres.
 ///
 /// # Errors
-/// A file that is none of the formats or broken, with line or byte; a surface that is open, crosses itself or is inside out, with the
-/// triangles and the place.
+/// A file in none of the formats or with a violation of its format, with the line or byte. A surface that is
+/// open, crosses itself or is inside out, with the triangles and the position.
 pub fn read_surface(file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
     read_surface_bytes(&super::bytes(file)?, file, unit)
 }
 
-/// As [`read_surface`], from memory; `file` is the name used in errors.
+/// Reads a closed surface as [`read_surface`] does, from memory; `file` is the name used in errors.
+///
+/// # Errors
+/// As for [`read_surface`].
 pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
     super::check_unit(file, unit)?;
     let bytes = unmarked(bytes);
@@ -40,7 +44,7 @@ pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surfac
     Surface::new(soup, unit).map_err(|problem| SurfaceError::Surface { file: file.to_path_buf(), problem })
 }
 
-/// Whether a file holds a surface, by what it begins with; a file that can't be read does not.
+/// Whether a file holds a surface, according to its first bytes; false for a file that cannot be read.
 pub fn is_surface(file: &Path) -> bool {
     super::bytes(file).is_ok_and(|bytes| holds_surface(&bytes, file))
 }
@@ -49,12 +53,13 @@ pub(super) fn holds_surface(bytes: &[u8], file: &Path) -> bool {
     kind(unmarked(bytes), file).is_some()
 }
 
-/// A text without the mark of its encoding; the comment of a binary file may begin with anything.
+/// Removes the byte order mark of a text. A binary file is unchanged, because its comment may begin with any
+/// bytes.
 fn unmarked(bytes: &[u8]) -> &[u8] {
     if stl::is_binary(bytes) { bytes } else { super::unmarked(bytes) }
 }
 
-/// Adds a face of any number of corners to a surface.
+/// Adds a face with any number of corners to a surface.
 fn face(soup: &mut Soup, place: Place, number: usize, corners: &[u32]) -> Parsed<()> {
     let face = number as u64;
     soup.face(number, corners).map_err(|fault| match fault {
@@ -69,7 +74,7 @@ enum Kind {
     Ply,
 }
 
-/// The format of a surface; `None` of anything else.
+/// Format of a surface, `None` for other content.
 fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace())?;
     let begins = |word: &[u8]| bytes[start..].get(..word.len()).is_some_and(|b| b.eq_ignore_ascii_case(word));
@@ -80,7 +85,7 @@ fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
     } else if obj::is_text(&bytes[start..]) {
         Some(Kind::Obj)
     } else {
-        // A binary file that is cut short begins with anything.
+        // A truncated binary file may begin with any bytes.
         let other = begins(b"$") || begins(b"*") || begins(b"<") || begins(b"# vtk");
         (suffix(file) == "stl" && !other).then_some(Kind::Stl)
     }

@@ -1,19 +1,19 @@
-//! OBJ: corners and faces of any number of them, in any order. Faces are in all groups of the last `g`, or where that names none in the
-//! object of the last `o`. Normals, textures and materials are read over.
+//! OBJ: corners, and faces with any number of corners, in any order. A face belongs to all groups of the last
+//! `g`, or, if this lists none, to the object of the last `o`. Normals, textures and materials are skipped.
 
 use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
 use crate::Point3;
 use crate::surface::{Set, Soup};
 
-/// Words that begin a line beside those of corners and faces.
+/// Words that may begin a line, besides those of corners, faces and groups.
 const OTHERS: [&str; 12] =
     ["vt", "vn", "vp", "s", "l", "p", "usemtl", "mtllib", "usemap", "maplib", "mg", "lod"];
 
-/// Groups of one face at most: of a small file many faces in many groups would take gigabytes.
+/// Largest number of groups of a face. A small file with many faces in many groups could take gigabytes.
 const MOST_GROUPS: usize = 100;
 
-/// Whether the first line that is no comment begins with a word of the format.
+/// Whether the first line that is not a comment begins with a word of the format.
 pub(super) fn is_text(bytes: &[u8]) -> bool {
     if bytes.starts_with(b"# vtk") {
         return false;
@@ -26,12 +26,12 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     })
 }
 
-/// Faces, whose corners may come later in the file.
+/// Faces, whose corners may follow later in the file.
 #[derive(Default)]
 struct Faces {
-    /// Place, end of its corners in the list, and groups of each.
+    /// Place, end of the corners in `corners`, and groups of each face.
     rows: Vec<(Place, usize, Set)>,
-    /// Corners from 0 on, of all faces one after another.
+    /// Indices of the corners of all faces, from 0.
     corners: Vec<i64>,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     let (mut soup, mut faces) = (Soup::default(), Faces::default());
     let (mut groups, mut object) = (Set::default(), Set::default());
     while let Some(line) = lines.next() {
-        // A line may go on after a backslash.
+        // A backslash continues a line.
         let mut whole = line.split('#').next().unwrap_or_default().to_string();
         while let Some(part) = whole.strip_suffix('\\') {
             whole = format!("{part} {}", lines.need("the rest of a line")?);
@@ -73,7 +73,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Soup> {
     Ok(soup)
 }
 
-/// A corner's coordinates; what comes behind, a weight or a colour, is read over.
+/// Reads the coordinates of a corner; a weight or colour after them is ignored.
 fn vertex<'a>(
     lines: &Lines,
     mut words: impl Iterator<Item = &'a str>,
@@ -91,7 +91,7 @@ fn vertex<'a>(
 }
 
 impl Faces {
-    /// Notes the face of a line, before which the file has `points` corners.
+    /// Adds the face of a line; `points` is the number of corners read so far.
     fn add(&mut self, lines: &Lines, line: &str, points: usize, set: Set) -> Parsed<()> {
         let (start, face) = (self.corners.len(), self.rows.len() + 1);
         for word in line.split_ascii_whitespace().skip(1) {
@@ -105,7 +105,7 @@ impl Faces {
         Ok(())
     }
 
-    /// Adds all faces, when all corners are known.
+    /// Adds all faces to the surface, once all corners are known.
     fn add_to(&self, soup: &mut Soup) -> Parsed<()> {
         let mut start = 0;
         for (row, &(place, end, set)) in self.rows.iter().enumerate() {
@@ -122,7 +122,8 @@ impl Faces {
     }
 }
 
-/// A corner `7`, `7/2/3` or `-1`: from 1 on, which may come later, or backwards from the last so far.
+/// Parses a corner `7`, `7/2/3` or `-1`. Positive numbers count from 1 and may refer to later corners;
+/// negative numbers count backwards from the last corner so far.
 fn corner(lines: &Lines, word: &str, face: usize, points: usize) -> Parsed<i64> {
     let number: i64 = lines.number(word.split('/').next(), "the number of a corner")?;
     let index = if number < 0 { number.checked_add(points as i64) } else { number.checked_sub(1) };

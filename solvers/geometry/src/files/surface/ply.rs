@@ -1,9 +1,9 @@
-//! PLY: a header that lists elements with their properties, then their values as text or binary.
+//! PLY: a header of elements with their properties, followed by their values in text or binary.
 
 use super::super::error::{Parsed, Place, Problem};
 use crate::surface::Soup;
 
-/// A scalar type: its bytes and what they are.
+/// A scalar type with its size in bytes.
 #[derive(Clone, Copy)]
 enum Scalar {
     Signed(usize),
@@ -13,7 +13,7 @@ enum Scalar {
 
 struct Property {
     name: String,
-    /// Type of the count, where it is a list.
+    /// Type of the count, if the property is a list.
     list: Option<Scalar>,
     of: Scalar,
 }
@@ -24,7 +24,7 @@ struct Element {
     properties: Vec<Property>,
 }
 
-/// Values one after another.
+/// Stream of values.
 enum Values<'a> {
     Text { words: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>, line: usize },
     Binary { bytes: &'a [u8], at: usize, big: bool },
@@ -91,7 +91,7 @@ fn corner(value: f64, row: usize, soup: &Soup, place: Place) -> Parsed<u32> {
     Err((place, Problem::UnknownCorner { face: row as u64 + 1, node: value as i64 }))
 }
 
-/// The elements, and their values behind the header.
+/// Reads the header; returns the elements and the values after the header.
 fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
     let mut elements: Vec<Element> = Vec::new();
     let (mut at, mut number, mut format) = (0, 0, None);
@@ -111,7 +111,7 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
             ["format", name, "1.0"] => format = Some(name.to_string()),
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| wrong("a number of elements"))?;
-                // Each has a byte at the least: no memory is taken for more.
+                // Each element takes at least one byte, so memory is allocated for no more.
                 if count > bytes.len() {
                     return Err((
                         place,
@@ -217,7 +217,7 @@ impl Values<'_> {
                 let end = (Place::Byte(bytes.len()), Problem::End { expected: "a value of an element" });
                 let found = bytes.get(*at..*at + size).ok_or(end)?;
                 *at += size;
-                // Into the last bytes of a number of eight, the highest first.
+                // Copies the bytes to the end of an eight-byte number, the most significant first.
                 let mut wide = [0; 8];
                 for (slot, byte) in (8 - size..8).zip(0..size) {
                     wide[slot] = if *big { found[byte] } else { found[size - 1 - byte] };
@@ -225,7 +225,7 @@ impl Values<'_> {
                 let bits = u64::from_be_bytes(wide);
                 Ok(match of {
                     Scalar::Unsigned(_) => bits as f64,
-                    // The sign is the highest bit of its bytes.
+                    // The sign is the most significant bit.
                     Scalar::Signed(size) => {
                         let shift = 64 - 8 * size as u32;
                         ((bits << shift) as i64 >> shift) as f64
@@ -237,7 +237,7 @@ impl Values<'_> {
         }
     }
 
-    /// Refuses what comes behind the last element.
+    /// Rejects content after the last element.
     fn end(mut self) -> Parsed<()> {
         let more = match &mut self {
             Values::Text { words, .. } => {

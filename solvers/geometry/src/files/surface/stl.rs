@@ -1,22 +1,24 @@
-//! STL: triangles with all their corners, as text or in 50 bytes each. The name of a solid is a group of its triangles.
+//! STL: triangles with their own corners, in text or in 50 bytes each. The name of a solid becomes a group of
+//! its triangles.
 
 use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
 use crate::surface::{Set, Soup, triangles_of};
 use crate::{Mesh, Point3};
 
-/// Bytes before the triangles: a comment of 80 and their number.
+/// Size of the header in bytes: a comment of 80, and the number of triangles.
 const HEAD: usize = 84;
-/// Bytes of a triangle: a normal and three corners in single precision, and two bytes more.
+/// Size of a triangle in bytes: a normal and three corners in single precision, and two more bytes.
 const EACH: usize = 50;
 
-/// Number of triangles that a binary file claims.
+/// Number of triangles stated in a binary file.
 fn claimed(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEAD - 4..HEAD)?;
     Some(u32::from_le_bytes(count.try_into().ok()?) as usize)
 }
 
-/// Whether a file has as many bytes as the number of triangles in it says: some binary files begin with the word of text files.
+/// Whether the size of a file matches its stated number of triangles. Some binary files begin with the
+/// keyword of text files.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
     claimed(bytes).is_some_and(|count| {
         count.checked_mul(EACH).and_then(|all| all.checked_add(HEAD)) == Some(bytes.len())
@@ -54,7 +56,7 @@ fn binary(bytes: &[u8]) -> Parsed<Soup> {
     Ok(soup)
 }
 
-/// Adds a triangle with corners of its own.
+/// Adds a triangle with its own corners.
 fn add(soup: &mut Soup, place: Place, corners: [Point3; 3]) -> Parsed<()> {
     let number = soup.triangles.len() + 1;
     if !corners.iter().all(|p| p.coords.iter().all(|x| x.is_finite())) {
@@ -99,7 +101,7 @@ fn lines(text: &str) -> Parsed<Soup> {
     if open { lines.fail(Problem::End { expected: "endsolid" }) } else { Ok(soup) }
 }
 
-/// The first word of a line in small letters; some programs write `end solid` for `endsolid`.
+/// First word of a line in lower case; some programs write `end solid` for `endsolid`.
 fn keyword(line: &str) -> String {
     let mut words = line.split_ascii_whitespace().map(str::to_ascii_lowercase);
     let first = words.next().unwrap_or_default();
@@ -131,7 +133,8 @@ fn vertex(lines: &mut Lines) -> Parsed<Point3> {
     }
 }
 
-/// The boundary of a mesh in binary, its quadrilaterals cut in two and faces of quadratic cells in triangles through all their nodes.
+/// Writes the boundary of a mesh in binary. Quadrilaterals are split into two triangles, and faces of
+/// quadratic cells into triangles through all their nodes. `unit` is the length of the file's unit in metres.
 pub(in super::super) fn write(mesh: &Mesh, unit: f64) -> Vec<u8> {
     let mut triangles = Vec::new();
     for facet in mesh.boundary() {

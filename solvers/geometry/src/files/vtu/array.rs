@@ -1,14 +1,14 @@
-//! Data arrays: numbers from text, base64 or raw bytes.
+//! Data arrays: numbers in text, base64 or raw bytes.
 
 use std::io::Read;
 
 use super::super::error::{Parsed, Place, Problem};
 
-/// What the head of the file says of all its arrays.
+/// Encoding of all arrays of a file, stated in its head.
 #[derive(Clone, Copy)]
 pub(super) struct Coding {
     pub(super) big_endian: bool,
-    /// Bytes of the numbers that tell lengths: 4 or 8.
+    /// Width of a length word in bytes: 4 or 8.
     pub(super) head: usize,
     pub(super) compressor: Compressor,
 }
@@ -20,23 +20,24 @@ pub(super) enum Compressor {
     Lz4,
 }
 
-/// Where the bytes of an array are.
+/// Bytes of an array and their encoding.
 pub(super) enum Source<'a> {
     Text(&'a str),
     Base64(&'a [u8]),
     Raw(&'a [u8]),
 }
 
-/// Numbers of an array; whole ones stay whole.
+/// Numbers of an array; integers stay integers.
 pub(super) enum Numbers {
     Whole(Vec<i64>),
     Real(Vec<f64>),
 }
 
-/// No array of a mesh that fits a file of this many bytes is longer: zlib shrinks zeros to a thousandth.
+/// Largest ratio of unpacked to packed bytes; zlib compresses zeros about a thousandfold.
 const MOST_SHRUNK: usize = 1100;
-/// Bytes and numbers of an array that may be shrunk so far, such as the types of eight million cells; longer ones to a 32nd. A file of a
-/// mebibyte could take ten gigabytes otherwise.
+/// Largest bytes and numbers of an array for which any compression is accepted, such as the types of eight
+/// million cells. A larger array may have at most 32 numbers per packed byte. Otherwise a file of one
+/// mebibyte could take ten gigabytes.
 const SHRUNK_BYTES: usize = 1 << 26;
 const SHRUNK_NUMBERS: usize = 1 << 23;
 const LARGE_SHRUNK: usize = 32;
@@ -118,17 +119,17 @@ fn of_text<'a, T: std::str::FromStr>(
     Ok(found)
 }
 
-/// Refuses an array of another length.
+/// Rejects an array of another length.
 fn counted(found: usize, expected: usize, place: Place) -> Parsed<()> {
     if found == expected { Ok(()) } else { Err((place, Problem::ArrayLength { found, expected })) }
 }
 
-/// Bytes one after the other.
+/// A stream of bytes.
 trait Bytes {
-    /// The next ones, as many as asked for or none.
+    /// Returns the next `count` bytes, or `None` if fewer are left.
     fn next(&mut self, count: usize) -> Option<Vec<u8>>;
 
-    /// About how many are left.
+    /// Approximate number of bytes left.
     fn left(&self) -> usize;
 }
 
@@ -148,7 +149,8 @@ impl Bytes for Plain<'_> {
     }
 }
 
-/// Base64, whose parts may each be filled up with `=`: lengths are written apart from what they are of.
+/// Base64 text in which each part may be padded with `=`, because lengths are encoded separately from their
+/// data.
 struct Quartets<'a> {
     text: &'a [u8],
     left: Vec<u8>,
@@ -191,7 +193,7 @@ fn sextet(c: u8) -> Option<u8> {
     })
 }
 
-/// An array's bytes: its length, or the sizes of its blocks, and then the bytes.
+/// Unpacks the bytes of an array, which follow its length or the sizes of its compressed blocks.
 fn unpacked(bytes: &mut impl Bytes, wanted: usize, coding: Coding, place: Place) -> Parsed<Vec<u8>> {
     let end = || (place, Problem::End { expected: "the rest of an array" });
     let length = |bytes: &mut dyn Bytes| -> Parsed<usize> {

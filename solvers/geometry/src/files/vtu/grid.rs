@@ -1,4 +1,4 @@
-//! The grid: points, cells and what they are named by.
+//! Reader of the grid: points, cells and their names.
 
 use roxmltree::{Document, Node};
 
@@ -9,19 +9,19 @@ use super::super::vtk_cells::{Array, Cells, lost, regions};
 use super::array::{Coding, Compressor, Numbers, Source, read};
 use crate::Point3;
 
-/// Arrays of the cells in groups across the regions begin so, with the number of the group behind.
+/// Prefix of the arrays that mark cells in groups across the regions; the number of the group follows.
 pub(super) const GROUP: &str = "group-";
 
 struct File<'a> {
     bytes: &'a [u8],
     document: &'a Document<'a>,
     coding: Coding,
-    /// Bytes behind the `_` of appended data, and whether they are base64.
+    /// Position after the `_` of appended data, and whether these are base64.
     appended: Option<(usize, bool)>,
 }
 
 pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
-    // Raw data is no XML: what comes before it is closed by hand.
+    // Raw data are not XML, so the text before them is parsed with a closing tag added.
     let tag = b"<AppendedData";
     let cut = bytes.windows(tag.len()).position(|w| w == tag);
     let text = std::str::from_utf8(&bytes[..cut.unwrap_or(bytes.len())]).map_err(|bad| {
@@ -59,7 +59,7 @@ pub(in crate::files) fn parse(bytes: &[u8]) -> Parsed<Content> {
     File { bytes, document: &document, coding, appended }.content()
 }
 
-/// The line of what is wrong with XML; of what is missing, the last.
+/// Line of an XML error; for a missing element, the last line.
 fn line_of_fault(bad: &roxmltree::Error, text: &str) -> usize {
     use roxmltree::Error::{NoRootNode, UnclosedRootNode, UnexpectedEndOfStream};
     match bad {
@@ -68,10 +68,10 @@ fn line_of_fault(bad: &roxmltree::Error, text: &str) -> usize {
     }
 }
 
-/// Bytes of a tag with its attributes: each of these is compared with all others.
+/// Largest size in bytes of a tag with its attributes, each of which the parser compares with all others.
 const LONGEST_TAG: usize = 1 << 14;
 
-/// Where a tag begins that is too long.
+/// Position of the first tag that is too long.
 fn long_tag(text: &str) -> Option<usize> {
     let (mut open, mut quote) = (None, None);
     for (at, byte) in text.bytes().enumerate() {
@@ -90,7 +90,7 @@ fn long_tag(text: &str) -> Option<usize> {
     None
 }
 
-/// Where the appended data begins, behind its `_`.
+/// Position after the `_` of the appended data, and whether these are base64.
 fn appended(bytes: &[u8], cut: usize) -> Parsed<(usize, bool)> {
     let close = bytes[cut..].iter().position(|&b| b == b'>').map(|at| cut + at + 1);
     let start = close.and_then(|close| Some(close + bytes[close..].iter().position(|&b| b == b'_')? + 1));
@@ -131,7 +131,7 @@ impl<'a> File<'a> {
         count.map_err(|_| (self.place(piece), Problem::Expected { expected: name, found: found.into() }))
     }
 
-    /// One piece; its points come behind those of the pieces before.
+    /// Reads a piece, whose points follow those of the previous pieces.
     fn piece(
         &self,
         piece: Node,
@@ -192,7 +192,7 @@ impl<'a> File<'a> {
         cells.add_to(content, region_names, surface_names)
     }
 
-    /// Arrays of cells and of points that are not taken.
+    /// Arrays of cells and points that are not used.
     fn lost(&self, piece: Node, cells: usize, taken: Option<&Array>) -> Parsed<Vec<LeftOut>> {
         let mut found = Vec::new();
         for (section, of_cells) in [("CellData", true), ("PointData", false)] {
@@ -206,7 +206,7 @@ impl<'a> File<'a> {
                 }
                 let single =
                     of_cells && node.attribute("NumberOfComponents").is_none_or(|count| count.trim() == "1");
-                // Unreadable values are not needed here.
+                // Unreadable values are ignored here.
                 let read = |_| self.array(node, cells).map(reals).unwrap_or_default();
                 let values = (taken.is_none() && single).then_some(()).map(read).unwrap_or_default();
                 found.push(lost(&Array { name: name.into(), place, values }, of_cells, taken.is_some()));
@@ -215,7 +215,7 @@ impl<'a> File<'a> {
         Ok(found)
     }
 
-    /// Numbers per cell, by the array's name without regard to capitals.
+    /// Numbers per cell, by the name of the array without regard to case.
     fn cell_array(&self, piece: Node, cells: usize, name: &str) -> Parsed<Option<Array>> {
         let data = piece.children().filter(|node| node.has_tag_name("CellData"));
         let mut arrays = data.flat_map(|data| data.children());
@@ -225,7 +225,7 @@ impl<'a> File<'a> {
         Ok(Some(Array { name, place, values: reals(self.array(found, cells)?) }))
     }
 
-    /// Texts of field data: numbers of characters with a zero behind each text.
+    /// Strings of field data: character codes, each string terminated by a zero.
     fn names(&self, root: Node, name: &str) -> Parsed<Vec<String>> {
         let of_field = root.descendants().filter(|node| node.has_tag_name("FieldData"));
         let mut arrays = of_field.flat_map(|field| field.children());

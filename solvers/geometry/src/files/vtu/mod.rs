@@ -1,8 +1,10 @@
-//! VTK's unstructured grids, .vtu: text, base64 and appended data, plain or in blocks by zlib or lz4, of either byte order.
+//! VTK's unstructured grids, .vtu: text, base64 and appended data, uncompressed or in blocks of zlib or lz4,
+//! with either byte order.
 //!
-//! Cells get their regions from the first array of cells that is named as programs name it (`region`, `gmsh:physical`, `material`, ..),
-//! faces in the file their groups from `surface` or the same array; a value is a name by `region-names` and `surface-names`, else
-//! "region-VALUE" and "surface-VALUE". (VTK file formats, "XML file formats".)
+//! The regions of the cells come from the first cell array with a known name (`region`, `gmsh:physical`,
+//! `material`, ..). The groups of faces in the file come from `surface` or the same array. A value is an
+//! index into `region-names` or `surface-names`; without a name, the region or group is called "region-VALUE"
+//! or "surface-VALUE". (VTK file formats, "XML file formats".)
 
 mod array;
 mod grid;

@@ -1,4 +1,4 @@
-//! The writer: appended raw data in blocks of zlib, which ParaView, VTK and meshio open.
+//! Writer: appended raw data in zlib blocks, readable by ParaView, VTK and meshio.
 
 use std::io::Write as _;
 
@@ -8,17 +8,17 @@ use flate2::write::ZlibEncoder;
 use super::grid::GROUP;
 use crate::{CellKind, FaceKind, Mesh, Point3};
 
-/// Bytes of a block before they are packed, as VTK has them.
+/// Size of an uncompressed block in bytes, as in VTK.
 const BLOCK: usize = 1 << 15;
 
-/// An XML head that names arrays by their offset in the bytes behind.
+/// Appended data, to which the XML head refers by offset.
 #[derive(Default)]
 struct Appended {
     bytes: Vec<u8>,
 }
 
 impl Appended {
-    /// Packs an array and returns its element.
+    /// Compresses an array and returns its XML element.
     fn array(&mut self, name: &str, kind: &str, components: usize, bytes: &[u8]) -> String {
         let offset = self.bytes.len();
         let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(packed).collect();
@@ -44,12 +44,12 @@ impl Appended {
 
 fn packed(block: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
-    // Writing to memory can't fail.
+    // Writing to memory cannot fail.
     encoder.write_all(block).expect("memory takes it");
     encoder.finish().expect("memory takes it")
 }
 
-/// Cells by the nodes of each, in VTK's order.
+/// Nodes of each cell, in VTK's order.
 #[derive(Default)]
 struct Cells {
     list: Vec<i64>,
@@ -73,24 +73,28 @@ impl Cells {
     }
 }
 
-/// Integers or numbers of a grid, its points or its cells, by name.
+/// Named integers or reals of a grid, its points or its cells.
 enum Data<'a> {
     Whole(&'a str, Vec<i32>),
     Real(&'a Values),
 }
 
-/// Numbers at the points or in the cells of a file.
+/// Named values at the points or in the cells of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// What they are.
+    /// Name of the quantity.
     pub name: &'static str,
-    /// How many belong to a point or cell; six are a symmetric tensor: xx, yy, zz, xy, yz, xz.
+    /// Number of components per point or cell; six are a symmetric tensor: xx, yy, zz, xy, yz, xz.
     pub components: usize,
-    /// All of them, those of a point or cell together.
+    /// All values, with the components of a point or cell adjacent.
     pub numbers: Vec<f64>,
 }
 
-/// The file's bytes, in lengths of `unit` metres; or a name that it can't hold. Faces of groups are cells behind the solids.
+/// Returns the bytes of the file with lengths in units of `unit` metres. Faces of groups are cells after the
+/// solids.
+///
+/// # Errors
+/// A name that the format cannot represent.
 pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String> {
     let groups: Vec<&str> = mesh.group_names().collect();
     let further: Vec<(&str, &[u32])> = mesh.cell_groups().collect();
@@ -125,8 +129,8 @@ pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String>
     Ok(file(&field, (mesh.points(), unit), &cells, &[], &data))
 }
 
-/// A body with what a solution has at its points and in its cells, in SI units; `time` is the instant, the part of the load or the number
-/// of the mode that it belongs to.
+/// Returns a .vtu file of a body with values of a solution at its points and in its cells, in SI units.
+/// `time` is the instant, the load fraction or the mode number of the solution.
 pub fn solution_vtu(mesh: &Mesh, time: f64, at_points: &[Values], in_cells: &[Values]) -> Vec<u8> {
     let regions = (0..mesh.cell_count()).map(|cell| mesh.region(cell).into()).collect();
     let at_points: Vec<Data> = at_points.iter().map(Data::Real).collect();
@@ -135,7 +139,8 @@ pub fn solution_vtu(mesh: &Mesh, time: f64, at_points: &[Values], in_cells: &[Va
     file(&time_array(time), (mesh.points(), 1.0), &Cells::of(mesh), &at_points, &of_cells)
 }
 
-/// A surface of quadrangles, m, with numbers at its points; `bodies` has the number of the body that each quadrangle belongs to.
+/// Returns a .vtu file of a surface of quadrilaterals, with points in m and values at the points. `bodies`
+/// has the body index of each quadrilateral.
 pub fn surface_vtu(
     points: &[Point3],
     quads: &[[u32; 4]],
@@ -150,7 +155,7 @@ pub fn surface_vtu(
     file(&time_array(time), (points, 1.0), &cells, &at_points, &[Data::Whole("body", bodies)])
 }
 
-/// ParaView's name for the time of a file.
+/// XML element with ParaView's name of the time.
 fn time_array(time: f64) -> String {
     format!(
         "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">\n{time:e}\n</DataArray>\n"
@@ -194,7 +199,8 @@ fn little<T: Copy, const N: usize>(values: &[T], bytes: impl Fn(T) -> [u8; N]) -
     values.iter().flat_map(|&value| bytes(value)).collect()
 }
 
-/// Texts as numbers of their characters, a zero behind each. An array of texts, which VTK has too, stops other readers (meshio).
+/// XML array of strings as character codes, each terminated by a zero. VTK's own string arrays stop other
+/// readers (meshio).
 fn text_array<'a>(name: &str, texts: impl Iterator<Item = &'a str>) -> String {
     let codes: Vec<String> = texts
         .flat_map(|text| text.bytes().chain([0]).collect::<Vec<_>>())

@@ -1,4 +1,5 @@
-//! The writers of versions 2.2 and 4.1 in text: regions and facet groups become physical groups by their names.
+//! Writers of versions 2.2 and 4.1 in text. Regions and facet groups become physical groups of the same
+//! names.
 
 mod text2;
 mod text4;
@@ -8,17 +9,20 @@ use std::fmt::Write;
 use super::order::order;
 use crate::{Facet, Mesh};
 
-/// A version of Gmsh's format that is written.
+/// An output version of Gmsh's format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GmshVersion {
-    /// 2.2, which most other programs read.
+    /// Version 2.2, which most other programs read.
     #[default]
     Two,
-    /// 4.1, with entities.
+    /// Version 4.1, with entities.
     FourOne,
 }
 
-/// The file's text, in lengths of `unit` metres; or a name that it can't hold.
+/// Returns the text of the file with lengths in units of `unit` metres.
+///
+/// # Errors
+/// A name that the format cannot represent.
 pub(in crate::files) fn text(mesh: &Mesh, unit: f64, version: GmshVersion) -> Result<String, String> {
     let further = mesh.cell_groups().map(|(name, _)| name);
     let names = mesh.region_names().iter().map(String::as_str).chain(further).chain(mesh.group_names());
@@ -36,7 +40,7 @@ fn region_tag(region: u16) -> usize {
     usize::from(region) + 1
 }
 
-/// Physical tags of each cell, that of its region first.
+/// Physical tags of each cell, with that of its region first.
 fn cell_tags(mesh: &Mesh) -> Vec<Vec<usize>> {
     let mut tags: Vec<Vec<usize>> =
         (0..mesh.cell_count()).map(|cell| vec![region_tag(mesh.region(cell))]).collect();
@@ -47,7 +51,8 @@ fn cell_tags(mesh: &Mesh) -> Vec<Vec<usize>> {
     tags
 }
 
-/// Physical tags of the groups of cells: behind those of the regions, or that of the region of the same name.
+/// Physical tags of the groups of cells. A group has the tag of the region of the same name, if there is one,
+/// or else a tag after those of the regions.
 fn further_tags(mesh: &Mesh) -> impl Iterator<Item = usize> {
     let regions = mesh.region_names();
     mesh.cell_groups().enumerate().map(move |(at, (name, _))| {
@@ -55,14 +60,14 @@ fn further_tags(mesh: &Mesh) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Physical tag of a facet group by its place among the names: behind those of the cells, so that no tag is
-/// of both.
+/// Physical tag of a facet group by its index. The tags follow those of the cells, so that all tags are
+/// distinct.
 fn group_tag(mesh: &Mesh, group: usize) -> usize {
     mesh.region_names().len() + mesh.cell_groups().count() + group + 1
 }
 
 fn physical_names(out: &mut String, mesh: &Mesh) {
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     let regions = mesh.region_names().len();
     let further: Vec<(usize, &str)> = further_tags(mesh)
         .zip(mesh.cell_groups().map(|(name, _)| name))
@@ -81,7 +86,7 @@ fn physical_names(out: &mut String, mesh: &Mesh) {
     out.push_str("$EndPhysicalNames\n");
 }
 
-/// The nodes of a face up to the end of the line.
+/// Writes the nodes of a face and a line break.
 fn face_nodes(out: &mut String, mesh: &Mesh, facet: Facet) {
     for node in mesh.facet_nodes(facet) {
         let _ = write!(out, " {}", node + 1);
@@ -89,7 +94,7 @@ fn face_nodes(out: &mut String, mesh: &Mesh, facet: Facet) {
     out.push('\n');
 }
 
-/// The nodes of a cell in Gmsh's order up to the end of the line.
+/// Writes the nodes of a cell in Gmsh's order and a line break.
 fn cell_nodes(out: &mut String, mesh: &Mesh, cell: usize) {
     let nodes = mesh.cell(cell);
     for &local in order(mesh.kind(cell)) {

@@ -1,5 +1,5 @@
-//! Version 2.2: an element for each facet of each group, then one for each cell and each of its physical
-//! tags.
+//! Writer of version 2.2: an element for each facet of each group, then an element for each physical tag of
+//! each cell.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::Mesh;
 
 pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
     let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     macro_rules! line {
         ($($arg:tt)*) => { let _ = writeln!(out, $($arg)*); };
     }

@@ -1,7 +1,8 @@
-//! Version 4.1: a volume entity for each set of groups that a cell is in, a surface entity for each that a
-//! facet is in.
+//! Writer of version 4.1: a volume entity for each set of groups of a cell, and a surface entity for each set
+//! of groups of a facet.
 //!
-//! An element belongs to one entity, an entity to any number of physical groups: facets of the same groups are one entity.
+//! An element belongs to one entity, and an entity to any number of physical groups. Facets with the same
+//! groups therefore form one entity.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -10,10 +11,10 @@ use super::super::order::type_numbers;
 use super::{cell_nodes, cell_tags, face_nodes, group_tag, physical_names};
 use crate::{Facet, Mesh, Point3};
 
-/// A surface entity: the physical tags, and the facets by their element type.
+/// Surface entities: the physical tags of each, and its facets by element type.
 type Surfaces = BTreeMap<Vec<usize>, BTreeMap<u64, Vec<Facet>>>;
 
-/// Elements of one entity and one type.
+/// Elements of one entity and type.
 struct Block<T> {
     dimension: u8,
     entity: usize,
@@ -31,7 +32,7 @@ pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
     out
 }
 
-/// Volume entities: the physical tags of each, and the entity of each cell, from 1 on.
+/// Volume entities: the physical tags of each, and the entity of each cell, from 1.
 struct Volumes {
     tags: Vec<Vec<usize>>,
     of_cell: Vec<usize>,
@@ -40,8 +41,8 @@ struct Volumes {
 impl Volumes {
     fn new(mesh: &Mesh) -> Volumes {
         let of_cells = cell_tags(mesh);
-        // Those of one region alone come first and in its order: a mesh without further groups has an entity
-        // for each region.
+        // Entities of a single region come first, in the order of the regions. A mesh without further groups
+        // has an entity for each region.
         let mut tags = of_cells.clone();
         tags.sort_unstable_by_key(|tags| (tags.len(), tags.clone()));
         tags.dedup();
@@ -74,7 +75,7 @@ fn entities(out: &mut String, mesh: &Mesh, unit: f64, surfaces: &Surfaces, volum
     for (cell, volume) in volumes.of_cell.iter().enumerate() {
         grow(&mut of_volume[volume - 1], mesh.cell(cell).iter().map(|&node| mesh.points()[node as usize]));
     }
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(out, "$Entities\n0 0 {} {}", surfaces.len(), volumes.tags.len());
     for (at, (tags, by_kind)) in surfaces.iter().enumerate() {
         let nodes = by_kind.values().flatten().flat_map(|&facet| mesh.facet_nodes(facet));
@@ -98,7 +99,7 @@ fn grow(bounds: &mut Option<Bounds>, points: impl Iterator<Item = Point3>) {
     }
 }
 
-/// In as few digits as tell the bits apart; meshio reads none of hundreds of digits.
+/// A number in the fewest digits that preserve its bits; meshio cannot read numbers of hundreds of digits.
 struct Number(f64);
 
 impl fmt::Display for Number {
@@ -109,7 +110,7 @@ impl fmt::Display for Number {
     }
 }
 
-/// Tag, box, physical tags, and no entities around it.
+/// Writes an entity: its tag, bounding box and physical tags, without bounding entities.
 fn entity(out: &mut String, tag: usize, (low, high): Bounds, unit: f64, physical: &[usize]) {
     let _ = write!(out, "{tag}");
     for x in low.iter().chain(high.iter()) {
@@ -122,7 +123,7 @@ fn entity(out: &mut String, tag: usize, (low, high): Bounds, unit: f64, physical
     out.push_str(" 0\n");
 }
 
-/// All in one block, of the first cell's volume, so that they keep their order.
+/// Writes all nodes in one block of the first cell's volume, so that they keep their order.
 fn nodes(out: &mut String, mesh: &Mesh, unit: f64, volume: usize) {
     let count = mesh.points().len();
     let _ = writeln!(out, "$Nodes\n1 {count} 1 {count}\n3 {volume} 0 {count}");
@@ -148,7 +149,7 @@ fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces, volumes: &Volume
             by_kind.iter().map(block)
         })
         .collect();
-    // Cells keep their order: a block ends where the entity or the type changes.
+    // Cells keep their order: a block ends at a change of entity or type.
     let mut cells: Vec<Block<usize>> = Vec::new();
     for cell in 0..mesh.cell_count() {
         let (entity, kind) = (volumes.of_cell[cell], type_numbers(mesh.kind(cell)).0);
@@ -165,7 +166,7 @@ fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces, volumes: &Volume
     out.push_str("$EndElements\n");
 }
 
-/// Blocks of elements that are numbered on from `number`.
+/// Writes blocks of elements, numbered consecutively after `number`.
 fn blocks<T>(out: &mut String, number: &mut usize, blocks: &[Block<T>], nodes: impl Fn(&mut String, &T)) {
     for Block { dimension, entity, kind, elements } in blocks {
         let _ = writeln!(out, "{dimension} {entity} {kind} {}", elements.len());
