@@ -1,5 +1,5 @@
-//! Neighbour search at the size of the paper's mesh (1331 nodes), and the cloud of 83 nodes itself.
-//! Not covered: large clouds, many threads.
+//! Benchmarks neighbour search at the size of the paper's mesh (1331 nodes), and the generation of a cloud of
+//! 83 nodes. Large clouds and many threads are not covered.
 
 use std::hint::black_box;
 

@@ -1,4 +1,5 @@
-//! Clouds: exact counts, reproducible bits, even spacing, surfaces covered; and the closed-form bodies they fill.
+//! Clouds: exact counts, bitwise reproducibility, even spacing, coverage of the surface; and the closed-form
+//! bodies that they fill.
 
 use geometry::generate::{box_mesh, raise_order};
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Shape, SphereShell};
@@ -18,7 +19,7 @@ fn shapes() -> Vec<(&'static str, Box<dyn Shape>)> {
     ]
 }
 
-/// Numbers in [0, 1), by a linear congruence.
+/// Pseudo-random numbers in [0, 1), from a linear congruential generator.
 fn numbers(mut state: u64) -> impl FnMut() -> f64 {
     move || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -26,7 +27,7 @@ fn numbers(mut state: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Nearest distance of every node to another.
+/// Distance from every node to its nearest neighbour.
 fn gaps(points: &[Point3]) -> Vec<f64> {
     let search = Search::new(points).unwrap();
     points.iter().map(|p| search.nearest(p, 2)[1].distance).collect()
@@ -59,7 +60,7 @@ fn clouds_are_even_and_cover_surface_and_inside() {
         assert!(low > 0.5 * mean && high < 1.6 * mean, "{name}: {low} {mean} {high}");
         let on_surface = points.iter().filter(|p| shape.level(p).abs() < 1e-9).count();
         assert!(on_surface > n / 4 && on_surface < 4 * n / 5, "{name}: {on_surface} of {n} on the surface");
-        // No place of the body, its surface included, is far from a node.
+        // No point of the body, its surface included, is far from a node.
         let search = Search::new(&points).unwrap();
         let mut state = 1u64;
         let mut unit = || {
@@ -80,7 +81,7 @@ fn the_seed_and_nothing_else_decides() {
     let first = cloud(&Kidney, 83, 5, &[]).unwrap();
     assert_eq!(first, cloud(&Kidney, 83, 5, &[]).unwrap());
     assert_ne!(first, cloud(&Kidney, 83, 6, &[]).unwrap());
-    // Frozen once: a change here moves every recorded result.
+    // A frozen value: a change here alters every recorded result.
     let sum: f64 = first.points.iter().map(|p| p.x + 2.0 * p.y + 3.0 * p.z).sum();
     assert!((sum - 0.3166643226159171).abs() < 1e-14, "{sum}");
 }
@@ -108,7 +109,7 @@ fn refinement_draws_nodes_closer() {
 fn spacing_of_meshes_and_of_bare_points() {
     let mesh =
         |kind| box_mesh(kind, Point3::origin(), Point3::new(4.0, 4.0, 4.0), [4; 3], [1.0; 3], None).unwrap();
-    // Middle node of a Kuhn mesh: 6 edges along the axes, 6 face diagonals, 2 body diagonals.
+    // The centre node of a Kuhn mesh has 6 edges along the axes, 6 face diagonals and 2 body diagonals.
     let middle = 62;
     let tets = cloud_from_mesh(&mesh(CellKind::Tet4));
     let expected = (6.0 + 6.0 * 2f64.sqrt() + 2.0 * 3f64.sqrt()) / 14.0;
@@ -117,7 +118,7 @@ fn spacing_of_meshes_and_of_bare_points() {
     assert!(hexes.spacing.iter().all(|s| (s - 1.0).abs() < 1e-14));
     let quadratic = cloud_from_mesh(&raise_order(&mesh(CellKind::Hex8)));
     assert!(quadratic.spacing.iter().all(|s| (s - 0.5).abs() < 1e-14));
-    // Bare lattice points: 6 at 1 and 8 of the 12 at sqrt 2.
+    // A cloud without a mesh: of the 14 nearest lattice points, 6 are at 1 and 8 at sqrt 2.
     let bare = Cloud::from_points(hexes.points).unwrap();
     assert!((bare.spacing[middle] - (6.0 + 8.0 * 2f64.sqrt()) / 14.0).abs() < 1e-14);
     let two = Cloud::from_points(vec![Point3::origin(), Point3::new(0.0, 0.0, 2.0)]).unwrap();
@@ -180,7 +181,8 @@ fn shapes_hold_together() {
     }
 }
 
-/// Surface samples are uniform: the share of a part equals its share of the area, found by fine triangulation.
+/// Surface samples are uniform: the fraction of samples on a part equals the part's fraction of the area,
+/// from a fine triangulation.
 #[test]
 fn kidney_surface_samples_are_uniform() {
     let mesh = geometry::generate::kidney_mesh(CellKind::Tet4, 24).unwrap();
@@ -201,7 +203,7 @@ fn kidney_surface_samples_are_uniform() {
     for (i, (share, part)) in share.iter().zip(parts).enumerate() {
         let found = samples.iter().filter(|p| part(p)).count() as f64 / samples.len() as f64;
         let exact = share / area;
-        // Four standard deviations (0.8 %) and the mesh's own 0.3 %.
+        // Four standard deviations (0.8 %), plus the mesh's error of 0.3 %.
         assert!((found - exact).abs() < 0.011, "part {i}: {found} for {exact}");
     }
 }
@@ -214,7 +216,7 @@ fn kidney_map_and_box() {
     assert!((Kidney.volume() * 1e9 / (4.0 / 3.0 * std::f64::consts::PI * 1e4) - 1.0).abs() < 1e-14);
     let p = Point3::new(0.3, -0.5, 0.2);
     assert!((Kidney.preimage(&Kidney.map(&p)) - p).norm() < 1e-15);
-    // The hilum: x = 17.78 mm at y = 0, 22.22 mm (4.44 mm further) at y = 32.5 mm.
+    // The hilum: x = 17.78 mm at y = 0, and 22.22 mm (4.44 mm more) at y = 32.5 mm.
     assert!((Kidney.map(&Point3::new(1.0, 0.0, 0.0)).x - 0.16 / 9.0).abs() < 1e-17);
     assert!(Kidney.inside(&Point3::new(0.0222, 0.0375 * 0.75f64.sqrt(), 0.0)));
     assert!(!Kidney.inside(&Point3::new(0.0222, 0.0, 0.0)));
@@ -246,7 +248,7 @@ fn surface_samples_divide_by_area() {
 fn sizes_spend_the_nodes_where_the_error_is() {
     let body = Cuboid { min: Point3::origin(), max: Point3::new(1.0, 1.0, 1.0) };
     let even = cloud(&body, 400, 1, &[]).unwrap();
-    // An error a hundred times as large in one corner as elsewhere, and one that is the same everywhere.
+    // An error that is a hundred times larger in one corner than elsewhere, and a uniform error.
     let corner: Vec<f64> =
         even.points.iter().map(|p| if p.coords.norm() < 0.4 { 1.0 } else { 0.01 }).collect();
     let refined = |error: &[f64], ratio: f64| {
@@ -259,12 +261,12 @@ fn sizes_spend_the_nodes_where_the_error_is() {
     };
     let before = even.points.iter().filter(|p| p.coords.norm() < 0.4).count();
     assert!(refined(&corner, 3.0) > 2 * before, "{before}, {}", refined(&corner, 3.0));
-    // A ratio of 1 leaves no choice.
+    // A ratio of 1 forces a uniform spacing.
     assert!(refined(&corner, 1.0).abs_diff(before) <= before / 3, "{before}, {}", refined(&corner, 1.0));
     assert!(refined(&vec![0.0; 400], 3.0).abs_diff(before) <= before / 2);
 }
 
-/// The half kidney's samples: on its face by its share of the surface, on its rim by length.
+/// Samples of the half kidney are uniform on its face, by area, and on its rim, by length.
 #[test]
 fn half_kidney_samples_are_uniform() {
     let mut unit = numbers(11);
@@ -278,10 +280,10 @@ fn half_kidney_samples_are_uniform() {
     let expected = area("symmetry") / (area("symmetry") + area("surface"));
     let samples: Vec<Point3> = (0..60_000).map(|_| HalfKidney.surface_sample(&mut unit)).collect();
     let share = samples.iter().filter(|p| p.z == 0.0).count() as f64 / samples.len() as f64;
-    // Standard deviation 0.2 %; the mesh's facets lie 0.3 % within the surface.
+    // The standard deviation is 0.2 %; the mesh's facets lie 0.3 % inside the surface.
     assert!((share - expected).abs() < 0.01, "{share} of {expected}");
 
-    // The rim's length by 10,000 chords, whole and beyond y = 20 mm.
+    // Length of the rim by 10,000 chords, in total and beyond y = 20 mm.
     let at = |i: usize| {
         let angle = i as f64 * std::f64::consts::TAU / 10_000.0;
         Kidney.map(&Point3::new(angle.cos(), angle.sin(), 0.0))

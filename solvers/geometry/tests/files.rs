@@ -1,4 +1,4 @@
-//! Mesh files that other programs wrote, round trips between formats, and broken decks.
+//! Mesh files of other programs, round trips between formats, and malformed decks.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::assert_refused;
 use geometry::generate::{box_mesh, kidney_mesh};
 use geometry::{CellKind, Mesh, Point3, files, quality};
 
-/// The files that `make.py` beside them made, of one kind.
+/// Files of one cell kind written by `make.py` in the same folder.
 fn made(kind: CellKind) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files");
     let mut files: Vec<PathBuf> =
@@ -23,7 +23,8 @@ fn sizes(mesh: &Mesh, names: [&str; 2]) -> [Option<usize>; 2] {
     names.map(|name| mesh.group(name).map(<[_]>::len))
 }
 
-/// Two cubes side by side: two halves of equally many cells, of 2 m^3 in all, held at one end and pressed at the other.
+/// Two adjacent cubes: two halves with equal numbers of cells, 2 m^3 in total, constrained at one end and
+/// loaded at the other.
 #[test]
 fn files_of_other_programs_hold_two_cubes() {
     for kind in CellKind::ALL {
@@ -42,7 +43,7 @@ fn files_of_other_programs_hold_two_cubes() {
             );
             let quality = quality::check(&mesh).unwrap_or_else(|bad| panic!("{name}: {bad}"));
             assert!((quality.volume - 2.0).abs() < 1e-12, "{name}: {}", quality.volume);
-            // Other files that meshio writes have no groups.
+            // The other files written by meshio have no groups.
             if ["meshio.inp", "4.0-binary"].iter().any(|by| name.to_string().contains(by)) {
                 assert_eq!(mesh.region_names(), ["body"], "{name}");
                 continue;
@@ -77,7 +78,7 @@ fn round_trips_keep_every_bit() {
     for kind in CellKind::ALL {
         let mesh = kidney_mesh(kind, 2).unwrap();
         let count = mesh.cell_count();
-        // The first cell is of the second region, whose name is also that of cells without one.
+        // The first cell is in the second region, whose name is also the default for cells without a region.
         let regions = (0..count).map(|c| u16::from(c % 3 != 1)).collect();
         let mesh = mesh.with_regions(regions, vec!["inner medulla".into(), "body".into()]);
         let some = mesh.boundary()[..7].to_vec();
@@ -146,14 +147,15 @@ fn decks_are_read_as_people_write_them() {
         let slanted = mesh.group("slanted face").unwrap()[0];
         let mut nodes: Vec<u32> = mesh.facet_nodes(slanted).collect();
         nodes.sort_unstable();
-        // S3 of nodes 2 3 4 5 has 2-4-5... of the deck: the second, the fourth and the third of the element.
+        // S3 of the deck's element with nodes 2 3 4 5 is the face of its second, fourth and third node.
         assert_eq!(nodes, [2, 3, 4]);
     }
     let sections = DECK.replace("*MATERIAL", "*SOLID SECTION, ELSET=Two, MATERIAL=tissue\n*MATERIAL");
     assert_eq!(deck(&sections).unwrap().region_names(), ["Two"]);
 }
 
-/// A part placed twice, the second turned by a right angle about the z axis and then 3 along x.
+/// A part placed twice: the second instance is shifted by 3 along x and rotated by a right angle about the z
+/// axis.
 #[test]
 fn parts_are_placed_and_turned() {
     let text = "*PART, NAME=corner
@@ -208,7 +210,7 @@ b.1, S2
     assert_refused(text, changes.map(at_line), |text| deck(text).err());
 }
 
-/// A change with what is said of it.
+/// A change with the expected line and words of the message.
 fn at_line<'a>((from, to, line, says): (&'a str, &'a str, u32, &str)) -> (&'a str, &'a str, [String; 2]) {
     (from, to, [format!("deck.inp:{line}: "), says.into()])
 }
@@ -256,7 +258,8 @@ fn broken_decks_name_the_line() {
     assert_refused(DECK, cases.map(at_line), |text| deck(text).err());
 }
 
-/// A node that nothing names is left from an element that the file has lost; points of bodies that are no mesh are named.
+/// Unused nodes are the remains of lost elements and are rejected; nodes of elements that are not cells are
+/// used.
 #[test]
 fn nodes_without_elements_are_refused_or_left_out() {
     let with = |more: &str| {
@@ -279,7 +282,7 @@ fn nodes_without_elements_are_refused_or_left_out() {
     assert_eq!(files::read_without_unused(&file, 1.0).unwrap().points().len(), 5);
 }
 
-/// What blocks hold is what their section says.
+/// The contents of blocks match the counts of their section.
 #[test]
 fn counts_of_blocks_are_those_of_their_section() {
     let file = made(CellKind::Tet4).into_iter().find(|f| f.ends_with("tet4-4.1-text.msh")).unwrap();
@@ -298,7 +301,7 @@ fn counts_of_blocks_are_those_of_their_section() {
     }
 }
 
-/// Editors of some systems mark the encoding in front of a text.
+/// Some editors write a byte order mark at the beginning of a text.
 #[test]
 fn a_mark_of_the_encoding_is_no_part_of_a_file() {
     assert!(deck(&format!("\u{feff}{DECK}")).unwrap() == deck(DECK).unwrap());
@@ -322,13 +325,13 @@ fn files_that_decks_include_are_read_and_named() {
     assert!(bad.contains("more than eight deep"), "{bad}");
 }
 
-/// Every file cut anywhere, and with bytes changed, is read or refused: no panic.
+/// Every file, truncated anywhere or with changed bytes, is read or rejected without a panic.
 #[test]
 fn cut_and_spoiled_files_are_refused() {
     for kind in [CellKind::Tet4, CellKind::Hex8] {
         for file in made(kind) {
             let bytes = std::fs::read(&file).unwrap();
-            // Behind the elements nothing is needed; a deck may end behind any of them.
+            // Content after the elements is optional; a deck may end after any element.
             let end =
                 |mark: &[u8]| bytes.windows(mark.len()).position(|w| w == mark).map(|at| at + mark.len());
             let whole = end(b"$EndElements").or(end(b"</Cells>")).unwrap_or(0);
@@ -347,7 +350,7 @@ fn cut_and_spoiled_files_are_refused() {
     }
 }
 
-/// A claim beyond the file's size takes no memory: the nodes of a binary file, a set of a block.
+/// A count beyond the size of the file allocates no memory: nodes of a binary file, or a set of a block.
 #[test]
 fn claims_beyond_the_size_are_refused() {
     let box_of =
@@ -363,7 +366,7 @@ fn claims_beyond_the_size_are_refused() {
     assert!(bad.contains(&format!("byte {}: too many blocks of nodes: {}", nodes + 8, u64::MAX)), "{bad}");
 }
 
-/// Appended grids: what is said of an array beside what it holds.
+/// Grids with appended data whose array descriptions contradict the data.
 #[test]
 fn broken_grids_name_the_place() {
     let text = std::fs::read_to_string(

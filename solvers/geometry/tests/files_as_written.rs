@@ -1,4 +1,4 @@
-//! Small ways in which programs write files that are read all the same.
+//! Small deviations from a format that programs write and the readers accept.
 
 use std::path::Path;
 
@@ -28,12 +28,12 @@ fn zeros_behind_a_text_are_no_part_of_it() {
         let text = format!("{}{end}", tet_msh());
         assert_eq!(mesh(text, "a.msh").cell_count(), 1, "{end:?}");
     }
-    // In the middle they are other bytes.
+    // Zero bytes in the middle of a text are rejected.
     let text = CORNER.replace("f 1 3 2", "f 1\0 3 2");
     assert!(read_surface_bytes(text.as_bytes(), Path::new("a.obj"), 1.0).is_err());
 }
 
-/// Facets of a box as STL, with words of the end written as some programs do.
+/// Facets of a box as STL, with the end keywords of some programs.
 fn stl(end_solid: &str, end_facet: &str, end_loop: &str) -> String {
     let corners = [[0, 0, 0], [20, 0, 0], [0, 10, 0], [0, 0, 10]];
     let facet = |t: [usize; 3]| {
@@ -84,7 +84,7 @@ fn sections_may_stand_before_the_first_of_a_mesh() {
     }
     assert!(refused("$Comments\nno end\n", "a.msh").contains("expected $MeshFormat, found '$Comments'"));
     assert!(refused(comments, "a.msh").contains("expected $MeshFormat"));
-    // Places count all lines.
+    // Line numbers count all lines.
     let wrong = format!("{comments}{}", tet_msh().replace("1 0 0 0", "1 0 x 0"));
     assert!(refused(&wrong, "a.msh").contains("a.msh:9: "), "{}", refused(&wrong, "a.msh"));
 }
@@ -107,7 +107,7 @@ fn a_text_may_be_in_latin_1() {
     assert_eq!(read_surface_bytes(&ply, Path::new("a.ply"), 1.0).unwrap().triangles().len(), 4);
 }
 
-/// Such elements have three nodes of their own behind the corners, which no other has.
+/// Such elements list up to three nodes of their own after the corners, which no other element uses.
 #[test]
 fn elements_with_incompatible_modes_may_list_nodes_inside() {
     let inner = "9,.5,.5,0\n10,.5,.5,1\n11,.5,0,.5\n";
@@ -123,7 +123,7 @@ fn elements_with_incompatible_modes_may_list_nodes_inside() {
     assert!(refused(&deck("C3D8I", ""), "a.inp").contains("no element names node 9 (and 2 others)"));
 }
 
-/// A quarter of a tube of radii 1 and 2: straight edges between the four corners of each end.
+/// A quarter of a tube with the radii 1 and 2, with straight edges between the four corners of each end.
 #[test]
 fn nodes_may_be_in_cylindrical_coordinates() {
     let deck = |system: &str| {

@@ -1,4 +1,4 @@
-//! Decks of several parts: names that they share, and surfaces by the free faces of elements.
+//! Decks of several parts: shared names, and surfaces of the free faces of elements.
 
 mod common;
 
@@ -12,14 +12,14 @@ fn deck(text: &str) -> Result<Mesh, String> {
     read.map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
 }
 
-/// A tetrahedron with a set of nodes, one of elements and a surface.
+/// A tetrahedron with a node set, an element set and a surface.
 fn part(name: &str, sets: &str) -> String {
     format!(
         "*PART, NAME={name}\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n{sets}*END PART\n"
     )
 }
 
-/// As Abaqus/CAE names what has no name.
+/// Default names of Abaqus/CAE.
 const SETS: &str = "*NSET, NSET=Set-1\n1, 2, 3\n*ELSET, ELSET=Set-1\n1\n*ELSET, ELSET=Only\n1\n*SURFACE, NAME=Surf-1\n1, S2\n\
     *SOLID SECTION, ELSET=Set-1, MATERIAL=m\n1.,\n";
 
@@ -40,7 +40,7 @@ fn names_that_two_parts_share_stay_apart() {
     let mesh = deck(&assembly(&parts, &[("P-1", "P"), ("Q-1", "Q")], "")).unwrap();
     assert_eq!(mesh.region_names(), ["P-1.Set-1", "Q-1.SET-1"]);
     assert_eq!([0, 1].map(|cell| mesh.region(cell)), [0, 1]);
-    // What one part alone names keeps its name.
+    // A name that occurs in only one part is kept.
     assert_eq!(groups(&mesh), [("Other", 1), ("P-1.Set-1", 1), ("Q-1.SET-1", 1), ("Surf-1", 1)]);
     assert_eq!(mesh.group("P-1.Set-1").unwrap()[0].cell, 0);
     assert_eq!(mesh.group("Q-1.SET-1").unwrap()[0].cell, 1);
@@ -55,7 +55,7 @@ fn instances_of_one_part_have_their_own_names() {
     let once = deck(&assembly(&part("P", SETS), &twice[..1], "")).unwrap();
     assert_eq!(once.region_names(), ["Set-1"]);
     assert_eq!(groups(&once), [("Set-1", 1), ("Surf-1", 1)]);
-    // Elements in no set are not set apart.
+    // Elements outside of sets form no regions.
     let plain = deck(&assembly(&part("P", ""), &twice, "")).unwrap();
     assert_eq!(plain.region_names(), ["body"]);
     let same = assembly(&part("P", SETS), &[("a", "P"), ("A", "P")], "");
@@ -63,7 +63,7 @@ fn instances_of_one_part_have_their_own_names() {
     assert!(bad.starts_with("deck.inp:24: instance 'A' comes a second time"), "{bad}");
 }
 
-/// A set of the assembly is none of its parts, also where it has the name of one.
+/// A set of the assembly is separate from the sets of its parts, even with the same name.
 #[test]
 fn sets_of_the_assembly_keep_their_names() {
     let sets = "*NSET, NSET=Set-1, INSTANCE=P-1\n1, 3, 4\n*NSET, NSET=both\nP-1.Set-1, P-1.4\n";
@@ -74,7 +74,7 @@ fn sets_of_the_assembly_keep_their_names() {
     assert_eq!((nodes("Set-1"), nodes("P-1.Set-1")), (vec![0, 2, 3], vec![0, 1, 2]));
 }
 
-/// Abaqus/CAE writes the mesh of an independent instance within it, and its part without any.
+/// Abaqus/CAE writes the mesh of an independent instance inside the instance, and its part without a mesh.
 #[test]
 fn the_mesh_of_an_instance_is_its_own() {
     let body = part("", SETS);
@@ -93,7 +93,7 @@ fn the_mesh_of_an_instance_is_its_own() {
     let two = deck(&around(&(independent("a", "") + &independent("b", "2., 0., 0.\n")))).unwrap();
     assert_eq!(two.region_names(), ["a.Set-1", "b.Set-1"]);
     assert_eq!((two.cell_count(), two.points()[7].x), (2, 2.0));
-    // Sets that an instance adds to the mesh of its part.
+    // An instance may add sets to the mesh of its part.
     let twice = [("a", "P"), ("b", "P")];
     let added = assembly(&part("P", SETS), &twice, "").replacen(
         "*END INSTANCE",
@@ -158,7 +158,7 @@ fn a_surface_of_elements_alone_has_their_free_faces() {
     assert_eq!(groups(&flat), wanted);
     let nodes = |mesh: &Mesh, name: &str| mesh.facet_group_nodes(mesh.group(name).unwrap());
     assert_eq!(nodes(&flat, "open"), (0..12).collect::<Vec<u32>>());
-    // Faces of the part, and of an assembly, of which instances do not share nodes.
+    // Faces of the part and of an assembly; the instances share no nodes.
     let inner = format!("*PART, NAME=P\n{ROW}{surfaces}*END PART\n");
     let outer = "*SURFACE, NAME=second\nb.left\n";
     let mesh = deck(&assembly(&inner, &[("a", "P"), ("b", "P")], outer)).unwrap();

@@ -1,5 +1,5 @@
-//! Sixty valid mesh files and sixty malformed ones at the least, counted: all of the first read as what they are, all of the second
-//! refused with their place.
+//! Census of at least sixty valid and sixty malformed mesh files. All valid files are read with the right
+//! content, and all malformed files are rejected with the place of the error.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use geometry::files::{self, Format, GmshVersion};
 use geometry::{CellKind, Mesh, quality};
 
-/// Least number of files of either sort.
+/// Smallest number of files of either class.
 const LEAST: usize = 60;
 
 /// Nodes and cells of the two cubes that `files/make.py` writes in every format.
@@ -18,7 +18,7 @@ const MADE: [(CellKind, usize, usize); 4] = [
     (CellKind::Hex20, 141, 16),
 ];
 
-/// The files of one kind of cells.
+/// Files of one cell kind.
 fn made(kind: CellKind) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
@@ -67,15 +67,15 @@ fn valid_files_are_read_as_what_they_are() {
     assert!(count >= LEAST, "{count} valid files");
 }
 
-/// What is done to the lines of a file, or that it does not fit there, and what is said then.
+/// An edit of the lines of a file (`None` if it does not apply) and the expected message.
 type Edit = (fn(&mut Vec<String>) -> Option<()>, &'static str);
 
-/// The first line that begins so.
+/// Index of the first line that begins with `start`.
 fn at(lines: &[String], start: &str) -> Option<usize> {
     lines.iter().position(|line| line.starts_with(start))
 }
 
-/// Another word in place of one.
+/// Replaces a word of a line.
 fn word(line: &mut String, nth: usize, to: &str) -> Option<()> {
     let mut words: Vec<String> = line.split_whitespace().map(String::from).collect();
     *words.get_mut(nth)? = to.into();
@@ -83,20 +83,20 @@ fn word(line: &mut String, nth: usize, to: &str) -> Option<()> {
     Some(())
 }
 
-/// The line before another in which a word is changed; the last word where none is given.
+/// Replaces a word in the line before the mark; the last word if `nth` is `None`.
 fn before(lines: &mut [String], mark: &str, nth: Option<usize>, to: &str) -> Option<()> {
     let line = lines.get_mut(at(lines, mark)?.checked_sub(1)?)?;
     let last = line.split_whitespace().count().checked_sub(1)?;
     word(line, nth.unwrap_or(last), to)
 }
 
-/// A number one higher.
+/// Increments a number of a line by one.
 fn raised(line: &mut String, nth: usize) -> Option<()> {
     let number: usize = line.split_whitespace().nth(nth)?.parse().ok()?;
     word(line, nth, &(number + 1).to_string())
 }
 
-/// Version 2.2 in text.
+/// Edits of version 2.2 in text.
 const TEXT_2: [Edit; 10] = [
     (|l| before(l, "$EndNodes", Some(1), "nan"), "has a coordinate that is not finite"),
     (|l| before(l, "$EndNodes", Some(3), "-1e999"), "has a coordinate that is not finite"),
@@ -118,7 +118,7 @@ const TEXT_2: [Edit; 10] = [
     (|l| at(l, "$EndElements").map(|end| l.truncate(end)), "the file ends where $EndElements should come"),
 ];
 
-/// Versions 4.0 and 4.1 in text.
+/// Edits of versions 4.0 and 4.1 in text.
 const TEXT_4: [Edit; 8] = [
     (|l| word(&mut l[1], 0, "4.2"), "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
     (|l| before(l, "$EndElements", None, "999999"), "names node 999999, which the file does not have"),
@@ -141,7 +141,7 @@ const TEXT_4: [Edit; 8] = [
     ),
     (
         |l| {
-            // The first block has one node.
+            // The first block contains one node.
             let (first, older) = (at(l, "$Nodes")? + 3, !l[1].starts_with("4.1"));
             if older { word(&mut l[first], 1, "nan") } else { word(&mut l[first + 1], 0, "nan") }
         },
@@ -208,7 +208,7 @@ const XML: [Edit; 3] = [
     (|l| at_end(l).map(|end| l.truncate(end)), ""),
 ];
 
-/// A line in the middle.
+/// Index of the middle line.
 fn at_end(lines: &[String]) -> Option<usize> {
     (lines.len() > 10).then_some(lines.len() / 2)
 }
@@ -224,7 +224,7 @@ fn edits(name: &str) -> &'static [Edit] {
     }
 }
 
-/// Whether a message has the line, the byte, the cell or the node.
+/// Whether a message has a line, byte, cell or node number.
 fn has_place(message: &str) -> bool {
     let digit = |rest: &str| rest.starts_with(|c: char| c.is_ascii_digit());
     let marks = ["msh:", "inp:", "vtk:", "vtu:", " byte ", " cell ", " node "];
@@ -256,7 +256,7 @@ fn malformed_files_are_refused_with_their_place() {
             }
         }
         if edits(&name(&file)).is_empty() {
-            // Binary numbers: the file ends in the middle.
+            // Binary numbers: the file is truncated in the middle.
             refused(&file, bytes[..bytes.len() / 2].to_vec(), "");
         }
     }

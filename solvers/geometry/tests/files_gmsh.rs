@@ -1,4 +1,4 @@
-//! Mesh files: round trips, the kidney, Gmsh's node order, and every way a file can be broken.
+//! Gmsh files: round trips, the kidney, Gmsh's node order, and malformed files of every kind.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ fn the_kidney_reads_as_described() {
     let quality = quality::check(&mesh).unwrap();
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e-5;
     let loss = 1.0 - quality.volume / exact;
-    // Flat triangles inscribed in a curved surface lose a little, never gain.
+    // Flat triangles inscribed in a curved surface lose a little volume and never gain any.
     assert!((0.001..0.04).contains(&loss), "volume {} m^3, loss {loss}", quality.volume);
 }
 
@@ -96,7 +96,7 @@ fn quadratic_nodes_are_put_where_gmsh_means_them() {
     }
 }
 
-/// One tetrahedron with everything a file may hold; the last line has no line break.
+/// One tetrahedron with every section that a file may contain; the last line has no line break.
 const GOOD: &str = "$MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -143,7 +143,7 @@ fn a_small_file_with_all_its_parts() {
 
 #[test]
 fn broken_files_name_the_line() {
-    // (what to replace, by what, line of the complaint, words in the message)
+    // (text to replace, replacement, line of the error, words of the message)
     let cases = [
         ("$MeshFormat", "$Mesh", 1, "expected $MeshFormat"),
         ("2.2 0 8", "3.0 0 8", 2, "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
@@ -233,7 +233,7 @@ fn files_units_and_names_that_cannot_be() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-    /// Whatever is done to the text, the reader answers; it never panics.
+    /// The reader returns a result for any text and never panics.
     #[test]
     fn mangled_text_never_panics(at in 0usize..460, cut in 0usize..40, insert in "[0-9a-z$\" \n.e+-]{0,12}") {
         let at = at.min(GOOD.len());
@@ -245,8 +245,8 @@ proptest! {
     }
 }
 
-/// The meshes of the stress study: between two layers of cells one of flat tetrahedra, of this height over the edge of a cell,
-/// with edges as long as those of all others.
+/// The meshes of the stress study: between two layers of cells lies a layer of flat tetrahedra with this
+/// ratio of height to the edge of a cell, and with edges as long as all others.
 #[test]
 fn slivers_are_as_flat_as_their_files_say() {
     for flatness in [0.1, 0.01, 0.0001, 0.000001, 0.00000001] {
@@ -259,7 +259,7 @@ fn slivers_are_as_flat_as_their_files_say() {
             let edges = (0..4).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| (x[i] - x[j]).norm());
             let (least, most) = edges.fold((f64::MAX, 0.0f64), |(l, m), e| (l.min(e), m.max(e)));
             assert!(least > 9.0 && most < 16.0, "edges of {least} to {most}");
-            // Opposite edges of 10 sqrt(2) mm cross at right angles, this far apart.
+            // Opposite edges of 10 sqrt(2) mm cross at right angles at this distance.
             let height = 6.0 * volume / 200.0;
             if (height / (10.0 * flatness) - 1.0).abs() < 1e-6 {
                 slivers += 1;

@@ -1,4 +1,5 @@
-//! Cells in several groups, what a mesh leaves out of its file, and cells whose nodes stand in another order.
+//! Cells in several groups, parts of a file that are not in its mesh, and cells whose nodes are in another
+//! order.
 
 mod common;
 
@@ -12,7 +13,7 @@ fn read(text: &str, name: &str) -> Result<Mesh, String> {
     read_bytes(text.as_bytes(), Path::new(name), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
 }
 
-/// A folder with a file, and what its mesh leaves out.
+/// Parts of a file with this text that are not in its mesh.
 fn left_out(text: &str, name: &str) -> Vec<files::LeftOut> {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join(name);
@@ -51,7 +52,7 @@ fn a_cell_may_be_in_several_groups() {
         let groups: Vec<(&str, &[u32])> = mesh.cell_groups().collect();
         assert_eq!(groups, [("kidney", &[0, 1][..])], "{name}");
         assert!(mesh.is_in(0, "cortex") && !mesh.is_in(1, "cortex") && mesh.is_in(1, "kidney"));
-        // Written and read again, in every format and in other cells.
+        // Written and read again, in every format and with other cell kinds.
         for (file, format) in [
             ("2.msh", Format::Gmsh(GmshVersion::Two)),
             ("4.msh", Format::Gmsh(GmshVersion::FourOne)),
@@ -64,13 +65,13 @@ fn a_cell_may_be_in_several_groups() {
         }
         assert!(raise_order(&mesh).is_in(1, "kidney") && to_tets(&raise_order(&mesh)).is_in(1, "kidney"));
     }
-    // The same cell twice in one group is a fault.
+    // A cell that occurs twice in one group is an error.
     let bad = read(&twice("2"), "a.msh").unwrap_err();
     assert!(bad.contains("element 4 has the same nodes as element 3"), "{bad}");
 }
 
-/// A deck with a model of its own: all that a mesh does not have is named with its line, and what joins parts
-/// first.
+/// A deck with its own model: every part that is not in the mesh is reported with its line, beginning with
+/// those that join parts.
 #[test]
 fn what_a_deck_has_beside_its_mesh_is_named() {
     let deck = format!(
@@ -108,7 +109,7 @@ fn arrays_that_are_not_taken_are_named() {
     let found = left_out(&with("tissue", "1 2"), "a.vtk");
     assert_eq!(files::summary(&found), ["array 'tissue' of cells, 1 to 2 (line 14)"]);
     assert_eq!(found[0].kind, Kind::Regions);
-    // One number for all cells is no region, nor are those of points.
+    // A constant number on all cells is not a region, and neither are numbers of points.
     assert_eq!(left_out(&with("tissue", "1 1"), "a.vtk")[0].kind, Kind::Values);
     let points = format!("{GRID}POINT_DATA 5\nVECTORS u double\n{}\n", "0 0 0 ".repeat(5));
     assert_eq!(files::summary(&left_out(&points, "a.vtk")), ["array 'u' of points (line 14)"]);

@@ -1,4 +1,4 @@
-//! Small files that ask for much: each is refused at once, by the number it asks for.
+//! Small files with excessive demands: each is rejected at once, with the number requested.
 
 use std::path::Path;
 
@@ -42,7 +42,7 @@ fn instances_do_not_multiply_a_small_part() {
     assert!(placed(9000).contains("too many nodes and elements placed by *INSTANCE"), "{}", placed(9000));
 }
 
-/// Ranges of ten million numbers of which two are there, one after another.
+/// Repeated ranges of ten million numbers, of which only two exist.
 #[test]
 fn ranges_take_no_time_without_end() {
     let far = TET.replace("4,0,0,1\n", "9999999,0,0,1\n").replace("1,1,2,3,4", "1,1,2,3,9999999");

@@ -1,4 +1,4 @@
-//! Gmsh 4.1 as it is written: what is read back, and the blocks that other programs read.
+//! Gmsh 4.1 as written: files are read back, and have the blocks that other programs expect.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use geometry::{CellKind, Mesh, Point3};
 
 const FOUR: Format = Format::Gmsh(GmshVersion::FourOne);
 
-/// Regions that alternate, and facets in one group, in two and in none.
+/// Alternating regions, and facets in one group, in two groups and in none.
 fn named(mesh: Mesh) -> Mesh {
     let regions = (0..mesh.cell_count()).map(|cell| u16::from(cell % 3 != 1)).collect();
     let boundary = mesh.boundary();
@@ -41,7 +41,7 @@ fn round_trips_keep_every_bit_in_every_format() {
     }
 }
 
-/// Tetrahedra beside a hexahedron: blocks are of one type each.
+/// Tetrahedra next to a hexahedron: each block has elements of one type.
 #[test]
 fn mixed_meshes_come_back() {
     let cube = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
@@ -60,11 +60,11 @@ fn mixed_meshes_come_back() {
     let (back, text) = written(&mesh, "mixed.msh");
     assert_eq!(back, mesh);
     let text = String::from_utf8(text).unwrap();
-    // Other programs write out all digits.
+    // Other programs write all digits.
     let long = text.replace("7e-300", &format!("{:.300}", 7e-300));
     assert!(long.len() > text.len() + 290);
     assert_eq!(files::read_bytes(long.as_bytes(), Path::new("long.msh"), 1.0).unwrap().0, mesh);
-    // Two sets of groups by two types of faces, three runs of cells.
+    // Two sets of groups times two types of faces, and three runs of cells.
     let entities = text.split("$Entities\n").nth(1).unwrap();
     assert!(entities.starts_with("0 0 2 2\n"), "{entities}");
     let elements: Vec<&str> = text.split("$Elements\n").nth(1).unwrap().lines().collect();
@@ -74,7 +74,7 @@ fn mixed_meshes_come_back() {
     assert!(heads.contains(&&"3 1 5 1") && heads.contains(&&"3 2 4 1"), "{heads:?}");
 }
 
-/// Another program sees what an entity is of: the box of its nodes, in the file's unit, and its physical tags.
+/// Entities have the bounding box of their nodes, in the file's unit, and their physical tags.
 #[test]
 fn entities_have_their_boxes_and_tags() {
     let mesh = box_mesh(

@@ -1,4 +1,4 @@
-//! Cells that lie on one another are refused, with both numbers; neighbours of every kind are not.
+//! Overlapping cells are rejected with both element numbers; adjacent cells of every kind are accepted.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn deck(nodes: &str, elements: &str) -> Result<Mesh, String> {
         .map_err(|bad| bad.to_string())
 }
 
-/// A face in the plane z = 0, two corners above it and two below.
+/// A face in the plane z = 0, with two corners above it and two below.
 const NODES: &str =
     "1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 0.3, 0.3, 2\n6, 0, 0, -1\n7, 0.2, 0.2, -3\n";
 
@@ -28,7 +28,8 @@ fn tetrahedra_on_one_side_of_their_face_are_refused() {
         let bad = deck(&nodes(&[1, 2, 3, 4, 5]), &format!("21, 1, 2, 3, 4\n22, {turned}\n")).unwrap_err();
         assert!(bad.starts_with("a.inp:9: element 22 ") && bad.ends_with(refused), "{turned}: {bad}");
     }
-    // Of three or four at a face two are on one side, whatever their order; the first of them is named.
+    // Of three or four cells at a face, two are on the same side in any order; the message has the first such
+    // pair.
     let three =
         deck(&nodes(&[1, 2, 3, 4, 5, 6]), "21, 1, 2, 3, 4\n22, 1, 3, 2, 6\n23, 1, 2, 3, 5\n").unwrap_err();
     assert!(three.contains("a.inp:11: element 23 shares a face with element 21 (line 9)"), "{three}");
@@ -36,7 +37,7 @@ fn tetrahedra_on_one_side_of_their_face_are_refused() {
     assert!(four.contains("a.inp:12: element 32 shares a face with element 30 (line 10)"), "{four}");
 }
 
-/// A cell that is turned inside out has its own message, which counts all of them.
+/// An inverted cell has its own message, which counts all such cells.
 #[test]
 fn inverted_neighbours_do_not_overlap() {
     let mesh = deck(
@@ -51,7 +52,7 @@ fn inverted_neighbours_do_not_overlap() {
     .unwrap();
     let bad = quality::check(&mesh).unwrap_err();
     assert_eq!((bad.element, bad.inverted), (1, 1));
-    // Nor do flat ones: their corner is on no side.
+    // Flat cells do not overlap either: their corner is on neither side.
     let flat = deck(
         "1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, .3, .3, 0\n",
         "1, 1, 2, 3, 4\n2, 1, 2, 3, 5\n",
@@ -78,7 +79,7 @@ fn hexahedra_on_one_side_of_their_face_are_refused() {
     assert!(bad.contains("a.inp:16: element 8 shares a face with element 7 (line 15)"), "{bad}");
 }
 
-/// No mesh that is made here, of any kind, linear or curved, has cells that seem to overlap, in whatever order its cells are.
+/// Generated meshes, linear or curved, of every kind and in any order of cells, have no apparent overlaps.
 #[test]
 fn sound_meshes_are_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,7 +105,7 @@ fn sound_meshes_are_read() {
     }
 }
 
-/// Twins stay what they were: the same corners in any order, whichever way they turn.
+/// Twins have the same corners, in any order and orientation.
 #[test]
 fn cells_of_the_same_nodes_are_refused_in_any_order() {
     let some: String = NODES.lines().take(4).map(|line| format!("{line}\n")).collect();

@@ -1,5 +1,5 @@
-//! What other readers take in silence: blocks of another dimension or range than they say, ranges of sets beyond the mesh, keywords
-//! with a typing error.
+//! Errors that other readers accept silently: blocks whose dimension or range contradicts their head, ranges
+//! of sets beyond the mesh, and misspelt keywords.
 
 mod common;
 
@@ -14,7 +14,7 @@ fn read(name: &str, text: &str) -> Result<Mesh, String> {
         .map_err(|bad| bad.to_string())
 }
 
-/// Two tetrahedra, a triangle, a line and a point, numbered with gaps.
+/// Two tetrahedra, a triangle, a line and a point, with gaps in their numbers.
 const BLOCKS: &str = "$MeshFormat
 4.1 0 8
 $EndMeshFormat
@@ -58,7 +58,7 @@ $Elements
 $EndElements
 ";
 
-/// The same in version 4.0, whose heads have the tag first and no least and largest number.
+/// The same mesh in version 4.0, whose heads have the tag first and no smallest and largest number.
 fn older() -> String {
     BLOCKS
         .replace("4.1 0 8", "4.0 0 8")
@@ -129,7 +129,7 @@ fn blocks_of_gmsh_are_what_they_say() {
     assert_refused(&older(), of_older.map(|(from, to, says)| (from, to, [says])), refusal);
 }
 
-/// Nodes and elements in steps of ten, with a gap.
+/// Nodes and elements numbered in steps of ten, with a gap.
 const DECK: &str = "*NODE
 10, 0, 0, 0
 20, 1, 0, 0
@@ -154,7 +154,7 @@ fn ranges_end_at_nodes_and_elements_that_are_there() {
     let mesh = read("a.inp", DECK).unwrap();
     assert_eq!(mesh.region_names(), ["all"]);
     assert_eq!(mesh.facet_group_nodes(mesh.group("face").unwrap()), [0, 1, 2]);
-    // Node 50 and element 200 are not there: the sets are those that are.
+    // Node 50 and element 200 do not exist: the sets contain the existing ones.
     assert_eq!(mesh.facet_group_nodes(mesh.group("most").unwrap()), [1, 2, 3, 4]);
     let changes = [
         ("10, 30, 10", "10, 70, 10", "a.inp:11: node set 'face' names node 70, which the file does not have"),
@@ -173,7 +173,7 @@ fn ranges_end_at_nodes_and_elements_that_are_there() {
     assert_refused(DECK, changes.map(|(from, to, says)| (from, to, [says.into()])), refusal);
 }
 
-/// The same of sets in an assembly, whose numbers are those of an instance.
+/// Ranges in sets of an assembly, whose numbers are those of an instance.
 #[test]
 fn ranges_of_an_assembly_end_at_what_is_there() {
     let (mesh, sets) = DECK.split_at(DECK.find("*NSET").unwrap());
@@ -213,7 +213,7 @@ fn keywords_that_nobody_has_are_refused_with_the_nearest() {
     ];
     let refusal = |text: &str| read("a.inp", text).err();
     assert_refused(DECK, changes.map(|(from, to, says)| (from, to, [says.into()])), refusal);
-    // Those that are no mesh are read over; blanks in a keyword do not count, as in CalculiX.
+    // Keywords that do not belong to the mesh are skipped; blanks in a keyword are ignored, as in CalculiX.
     let others = "*Pre-tension Section, SURFACE=none, NODE=10\n*USERMATERIAL, CONSTANTS=1\n1.\n*VALUES AT INFINITY\n1.\n";
     let more = DECK.replace("*STEP", &format!("{others}*SOLIDSECTION, ELSET=all, MATERIAL=m\n*STEP"));
     assert_eq!(read("a.inp", &more).unwrap(), read("a.inp", DECK).unwrap());

@@ -1,4 +1,4 @@
-//! VTK's older format and Gmsh's first one: as people write them, and broken.
+//! Legacy VTK files and Gmsh files of version 1, as written by programs and malformed.
 
 mod common;
 
@@ -15,7 +15,7 @@ fn refusal(text: &str) -> Option<String> {
     read(text.as_bytes()).err()
 }
 
-/// Two tetrahedra and a face, with arrays of every kind around the regions.
+/// Two tetrahedra and a face, with arrays of every kind in addition to the regions.
 const GRID: &str = "# vtk DataFile Version 2.0
 two cells
 ASCII
@@ -61,7 +61,7 @@ fn grids_are_read_with_their_regions() {
     assert!(read(spaced.as_bytes()).unwrap() == mesh);
 }
 
-/// A text grid of XML: two tetrahedra with these arrays of cells.
+/// An XML grid in text: two tetrahedra with these cell arrays.
 fn vtu(arrays: &str) -> String {
     format!(
         "<VTKFile type=\"UnstructuredGrid\">
@@ -96,7 +96,7 @@ fn regions_are_numbered_by_whole_numbers_of_any_type() {
     }
     let bad = refusal(&vtu(&array("surface", "Float64", "1 0.5"))).unwrap();
     assert!(bad.starts_with("m:8: cell 1 has 0.5 in the array 'surface'"), "{bad}");
-    // Arrays of other names are not looked at.
+    // Arrays with other names are ignored.
     let mesh = read(vtu(&array("stiffness", "Float64", "1.5 2.5")).as_bytes()).unwrap();
     assert_eq!(mesh.region_names(), ["body"]);
     let older = GRID.replace("material 1 3 int\n7 8 9", "material 1 3 double\n7 8.5 9");
@@ -106,7 +106,7 @@ fn regions_are_numbered_by_whole_numbers_of_any_type() {
     assert_eq!(whole.region_names(), ["region-7", "region-8"]);
 }
 
-/// Arrays of a surface as raw bytes at the end of the file; -1 is no surface, of any signed type.
+/// Arrays of surface numbers as appended raw bytes; -1 of any signed type means no surface.
 #[test]
 fn raw_whole_numbers_keep_their_sign() {
     for (kind, size) in [("Int8", 1), ("Int16", 2), ("Int32", 4), ("Int64", 8)] {
@@ -141,7 +141,7 @@ fn two_arrays_of_materials_have_to_agree() {
     assert!(bad.starts_with("m:") && bad.contains(says), "{bad}");
 }
 
-/// The same in binary, highest byte first.
+/// A grid in big-endian binary.
 fn binary() -> Vec<u8> {
     let mut bytes =
         b"# vtk DataFile Version 3.0\ntwo\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n".to_vec();
@@ -215,7 +215,7 @@ fn broken_grids_are_refused_with_their_place() {
     }
 }
 
-/// As the mesh of a liver that comes with another simulator: no names, a triangle on the outside.
+/// In the style of a liver mesh that comes with another simulator: no names, and a triangle on the boundary.
 const FIRST: &str = "$NOD
 5
 1 0 0 0

@@ -1,4 +1,5 @@
-//! Every generator in every cell kind: closed volumes, outward faces, named groups, curved nodes in place.
+//! Every generator with every cell kind: closed volumes, outward faces, named groups, curved nodes on the
+//! surface.
 
 use std::f64::consts::PI;
 
@@ -14,7 +15,7 @@ fn unit_box(kind: CellKind, cells: [usize; 3], jitter: Option<Jitter>) -> Mesh {
     box_mesh(kind, min, max, cells, [1.0; 3], jitter).unwrap()
 }
 
-/// Every generator at a small size; the last number is the exact volume.
+/// Small meshes of every generator, with the exact volume last.
 fn bodies(kind: CellKind) -> Vec<(&'static str, Mesh, f64)> {
     let shell = |extent| sphere_shell_mesh(kind, 0.5, 1.0, [3, 2], 2.0, extent).unwrap();
     let shell_volume = 4.0 / 3.0 * PI * (1.0 - 0.125);
@@ -32,7 +33,7 @@ fn bodies(kind: CellKind) -> Vec<(&'static str, Mesh, f64)> {
     ]
 }
 
-/// Area vector of a facet's corner polygon.
+/// Area vector of the corner polygon of a facet.
 fn area_vector(mesh: &Mesh, facet: Facet) -> Vector3 {
     let kind = mesh.kind(facet.cell as usize);
     let corners: Vec<Point3> = mesh
@@ -49,7 +50,8 @@ fn volumes_are_right_and_converge_with_the_order_of_the_cells() {
         for (name, mesh, volume) in bodies(kind) {
             let quality = quality::check(&mesh).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
             let error = (quality.volume / volume - 1.0).abs();
-            // Facets inscribed in a sphere at this size lose up to a quarter of the volume, parabolas 2 %.
+            // At this size, facets inscribed in a sphere lose up to a quarter of the volume, and parabolas 2
+            // %.
             let most = if name == "box" {
                 1e-13
             } else if kind.order() == 1 {
@@ -59,7 +61,7 @@ fn volumes_are_right_and_converge_with_the_order_of_the_cells() {
             };
             assert!(error < most, "{name} {}: volume error {error}", kind.name());
             assert_eq!(mesh.uniform_kind(), Some(kind));
-            // Cells drawn together under a jaw are flat on purpose: 3.07 and 2.13 degrees for n = 2 and 3.
+            // Cells graded towards a jaw are intentionally flat: 3.07 and 2.13 degrees for n = 2 and 3.
             let flattest = if name.starts_with("half kidney") { 2.0 } else { 5.0 };
             assert!(quality.min_dihedral.value > flattest, "{name} {}: {quality:?}", kind.name());
         }
@@ -84,7 +86,8 @@ fn boundaries_are_closed_and_point_outwards() {
             let boundary = mesh.boundary();
             let total: Vector3 = boundary.iter().map(|&f| area_vector(&mesh, f)).sum();
             assert!(total.norm() < 1e-12, "{name} {}: open by {total}", kind.name());
-            // Divergence theorem: the flux of x/3 is the volume, positive only if faces point outwards.
+            // Divergence theorem: the flux of x/3 is the volume, which is positive only if the faces point
+            // outwards.
             let flux: f64 = (boundary.iter())
                 .map(|&f| {
                     let n = mesh.facet_nodes(f).next().unwrap();
@@ -92,12 +95,12 @@ fn boundaries_are_closed_and_point_outwards() {
                 })
                 .sum();
             assert!(flux > 0.0, "{name} {}", kind.name());
-            // Every boundary facet is in a group, and groups hold only boundary facets.
+            // Every boundary facet is in a group, and groups contain only boundary facets.
             let mut grouped: Vec<Facet> =
                 mesh.group_names().flat_map(|g| mesh.group(g).unwrap().to_vec()).collect();
             grouped.sort_unstable();
             assert_eq!(grouped, boundary, "{name} {}", kind.name());
-            // Conforming: the interior faces match in pairs, so Euler's count of cells, faces and boundary holds.
+            // In a conforming mesh the interior faces match in pairs, so their number is even.
             let faces: usize = (0..mesh.cell_count()).map(|c| mesh.kind(c).faces().len()).sum();
             assert_eq!((faces - boundary.len()) % 2, 0);
         }
@@ -160,7 +163,7 @@ fn grading_gives_the_asked_ratio_and_jitter_keeps_the_boundary() {
             }
         }
         assert!(largest.iter().all(|&l| l > 0.7), "jitter weaker than asked: {largest:?}");
-        // Straight edges stay straight.
+        // Straight edges remain straight.
         for cell in 0..moved.cell_count() {
             let list = moved.cell(cell);
             for (e, &[a, b]) in kind.edges().iter().enumerate().take(if kind.order() == 2 { 12 } else { 0 }) {
@@ -212,7 +215,8 @@ fn conversion_keeps_volume_regions_and_groups() {
     assert_eq!(back.points(), hexes.points(), "mid-edge nodes are dropped again");
     assert_eq!(back.group("x-max").unwrap().len(), 8);
     assert_eq!(raise_order(&tets), tets, "quadratic cells stay as they are");
-    // A mixed mesh: one hexahedron beside a tet10-to-be; a shared edge gets one middle node.
+    // A mixed mesh: one hexahedron next to a tetrahedron that becomes tet10; a shared edge has one mid-edge
+    // node.
     let points = [
         [0., 0., 0.],
         [1., 0., 0.],
@@ -282,7 +286,7 @@ fn surface_cells_are_of_like_size() {
         let areas = mesh.group(group).unwrap().iter().map(|&f| area_vector(mesh, f).norm());
         areas.fold((f64::INFINITY, 0.0f64), |(low, high), a| (low.min(a), high.max(a)))
     };
-    // By equal angles 1.4; by plain central projection 4.
+    // The ratio is 1.4 for equal angles, and 4 for the central projection.
     let shell = sphere_shell_mesh(CellKind::Hex8, 0.5, 1.0, [16, 1], 1.0, ShellExtent::Whole).unwrap();
     let ball = ball_mesh(CellKind::Hex8, 1.0, 16).unwrap();
     for (mesh, group) in [(&shell, "inner"), (&shell, "outer"), (&ball, "surface")] {

@@ -1,4 +1,5 @@
-//! Location: barycentric coordinates reproduce the point inside, and the closest point outside.
+//! Point location: barycentric coordinates reproduce a point inside the mesh, and the closest point for one
+//! outside.
 
 use geometry::generate::{Jitter, box_mesh, kidney_mesh};
 use geometry::shapes::{Kidney, Shape};
@@ -32,7 +33,7 @@ fn inside_outside_and_on_the_border() {
             assert!((at.barycentric.iter().sum::<f64>() - 1.0).abs() < 1e-14);
             assert!(at.barycentric.iter().all(|&l| l > -1e-9));
         }
-        // Every node is in the mesh, in a cell that has it.
+        // Every node is in the mesh, in a cell that contains it.
         let nodes = &mesh.points()[..125];
         for (n, at) in locate(&mesh, nodes).unwrap().iter().enumerate() {
             assert_eq!(at.outside, 0.0);
@@ -41,7 +42,7 @@ fn inside_outside_and_on_the_border() {
     }
 }
 
-/// Points of shared faces are in the mesh, though rounding may put them outside both cells.
+/// Points on shared faces are in the mesh, although rounding may put them outside both cells.
 #[test]
 fn nothing_falls_between_cells() {
     let mesh = kidney_mesh(CellKind::Tet4, 5).unwrap();
@@ -74,7 +75,7 @@ fn the_lowest_cell_wins_and_curved_bodies_are_covered() {
     for (cell, at) in locate(&kidney, &centres).unwrap().iter().enumerate() {
         assert_eq!((at.cell as usize, at.outside), (cell, 0.0));
     }
-    // Points of the true surface lie outside the flat facets, by the sagitta.
+    // Points of the exact surface lie outside the flat facets, by the sagitta.
     let mut state = 1u64;
     let mut unit = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -107,7 +108,7 @@ fn the_closest_point_of_a_triangle_is_closest() {
         let t = i as f64;
         let x = Point3::new((3.1 * t).sin(), (7.7 * t).cos(), (1.3 * t).sin()) * 2.0;
         let found = (closest_on_triangle(&x, &corners) - x).norm();
-        // No point of a fine grid over the triangle is closer, and one is about as close.
+        // No point of a fine grid on the triangle is closer, and one is about as close.
         let n = 60;
         let grid = (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j)));
         let best = grid

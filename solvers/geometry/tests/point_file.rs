@@ -1,4 +1,4 @@
-//! Files of positions: what is read, and what is refused at which line and column.
+//! Files of positions: accepted files, and errors with their line and column.
 
 use geometry::{PointFileError, PointProblem, read_points};
 

@@ -1,4 +1,4 @@
-//! Every rule against exact moments, its symmetry, and the signs of its weights.
+//! Every quadrature rule: exact moments, symmetry and the signs of its weights.
 
 use geometry::quadrature::{Rule, TET_RULES, TRI_RULES, gauss_legendre, hex, quad, tet, tri};
 
@@ -30,7 +30,7 @@ fn simplex_rules_are_exact_to_their_degree_and_no_further() {
         let rule = tet(points).unwrap();
         assert_eq!(rule.len(), points);
         let (good, bad) = (simplex_error(&rule, degree), simplex_error(&rule, degree + 1));
-        // Rounded tabulated digits: 1e-16 per parameter times the degree.
+        // Rounding of the tabulated digits: 1e-16 per parameter, times the degree.
         assert!(good < 3e-14, "tet {points}: error {good:e} at degree {degree}");
         assert!(bad > 1e-6, "tet {points}: degree {degree} is understated ({bad:e})");
     }
@@ -58,7 +58,7 @@ fn weights_are_positive_and_points_inside() {
     }
 }
 
-/// A function without symmetry, so that an asymmetric rule gives another value for another corner order.
+/// A function without symmetry: an asymmetric rule gives different values for different corner orders.
 fn uneven(l: &[f64]) -> f64 {
     l.iter().enumerate().map(|(i, v)| ((i + 1) as f64 * v).powi(9)).sum::<f64>() + (3.0 * l[0] - l[1]).exp()
 }
@@ -107,7 +107,7 @@ fn gauss_legendre_is_exact_to_degree_2n_minus_1() {
             let exact = if degree % 2 == 0 { 2.0 / (degree + 1) as f64 } else { 0.0 };
             assert!((moment(degree) - exact).abs() < 1e-14, "n = {n}, degree {degree}: {}", moment(degree));
         }
-        // The first moment that fails, by P_n's norm: 2^(2n+1) n!^4 / ((2n+1) (2n)!^2).
+        // The first moment that is not exact, from the norm of P_n: 2^(2n+1) n!^4 / ((2n+1) (2n)!^2).
         let gap = 2f64.powi(2 * n as i32 + 1) * factorial(n).powi(4)
             / ((2 * n + 1) as f64 * factorial(2 * n).powi(2));
         let found = 2.0 / (2 * n + 1) as f64 - moment(2 * n);

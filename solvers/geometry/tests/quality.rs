@@ -1,4 +1,4 @@
-//! Quality measures on shapes with known values, and the name of the offending element.
+//! Quality measures of shapes with known values, and the index of the worst element.
 
 use geometry::generate::{box_mesh, raise_order};
 use geometry::{CellKind, Mesh, Point3, quality};
@@ -32,7 +32,7 @@ fn regular_shapes_have_the_textbook_values() {
         assert!((q.max_aspect.value - 1.0).abs() < 1e-14);
         assert!((q.min_dihedral.value - 90.0).abs() < 1e-10 && (q.max_dihedral.value - 90.0).abs() < 1e-10);
     }
-    // Kuhn tetrahedra: 45, 60 and 90 degrees.
+    // Kuhn tetrahedra have angles of 45, 60 and 90 degrees.
     let q = quality::check(&cube(CellKind::Tet4, 2)).unwrap();
     assert!((q.min_dihedral.value - 45.0).abs() < 1e-10 && (q.max_dihedral.value - 90.0).abs() < 1e-10);
     assert_eq!(quality::volumes(&cube(CellKind::Tet10, 1)).len(), 6);
@@ -43,7 +43,7 @@ fn the_worst_element_is_named() {
     for kind in CellKind::ALL {
         let mesh = cube(kind, 3);
         let bad = 11;
-        // Swap two corners of one cell: its volume turns negative.
+        // Swapping two corners of a cell makes its volume negative.
         let cells: Vec<(CellKind, Vec<u32>)> = (0..mesh.cell_count())
             .map(|c| {
                 let mut nodes = mesh.cell(c).to_vec();
@@ -59,7 +59,7 @@ fn the_worst_element_is_named() {
         assert_eq!((error.inverted, error.cells), (1, mesh.cell_count()));
         assert!(error.det_j <= 0.0 && error.to_string().contains("element 11 is inverted"));
     }
-    // One node drawn aside: the slimmest and the smallest cell touch it.
+    // After one node is displaced, the slimmest and the smallest cell contain it.
     let mesh = cube(CellKind::Hex8, 3);
     let node = 21u32;
     let target = mesh.points()[node as usize];

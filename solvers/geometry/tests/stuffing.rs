@@ -1,4 +1,4 @@
-//! Isosurface stuffing: angles, volumes and distances of meshes inside surfaces in closed form.
+//! Isosurface stuffing: angles, volumes and distances of meshes inside closed-form surfaces.
 
 mod common;
 
@@ -8,7 +8,7 @@ use geometry::stuffing::{
 };
 use geometry::{Facet, Mesh, Surface, quality};
 
-/// Angles proven for the lattice, degrees.
+/// Bounds proven for the angles of the lattice, in degrees.
 const ANGLES: [f64; 2] = [10.7, 164.8];
 
 fn filled(surface: &Surface, spacing: f64, doublings: u32) -> Mesh {
@@ -17,7 +17,7 @@ fn filled(surface: &Surface, spacing: f64, doublings: u32) -> Mesh {
     stuffed.mesh
 }
 
-/// Checks the angles and returns their range.
+/// Checks the angles against the bounds and returns their range.
 fn angles(mesh: &Mesh) -> [f64; 2] {
     let quality = quality::check(mesh).unwrap();
     let found = [quality.min_dihedral.value, quality.max_dihedral.value];
@@ -28,7 +28,7 @@ fn angles(mesh: &Mesh) -> [f64; 2] {
 #[test]
 fn meshes_are_close_to_their_surfaces_at_the_proven_angles() {
     let pair = joined(sphere_like(4, |n| n), moved(sphere_like(4, |n| 0.5 * n), [1.8, 0.0, 0.0]));
-    // Of the bumpy one features of a tenth of its size are between cells.
+    // Features of the bumpy surface, a tenth of its size, lie between cells.
     let surfaces: [(&str, Surface, f64); 5] = [
         ("sphere", surface(sphere_like(5, |n| n)), 0.05),
         ("ellipsoid", surface(sphere_like(5, |n| [2.0 * n.x, n.y, 0.5 * n.z].into())), 0.3),
@@ -47,7 +47,7 @@ fn meshes_are_close_to_their_surfaces_at_the_proven_angles() {
                 angles(&mesh);
                 let fit = fit(surface, &mesh);
                 assert!((fit.volume / fit.of_surface - 1.0).abs() < 0.011, "{name} {spacing}: {fit:?}");
-                // A gap between cells would be a face of the boundary deep inside.
+                // A gap between cells would appear as a boundary face deep inside.
                 assert!(fit.hausdorff() < off * spacing, "{name} {spacing}: {fit:?}");
                 assert_eq!(mesh.group("surface"), Some(&mesh.boundary()[..]));
             }
@@ -66,7 +66,7 @@ fn a_surface_rougher_than_the_cells_keeps_the_angles() {
             range = [range[0].min(low), range[1].max(high)];
         }
     }
-    // Close to the bounds: the test would see worse.
+    // The extreme angles are close to the bounds, so the test would detect a violation.
     assert!(range[0] < 14.0 && range[1] > 158.0, "{range:?}");
 }
 
@@ -87,7 +87,7 @@ fn a_number_of_nodes_is_met() {
         let (stuffed, spacing) = stuff_with_nodes(&surface, nodes, doublings).unwrap();
         let found = stuffed.mesh.points().len() as f64;
         assert!((found / nodes as f64 - 1.0).abs() < 0.2, "{found} of {nodes}");
-        // Of few cells most are cut by the surface.
+        // In a coarse mesh, most cells are cut by the surface.
         if doublings == 0 && nodes > 100 {
             let expected = expected_nodes(surface.volume(), surface.area(), spacing);
             assert!((expected / found - 1.0).abs() < 0.4, "{expected} of {found}");
@@ -111,7 +111,7 @@ fn more_nodes_wanted_are_never_fewer_made() {
                 stuff_with_nodes(surface, nodes, 0).unwrap_or_else(|bad| panic!("{name}: {bad}"));
             let found = stuffed.mesh.points().len();
             assert!(found >= last, "{name}: {found} for {nodes}, {last} for fewer");
-            // It is the body, not what cells that are too large have filled of it.
+            // The mesh fills the whole body, which cells that are too large would not.
             let volume = quality::check(&stuffed.mesh).unwrap().volume;
             assert!(volume > 0.75 * surface.volume(), "{name}: {volume} of {}", surface.volume());
             last = found;
@@ -132,7 +132,7 @@ fn the_length_of_edges_is_the_spacing() {
     assert!((mean / 0.08 - 1.0).abs() < 0.05, "{mean}");
 }
 
-/// Two balls and a thread of a tenth of a cell between them: the thread is cut off, both balls stay.
+/// Two balls connected by a thread of a tenth of a cell: the thread is cut off, and both balls remain.
 #[test]
 fn thin_parts_are_left_out_and_counted() {
     let dumbbell = common::turned(65, 24, |z: f64| {
@@ -157,7 +157,7 @@ fn spacings_that_make_no_mesh_are_refused() {
     assert!(matches!(refused(7.0), StuffingError::TooCoarse { .. }));
 }
 
-/// Each inner face is shared by two cells: the boundary is closed where sizes change.
+/// Each inner face is shared by two cells: the boundary is closed where the cell size changes.
 #[test]
 fn cells_of_several_sizes_fit_together() {
     let mesh = filled(&surface(sphere_like(4, |n| n)), 0.06, 3);

@@ -1,4 +1,4 @@
-//! Names in STL and OBJ files, kept through corners that are joined, and on the mesh that is made inside.
+//! Group names in STL and OBJ files, after corners are merged, and on the mesh that fills the surface.
 
 mod common;
 
@@ -8,7 +8,7 @@ use std::path::Path;
 use geometry::stuffing::{Stuffing, stuff};
 use geometry::{Mesh, Surface, files};
 
-/// Corners of the unit cube, and its faces by name, counter-clockwise from outside.
+/// Corners of the unit cube, and its named faces, counter-clockwise from outside.
 const CORNERS: [[u8; 3]; 8] =
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 const FACES: [(&str, [usize; 4]); 6] = [
@@ -24,7 +24,7 @@ fn read(name: &str, text: &str) -> Surface {
     files::read_surface_bytes(text.as_bytes(), Path::new(name), 1.0).unwrap_or_else(|bad| panic!("{bad}"))
 }
 
-/// A cube as OBJ with a line before each face.
+/// A cube as OBJ, with the given text before each face.
 fn obj(before: impl Fn(usize, &str) -> String) -> String {
     let corners: String = CORNERS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
     let faces = FACES.iter().enumerate().map(|(at, (name, face))| {
@@ -34,7 +34,7 @@ fn obj(before: impl Fn(usize, &str) -> String) -> String {
     corners + &faces.collect::<String>()
 }
 
-/// Solids of some faces each; corners are off by up to a rounding of single precision.
+/// STL solids of some faces each; corners deviate by up to a rounding error of single precision.
 fn stl(solids: &[(&str, &[usize])]) -> String {
     let mut text = String::new();
     for (name, faces) in solids {
@@ -54,7 +54,7 @@ fn stl(solids: &[(&str, &[usize])]) -> String {
     text
 }
 
-/// Number of triangles of each name.
+/// Number of triangles with each name.
 fn counts(surface: &Surface) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for triangle in 0..surface.triangles().len() {
@@ -70,7 +70,7 @@ fn filled(surface: &Surface) -> Mesh {
     stuff(surface, Stuffing { spacing: 0.2, doublings: 1 }).unwrap().mesh
 }
 
-/// Area of a named part of the boundary.
+/// Area of a named group of the boundary.
 fn area(mesh: &Mesh, name: &str) -> f64 {
     let of = |&facet: &geometry::Facet| {
         let corners: Vec<_> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();
@@ -96,7 +96,7 @@ fn solids_of_an_stl_are_groups_of_one_closed_surface() {
     let close = mesh.group("held end").unwrap();
     let x = |node: u32| mesh.points()[node as usize].x;
     assert!(close.iter().all(|&facet| mesh.facet_nodes(facet).map(x).sum::<f64>() < 3.0 * 0.15));
-    // A solid that is left out leaves a hole, named or not.
+    // A missing solid leaves a hole, whether it is named or not.
     let open = stl(&[("held", &[5]), ("skin", &[0, 1, 2, 3])]);
     let bad = files::read_surface_bytes(open.as_bytes(), Path::new("a.stl"), 1.0).err().unwrap().to_string();
     assert!(bad.contains("a.stl: the surface is open"), "{bad}");
@@ -118,7 +118,7 @@ fn one_name_is_kept_and_does_no_harm() {
 
 #[test]
 fn groups_and_objects_of_an_obj_are_kept() {
-    // Several names of a face; a face without a group, of no object yet; objects where no group is in force.
+    // A face with several names, a face before any group or object, and objects without a group.
     let surface = read(
         "cube.obj",
         &obj(|at, name| match at {
@@ -164,7 +164,8 @@ fn files_without_names_have_none_and_many_names_are_refused() {
     assert!(bad.contains("a.obj:11: too many groups of a face: 200"), "{bad}");
 }
 
-/// A group far smaller than the cells is known, without a facet; one named as the whole boundary replaces it.
+/// A group far smaller than the cells is kept without facets; a group with the name of the whole boundary
+/// replaces it.
 #[test]
 fn small_groups_and_groups_of_known_names() {
     let mut soup = common::sphere_like(5, |n| n);

@@ -1,4 +1,4 @@
-//! Faces of many corners: concave ones are cut as they are, and none that crosses itself is taken.
+//! Faces of many corners: concave faces are triangulated as they are, and self-crossing faces are rejected.
 
 mod common;
 
@@ -16,7 +16,8 @@ fn refusal(name: &str, text: &str) -> String {
     read(name, text).err().unwrap_or_else(|| panic!("{name} is read"))
 }
 
-/// A prism over a polygon that is counter-clockwise seen from above, its first corner and its order of coordinates moved on.
+/// A prism over an outline that is counter-clockwise from above, with its first corner and its coordinates
+/// shifted cyclically.
 fn prism(outline: &[[f64; 2]], first: usize, axis: usize) -> String {
     let count = outline.len();
     let mut text = String::new();
@@ -44,7 +45,7 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 
-/// The same numbers as OBJ, as PLY.
+/// Converts an OBJ text to PLY.
 fn ply(obj: &str) -> String {
     let of = |word: &str| obj.lines().filter_map(|line| line.strip_prefix(word)).collect::<Vec<_>>();
     let (points, faces) = (of("v "), of("f "));
@@ -65,7 +66,7 @@ fn ply(obj: &str) -> String {
 
 const ARROW: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, -1.0], [0.5, 0.0], [2.0, 1.0]];
 const ELL: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
-/// With corners on straight edges.
+/// An outline with corners on straight edges.
 const COMB: [[f64; 2]; 14] = [
     [0.0, 0.0],
     [2.0, 0.0],
@@ -119,7 +120,7 @@ fn faces_that_are_not_simple_are_refused_with_their_line() {
         (&star, "1 and 3"),
     ] {
         let text = prism(outline, 0, 0);
-        // The top turns as the outline does: its edges are numbered so.
+        // The top has the orientation of the outline, which determines its edge numbers.
         let bad = refusal("a.obj", &text);
         let line = 1 + 2 * outline.len();
         assert!(bad.starts_with(&format!("a.obj:{line}: edges ")), "{bad}");
@@ -144,7 +145,7 @@ fn faces_that_are_not_simple_are_refused_with_their_line() {
     assert!(bad.starts_with("a.obj:2401: face 1 is concave and has 1200 corners"), "{bad}");
 }
 
-/// Many programs write a polygon's first corner again, or one corner twice.
+/// Many programs repeat a polygon's first corner at the end, or list a corner twice.
 #[test]
 fn corners_given_twice_in_a_row_are_one() {
     let text = prism(&ELL, 0, 0).replace("f 7 8 9", "f 7 7 8 9").replace("f 1 2 8 7", "f 1 2 2 8 7");
@@ -160,7 +161,7 @@ fn faces_may_come_before_their_corners() {
     assert!((surface.volume() - area(&ELL)).abs() < 1e-14);
     let bad = refusal("a.obj", &first.replacen("f 6", "f 13", 1));
     assert_eq!(bad, "a.obj:1: face 1 names corner 13, which the file does not have");
-    // Backwards are those before the face alone.
+    // Negative numbers refer only to corners before the face.
     let bad = refusal("a.obj", &first.replacen("f 6", "f -1", 1));
     assert_eq!(bad, "a.obj:1: face 1 names corner -1, which the file does not have");
 }
@@ -186,7 +187,7 @@ fn a_mark_of_the_encoding_is_no_part_of_a_surface() {
 }
 
 proptest! {
-    /// Outlines around a point, with corners in and out by chance.
+    /// Star-shaped outlines with random radii.
     #[test]
     fn any_simple_face_is_filled(radii in prop::collection::vec(0.1f64..1.0, 4..40), first in 0usize..40) {
         let count = radii.len();

@@ -1,4 +1,4 @@
-//! Surface files: what is read, and the place of what is refused; distances and what is inside.
+//! Surface files: accepted files, errors with their place, distances, and the inside test.
 
 mod common;
 
@@ -10,7 +10,7 @@ use geometry::surface::{Soup, SurfaceProblem};
 use geometry::{Point3, Surface, cloud, files};
 use proptest::prelude::*;
 
-/// A tetrahedron of 1/6.
+/// A tetrahedron with a volume of 1/6.
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
@@ -106,7 +106,7 @@ fn every_kind_of_surface_file_is_read() {
         let mesh = files::read_bytes(&bytes, Path::new(name), 1.0).unwrap_err().to_string();
         assert!(mesh.contains("is a surface, not a mesh; `tissuebench mesh make`"), "{mesh}");
     }
-    // Faces of four corners and more.
+    // Faces of four corners.
     let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
         f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let cube = read("cube.obj", cube.as_bytes()).unwrap();
@@ -114,7 +114,7 @@ fn every_kind_of_surface_file_is_read() {
     assert!((cube.volume() - 1.0).abs() < 1e-15 && (cube.area() - 6.0).abs() < 1e-15);
 }
 
-/// Holds that a text is refused after each of these changes, and with which words.
+/// Asserts that a text is rejected after each of these changes, with the given words.
 fn assert_text_refused<const N: usize>(name: &str, text: &str, changes: [(&str, &str, &str); N]) {
     let changes = changes.map(|(from, to, says)| (from, to, [says.into()]));
     assert_refused(text, changes, |text| read(name, text.as_bytes()).err());
@@ -226,10 +226,10 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
 fn surfaces_that_cross_are_refused() {
     let crossing = refused(joined(sphere_like(3, |n| n), moved(sphere_like(3, |n| n), [0.7, 0.1, 0.2])));
     assert!(matches!(crossing, SurfaceProblem::Crossing { places: 50.., .. }), "{crossing}");
-    // One part pushed through the other side.
+    // One part pushed through the opposite side.
     let pushed = refused(sphere_like(4, |n| if n.z > 0.8 { [n.x, n.y, n.z - 2.4].into() } else { n }));
     assert!(matches!(pushed, SurfaceProblem::Crossing { .. }), "{pushed}");
-    // Exactly in one plane, edge on edge: signs decide, not rounding.
+    // Exactly coplanar or with touching edges: exact signs decide, not rounding.
     let cube = |at: [f64; 3]| {
         let corner = |i: u32| Point3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
@@ -321,7 +321,7 @@ fn a_surface_is_a_body_for_clouds() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Bytes changed at random are read or refused, never more.
+    /// Randomly changed bytes are read or rejected without a panic.
     #[test]
     fn changed_files_are_read_or_refused(kind in 0usize..4, places in prop::collection::vec((0usize..400, any::<u8>()), 1..6)) {
         let mut bytes = match kind {
@@ -340,8 +340,8 @@ proptest! {
     }
 }
 
-/// A box whose one side has a corner in the middle of an edge of another, closed by a triangle without an
-/// area; and the same where two corners lie on the edge, so that one needle leans on another.
+/// A box in which one side has a corner in the middle of another side's edge, closed by a triangle without
+/// area. In further cases several corners lie on the edge, so that one needle leans on another.
 #[test]
 fn needles_that_close_a_t_junction_are_no_crossing() {
     let corner = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
@@ -377,7 +377,7 @@ fn needles_that_close_a_t_junction_are_no_crossing() {
             soup.points.push(corner(x, 0.0, 0.0));
         }
         row.push(1);
-        // The front: a fan from the upper left corner to the row, and the rest.
+        // The front: a fan from the upper left corner to the row, and the remaining triangle.
         soup.triangles.extend(row.windows(2).map(|two| [4, two[0], two[1]]));
         soup.triangles.push([4, 1, 5]);
         // Needles between the row and the edge of the bottom.

@@ -1,10 +1,10 @@
-//! Closed surfaces in closed form, and files that are broken one change at a time, for tests.
+//! Closed-form closed surfaces, and a check of malformed files with one change each, for tests.
 #![allow(dead_code)] // each test takes some
 
 use geometry::surface::Soup;
 use geometry::{Point3, Surface, Vector3};
 
-/// A sphere of 8 * 4^levels triangles, moved by a map of directions.
+/// A sphere of 8 * 4^levels triangles, with `map` applied to its unit vectors.
 pub fn sphere_like(levels: u32, map: impl Fn(Vector3) -> Vector3) -> Soup {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z(), -Vector3::x(), -Vector3::y(), -Vector3::z()];
     let mut points: Vec<Vector3> = axes.to_vec();
@@ -30,7 +30,7 @@ pub fn sphere_like(levels: u32, map: impl Fn(Vector3) -> Vector3) -> Soup {
     Soup { points, triangles, faces, ..Soup::default() }
 }
 
-/// An organ with bumps and a hilum.
+/// An organ-like surface with bumps and a hilum.
 pub fn bumpy(levels: u32) -> Soup {
     sphere_like(levels, |n| {
         let radius = 1.0 + 0.12 * (5.0 * n.x).sin() * (4.0 * n.y).cos() + 0.08 * (7.0 * n.z).sin()
@@ -39,7 +39,7 @@ pub fn bumpy(levels: u32) -> Soup {
     })
 }
 
-/// A torus of radii 1 and `tube`, of 2 * around * across triangles.
+/// A torus with the radii 1 and `tube`, of 2 * around * across triangles.
 pub fn torus(tube: f64, around: u32, across: u32) -> Soup {
     let mut soup = Soup::default();
     let turn = |i: u32, n: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
@@ -68,7 +68,7 @@ pub fn block(size: [f64; 3]) -> Soup {
     Soup { points: points.collect(), triangles, faces: (1..=12).collect(), ..Soup::default() }
 }
 
-/// Two soups as one.
+/// Two soups merged into one.
 pub fn joined(a: Soup, b: Soup) -> Soup {
     let (first, count) = (a.points.len() as u32, a.triangles.len() as u32);
     let mut all = a;
@@ -78,30 +78,30 @@ pub fn joined(a: Soup, b: Soup) -> Soup {
     all
 }
 
-/// The soup moved.
+/// The soup, translated.
 pub fn moved(mut soup: Soup, by: [f64; 3]) -> Soup {
     soup.points.iter_mut().for_each(|p| *p += Vector3::from(by));
     soup
 }
 
-/// A surface in metres.
+/// A valid surface of the soup, with lengths in metres.
 pub fn surface(soup: Soup) -> Surface {
     Surface::new(soup, 1.0).unwrap_or_else(|bad| panic!("{bad}"))
 }
 
-/// A sphere whose corners are pushed out by up to `by`, by chance.
+/// A sphere whose corners are moved outwards by a random distance of up to `by`.
 pub fn jagged(levels: u32, by: f64, seed: u64) -> Soup {
     let mut state = seed;
     let mut soup = sphere_like(levels, |n| n);
     for p in &mut soup.points {
-        // Knuth's generator: the same numbers everywhere.
+        // Knuth's linear congruential generator gives the same numbers on every platform.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         *p *= 1.0 + by * ((state >> 11) as f64 / (1u64 << 53) as f64);
     }
     soup
 }
 
-/// A body of revolution about z from -2.5 to 2.5, of a radius above zero between the ends.
+/// A body of revolution about z, from -2.5 to 2.5, with a positive radius between the ends.
 pub fn turned(along: u32, around: u32, radius: impl Fn(f64) -> f64) -> Soup {
     let mut soup = Soup::default();
     soup.points.push(Point3::new(0.0, 0.0, -2.5));
@@ -127,8 +127,8 @@ pub fn turned(along: u32, around: u32, radius: impl Fn(f64) -> f64) -> Soup {
     soup
 }
 
-/// Holds that a text in which any one change is made, `from` to `to`, is refused by a message with all these words. `refusal` reads a text
-/// and gives the message. All changes that are not refused so are named at once.
+/// Asserts that a text with any one of the changes `from` to `to` is rejected with a message that contains
+/// all given words. `refusal` returns the message for a text. The assertion lists all failures together.
 pub fn assert_refused<'a, const N: usize>(
     text: &str,
     changes: impl IntoIterator<Item = (&'a str, &'a str, [String; N])>,
