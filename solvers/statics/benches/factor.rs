@@ -1,4 +1,4 @@
-//! Factorisation: the dense and the sparse path at small sizes, the sparse one at larger ones.
+//! Factorisation: the dense and the sparse solver at small sizes, the sparse solver alone at larger sizes.
 
 mod common;
 
@@ -9,7 +9,8 @@ use statics::assemble;
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("factor");
     group.sample_size(20);
-    // `projected` couples neighbours of neighbours, as a meshless cloud does: more fill, a later crossover.
+    // `projected` couples neighbours of neighbours, as a meshless cloud does. This gives more fill and a
+    // later crossover.
     for projected in [false, true] {
         let kind = if projected { "wide" } else { "tet4" };
         for n in [3, 4, 5, 6, 7] {

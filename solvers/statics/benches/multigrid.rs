@@ -1,4 +1,4 @@
-//! Multigrid against a factor: hierarchy or factor, and one solution.
+//! Multigrid against a direct factorisation: the setup of each, and one solution with each.
 
 mod common;
 

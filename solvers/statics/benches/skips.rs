@@ -1,5 +1,6 @@
-//! What each stage costs that a plan can skip: pairs of the same result with and without it. Not covered: stages that
-//! take another method or another problem to skip (supports of clouds, weak supports, contact), and stored runs.
+//! Cost of every stage that a plan can skip: the same result is computed with and without the stage. Two
+//! kinds of stages are not covered: stages that can be skipped only with another method or problem (supports
+//! of clouds, weak supports, contact), and stored runs.
 
 mod common;
 
@@ -16,8 +17,8 @@ use material::LinearElastic;
 use shape::Vector3;
 use statics::assemble;
 
-/// A volumetric projection up to the assembled stiffness, on an element that does not lock: one dilation per tet10
-/// couples no other nodes, so that the factorisation is the same.
+/// Volumetric projection up to the assembled stiffness, on an element that does not lock. One dilation per
+/// tet10 couples no further nodes, so the factorisation is the same.
 fn projection(c: &mut Criterion) {
     let pressed = Pressed::of(CellKind::Tet10, 4);
     let loads = pressed.loads();
@@ -36,7 +37,7 @@ fn projection(c: &mut Criterion) {
     group.finish();
 }
 
-/// Looking up the law of every point, where all points have the same.
+/// Look-up of the law of every point in a body with a single law.
 fn laws(c: &mut Criterion) {
     let pressed = Pressed::new(10);
     let loads = pressed.loads();
@@ -49,7 +50,7 @@ fn laws(c: &mut Criterion) {
         black_box(assemble(&problem).unwrap());
     };
     group.bench_function("skipped", |b| b.iter(|| assembled(&[], &pressed.material)));
-    // Two laws, point by point in turn: every node meets both.
+    // Two laws alternate from point to point, so every node meets both.
     group.bench_function("done", |b| {
         b.iter(|| {
             let region: Vec<u16> = (0..points).map(|q| (q % 2) as u16).collect();
@@ -59,7 +60,7 @@ fn laws(c: &mut Criterion) {
     group.finish();
 }
 
-/// Ten load sets with one factorisation, and with one each.
+/// Ten load sets with one factorisation in all, and with one factorisation each.
 fn factorisation(c: &mut Criterion) {
     let pressed = Pressed::new(10);
     let loads = pressed.loads();
@@ -77,7 +78,7 @@ fn factorisation(c: &mut Criterion) {
     group.finish();
 }
 
-/// Displacement at the nodes of elements, which the nodal parameters are already.
+/// Displacement at the nodes of elements, which equals the nodal parameters.
 fn own_nodes(c: &mut Criterion) {
     let pressed = Pressed::new(10);
     let u: Vec<Vector3> = pressed.mesh.points().iter().map(|x| 0.1 * x.coords).collect();
@@ -92,8 +93,8 @@ fn own_nodes(c: &mut Criterion) {
     group.finish();
 }
 
-/// A cloud of 83 nodes in the kidney seen at 1331 points: gradients where values do, a scheme where the method's own
-/// shape functions do.
+/// A cloud of 83 nodes in the kidney, evaluated at 1331 points: gradients although values suffice, and a
+/// transfer scheme although the method's own shape functions suffice.
 fn of_clouds(c: &mut Criterion) {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap();
     let targets = cloud(&Kidney, 1331, 2, &[]).unwrap().points;

@@ -1,4 +1,4 @@
-//! One more right-hand side, with its residual check.
+//! One more right-hand side, including its residual check.
 
 mod common;
 

@@ -9,16 +9,16 @@ use shape::Matrix3;
 
 use crate::grad_table::{GradTable, Pair, gather};
 
-/// Gradients of bundles that the rows of a task go through together: 256 KB, which stay in the second-level cache for all of
-/// them.
+/// Number of gradients of the bundles that the rows of a task traverse together: 256 KB, which stay in the
+/// second-level cache for all rows.
 const TILE: usize = 4096;
 
-/// Adds `integral of lambda div v div u + 2 mu eps(v) : eps(u)`.
+/// Adds `integral of lambda div v div u + 2 mu eps(v) : eps(u)` to the stiffness.
 ///
 /// With `g = grad N` the block of nodes i, j is
 /// `K_ij = sum_q w (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I)`. The moduli are constant over many
-/// points, so only `G_ij = sum_q w g_i g_j^T` is summed in the inner loop and
-/// `K_ij += lambda G + mu G^T + mu tr(G) I` is formed once per law: a third of the arithmetic.
+/// points. The inner loop therefore sums only `G_ij = sum_q w g_i g_j^T`, and
+/// `K_ij += lambda G + mu G^T + mu tr(G) I` is formed once per law. This takes a third of the arithmetic.
 pub(crate) fn add_volume(stiffness: &mut Stiffness, table: &GradTable, incidence: &Incidence) {
     let laws: Vec<Range<usize>> = table.laws().iter().map(|law| law.0.clone()).collect();
     let path = LanePath::best();
@@ -36,7 +36,7 @@ pub(crate) fn add_volume(stiffness: &mut Stiffness, table: &GradTable, incidence
     );
 }
 
-/// `K += lambda G + mu G^T + mu tr(G) I` for a whole row; the sums start again from zero.
+/// Adds `lambda G + mu G^T + mu tr(G) I` to a whole row of `K` and resets the sums to zero.
 fn flush(sums: &mut [[Pair; 3]], row: &mut [Matrix3], (lambda, mu): (f64, f64)) {
     for (K, s) in row.iter_mut().zip(sums) {
         let G = Matrix3::from_fn(|a, b| s[a][b] + s[a][4 + b]);

@@ -6,30 +6,31 @@ use shape::{DilationGroups, VolumeRows};
 
 use crate::SolveError;
 
-/// A quadrature with its materials; borrowed, so that one set of tables serves many problems.
+/// A quadrature with its materials. All fields are borrowed, so one set of tables serves many problems.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
-    /// Node positions, m. Rigid motions of the nodal parameters are built from them: the tables must reproduce
-    /// linear fields, as elements and moving least squares do.
+    /// Node positions, m. The rigid motions of the nodal parameters are built from these positions. The
+    /// tables must therefore reproduce linear fields, as elements and moving least squares do.
     pub nodes: &'a [Point3],
     /// The volume quadrature.
     pub volume: &'a VolumeRows,
     /// One law per region.
     pub materials: &'a [LinearElastic],
-    /// Region of each quadrature point (index into `materials`); empty when all are of region 0.
+    /// Region of each quadrature point (index into `materials`); empty if all points are in region 0.
     pub region: &'a [u16],
     /// Volumetric projection: points get `(lambda' = -2 mu / 3, mu)`, and each group adds
-    /// `kappa V_a b_a b_a^T`. The bulk modulus of a group that spans regions is the volume average of its points'.
+    /// `kappa V_a b_a b_a^T`. The bulk modulus of a group that spans regions is the volume average over its
+    /// points.
     pub dilation: Option<&'a DilationGroups>,
 }
 
 impl<'a> Body<'a> {
-    /// The law at one quadrature point.
+    /// Returns the law at a quadrature point.
     pub fn material(&self, point: usize) -> &'a LinearElastic {
         &self.materials[region_of(self.region, point)]
     }
 
-    /// Lengths and indices fit together, and the dilation groups divide up this very quadrature.
+    /// Checks lengths and indices, and that the dilation groups belong to this quadrature.
     pub(crate) fn check(&self) -> Result<(), SolveError> {
         let points = self.volume.weights().len();
         let nodes = self.volume.rows().node_count();

@@ -1,12 +1,13 @@
-//! How far Nitsche's form is from losing its definiteness.
+//! Distance of Nitsche's form from the loss of positive definiteness.
 //!
 //! ```text
 //! K = M - N,   M(v, v) = a(v, v) + beta |v|^2,   N(v, v) = 2 t(v) . v   on the supports
 //! ```
 //!
-//! With `t(v) . t(v) <= C beta / gamma a(v, v)` the smallest `alpha` of `K v = alpha M v` is `1 - sqrt(C / gamma)`: a
-//! Cholesky factor exists while it is above zero, however little, but errors grow as `1 / alpha`. (Griebel & Schweitzer 2003,
-//! A particle-partition of unity method part V; Fritz, Hüeber & Wohlmuth 2004, Calcolo 41, 115.)
+//! With `t(v) . t(v) <= C beta / gamma a(v, v)` the smallest `alpha` of `K v = alpha M v` is
+//! `1 - sqrt(C / gamma)`. A Cholesky factor exists for every `alpha > 0`, but errors grow as `1 / alpha`.
+//! (Griebel & Schweitzer 2003, A particle-partition of unity method part V; Fritz, Hüeber & Wohlmuth 2004,
+//! Calcolo 41, 115.)
 
 use shape::Vector3;
 
@@ -14,25 +15,28 @@ use crate::SolveError;
 use crate::problem::Pointwise;
 use crate::solve::Factored;
 
-/// Steps of the power iteration with `K^-1 M`, whose largest eigenvalue is `1 / alpha`: where it matters that one stands apart.
+/// Steps of the power iteration with `K^-1 M`, whose largest eigenvalue is `1 / alpha`. In critical cases
+/// this eigenvalue is well separated from the others.
 const STEPS: usize = 12;
 
 impl Factored<'_> {
-    /// The factor of Nitsche's method that the method's rules need for a definite form, `C = gamma (1 - alpha)^2`; `None` without
-    /// such a support. At most `gamma`, the factor given.
+    /// Returns the smallest stabilisation factor of Nitsche's method for which the form is definite,
+    /// `C = gamma (1 - alpha)^2` (dimensionless, at most the given `gamma`). The result is `None` without
+    /// Nitsche supports.
     ///
     /// # Errors
-    /// As those of a solution.
+    /// The same errors as those of a solution.
     pub fn needed_nitsche_factor(&self) -> Result<Option<f64>, SolveError> {
         let (Some(gamma), Some(forms)) = (self.gamma(), self.forms()) else { return Ok(None) };
-        // No eigenvector is a wave of this length.
+        // The start vector is irregular, so that it has a component along every eigenvector.
         let mut v: Vec<Vector3> = (0..self.node_count())
             .map(|i| Vector3::from_fn(|a, _| (12.9898 * i as f64 + 78.233 * a as f64).sin()))
             .collect();
         let mut alpha = 1.0;
         let mut mv = mass(forms, stiff(forms, &v), &v);
         for _ in 0..STEPS {
-            // In the space that supports leave: also the first, which need not be.
+            // The iterate stays in the space that the supports leave free; the start vector need not lie in
+            // this space.
             v = self.solve_roughly(&mv)?;
             let size = v.iter().fold(0.0f64, |l, v| l.max(v.amax()));
             if size == 0.0 {
@@ -48,7 +52,7 @@ impl Factored<'_> {
     }
 }
 
-/// `K v`.
+/// Returns `K v`.
 fn stiff(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
     let mut out = vec![Vector3::zeros(); v.len()];
     forms.subtract(v, 0.0, &mut out);
@@ -56,7 +60,7 @@ fn stiff(forms: &Pointwise, v: &[Vector3]) -> Vec<Vector3> {
     out
 }
 
-/// `M v` from `K v`.
+/// Returns `M v`, given `K v`.
 fn mass(forms: &Pointwise, mut kv: Vec<Vector3>, v: &[Vector3]) -> Vec<Vector3> {
     forms.add_consistency(v, &mut kv);
     kv

@@ -1,24 +1,26 @@
-//! Repeated linear solves without a solve: what few outputs answer to loads on few nodes, as a dense matrix.
+//! Static condensation: the response of a few outputs to loads on a few nodes, as a dense matrix.
 
 use shape::Rows;
 use shape::Vector3;
 
 use crate::{Factored, SolveError};
 
-/// Displacement at a few points as a linear function of forces on a few nodes: rows of the inverse stiffness, one solve
-/// for each component of each output. What a simulator keeps that asks for the same points again and again; the
-/// condensation of Bro-Nielsen and Cotin (1996), with outputs and loads apart.
+/// Displacement of a few points as a linear function of the forces on a few nodes. The operator consists of
+/// rows of the inverse stiffness, with one solve for each component of each output. It suits a simulator that
+/// evaluates the same points repeatedly. This is the condensation of Bro-Nielsen and Cotin (1996), with
+/// separate sets of outputs and loaded nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condensed {
-    /// `3 outputs x 3 loaded nodes`, m/N, by rows.
+    /// `3 outputs x 3 loaded nodes`, m/N, row by row.
     operator: Vec<f64>,
     loaded: usize,
-    /// What the supports' own displacements make of each output, m.
+    /// Displacement of each output due to the prescribed displacements of the supports alone, m.
     constrained: Vec<Vector3>,
 }
 
 impl Factored<'_> {
-    /// Condenses to the points of `outputs` (rows over the nodes) and the nodes that `loaded` names.
+    /// Condenses the solution to the points of `outputs` (rows over the nodes) and the nodes listed in
+    /// `loaded`.
     pub fn condense(&self, outputs: &Rows, loaded: &[u32]) -> Result<Condensed, SolveError> {
         let count = self.node_count();
         let constrained = outputs.apply(&self.solve_forces(&vec![Vector3::zeros(); count], 1.0)?.u);
@@ -30,8 +32,8 @@ impl Factored<'_> {
                 for (&node, value) in nodes.iter().zip(values) {
                     unit[node as usize][axis] += *value;
                 }
-                // The stiffness is symmetric: what a unit force on the output does everywhere is what the output
-                // makes of a unit force anywhere.
+                // The stiffness is symmetric. The displacement at all nodes under a unit force on the output
+                // is therefore the displacement of the output under a unit force on each node.
                 let u = self.solve_forces(&unit, 0.0)?.u;
                 operator.extend(loaded.iter().flat_map(|&node| u[node as usize].iter().copied()));
             }
@@ -41,8 +43,8 @@ impl Factored<'_> {
 }
 
 impl Condensed {
-    /// Displacement of every output, m, under `forces` (N) on the loaded nodes and `supports` times what supports
-    /// prescribe.
+    /// Writes the displacement of every output, m, to `out`: the response to `forces` (N) on the loaded nodes
+    /// plus `supports` times the response to the prescribed displacements.
     pub fn apply(&self, forces: &[Vector3], supports: f64, out: &mut [Vector3]) {
         assert_eq!(
             (forces.len(), out.len()),
@@ -54,7 +56,7 @@ impl Condensed {
             *output = row * supports;
         }
         for (at, row) in rows.enumerate() {
-            // Three sums side by side: one of its own would wait for each addition.
+            // Three independent sums: in a single sum each addition would wait for the previous addition.
             let mut sums = [0.0; 3];
             for (three, force) in row.chunks_exact(3).zip(forces) {
                 sums[0] += three[0] * force.x;
@@ -65,12 +67,12 @@ impl Condensed {
         }
     }
 
-    /// Numbers kept.
+    /// Number of stored coefficients.
     pub fn len(&self) -> usize {
         self.operator.len()
     }
 
-    /// Whether nothing is loaded or nothing asked for.
+    /// Whether the operator has no loaded node or no output.
     pub fn is_empty(&self) -> bool {
         self.operator.is_empty()
     }

@@ -15,8 +15,10 @@ pub struct ConstraintRow {
     pub value: f64,
 }
 
-/// Rows `sum_q w M_m(x_q) (u_a(x_q) - g_a(x_q)) = 0` for each multiplier node `m` that the surface sees and each
-/// axis `a` asked for; `multiplier` holds the multiplier basis `M` at the surface points, `values` the prescribed
+/// Returns the rows `sum_q w M_m(x_q) (u_a(x_q) - g_a(x_q)) = 0` for each multiplier node `m` that is present
+/// on the surface and each selected axis `a`.
+///
+/// `multiplier` holds the multiplier basis `M` at the surface points, and `values` the prescribed
 /// displacement `g` there (m).
 pub fn multiplier_rows(
     surface: &SurfaceRows,
@@ -27,7 +29,7 @@ pub fn multiplier_rows(
     let points = surface.weights().len();
     check_len("rows of the multiplier basis", multiplier.len(), points)?;
     check_len("prescribed displacements", values.len(), points)?;
-    // Per multiplier node: the (point, w M) pairs it sees, in order of points.
+    // For every multiplier node: its pairs (point, w M), in order of points.
     let mut seen: Vec<Vec<(usize, f64)>> = vec![Vec::new(); multiplier.node_count()];
     for q in 0..points {
         let (nodes, m) = multiplier.row(q);
@@ -60,19 +62,20 @@ pub fn multiplier_rows(
     Ok(rows)
 }
 
-/// A checked row without repeated terms or zero coefficients: `(dof, coefficient)` ascending, and the value.
+/// A checked row without repeated terms or zero coefficients: pairs `(dof, coefficient)` in ascending order,
+/// and the value.
 pub(crate) struct Row {
     pub terms: Vec<(usize, f64)>,
     pub value: f64,
 }
 
 impl Row {
-    /// The terms at prescribed values.
+    /// Returns the sum of the terms with prescribed values.
     pub fn held_part(&self, prescribed: &[Option<f64>]) -> f64 {
         self.terms.iter().filter_map(|&(dof, c)| prescribed[dof].map(|v| c * v)).sum()
     }
 
-    /// The row over what is not prescribed.
+    /// Returns the row over the degrees of freedom that are not prescribed.
     pub fn without(&self, prescribed: &[Option<f64>]) -> Row {
         let terms = self.terms.iter().filter(|t| prescribed[t.0].is_none()).copied().collect();
         Row { terms, value: self.value - self.held_part(prescribed) }

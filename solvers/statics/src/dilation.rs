@@ -6,14 +6,15 @@ use shape::{DilationGroups, Vector3};
 
 use crate::{Body, SolveError};
 
-/// Rows of the projected dilation at those points that are asked for.
+/// Rows of the projected dilation at selected points.
 pub(crate) struct Projected {
-    /// Per point of the body's quadrature: (node, 1/m), ascending; empty where not asked for.
+    /// For every point of the body's quadrature: pairs (node, 1/m) in ascending order; empty at points that
+    /// are not selected.
     rows: Vec<Vec<(u32, Vector3)>>,
 }
 
 impl Projected {
-    /// At the given points (in any order); `None` without a projection.
+    /// Computes the rows at the given points (in any order); `None` without a projection.
     pub fn new(body: &Body, points: impl Iterator<Item = u32>) -> Option<Projected> {
         let groups = body.dilation?;
         let mut wanted = vec![false; groups.point_count()];
@@ -30,7 +31,7 @@ impl Projected {
                 lists[p as usize].extend(row.iter().map(|&(node, b)| (node, b * share)));
             }
         }
-        // Many groups name the same nodes: summed, a row is a tenth as long.
+        // Many groups share nodes. Summing repeated nodes shortens a row to a tenth.
         for list in &mut lists {
             list.sort_by_key(|e| e.0);
             list.dedup_by(|next, kept| {
@@ -45,7 +46,7 @@ impl Projected {
         Some(Projected { rows: lists })
     }
 
-    /// Nodes and their gradient of the dilation at one point.
+    /// Returns the nodes of a point with the gradient of its dilation with respect to their displacements.
     pub fn row(&self, point: usize) -> &[(u32, Vector3)] {
         &self.rows[point]
     }
@@ -54,26 +55,26 @@ impl Projected {
 /// Volume (m^3) and averaged gradient row (1/m) of a group.
 pub(crate) type Averaged = (f64, Vec<(u32, Vector3)>);
 
-/// Those of every group; one without volume is refused.
+/// Returns volume and averaged gradient of every group, or an error for a group without volume.
 pub(crate) fn averaged(body: &Body, groups: &DilationGroups) -> Result<Vec<Averaged>, SolveError> {
     let scratch = || vec![Vector3::zeros(); body.nodes.len()];
     let averaged: Vec<Averaged> = (0..groups.len())
         .into_par_iter()
         .map_init(scratch, |scratch, a| groups.averaged_gradient(a, body.volume, scratch))
         .collect();
-    // `!(V > 0)`: a NaN must not pass.
+    // `!(V > 0)` also rejects NaN.
     match averaged.iter().enumerate().find(|(_, of)| !(of.0 > 0.0)) {
         Some((group, &(volume, _))) => Err(SolveError::GroupVolume { group, volume }),
         None => Ok(averaged),
     }
 }
 
-/// Bulk modulus of one dilation group, Pa: the volume average over its points.
+/// Returns the bulk modulus of a dilation group, Pa: the volume average over its points.
 pub(crate) fn group_bulk(body: &Body, group: usize) -> f64 {
     group_mean(body, group, LinearElastic::bulk)
 }
 
-/// The volume average of a modulus over the points of a dilation group, Pa.
+/// Returns the volume average of a modulus over the points of a dilation group, Pa.
 pub(crate) fn group_mean(body: &Body, group: usize, modulus: impl Fn(&LinearElastic) -> f64) -> f64 {
     let (points, shares) = body.dilation.expect("a body with groups").group(group);
     let (mut volume, mut sum) = (0.0, 0.0);

@@ -1,33 +1,35 @@
-//! Exact elimination of constraint rows: each independent row gives one of its parameters away to the others.
+//! Exact elimination of constraint rows: every independent row expresses one of its parameters by the others.
 //!
-//! Rows `C u = g` that share parameters form a block; Gauss-Jordan elimination with complete pivoting brings it to
-//! `u_p = E g - W u_o` with the pivots `p` and the others `o`. What is left of a dependent row is rounding, and the
-//! row is dropped and counted. Complete pivoting takes the parameter that weighs most in what is left of the rows: with
-//! rows that stand at the nodes of a cloud these are the nodes' own, and the entries of `W` stay of order one.
+//! Rows `C u = g` that share parameters form a block. Gauss-Jordan elimination with complete pivoting brings
+//! the block to `u_p = E g - W u_o` with the pivots `p` and the other parameters `o`. A dependent row is
+//! reduced to rounding; it is dropped and counted. Complete pivoting takes the parameter with the largest
+//! remaining coefficient. For rows at the nodes of a cloud this is the node's own parameter, and the entries
+//! of `W` stay of order one.
 
 use crate::SolveError;
 use crate::constraint::Row;
 
-/// What is left of a row, relative to its largest coefficient, below which it counts as dependent on the others.
-/// Exact repetitions leave 1e-16; of the rows of the committed scenes none falls below.
+/// Remainder of a row, relative to its largest coefficient, below which the row counts as dependent on the
+/// others. Exact repetitions leave 1e-16; no row of the committed scenes falls below this limit.
 const DEPENDENT: f64 = 1e-8;
 
-/// Rows that share parameters, solved for as many of these as the rows are independent.
+/// Rows that share parameters, solved for as many parameters as there are independent rows.
 pub(crate) struct Block {
-    /// The independent rows, by their index among all.
+    /// Indices of the independent rows among all rows.
     pub rows: Vec<usize>,
-    /// Degree of freedom that each independent row gives away.
+    /// Degree of freedom that each independent row eliminates.
     pub pivots: Vec<usize>,
     /// The other degrees of freedom of the rows.
     pub others: Vec<usize>,
-    /// `W` (pivots, others), by rows.
+    /// `W` (pivots, others), row by row.
     pub weights: Vec<f64>,
-    /// `E` (pivots, rows), by rows: of what is prescribed, and transposed of the forces on the pivots, which gives the
-    /// multipliers.
+    /// `E` (pivots, rows), row by row. `E` acts on the prescribed values, and its transpose on the forces on
+    /// the pivots, which gives the multipliers.
     pub inverse: Vec<f64>,
 }
 
-/// The blocks of all rows, which must hold free degrees of freedom only, and the number of dependent rows.
+/// Returns the blocks of all rows, whose terms must be free degrees of freedom, and the number of dependent
+/// rows.
 pub(crate) fn blocks(rows: &[Row], dofs: usize) -> Result<(Vec<Block>, usize), SolveError> {
     let mut blocks = Vec::new();
     let mut dropped = 0;
@@ -39,9 +41,9 @@ pub(crate) fn blocks(rows: &[Row], dofs: usize) -> Result<(Vec<Block>, usize), S
     Ok((blocks, dropped))
 }
 
-/// Rows by the block they belong to, ascending. A row without terms is a block of its own.
+/// Groups the rows by block, ascending. A row without terms forms a block of its own.
 fn connected(rows: &[Row], dofs: usize) -> Vec<Vec<usize>> {
-    // Union-find over rows; each degree of freedom remembers the first row that has it.
+    // Union-find over rows; each degree of freedom remembers the first row that contains it.
     let mut parent: Vec<usize> = (0..rows.len()).collect();
     fn find(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {
@@ -132,7 +134,8 @@ fn solve(
     })
 }
 
-/// Place of the largest coefficient in the rows without a pivot; the first of equals, `None` if all are rounding.
+/// Position of the largest coefficient in the rows without a pivot (the first of equal ones); `None` if only
+/// rounding is left.
 fn largest(table: &[f64], width: usize, n: usize, pivot_of: &[Option<usize>]) -> Option<(usize, usize)> {
     let (mut best, mut place) = (DEPENDENT, None);
     for (r, row) in table.chunks_exact(width).enumerate().filter(|(r, _)| pivot_of[*r].is_none()) {

@@ -1,34 +1,34 @@
-//! What can go wrong between a problem and its solution.
+//! Errors between a problem and its solution.
 
 use algebra::AlgebraError;
 
 use crate::RigidMode;
 
-/// Why a problem has no (trustworthy) solution.
+/// Reason why a problem has no (trustworthy) solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    /// Two arrays that should be of one length.
+    /// Two arrays that should have the same length.
     #[error("{what}: {found} given, {expected} needed")]
     Length {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length it needs.
+        /// Required length.
         expected: usize,
     },
     /// A NaN or an infinity in the input.
     #[error("{what} {index} is not finite")]
     NotFinite {
-        /// What kind of number.
+        /// Name of the quantity.
         what: &'static str,
-        /// Its index.
+        /// Index of the value.
         index: usize,
     },
-    /// A node index beyond the nodes.
+    /// A node index beyond the number of nodes.
     #[error("{what} names node {node} of {nodes}")]
     NodeOutOfRange {
-        /// Who names it.
+        /// Name of the input that refers to the node.
         what: &'static str,
         /// The node.
         node: usize,
@@ -38,7 +38,7 @@ pub enum SolveError {
     /// An axis other than 0, 1, 2.
     #[error("{what} names axis {axis}; the axes are 0, 1 and 2")]
     BadAxis {
-        /// Who names it.
+        /// Name of the input that refers to the axis.
         what: &'static str,
         /// The axis.
         axis: u8,
@@ -73,12 +73,12 @@ pub enum SolveError {
         /// Value less the sum of fixed terms.
         gap: f64,
     },
-    /// A constraint row that follows from the others, which ask for another value.
+    /// A constraint row that depends on the others but prescribes a different value.
     #[error("constraint row {row} depends on the others, which miss its value by {gap:e}")]
     Dependent {
         /// Row index.
         row: usize,
-        /// The row's combination with the others on the prescribed values.
+        /// Value of the linear combination of this row with the others that should vanish.
         gap: f64,
     },
     /// A parameter of a weak support that must be positive.
@@ -86,7 +86,7 @@ pub enum SolveError {
     BadWeak {
         /// Index of the support.
         support: usize,
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -99,7 +99,7 @@ pub enum SolveError {
         /// Its volume.
         volume: f64,
     },
-    /// A node that no integration point sees and that is not fixed along every axis.
+    /// A node that lies in the support of no integration point and is not fixed along every axis.
     #[error("node {node} has no stiffness: no integration point sees it")]
     OrphanNode {
         /// The node.
@@ -117,20 +117,20 @@ pub enum SolveError {
         /// Number of nodes in all.
         nodes: usize,
     },
-    /// A zero or negative pivot although rigid motions are all suppressed: the integration is too poor to hold the body
-    /// (zero-energy modes), or parts of it are joined by a hinge only.
+    /// A zero or negative pivot although no rigid motion is free. Either the integration is too poor
+    /// (zero-energy modes), or parts of the body are joined by a hinge only.
     #[error(
         "the stiffness is not positive definite though no rigid motion is free: zero-energy modes of a reduced \
          integration, or parts joined along an edge or at a point"
     )]
     NotPositiveDefinite,
-    /// Conjugate gradients over the nodal parameters know no constraint rows.
+    /// Conjugate gradients over the nodal parameters, which cannot enforce constraint rows.
     #[error("{rows} constraint rows need a direct solver, iterations don't do")]
     RowsNeedFactor {
         /// Number of rows.
         rows: usize,
     },
-    /// As [`SolveError::NotPositiveDefinite`] with Nitsche supports: their stabilisation is too small.
+    /// As [`SolveError::NotPositiveDefinite`], with Nitsche supports whose stabilisation is too small.
     #[error(
         "the stiffness with Nitsche supports is not positive definite: gamma = {gamma} is too small (or the \
              boundary quadrature too poor), raise it"
@@ -139,7 +139,7 @@ pub enum SolveError {
         /// The smallest stabilisation factor among the supports.
         gamma: f64,
     },
-    /// A motion whose frequency is any number.
+    /// A motion without stiffness and mass, whose frequency is undefined.
     #[error(
         "some motion has neither stiffness nor mass: no frequency; integrate one of them with more points"
     )]

@@ -1,8 +1,8 @@
 #![allow(non_snake_case)] // G and H as in the formulas
-//! Gradient rows ready for assembly, those of two points together where they see nearly the same nodes.
+//! Gradient rows prepared for assembly, in which two points with nearly the same nodes are bundled.
 //!
-//! The sum `G_ij = sum_q w g_i g_j^T` reads and writes a block for every pair of nodes of every point: as many stores as there are
-//! products. Two points that share their nodes share these stores too.
+//! The sum `G_ij = sum_q w g_i g_j^T` reads and writes a block for every pair of nodes of every point: there
+//! are as many stores as products. Two points with common nodes also share these stores.
 
 use std::ops::Range;
 
@@ -20,35 +20,38 @@ use crate::{Body, SolveError};
 /// Bundles per task.
 const CHUNK: usize = 64;
 
-/// Gradients whose forces one task sums.
+/// Number of gradients whose forces one task sums.
 const TASK: usize = 4096;
 
-/// Points of a bundle, at most.
+/// Largest number of points in a bundle.
 const POINTS: usize = 2;
 
-/// Neighbours from which on it pays to sort the points in space: with those of linear elements that takes as long as their sums.
+/// Number of neighbours above which sorting the points in space pays off. For linear elements, sorting takes
+/// as long as the sums.
 const LONG: usize = 16;
 
-/// A vector at each point of a bundle, padded to four numbers each: a register of AVX-512 or two of AVX2, a line of the cache.
+/// A vector at each point of a bundle, padded to four numbers each: one register of AVX-512, two of AVX2, or
+/// one cache line.
 pub(crate) type Pair = [f64; 4 * POINTS];
 
-/// Gradients of one or two points that follow each other, by bundle; nodes ascending in each, so that the partners `j <= i` of an
-/// entry are the entries before it. Bundles are in the order of their laws, and the points of one have the same.
+/// Gradients of bundles of one or two consecutive points. Nodes ascend in each bundle, so the partners
+/// `j <= i` of an entry are the entries before it. Bundles are ordered by law, and all points of a bundle
+/// have the same law.
 pub(crate) struct GradTable {
     offsets: Vec<usize>,
     nodes: Vec<u32>,
-    /// Which points of its bundle see the node, a bit each.
+    /// Points of the bundle whose support contains the node, one bit each.
     seen_by: Vec<u8>,
-    /// 1/m; zero at points that do not see the node.
+    /// Gradients, 1/m; zero at points whose support does not contain the node.
     grads: Vec<Pair>,
-    /// Weight of each point, at every place of its gradients.
+    /// Weight of each point, repeated for every component of its gradients.
     weights: Vec<Pair>,
-    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    /// Bundles of each law that has any, in order, with its lambda and mu, Pa.
     laws: Vec<(Range<usize>, (f64, f64))>,
 }
 
-/// What a table is made of: points in their order, the row of gradients of each (a row may name a node twice; its gradients add up), its
-/// weight and its law.
+/// Input of a table: the order of the points, and the row of gradients, weight and law of each. A row may
+/// name a node twice; its gradients add up.
 struct Rows<R, W, L> {
     order: Vec<u32>,
     row: R,
@@ -57,7 +60,8 @@ struct Rows<R, W, L> {
 }
 
 impl GradTable {
-    /// The body's own quadrature; with a projection only its deviatoric part, `lambda' = -2 mu / 3`.
+    /// Builds the table of the body's own quadrature; with a projection only the deviatoric part,
+    /// `lambda' = -2 mu / 3`.
     pub fn points(body: &Body) -> GradTable {
         let moduli = body.materials.iter().map(|m| match body.dilation {
             Some(_) => (-2.0 / 3.0 * m.mu(), m.mu()),
@@ -78,7 +82,8 @@ impl GradTable {
         GradTable::new(body.nodes.len(), &rows, &moduli.collect::<Vec<_>>())
     }
 
-    /// The dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1, 0) and weight `kappa V_a`.
+    /// Builds the table of the dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1,
+    /// 0) and weight `kappa V_a`.
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let averaged = averaged(body, groups)?;
@@ -86,7 +91,7 @@ impl GradTable {
         Ok(Some(GradTable::of_groups(body.nodes.len(), &averaged, weight)))
     }
 
-    /// `weight b_a b_a^T` of these groups.
+    /// Builds the table of the terms `weight b_a b_a^T` of the given groups.
     pub fn of_groups(
         node_count: usize,
         averaged: &[Averaged],
@@ -110,7 +115,7 @@ impl GradTable {
     {
         let (mut offsets, mut nodes, mut firsts) = (vec![0], Vec::new(), vec![0]);
         let (row, law) = (|p| (rows.row)(rows.order[p] as usize), |p| (rows.law)(rows.order[p] as usize));
-        // The first point of the bundle that met a node last.
+        // First point of the bundle that contained a node most recently.
         let mut met = vec![usize::MAX; node_count];
         let mut first = 0;
         for p in 0..rows.order.len() {
@@ -119,7 +124,7 @@ impl GradTable {
                 all += 1;
                 new += usize::from(met[node as usize] != first);
             }
-            // All pairs of a bundle cost the same, whichever of its points see them.
+            // All pairs of nodes of a bundle cost the same, even if only one of its points contributes.
             let here: usize = nodes.len() - offsets[offsets.len() - 1];
             let pays = (here + new).pow(2) <= here.pow(2) + all * all;
             let joins = p < first + POINTS && law(p) == law(first) && pays;
@@ -159,7 +164,8 @@ impl GradTable {
         table
     }
 
-    /// Sorts the nodes of every bundle and adds its gradients up. `firsts` are the points that the bundles start with.
+    /// Sorts the nodes of every bundle and adds up its gradients. `firsts` holds the first point of each
+    /// bundle.
     fn fill<I: Iterator<Item = (u32, Vector3)>>(
         &mut self,
         firsts: &[usize],
@@ -206,25 +212,26 @@ impl GradTable {
         Connectivity { offsets: &self.offsets, nodes: &self.nodes, seen_by: &self.seen_by }
     }
 
-    /// The bundles that each node is in, ascending.
+    /// Returns the bundles that contain each node, ascending.
     pub fn incidence(&self, node_count: usize) -> Incidence {
         Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
     }
 
-    /// Bundles that have about so many gradients together, one at least.
+    /// Returns the number of bundles, at least one, that have about `gradients` gradients together.
     pub fn bundles_of(&self, gradients: usize) -> usize {
         (gradients * self.weights.len() / self.nodes.len().max(1)).max(1)
     }
 
-    /// Bundles of each law that has any, one after another, and its lambda and mu, Pa.
+    /// Returns the bundles of each law that has any, in order, with its lambda and mu, Pa.
     pub fn laws(&self) -> &[(Range<usize>, (f64, f64))] {
         &self.laws
     }
 
-    /// Takes the nodal forces `sum_q w sigma grad N`, `sigma = lambda tr H I + mu (H + H^T)`, from `force`.
+    /// Subtracts the nodal forces `sum_q w sigma grad N`, N, from `force`, with
+    /// `sigma = lambda tr H I + mu (H + H^T)`.
     ///
-    /// Gradients come from the outermost cache, so they are read once: a bundle's forces are summed while its gradients are near.
-    /// Tasks are the same at any number of threads.
+    /// Gradients come from the outermost cache and are therefore read only once: the forces of a bundle are
+    /// summed while its gradients are in the inner cache. Tasks are the same at any number of threads.
     pub fn subtract_force(&self, u: &[Vector3], force: &mut [Vector3]) {
         let path = LanePath::best();
         let tasks: Vec<usize> = (0..self.weights.len()).step_by(self.bundles_of(TASK)).collect();
@@ -241,7 +248,7 @@ impl GradTable {
         }
     }
 
-    /// `w sigma` at the points of a bundle from the displacement gradients there, both by rows.
+    /// Returns `w sigma` at the points of a bundle for the given displacement gradients, both row by row.
     fn stress(&self, bundle: usize, H: &[Pair; 3]) -> [Pair; 3] {
         let law = self.laws.partition_point(|(bundles, _)| bundles.end <= bundle);
         let (lambda, mu) = self.laws[law].1;
@@ -260,11 +267,13 @@ impl GradTable {
 }
 
 on_path! {
-    /// `G_ij += w g_i g_j^T` over the bundles `seen` by node i and their nodes j <= i, the inner loop of assembly; `G` is the sum
-    /// of two halves. Blocks of nodes that only other points of a bundle see have no `slot`, and get zeros wherever that leads.
+    /// Adds `w g_i g_j^T` to `G_ij` over the bundles `seen` by node i and their nodes j <= i. This is the
+    /// inner loop of assembly. `G` is the sum of two halves. Pairs of nodes that never share a point have no
+    /// `slot`; the zeros they add go to an arbitrary block.
     ///
-    /// For two points three stores and three products and sums of eight lanes: 3 cycles per pair of nodes with AVX-512, what one
-    /// point takes alone. The same arithmetic in the same order on every path, so the same bits: multiply and add stay apart.
+    /// Two points take three stores and three products and sums of eight lanes: 3 cycles per pair of nodes
+    /// with AVX-512, as much as one point alone. The arithmetic and its order are the same on every path, and
+    /// multiplication and addition stay separate, so the bits are the same.
     pub(crate) fn gather(
         table: &GradTable,
         seen: &[(u32, u32)],
@@ -298,7 +307,7 @@ fn gather_in<const FMA: bool>(table: &GradTable, seen: &[(u32, u32)], slot: &[u3
 }
 
 on_path! {
-    /// Adds the forces of some bundles; the same bits on every path.
+    /// Adds the forces of some bundles, with the same bits on every path.
     fn add_force(table: &GradTable, bundles: Range<usize>, u: &[Vector3], forces: &mut Forces) = add_force_in
 }
 
@@ -316,13 +325,13 @@ fn add_force_in<const FMA: bool>(
         let base = u[first as usize];
         let mut H = [[0.0; 8]; 3];
         for (&node, g) in nodes.iter().zip(grads) {
-            // Gradients of a partition of unity sum to zero: only differences of displacements count.
+            // Gradients of a partition of unity sum to zero, so only differences of displacements count.
             let difference = u[node as usize] - base;
             for (row, d) in H.iter_mut().zip(&difference) {
                 *row = add_product(*row, &[*d; 8], g);
             }
         }
-        // Row a of w sigma at the points of the bundle, zero beyond them.
+        // Row a of w sigma at the points of the bundle; zero in unused places.
         let stress = table.stress(bundle, &H);
         for (&node, g) in nodes.iter().zip(grads) {
             let sum = &mut forces.sums[forces.slot[node as usize] as usize];
@@ -333,23 +342,24 @@ fn add_force_in<const FMA: bool>(
     }
 }
 
-/// By whole arrays: added in place lane by lane, the compiler takes these products one at a time.
+/// Adds by whole arrays: the compiler does not vectorise these products if they are added in place lane by
+/// lane.
 #[inline(always)]
 fn add_product(sum: Pair, a: &Pair, b: &Pair) -> Pair {
     std::array::from_fn(|l| sum[l] + a[l] * b[l])
 }
 
-/// Forces of the nodes that some bundles see.
+/// Forces on the nodes of some bundles.
 struct Forces {
-    /// Where the sum of each node of the body is; `u32::MAX` of the nodes that are not seen.
+    /// Index of each node's sum; `u32::MAX` for nodes outside these bundles.
     slot: Vec<u32>,
     nodes: Vec<u32>,
-    /// By axis, to be summed over the lanes.
+    /// Sums by axis, still to be added over the lanes.
     sums: Vec<[Pair; 3]>,
 }
 
 impl Forces {
-    /// Makes room for nodes, any of them more than once.
+    /// Makes room for the given nodes, which may repeat.
     fn start(&mut self, seen: &[u32]) {
         for &node in seen {
             let slot = &mut self.slot[node as usize];
@@ -361,7 +371,7 @@ impl Forces {
         self.sums.resize(self.nodes.len(), [[0.0; 8]; 3]);
     }
 
-    /// The forces, N, and an end with nothing seen.
+    /// Returns the forces, N, and resets the structure.
     fn finish(&mut self) -> Vec<(u32, Vector3)> {
         let total = |sum: [Pair; 3]| Vector3::from_fn(|axis, _| sum[axis].iter().sum::<f64>());
         self.nodes.iter().for_each(|&node| self.slot[node as usize] = u32::MAX);
@@ -369,8 +379,9 @@ impl Forces {
     }
 }
 
-/// The points of a body along a curve, so that those that follow each other see nearly the same nodes, whatever the order of the cells
-/// they are from. Points that have all their nodes in common stay together, as those of an element.
+/// Orders the points of a body along a space-filling curve, so that consecutive points have nearly the same
+/// nodes, independently of the order of cells. Points with identical nodes, such as those of an element, stay
+/// together.
 fn in_space(body: &Body) -> Vec<u32> {
     let rows = body.volume.rows();
     let mut order: Vec<u32> = (0..rows.len() as u32).collect();
@@ -390,7 +401,7 @@ fn in_space(body: &Body) -> Vec<u32> {
     order
 }
 
-/// Where the vector at one of the points stands.
+/// Range of the vector at one of the points within a [`Pair`].
 fn places(point: usize) -> Range<usize> {
     4 * point..4 * point + 4
 }
@@ -399,7 +410,7 @@ fn places(point: usize) -> Range<usize> {
 mod tests {
     use super::*;
 
-    /// Rows of two laws in turn, one of which names a node twice and one of which shares no node with those beside it.
+    /// Rows of two alternating laws. One row names a node twice, and one shares no node with its neighbours.
     fn rows() -> Vec<Vec<(u32, Vector3)>> {
         let g = |k: u32| Vector3::new(f64::from(k), 1.0 - 0.5 * f64::from(k), 0.25 * f64::from(k * k));
         let of = |nodes: &[u32]| nodes.iter().map(|&n| (n, g(n))).collect();
@@ -414,7 +425,7 @@ mod tests {
         order.sort_by_key(|&q| law(q as usize));
         let parts = Rows { order, row: |q: usize| rows[q].iter().copied(), weight, law };
         let table = GradTable::new(node_count, &parts, &[(1.0, 2.0), (3.0, 4.0)]);
-        // Points 0 and 2, 3 alone, 1 and 4, 5.
+        // The bundles are: points 0 and 2, point 3, points 1 and 4, point 5.
         assert_eq!(table.offsets, [0, 4, 6, 10, 13]);
         assert_eq!(table.laws(), [(0..2, (1.0, 2.0)), (2..4, (3.0, 4.0))]);
         let incidence = table.incidence(node_count);

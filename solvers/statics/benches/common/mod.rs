@@ -19,12 +19,13 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// A cube of n^3 cells of six tet4: `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them constrained.
+    /// A cube of n^3 cells of six tet4, with `3 (n + 1)^3` degrees of freedom, `3 (n + 1)^2` of them
+    /// constrained.
     pub fn new(n: usize) -> Pressed {
         Pressed::of(CellKind::Tet4, n)
     }
 
-    /// The same cube in other cells.
+    /// The same cube with cells of another kind.
     pub fn of(kind: CellKind, n: usize) -> Pressed {
         let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
         let max = Point3::new(0.04, 0.04, 0.04);

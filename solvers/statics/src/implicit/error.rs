@@ -1,24 +1,24 @@
-//! What can end a solution in time.
+//! Errors of implicit dynamics.
 
 use crate::{SolveError, StaticError};
 
-/// Why a solution in time cannot start or ended early.
+/// Reason why implicit dynamics cannot start or ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TimeError {
-    /// The problem itself, or the equilibrium of a step.
+    /// An error of the problem itself or of the equilibrium of a step.
     #[error(transparent)]
     Static(#[from] StaticError),
     /// A parameter that is not usable.
     #[error("{what} is {value}; {need}")]
     Parameter {
-        /// Which one.
+        /// Name of the parameter.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// Requirement on the value.
         need: &'static str,
     },
-    /// A node without mass, or with a negative one.
+    /// A node whose mass is zero or negative.
     #[error("node {node} has the mass {mass:.3e} kg; it must be positive")]
     NodalMass {
         /// The node.
@@ -26,7 +26,8 @@ pub enum TimeError {
         /// Its entry on the diagonal of the mass matrix, kg.
         mass: f64,
     },
-    /// The mass matrix cannot be inverted for the accelerations at the start: too few integration points.
+    /// The mass matrix cannot be inverted for the initial accelerations: there are too few integration
+    /// points.
     #[error(
         "no accelerations at the start: relative residual {residual:.1e} after {iterations} iterations with the mass \
          matrix; a mass table with more points per node is needed"
@@ -34,10 +35,10 @@ pub enum TimeError {
     SingularMass {
         /// Iterations of conjugate gradients.
         iterations: usize,
-        /// Residual reached.
+        /// Relative residual reached.
         residual: f64,
     },
-    /// A step differs from a more exact one by more than what is allowed.
+    /// A step whose estimated local error exceeds the limit.
     #[error("local error {error:.2e} m of the step, allowed {allowed:.2e} m")]
     Inaccurate {
         /// Estimate, m.
@@ -45,7 +46,7 @@ pub enum TimeError {
         /// Limit, m.
         allowed: f64,
     },
-    /// Steps were cut back to nothing.
+    /// A step that failed at the smallest allowed length.
     #[error("stopped at {time:.6e} s: a step of {step:.1e} s failed too ({cause})")]
     Stalled {
         /// Time reached, s.

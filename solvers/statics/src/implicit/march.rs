@@ -1,4 +1,4 @@
-//! Stepping through time: steps with cut-back and regrowth, each solved by Newton's method.
+//! Time stepping with cut-back and regrowth of steps, each solved by Newton's method.
 
 use contact::ContactCounts;
 use contact::Drive;
@@ -12,8 +12,11 @@ use crate::nonlinear::{
 };
 use crate::{StaticWork, Step};
 
-/// Solves; `observe` is called after every converged step with the step, the motion and the pressures.
-/// An error here is one of the problem itself; a solution that ends early is a [`TimePath`] with its failure.
+/// Solves a problem of implicit dynamics. `observe` is called after every converged step with the step, the
+/// motion and the pressures.
+///
+/// # Errors
+/// Errors of the problem itself. A solution that ends early is a [`TimePath`] with its `failure`.
 pub fn solve_in_time(
     problem: &TimeProblem,
     params: &TimeParams,
@@ -38,13 +41,13 @@ pub fn solve_in_time(
     }
     let count = params.steps.max(1);
     let longest = params.end / count as f64;
-    // A smooth ramp is less than twice as fast as a linear one.
+    // The peak speed of a smooth ramp is less than twice that of a linear ramp.
     let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
     let (mut next, mut step) = (1, longest);
     while next <= count {
         let target = next as f64 * longest;
         let left = target - march.state.time;
-        // A rest shorter than a tenth of the step would be one for its own sake.
+        // Avoids a last step shorter than a tenth of the current step.
         let reaches = step > 0.9 * left;
         let time = if reaches { target } else { march.state.time + step };
         let length = time - march.state.time;
@@ -88,12 +91,13 @@ pub fn solve_in_time(
     Ok(path)
 }
 
-/// The step to take after one with this local error, relative to it: the error grows as its third power.
+/// Ratio of the next step to the last step for the given local error, which grows as the third power of the
+/// step.
 fn following(allowed: f64, error: f64) -> f64 {
     if error > 0.0 { 0.9 * (allowed / error).cbrt() } else { f64::INFINITY }
 }
 
-/// A motion under way.
+/// State of the time stepping.
 struct March<'a> {
     problem: &'a TimeProblem<'a>,
     params: &'a TimeParams,
@@ -109,7 +113,7 @@ struct March<'a> {
 }
 
 impl<'a> March<'a> {
-    /// At time 0; a quasi-static body that is loaded at once comes with the step that took it there.
+    /// Starts at time 0. A quasi-static body that is loaded at once returns the step to that state as well.
     fn start(
         problem: &'a TimeProblem<'a>,
         params: &'a TimeParams,
@@ -141,7 +145,7 @@ impl<'a> March<'a> {
         Ok((march, first))
     }
 
-    /// Forces and accelerations at time 0.
+    /// Computes forces and accelerations at time 0.
     fn start_moving(&mut self) -> Result<(), TimeError> {
         let inertia = self.problem.inertia.expect("asked for with inertia only");
         if !inertia.displacement.is_empty() {
@@ -196,7 +200,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// On to `time`; nothing has changed if that fails. A state that is `reported` says whether it is the last.
+    /// Advances to `time`; a failure leaves the state unchanged. `reported` is set for a state to be reported
+    /// and says whether it is the last.
     fn step(&mut self, time: f64, reported: Option<bool>) -> Result<TimeStep, TimeError> {
         let dt = time - self.state.time;
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
@@ -233,7 +238,7 @@ impl<'a> March<'a> {
         Ok(TimeStep { step, energy: self.energy, error })
     }
 
-    /// Value, velocity or acceleration (`order` 0, 1, 2) of constrained degrees of freedom at `time`.
+    /// Sets value, velocity or acceleration (`order` 0, 1, 2) of constrained degrees of freedom at `time`.
     fn prescribe(&self, field: &mut [Vector3], time: f64, order: usize) {
         let part = self.problem.ramps.supports.derivatives(time)[order];
         for (dof, value) in self.newton.prescribed().iter().enumerate() {
@@ -243,8 +248,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Velocities and accelerations with the displacement `u` at `time`; constrained degrees of freedom have those of the
-    /// ramp.
+    /// Returns velocities and accelerations for the displacement `u` at `time`. Constrained degrees of
+    /// freedom take the values of the ramp.
     fn motion_at(&self, time: f64, dt: f64, u: &[Vector3]) -> Motion {
         let Motion { u: from, v, a, .. } = &self.motion;
         let zeros = || vec![Vector3::zeros(); u.len()];
@@ -261,7 +266,7 @@ impl<'a> March<'a> {
         Motion { u: u.to_vec(), v: new_v, a: new_a, reaction: zeros() }
     }
 
-    /// Inertia in the balance of the step to `time`.
+    /// Returns the inertia terms in the balance of the step to `time`.
     fn inertia(&self, time: f64, update: Update, damping: f64) -> InertiaTerms {
         let Motion { u, v, a, .. } = &self.motion;
         let dt = time - self.state.time;
@@ -272,12 +277,12 @@ impl<'a> March<'a> {
         let carried = (self.forces.external.iter().zip(&self.forces.internal))
             .map(|(external, internal)| (external - internal) * weight)
             .collect();
-        // With the acceleration of the last step's end: exact for a body that falls freely.
+        // The acceleration at the end of the last step makes the guess exact for a body in free fall.
         let guess = (0..u.len()).map(|i| u[i] + (v[i] + a[i] * (0.5 * dt)) * dt).collect();
         InertiaTerms { factor: update.factor(damping), from: u.clone(), settled, carried, guess }
     }
 
-    /// What balances constrained degrees of freedom; zero in free ones.
+    /// Returns the reaction forces at constrained degrees of freedom; zero at free degrees of freedom.
     fn reaction(&self, forces: &Ended, motion: &Motion) -> Vec<Vector3> {
         let mut inertia = vec![Vector3::zeros(); motion.u.len()];
         if let Some(given) = self.problem.inertia {

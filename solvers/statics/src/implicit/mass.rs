@@ -1,4 +1,4 @@
-//! Mass matrices, as tables of values with the mass of each point: `M v` is a product with the table.
+//! Mass matrices, stored as tables of values with the mass of each point: `M v` is a product with the table.
 
 use algebra::BlockPattern;
 use algebra::Stiffness;
@@ -9,9 +9,10 @@ use super::TimeError;
 use crate::body::check_len;
 use crate::nonlinear::SurfaceTable;
 
-/// Residual of the accelerations at the start relative to their forces.
+/// Residual of the initial accelerations, relative to their forces.
 const ACCURACY: f64 = 1e-13;
-/// A consistent mass matrix scaled by its diagonal has a condition number below some 100: 1e-13 takes 60 iterations.
+/// Limit of iterations. A consistent mass matrix scaled by its diagonal has a condition number below about
+/// 100: 1e-13 takes 60 iterations.
 const ITERATIONS: usize = 1000;
 
 /// A mass matrix.
@@ -22,9 +23,14 @@ pub struct Mass {
 }
 
 impl Mass {
-    /// Consistent, `M_IJ = sum_q w rho N_I N_J`. The quadrature may be another than that of the forces, and must be
-    /// for quadratic elements: 4 points of a tet10 give a matrix of rank 4, 14 points (degree 5) the exact one.
-    /// `density` (kg/m^3) by region, `region` of every point or empty when all are of region 0.
+    /// Builds a consistent mass matrix, `M_IJ = sum_q w rho N_I N_J`.
+    ///
+    /// `density` is in kg/m^3 by region; `region` gives the region of every point and is empty if all points
+    /// are in region 0. The quadrature may differ from that of the forces, and must do so for quadratic
+    /// elements: 4 points of a tet10 give a matrix of rank 4, 14 points (degree 5) the exact matrix.
+    ///
+    /// # Errors
+    /// A length that does not match, or a density that is not positive.
     pub fn consistent(volume: &VolumeRows, density: &[f64], region: &[u16]) -> Result<Mass, TimeError> {
         let weights = volume.weights();
         if !region.is_empty() {
@@ -46,15 +52,18 @@ impl Mass {
         Mass::of(SurfaceTable::weighted(volume.rows(), masses), volume.rows().node_count())
     }
 
-    /// Diagonal, from nodal masses in kg.
+    /// Builds a diagonal mass matrix from nodal masses, kg.
     pub fn lumped(nodal: &[f64]) -> Result<Mass, TimeError> {
         Mass::of(SurfaceTable::nodal(nodal.to_vec()), nodal.len())
     }
 
-    /// Of masses (kg) that move with displacements at nodes, where these are not the nodal parameters: with
-    /// `Lambda_IJ = N_J(x_I)` in the rows of `at_nodes`, `M = Lambda^T diag(m) Lambda`, the lumped mass after the
-    /// transformation to nodal displacements `d = Lambda u` (Chen, Pan, Wu & Liu, Comput. Methods Appl. Mech. Engrg. 139
-    /// (1996) 195-227). Where the basis is Kronecker it is [`Mass::lumped`].
+    /// Builds the matrix of masses (kg) that move with the displacements at nodes, for a basis whose nodal
+    /// parameters are not displacements.
+    ///
+    /// With `Lambda_IJ = N_J(x_I)` in the rows of `at_nodes`, `M = Lambda^T diag(m) Lambda`. This is the
+    /// lumped mass after the transformation to nodal displacements `d = Lambda u` (Chen, Pan, Wu & Liu,
+    /// Comput. Methods Appl. Mech. Engrg. 139 (1996) 195-227). For a basis with the Kronecker property the
+    /// result is [`Mass::lumped`].
     pub fn transformed(at_nodes: &Rows, nodal: &[f64]) -> Result<Mass, TimeError> {
         check_len("rows at the nodes", at_nodes.len(), nodal.len())?;
         check_len("nodes of the mass table", at_nodes.node_count(), nodal.len())?;
@@ -68,7 +77,7 @@ impl Mass {
         Ok(Mass { table, diagonal })
     }
 
-    /// `M v`: momentum by node, kg m/s, if `v` is a velocity.
+    /// Returns `M v`: the momentum of each node, kg m/s, if `v` is a velocity in m/s.
     pub fn times(&self, v: &[Vector3]) -> Vec<Vector3> {
         self.table.product(v)
     }
@@ -77,7 +86,7 @@ impl Mass {
         self.diagonal.len()
     }
 
-    /// The matrix itself, blocks `M_IJ` times the identity, kg.
+    /// Returns the assembled matrix with blocks `M_IJ I`, kg.
     pub(crate) fn matrix(&self) -> Stiffness {
         let rows = &self.table.rows;
         let of_node = rows.incidence(self.node_count());
@@ -100,8 +109,8 @@ impl Mass {
         &self.table
     }
 
-    /// Accelerations `a` with `M a = force` in free degrees of freedom and the values that `a` already has in constrained
-    /// ones, by conjugate gradients scaled with the diagonal.
+    /// Solves `M a = force` in the free degrees of freedom by conjugate gradients with diagonal
+    /// preconditioning. Constrained degrees of freedom keep the values of `a`.
     pub(crate) fn accelerate(
         &self,
         force: &[Vector3],

@@ -1,5 +1,5 @@
-//! Motion in real time by an implicit scheme over the nonlinear statics: with inertia, or without it where only the
-//! material knows the time.
+//! Implicit dynamics on top of nonlinear statics. Inertia is optional: without it only the material depends
+//! on time.
 
 mod energy;
 mod error;

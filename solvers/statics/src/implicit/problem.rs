@@ -1,4 +1,4 @@
-//! What is solved in time, how, and what comes out.
+//! Problem, parameters and result of implicit dynamics.
 
 use contact::ContactCounts;
 use material::Prony;
@@ -12,40 +12,41 @@ use crate::{NewtonParams, StaticProblem, StaticWork, Step};
 pub struct TimeProblem<'a> {
     /// The body with full loads, prescribed displacements and tools.
     pub body: &'a StaticProblem<'a>,
-    /// How they grow.
+    /// Time functions of loads, supports and tools.
     pub ramps: Ramps,
-    /// Mass and start; none for a quasi-static motion.
+    /// Mass and initial state; `None` for a quasi-static motion.
     pub inertia: Option<Inertia<'a>>,
-    /// Relaxation of the deviatoric stress of each law; empty in an elastic body.
+    /// Relaxation of the deviatoric stress of each law; empty for an elastic body.
     pub relaxation: &'a [Option<Prony>],
 }
 
-/// Mass, damping and the state at the start.
+/// Mass, damping and the initial state.
 #[derive(Clone, Copy, Debug)]
 pub struct Inertia<'a> {
     /// Mass matrix.
     pub mass: &'a Mass,
     /// Damping `c M v`, `c` in 1/s.
     pub damping: f64,
-    /// Displacement at the start, m; empty for none. Held degrees of freedom have their own.
+    /// Initial displacement, m; empty for zero. Constrained degrees of freedom take their prescribed values.
     pub displacement: &'a [Vector3],
-    /// Velocity at the start, m/s; empty for rest.
+    /// Initial velocity, m/s; empty for rest.
     pub velocity: &'a [Vector3],
 }
 
-/// How time is stepped.
+/// Parameters of time stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeParams {
     /// Time to reach, s.
     pub end: f64,
-    /// Number of equal steps at whose ends results are wanted. Steps are never longer; a step that fails is halved.
+    /// Number of equal output intervals. Steps are never longer; a step that fails is halved.
     pub steps: usize,
-    /// Part of a step below which cutting back is given up.
+    /// Smallest step as a fraction of the output interval; shorter steps are given up.
     pub smallest: f64,
-    /// Local error of a displacement that a step may make, m; steps that make more are cut back. Only with inertia.
+    /// Largest local error of a displacement in a step, m; steps with larger errors are cut back. Only with
+    /// inertia.
     pub accuracy: Option<f64>,
-    /// Spectral radius at infinite frequency, 0 to 1: 1 dissipates nothing, 0 kills in one step what a step cannot
-    /// resolve. Contact wants less than 1.
+    /// Spectral radius at infinite frequency, 0 to 1. With 1 nothing is dissipated; with 0 unresolved
+    /// frequencies vanish in one step. Contact needs a value below 1.
     pub rho_inf: f64,
     /// Newton's method.
     pub newton: NewtonParams,
@@ -53,8 +54,9 @@ pub struct TimeParams {
     pub augmentations: usize,
 }
 
-/// Displacement (m), velocity (m/s) and acceleration (m/s^2) of every node, the last two zero without inertia, and the
-/// force of the supports on it (N), zero in free degrees of freedom.
+/// Displacement (m), velocity (m/s) and acceleration (m/s^2) of every node, and the reaction force of the
+/// supports (N). Velocity and acceleration are zero without inertia; the reaction is zero in free degrees of
+/// freedom.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Motion {
@@ -67,42 +69,42 @@ pub struct Motion {
 /// A converged step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStep {
-    /// Time in s, iterations, tools. Its energy is that of the laws without relaxation.
+    /// Step in time (s) with its iterations and tools. Its energy is that of the laws without relaxation.
     pub step: Step,
-    /// The balance of energy.
+    /// Energy balance.
     pub energy: Energy,
     /// Estimate of the step's local error, m.
     pub error: f64,
 }
 
-/// What a solution in time gave: everything up to its end, and why it ended if that was early.
+/// Result of implicit dynamics up to its end, with the reason of an early end.
 #[derive(Clone, Debug)]
 pub struct TimePath {
-    /// Converged steps in order. One at time 0 is first where a quasi-static body is loaded at once.
+    /// Converged steps in order. The first is at time 0 if a quasi-static body is loaded at once.
     pub steps: Vec<TimeStep>,
     /// Nodal parameters after the last converged step.
     pub motion: Motion,
-    /// Pressure parameters (mixed method), Pa.
+    /// Pressure parameters of the mixed method, Pa.
     pub pressure: Vec<f64>,
-    /// Steps that failed and were cut back.
+    /// Number of steps that failed and were cut back.
     pub cut_back: usize,
-    /// What the contact search did and skipped.
+    /// Counters of the contact search.
     pub counts: ContactCounts,
-    /// Work in all.
+    /// Counters of the whole solution.
     pub work: StaticWork,
-    /// Why it ended early, if it did.
+    /// Reason of an early end.
     pub failure: Option<TimeError>,
 }
 
 impl TimePath {
-    /// The time reached, s.
+    /// Time reached, s.
     pub fn time(&self) -> f64 {
         self.steps.last().map_or(0.0, |s| s.step.time)
     }
 }
 
 impl TimeProblem<'_> {
-    /// Looks at everything that Newton's method does not look at itself.
+    /// Checks the inputs that Newton's method does not check itself.
     pub(super) fn check(&self, params: &TimeParams) -> Result<(), TimeError> {
         let refuse = |what, value, need| Err(TimeError::Parameter { what, value, need });
         if !(params.end > 0.0 && params.end.is_finite()) {

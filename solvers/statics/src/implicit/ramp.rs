@@ -1,12 +1,12 @@
-//! How loads, supports and tools grow with time.
+//! Time functions of loads, supports and tools.
 
-/// Part of a full value at a time, 0 to 1.
+/// Fraction of a full value as a function of time, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ramp {
-    /// All of it from the start.
+    /// Full value from the start.
     AtOnce,
-    /// In proportion to time over so many seconds, then constant. Supports driven so start and stop with a jump of their
-    /// velocity, which a body with inertia answers by a wave.
+    /// Proportional to time over the duration, then constant. The velocity of driven supports jumps at the
+    /// start and the end, which causes waves in a body with inertia.
     Linear {
         /// Duration, s.
         over: f64,
@@ -18,31 +18,31 @@ pub enum Ramp {
     },
 }
 
-/// One ramp each for what a problem is driven by.
+/// Ramps of loads, supports and tools.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramps {
     /// Loads.
     pub loads: Ramp,
     /// Prescribed displacements, of nodes and of surfaces constrained by penalty.
     pub supports: Ramp,
-    /// Closures and forces of tools.
+    /// Displacements and forces of tools.
     pub tools: Ramp,
 }
 
 impl Ramps {
-    /// The same for all.
+    /// Uses the same ramp for everything.
     pub fn all(ramp: Ramp) -> Ramps {
         Ramps { loads: ramp, supports: ramp, tools: ramp }
     }
 }
 
 impl Ramp {
-    /// Part that acts at the time `t >= 0` (s).
+    /// Returns the fraction at the time `t >= 0` (s).
     pub fn value(self, t: f64) -> f64 {
         self.derivatives(t)[0]
     }
 
-    /// Duration, s.
+    /// Duration, s; `None` for a value that acts at once.
     pub(crate) fn over(self) -> Option<f64> {
         match self {
             Ramp::AtOnce => None,
@@ -50,7 +50,8 @@ impl Ramp {
         }
     }
 
-    /// Value, first derivative (1/s) and second one (1/s^2); at a kink those of the time after it.
+    /// Returns value, first derivative (1/s) and second derivative (1/s^2). At a kink, derivatives are those
+    /// just after it.
     pub(crate) fn derivatives(self, t: f64) -> [f64; 3] {
         match self {
             Ramp::Linear { over } if t < over => [t / over, 1.0 / over, 0.0],

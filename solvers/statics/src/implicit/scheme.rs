@@ -2,17 +2,18 @@
 
 use shape::Vector3;
 
-/// Balance of the step from `n` to `n + 1` (the forces as weighted averages of both ends):
+/// Parameters of the balance of the step from `n` to `n + 1`, with forces as weighted averages of both ends:
 ///
 /// ```text
 /// M a_m + c M v_f = (1 - alpha_f) g(u_n+1) + alpha_f g(u_n),    g = f_ext + f_contact - f_int
 /// a_m = (1 - alpha_m) a_n+1 + alpha_m a_n,    v_f = (1 - alpha_f) v_n+1 + alpha_f v_n
-/// u_n+1 = u_n + dt v_n + dt^2 ((1/2 - beta) a_n + beta a_n+1),    v_n+1 = v_n + dt ((1 - gamma) a_n + gamma a_n+1)
+/// u_n+1 = u_n + dt v_n + dt^2 ((1/2 - beta) a_n + beta a_n+1)
+/// v_n+1 = v_n + dt ((1 - gamma) a_n + gamma a_n+1)
 /// ```
 ///
-/// Second order for every `rho_inf`, the spectral radius at `omega dt -> infinity`; 1 is the trapezoidal rule.
-/// Sources: Chung and Hulbert, J. Appl. Mech. 60 (1993) 371-375; averaged forces: Erlicher, Bonaventura and Bursi,
-/// Comput. Mech. 28 (2002) 83-104.
+/// The scheme is of second order for every `rho_inf`, the spectral radius at `omega dt -> infinity`; 1 is the
+/// trapezoidal rule. Sources: Chung and Hulbert, J. Appl. Mech. 60 (1993) 371-375; averaged forces: Erlicher,
+/// Bonaventura and Bursi, Comput. Mech. 28 (2002) 83-104.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scheme {
     alpha_m: f64,
@@ -21,7 +22,8 @@ pub(crate) struct Scheme {
     gamma: f64,
 }
 
-/// One degree of freedom: `u_n+1 -> a_n+1, v_n+1`, over a step `dt` from a velocity and an acceleration.
+/// Update of a degree of freedom, `u_n+1 -> a_n+1, v_n+1`, over a step `dt` from a velocity and an
+/// acceleration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Update {
     scheme: Scheme,
@@ -42,33 +44,34 @@ impl Scheme {
 }
 
 impl Update {
-    /// `a_n+1` from what `u` gained in the step.
+    /// Returns `a_n+1` from the displacement increment of the step.
     pub fn acceleration(&self, gain: &Vector3, v: &Vector3, a: &Vector3) -> Vector3 {
         let (beta, dt) = (self.scheme.beta, self.dt);
         (gain / dt - v) / (beta * dt) - a * (0.5 / beta - 1.0)
     }
 
-    /// `v_n+1` from both accelerations.
+    /// Returns `v_n+1` from both accelerations.
     pub fn velocity(&self, v: &Vector3, a: &Vector3, new: &Vector3) -> Vector3 {
         v + (a * (1.0 - self.scheme.gamma) + new * self.scheme.gamma) * self.dt
     }
 
-    /// The rate `r` of which `M r` is the inertia and damping in the balance over `1 - alpha_f`, from accelerations
-    /// and velocities at both ends.
+    /// Returns the rate `r` for which `M r` is the inertia and damping in the balance divided by
+    /// `1 - alpha_f`, from accelerations and velocities at both ends.
     pub fn rate(&self, damping: f64, a: [&Vector3; 2], v: [&Vector3; 2]) -> Vector3 {
         let Scheme { alpha_m, alpha_f, .. } = self.scheme;
         let carried = alpha_f / (1.0 - alpha_f);
         (a[1] * (1.0 - alpha_m) + a[0] * alpha_m) / (1.0 - alpha_f) + (v[1] + v[0] * carried) * damping
     }
 
-    /// `dr / du_n+1`, 1/s^2.
+    /// Returns `dr / du_n+1`, 1/s^2.
     pub fn factor(&self, damping: f64) -> f64 {
         let Scheme { alpha_m, alpha_f, beta, gamma } = self.scheme;
         (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * self.dt * self.dt) + damping * gamma / (beta * self.dt)
     }
 
-    /// Local error of `u_n+1`: the term of third order that the Taylor series has and the step has not,
-    /// `(beta - 1/6) dt^2 (a_n+1 - a_n)`. Source: Zienkiewicz and Xie, Earthquake Eng. Struct. Dyn. 20 (1991) 871-887.
+    /// Returns the local error of `u_n+1`: the third-order term of the Taylor series that the step lacks,
+    /// `(beta - 1/6) dt^2 (a_n+1 - a_n)`. Source: Zienkiewicz and Xie, Earthquake Eng. Struct. Dyn. 20 (1991)
+    /// 871-887.
     pub fn error(&self, a: &Vector3, new: &Vector3) -> f64 {
         (self.scheme.beta - 1.0 / 6.0) * self.dt * self.dt * (new - a).norm()
     }
