@@ -1,8 +1,8 @@
 //! Statics, implicit dynamics and vibrations over shape tables: assembly, supports, constraints, Newton, recovery.
 //!
-//! Nothing here knows an element or a kernel. A [`Body`] is a quadrature with a material, a [`LinearProblem`] is
-//! a body with loads and supports, and the stages are values of their own, so that each can be timed, kept and
-//! used again:
+//! This crate knows neither elements nor kernels. A [`Body`] is a quadrature with a material, and a
+//! [`LinearProblem`] is a body with loads and supports. Each stage is a value of its own, which can be timed,
+//! kept and reused:
 //!
 //! ```text
 //! LinearProblem --assemble--> Assembled --factor--> Factored --solve--> Solution
@@ -10,18 +10,18 @@
 //!
 //! The same problem with a [`Mass`] has [`modes`] of free vibration.
 //!
-//! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its residual,
-//! and results have the same bits at any number of threads.
+//! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its
+//! residual, and results have the same bits at any number of threads.
 //!
-//! Beyond small strain a [`Solid`] is the same quadrature with a [`material::Law`] and a [`Dilation`] (standard, by groups, or
-//! mixed with a pressure of its own). Two procedures share its forces:
+//! Beyond small strain a [`Solid`] is the same quadrature with a [`material::Law`] and a [`Dilation`]
+//! (standard, by groups, or mixed with a pressure field of its own). Two procedures share its forces:
 //!
 //! ```text
 //! StaticProblem --solve_static--> StaticPath     Newton with load steps, tools, friction
 //! TimeProblem --solve_in_time--> TimePath        generalised-alpha, or creep and relaxation without inertia
 //! ```
 //!
-//! A path that ends early keeps what it reached and says why.
+//! A path that ends early keeps the steps reached and states the reason.
 //!
 //! ```
 //! use geometry::{CellKind, generate::box_mesh};
@@ -49,7 +49,7 @@
 //! # }
 //! ```
 
-// `!(x > 0.0)` refuses a NaN, `x <= 0.0` would let it pass.
+// `!(x > 0.0)` rejects NaN; `x <= 0.0` would let NaN pass.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod assembly;

@@ -6,19 +6,19 @@ use shape::{Rows, SurfaceRows, VolumeRows};
 use crate::SolveError;
 use crate::body::check_len;
 
-/// A load with one value per quadrature point; a field is evaluated at the points by the caller.
+/// A load with one value per quadrature point. The caller evaluates a field at the points.
 #[derive(Clone, Debug)]
 pub enum Load<'a> {
     /// Force per reference area, Pa.
     Traction {
-        /// Where it acts.
+        /// Loaded surface.
         surface: &'a SurfaceRows,
         /// One vector per surface point, Pa.
         values: Vec<Vector3>,
     },
     /// Pressure, Pa, acting against the outward normal: `t = -p n`.
     Pressure {
-        /// Where it acts.
+        /// Loaded surface.
         surface: &'a SurfaceRows,
         /// One value per surface point, Pa.
         values: Vec<f64>,
@@ -28,14 +28,14 @@ pub enum Load<'a> {
         /// One vector per volume point, N/m^3.
         values: Vec<Vector3>,
     },
-    /// Forces that somebody else has integrated, N.
+    /// Nodal forces that are already integrated, N.
     Nodal {
-        /// One vector per node.
+        /// One vector per node, N.
         forces: Vec<Vector3>,
     },
 }
 
-/// Nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
+/// Returns the nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
 pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
     let nodes = volume.rows().node_count();
     let mut force = vec![Vector3::zeros(); nodes];

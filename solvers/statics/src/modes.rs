@@ -4,8 +4,8 @@
 //! LinearProblem, Mass --modes, lowest_modes--> Modes
 //! ```
 //!
-//! Loads and the values that supports prescribe have no part in them. Constraint rows are eliminated, weak supports act by
-//! their stiffness, and a body may be free: its rigid motions are modes of frequency zero.
+//! Loads and prescribed values have no effect on the modes. Constraint rows are eliminated, and weak supports
+//! act through their stiffness. The body may be free: its rigid motions are modes of frequency zero.
 
 use std::f64::consts::PI;
 
@@ -18,63 +18,75 @@ use crate::reduction::Reduction;
 use crate::rigid::free_motions;
 use crate::{LinearProblem, Mass, SolveError};
 
-/// Unknowns up to which all modes are found by a dense decomposition, which takes 8 s of them; beyond, the lowest alone.
+/// Number of unknowns up to which a dense decomposition finds all modes (8 s at this limit). Larger systems
+/// are solved for the lowest modes only.
 pub const ALL_MODES_LIMIT: usize = 2000;
-/// Relative residual of a mode above which it is refused: its frequency is then off by less than the square.
+/// Relative residual of a mode above which the mode is refused. Below, the relative error of its frequency is
+/// less than the square of this limit.
 const RESIDUAL_LIMIT: f64 = 1e-4;
-/// `1 / (omega^2 + shift)` over the largest one, below which only rounding is left of it: the motion has no mass.
+/// Ratio of `1 / (omega^2 + shift)` to its largest value below which only rounding is left: the motion has no
+/// mass.
 const MASSLESS: f64 = 1e-11;
-/// Negative `omega^2` over the shift that rounding does not explain: it left 1e-10 of rigid motions.
+/// Ratio of a negative `omega^2` to the shift that rounding does not explain. Rounding left 1e-10 for rigid
+/// motions.
 const UNSTABLE: f64 = 1e-4;
 
-/// The modes of a body, or the lowest of them.
+/// Modes of a body: all of them, or the lowest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// `omega^2` of each mode, ascending, (rad/s)^2; of rigid motions zero to rounding, of either sign.
+    /// `omega^2` of each mode, ascending, (rad/s)^2. For rigid motions the value is zero to rounding, with
+    /// either sign.
     pub squared: Vec<f64>,
     /// Nodal parameters of each mode, with `v^T M v = 1`.
     pub shapes: Vec<Vec<Vector3>>,
-    /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: a shear wave across the body.
+    /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: the frequency of a shear
+    /// wave across the body.
     pub scale: f64,
-    /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all.
+    /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all modes.
     pub residual: f64,
-    /// Unknowns that have stiffness but no mass: modes of infinite frequency, which are not among the above. 0 where not all
-    /// modes were looked for.
+    /// Number of unknowns that have stiffness but no mass: modes of infinite frequency, which are not listed
+    /// above. The number is 0 if only the lowest modes were computed.
     pub massless: usize,
-    /// Rigid motions that the supports leave free, modes of frequency zero; further ones strain the body
-    /// without energy.
+    /// Number of rigid motions that the supports leave free. Any further modes of frequency zero strain the
+    /// body without energy.
     pub rigid: usize,
-    /// Unknowns of the body.
+    /// Number of unknowns of the body.
     pub dofs: usize,
 }
 
 impl Modes {
-    /// The name used in records.
+    /// Returns the name of the eigensolver used in records.
     pub fn solver(&self) -> &'static str {
         if self.dofs <= ALL_MODES_LIMIT { "dense-eigen" } else { "block-lanczos" }
     }
 
-    /// Whether these are all modes of the body, not the lowest alone.
+    /// Whether these are all modes of the body rather than the lowest only.
     pub fn are_all(&self) -> bool {
         self.squared.len() + self.massless == self.dofs
     }
 }
 
-/// All modes of a body by a dense decomposition: none is missed, and time grows with the cube of the number of unknowns.
+/// Computes all modes of a body by a dense decomposition. No mode is missed; the time grows with the cube of
+/// the number of unknowns.
 ///
-/// Written with `A = K + s M` as `M v = theta A v`, `omega^2 = 1 / theta - s`: nothing is asked of `M`, which may be
-/// singular, nor of `K`, and the lowest modes are the most exact (the spectral transformation of Ericsson & Ruhe, Math. Comp.
-/// 35 (1980) 1251-1268). `s` ([`Modes::scale`]) changes rounding, no result.
+/// With `A = K + s M` the problem is written as `M v = theta A v`, `omega^2 = 1 / theta - s`. Neither `M` nor
+/// `K` needs to be regular, and the lowest modes are the most exact (the spectral transformation of Ericsson
+/// & Ruhe, Math. Comp. 35 (1980) 1251-1268). `s` ([`Modes::scale`]) affects only rounding.
 ///
-/// Errors: those of assembly, a stiffness with a negative `omega^2`, a motion with neither stiffness nor mass.
+/// # Errors
+/// Errors of assembly, a stiffness with a negative `omega^2`, or a motion with neither stiffness nor mass.
 pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> {
     found(problem, mass, None)
 }
 
-/// The `count` lowest modes, or more: all up to [`ALL_MODES_LIMIT`] unknowns, and beyond by block Lanczos with the sparse factor of
-/// `A` ([`eigen::largest`]), whose time grows as that of one factorisation. Up to eight modes of one frequency are found.
+/// Computes at least the `count` lowest modes.
 ///
-/// Errors: those of [`modes`].
+/// Up to [`ALL_MODES_LIMIT`] unknowns all modes are computed. Larger systems use block Lanczos with the
+/// sparse factor of `A` ([`eigen::largest`]), whose time grows as that of one factorisation. Up to eight
+/// modes of the same frequency are found.
+///
+/// # Errors
+/// The errors of [`modes`].
 pub fn lowest_modes(problem: &LinearProblem, mass: &Mass, count: usize) -> Result<Modes, SolveError> {
     found(problem, mass, Some(count))
 }
@@ -110,12 +122,12 @@ fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<M
     let mut shapes = Vec::with_capacity(squared.len());
     for (x, &lambda) in eigen.vectors.iter().zip(&squared) {
         let left = left_over(&k, &m, x, lambda, shift);
-        // `!(r <= limit)`: a NaN must not pass.
+        // `!(r <= limit)` also rejects NaN.
         if !(left <= RESIDUAL_LIMIT) {
             return Err(AlgebraError::Residual { residual: left, limit: RESIDUAL_LIMIT }.into());
         }
         residual = residual.max(left);
-        // x^T (K + s M) x = 1 makes x^T M x = theta.
+        // x^T (K + s M) x = 1 implies x^T M x = theta.
         let scale = (lambda + shift).sqrt();
         let mut shape = vec![Vector3::zeros(); mass.node_count()];
         reduction.expand(&x.iter().map(|x| x * scale).collect::<Vec<_>>(), &mut shape);
@@ -125,12 +137,13 @@ fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<M
     Ok(Modes { squared, shapes, scale: shift, residual, massless, rigid, dofs: k.dim() })
 }
 
-/// Nitsche's stabilisation is the first to blame.
+/// Returns the error of an indefinite stiffness, which with Nitsche supports is attributed to their
+/// stabilisation.
 fn indefinite(assembled: &Assembled, otherwise: SolveError) -> SolveError {
     assembled.gamma.map_or(otherwise, |gamma| SolveError::NotCoercive { gamma })
 }
 
-/// `mu / rho (pi / L)^2`, 1/s^2.
+/// Returns the shift `mu / rho (pi / L)^2`, (rad/s)^2.
 fn shift(problem: &LinearProblem, mass: &Mass) -> f64 {
     let body = &problem.body;
     let axes = [0, 1, 2].map(|a| body.nodes.iter().map(move |x| x[a]));

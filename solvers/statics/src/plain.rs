@@ -1,7 +1,9 @@
 #![allow(non_snake_case)] // A, H, I and K as in the formulas
-//! Stiffness and tangent as the weak form reads: what every faster path is tested against.
+//! Reference stiffness and tangent, written as the weak form, against which all faster implementations are
+//! tested.
 //!
-//! Dense matrices, (3n, 3n), N/m, filled point by point in one thread: for reading and for tests, not for solving.
+//! The matrices are dense, (3n, 3n), N/m, and are filled point by point in one thread. They serve for reading
+//! and testing, not for solving.
 
 use material::Material as _;
 use nalgebra::DMatrix;
@@ -10,10 +12,11 @@ use shape::{Matrix3, Vector3};
 use crate::dilation::group_bulk;
 use crate::{Body, Solid};
 
-/// `K_ij = sum_q (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I) dv`, `g_i = grad N_i`.
+/// Returns the stiffness `K_ij = sum_q (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I) dv`,
+/// `g_i = grad N_i`.
 ///
-/// With a projection the points keep `lambda = -2 mu / 3`, and group a of volume `V` and mean gradients `b_i` adds
-/// `kappa V b_i b_j^T`.
+/// With a projection the points keep `lambda = -2 mu / 3`, and group a of volume `V` and mean gradients `b_i`
+/// adds `kappa V b_i b_j^T`.
 pub fn stiffness(body: &Body) -> DMatrix<f64> {
     let (I, mut K) = (Matrix3::identity(), zeros(body.nodes.len()));
     for (q, &dv) in body.volume.weights().iter().enumerate() {
@@ -41,7 +44,8 @@ pub fn stiffness(body: &Body) -> DMatrix<f64> {
     K
 }
 
-/// `K_ij = sum_q g_i . A(H) . g_j dv` at nodal parameters `u` (m), without projection: `H = sum_i u_i g_i^T`, `A = dP/dF`.
+/// Returns the tangent `K_ij = sum_q g_i . A(H) . g_j dv` at nodal parameters `u` (m), without projection,
+/// with `H = sum_i u_i g_i^T` and `A = dP/dF`.
 pub fn tangent(solid: &Solid, u: &[Vector3]) -> DMatrix<f64> {
     let mut K = zeros(u.len());
     for (q, &dv) in solid.volume.weights().iter().enumerate() {

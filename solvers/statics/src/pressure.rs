@@ -1,4 +1,4 @@
-//! Nearly incompressible bodies by iterations: what of the bulk modulus becomes pressures.
+//! Iterative solution of nearly incompressible bodies: part of the bulk modulus is represented by pressures.
 
 use algebra::{FactorError, Multigrid, PressureGroup};
 use material::LinearElastic;
@@ -9,13 +9,15 @@ use crate::dilation::{Averaged, averaged, group_mean};
 use crate::grad_table::GradTable;
 use crate::{Assembled, SolveError};
 
-/// Bulk over shear modulus that the displacements keep. Less leaves more to the pressures, whose iterations depend on the element;
-/// more slows the cycles. From 5 to 15 the iterations are the same within a tenth.
+/// Ratio of bulk to shear modulus that stays with the displacements. A smaller ratio leaves more to the
+/// pressures, whose iterations depend on the element; a larger ratio slows the cycles. From 5 to 15 the
+/// number of iterations varies by a tenth.
 const KEPT: f64 = 10.0;
 
 impl Assembled<'_> {
-    /// As [`Assembled::multigrid`] for nearly incompressible bodies whose points share dilations: what a group's bulk modulus has
-    /// beyond ten times its shear modulus is left to a pressure. Without such groups it is the same.
+    /// Builds the multigrid solver as [`Assembled::multigrid`] does, for nearly incompressible bodies with
+    /// dilation groups. The part of a group's bulk modulus above ten times its shear modulus is left to a
+    /// pressure. Without dilation groups the result is the same.
     pub fn multigrid_with_pressures(&self, linear: Option<&Coarser>) -> Result<Multigrid, SolveError> {
         let body = &self.body;
         let Some(groups) = body.dilation else { return self.multigrid(linear) };
@@ -44,7 +46,7 @@ fn group((volume, row): &Averaged, excess: f64, rest: f64) -> PressureGroup {
     PressureGroup { row, volume: *volume, excess, rest }
 }
 
-/// A matrix that cannot be factored on its coarsest level.
+/// Returns the error of a matrix that cannot be factored on its coarsest level.
 pub(crate) fn not_definite(error: FactorError) -> SolveError {
     match error {
         FactorError::Other(error) => error.into(),

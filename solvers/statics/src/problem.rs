@@ -16,19 +16,20 @@ use crate::support::prescribed;
 use crate::weak::{Weak, WeakSupport, WeakTable};
 use crate::{Body, SolveError};
 
-/// A body with its loads and supports. Any mixture of the three kinds of support will do, as long as no rigid motion
-/// is left free.
+/// A body with its loads and supports. The three kinds of support can be mixed, provided no rigid motion is
+/// left free.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearProblem<'a> {
     /// The body.
     pub body: Body<'a>,
-    /// Loads; they add up.
+    /// Loads, which are summed.
     pub loads: &'a [Load<'a>],
-    /// Nodal parameters prescribed, eliminated exactly.
+    /// Prescribed nodal parameters, eliminated exactly.
     pub fixed: &'a [FixedDof],
-    /// General linear constraints, by Lagrange multipliers or eliminated, as the problem is factored.
+    /// General linear constraints; the factorisation determines whether they are eliminated or enforced by
+    /// Lagrange multipliers.
     pub constraints: &'a [ConstraintRow],
-    /// Surfaces constrained weakly.
+    /// Weakly constrained surfaces.
     pub weak: &'a [WeakSupport<'a>],
 }
 
@@ -40,28 +41,29 @@ pub struct Assembled<'a> {
     pub(crate) load: Vec<Vector3>,
     /// Right-hand side of the weak supports, N.
     pub(crate) weak_load: Vec<Vector3>,
-    /// Per degree of freedom `3 node + axis`.
+    /// Prescribed value by degree of freedom `3 node + axis`, m.
     pub(crate) prescribed: Vec<Option<f64>>,
     pub(crate) rows: Vec<constraint::Row>,
-    /// Smallest Nitsche factor, if any support is of that kind.
+    /// Smallest Nitsche factor of all supports; `None` without Nitsche supports.
     pub(crate) gamma: Option<f64>,
-    /// The forms themselves, kept where supports are weak or constraint rows: see [`Pointwise`].
+    /// The forms point by point, kept if there are weak supports or constraint rows; see [`Pointwise`].
     pub(crate) pointwise: Option<Pointwise>,
 }
 
-/// The forms point by point, for a residual that does not pass through the assembled matrix.
+/// The forms point by point, for a residual that does not use the assembled matrix.
 ///
-/// The matrix of a wide smooth basis with stiff weak supports knows its entries to 1e-16 of the largest, the residual of
-/// a solution is then only known to `|K| |u|` times that, and stresses of a patch test come out at 1e-12 to 6e-12.
-/// Summed point by point, from differences of displacements, it is smaller by the ratio of displacement to strain
-/// times support.
+/// For a wide smooth basis with stiff weak supports, the entries of the matrix are accurate to 1e-16 of the
+/// largest entry. The residual of a solution is then known only to `|K| |u|` times that, and stresses of a
+/// patch test are accurate to 1e-12 to 6e-12. The sum point by point, from differences of displacements,
+/// reduces this error by the ratio of displacement to strain times support radius.
 pub(crate) struct Pointwise {
     volume: Vec<GradTable>,
     weak: Vec<(WeakTable, Incidence)>,
 }
 
 impl Pointwise {
-    /// Takes the internal forces and those of the weak supports (at `factor` times their values) from `residual`.
+    /// Subtracts the internal forces and those of the weak supports (at `factor` times their values) from
+    /// `residual`, N.
     pub fn subtract(&self, u: &[Vector3], factor: f64, residual: &mut [Vector3]) {
         for table in &self.volume {
             table.subtract_force(u, residual);
@@ -71,7 +73,7 @@ impl Pointwise {
         }
     }
 
-    /// Resultant of the nodal forces of each weak support at `factor` times its values, N.
+    /// Returns the resultant of the nodal forces of each weak support at `factor` times its values, N.
     pub fn resultants(&self, u: &[Vector3], factor: f64) -> Vec<Vector3> {
         let each = self.weak.iter().map(|(table, of)| {
             let mut forces = vec![Vector3::zeros(); u.len()];
@@ -89,18 +91,20 @@ impl Pointwise {
     }
 }
 
-/// Checks the problem, builds the pattern and sums stiffness and forces. Rigid motions left free are found here,
-/// before anything is factored.
+/// Checks the problem, builds the sparsity pattern and assembles stiffness and forces.
+///
+/// # Errors
+/// Invalid input, and rigid motions that are left free; both are found before any factorisation.
 pub fn assemble<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
     assemble_if(problem, rigid::check)
 }
 
-/// As [`assemble`] for a body that need not be constrained.
+/// Assembles as [`assemble`] does, for a body that need not be constrained.
 pub(crate) fn assemble_free<'a>(problem: &LinearProblem<'a>) -> Result<Assembled<'a>, SolveError> {
     assemble_if(problem, |_, _, _, _, _| Ok(()))
 }
 
-/// What is asked of the supports before anything is summed.
+/// Check of the supports before assembly.
 type SupportCheck =
     fn(&Body, Connectivity, &[Option<f64>], &[constraint::Row], &[WeakSupport]) -> Result<(), SolveError>;
 
@@ -165,7 +169,7 @@ fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<A
 }
 
 impl<'a> Assembled<'a> {
-    /// Stiffness of the free body plus the terms of weak supports; before any elimination.
+    /// Stiffness of the free body plus the terms of weak supports, before any elimination.
     pub fn stiffness(&self) -> &Stiffness {
         &self.stiffness
     }
@@ -180,7 +184,7 @@ impl<'a> Assembled<'a> {
         self.prescribed.iter().filter(|p| p.is_none()).count() + self.rows.len()
     }
 
-    /// Nodal forces of other loads on the same body, N.
+    /// Returns the nodal forces of other loads on the same body, N.
     pub(crate) fn other_load(&self, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
         let force = nodal_forces(self.body.volume, loads)?;
         check_len("nodal forces", force.len(), self.load.len())?;

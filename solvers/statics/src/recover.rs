@@ -1,4 +1,4 @@
-//! What follows from nodal parameters: stress, mean pressure and strain energy.
+//! Quantities recovered from nodal parameters: stress, mean pressure and strain energy.
 
 use material::LinearElastic;
 use shape::GradRows;
@@ -8,8 +8,8 @@ use crate::body::{check_len, check_regions, region_of};
 use crate::dilation::group_bulk;
 use crate::{Body, SolveError};
 
-/// Stress (3, 3), Pa, at any points by the plain law, `sigma = lambda tr(eps) I + 2 mu eps`, from nodal parameters
-/// `u` (m). `region` has one entry per point, or none when all are of region 0.
+/// Computes the stress (3, 3), Pa, at any points by the plain law, `sigma = lambda tr(eps) I + 2 mu eps`,
+/// from nodal parameters `u` (m). `region` has one entry per point, or none if all points are in region 0.
 pub fn stress(
     at: &GradRows,
     u: &[Vector3],
@@ -22,8 +22,9 @@ pub fn stress(
     Ok(gradients.iter().enumerate().map(|(q, h)| materials[region_of(region, q)].stress(h)).collect())
 }
 
-/// Stress (3, 3), Pa, at the body's own quadrature points. With a volumetric projection the mean stress is that of
-/// the projected dilation, `sigma = 2 mu dev(eps) + kappa theta_q I`, `theta_q = sum_a share_aq theta_a`.
+/// Computes the stress (3, 3), Pa, at the body's own quadrature points. With a volumetric projection the mean
+/// stress follows from the projected dilation, `sigma = 2 mu dev(eps) + kappa theta_q I`,
+/// `theta_q = sum_a share_aq theta_a`.
 pub fn body_stress(body: &Body, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveError> {
     body.check()?;
     let plain = stress(body.volume.at(), u, body.materials, body.region)?;
@@ -32,13 +33,14 @@ pub fn body_stress(body: &Body, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveErro
     Ok(plain.iter().enumerate().map(|(q, s)| s + Matrix3::identity() * (mean(q) - s.trace() / 3.0)).collect())
 }
 
-/// Mean pressure `p = -tr(sigma) / 3`, Pa, at the body's quadrature points, of [`body_stress`].
+/// Returns the mean pressure `p = -tr(sigma) / 3` of [`body_stress`], Pa, at the body's quadrature points.
 pub fn mean_pressure(body: &Body, u: &[Vector3]) -> Result<Vec<f64>, SolveError> {
     Ok(body_stress(body, u)?.iter().map(|s| -s.trace() / 3.0).collect())
 }
 
-/// Strain energy, J: `sum_q w psi(H_q)`, with a projection `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`;
-/// equal to `u . K u / 2` without weak supports.
+/// Returns the strain energy, J: `sum_q w psi(H_q)`, or with a projection
+/// `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`. Without weak supports the energy equals
+/// `u . K u / 2`.
 pub fn strain_energy(body: &Body, u: &[Vector3]) -> Result<f64, SolveError> {
     body.check()?;
     check_len("nodal parameters", u.len(), body.nodes.len())?;
@@ -56,7 +58,7 @@ pub fn strain_energy(body: &Body, u: &[Vector3]) -> Result<f64, SolveError> {
     Ok(energy)
 }
 
-/// Volume (m^3) and mean dilation of each group; nothing without groups.
+/// Returns volume (m^3) and mean dilation of each group; empty without groups.
 fn group_dilations(body: &Body, gradients: &[Matrix3]) -> Vec<(f64, f64)> {
     let Some(groups) = body.dilation else { return Vec::new() };
     let mean = |a| {

@@ -1,5 +1,5 @@
-//! From nodal parameters to unknowns and back: `u = T v + g`, with parameters prescribed, parameters given away to
-//! others by eliminated constraints, and the rest, which are unknowns themselves.
+//! Mapping between nodal parameters and unknowns, `u = T v + g`. Parameters are prescribed, expressed by
+//! others through eliminated constraints, or unknowns themselves.
 
 use algebra::Stiffness;
 use algebra::Symmetric;
@@ -12,29 +12,29 @@ use crate::eliminate::{Block, blocks};
 
 /// `T` by rows, and `g`.
 pub(crate) struct Reduction {
-    /// Terms of each degree of freedom `3 node + axis` in `terms`.
+    /// Range of each degree of freedom `3 node + axis` in `terms`.
     offsets: Vec<usize>,
-    /// (unknown, weight); none of a degree of freedom that is constrained.
+    /// Pairs (unknown, weight); none for a prescribed degree of freedom.
     terms: Vec<(usize, f64)>,
     /// `g`, m.
     value: Vec<f64>,
-    /// Place of each degree of freedom among the unknowns, `usize::MAX` where it is none.
+    /// Index of each degree of freedom among the unknowns; `usize::MAX` if it is not an unknown.
     pub place: Vec<usize>,
     /// Number of unknowns.
     pub free: usize,
     /// Eliminated constraints.
     pub blocks: Vec<Block>,
-    /// Constraints left out since they follow from the others.
+    /// Number of constraints left out because they follow from the others.
     pub dropped: usize,
 }
 
 impl Reduction {
-    /// What is prescribed leaves; `rows` are eliminated.
+    /// Removes the prescribed degrees of freedom and eliminates `rows`.
     pub fn new(prescribed: &[Option<f64>], rows: &[Row]) -> Result<Reduction, SolveError> {
         let rows: Vec<Row> = rows.iter().map(|row| row.without(prescribed)).collect();
         let (blocks, dropped) = blocks(&rows, prescribed.len())?;
         let mut value: Vec<f64> = prescribed.iter().map(|v| v.unwrap_or(0.0)).collect();
-        // Block and place in it of each parameter that is given away.
+        // For each eliminated parameter, its block and its position in the block.
         let mut given = vec![None; prescribed.len()];
         for (b, block) in blocks.iter().enumerate() {
             let weights = block.inverse.chunks_exact(block.rows.len());
@@ -71,17 +71,17 @@ impl Reduction {
         &self.terms[self.offsets[dof]..self.offsets[dof + 1]]
     }
 
-    /// Number of constraints eliminated.
+    /// Number of eliminated constraints.
     pub fn eliminated(&self) -> usize {
         self.blocks.iter().map(|b| b.rows.len()).sum()
     }
 
-    /// `factor g`, m.
+    /// Returns `factor g`, m.
     pub fn constrained(&self, factor: f64) -> Vec<Vector3> {
         self.value.chunks_exact(3).map(|v| Vector3::new(v[0], v[1], v[2]) * factor).collect()
     }
 
-    /// `u += T v`.
+    /// Adds `T v` to `u`.
     pub fn expand(&self, v: &[f64], u: &mut [Vector3]) {
         for dof in 0..self.value.len() {
             for &(at, weight) in self.of(dof) {
@@ -90,7 +90,7 @@ impl Reduction {
         }
     }
 
-    /// `T^T f` into the first unknowns of `out`, the others zero.
+    /// Writes `T^T f` to the first unknowns of `out` and zero to the others.
     pub fn fold(&self, f: &[Vector3], out: &mut [f64]) {
         out.fill(0.0);
         for dof in 0..self.value.len() {
@@ -100,20 +100,21 @@ impl Reduction {
         }
     }
 
-    /// `T^T K T`, symmetric positive definite with `K` on what the constraints leave.
+    /// Returns `T^T K T`, which is symmetric positive definite if `K` is so on the subspace of the
+    /// constraints.
     pub fn matrix(&self, stiffness: &Stiffness) -> Symmetric {
         if self.blocks.is_empty() {
             return Symmetric::displacements(stiffness, &self.place, self.free);
         }
         let nodes = self.value.len() / 3;
-        // Rows of K below the diagonal by node: its blocks are stored with the later of the two.
+        // Rows of K below the diagonal by node: a block is stored with the later of its two nodes.
         let mut below: Vec<Vec<(usize, usize)>> = vec![Vec::new(); nodes];
         for i in 0..nodes {
             for (k, &j) in stiffness.row(i).0.iter().enumerate().filter(|(_, j)| **j as usize != i) {
                 below[j as usize].push((i, k));
             }
         }
-        // K T by rows, one for each degree of freedom.
+        // K T by rows, one row for each degree of freedom.
         let work = || (vec![0.0; self.free], vec![false; self.free], Vec::new());
         let products: Vec<Vec<(usize, f64)>> = (0..3 * nodes)
             .into_par_iter()
@@ -167,13 +168,13 @@ impl Reduction {
             Some(*sum)
         }));
         let (rows, values) = columns.into_iter().flatten().unzip();
-        // Unknowns of one node have not the same neighbours where one of its axes is in a block.
+        // The unknowns of a node differ in their neighbours if one of its axes is in a block.
         let vertices = (0..=self.free).collect();
         Symmetric { offsets, rows, values, multipliers: self.free, vertices }
     }
 }
 
-/// The entries touched, by ascending index; the workspace is clean again afterwards.
+/// Returns the touched entries by ascending index and clears the workspace.
 fn gathered(sum: &mut [f64], seen: &mut [bool], touched: &mut Vec<usize>) -> Vec<(usize, f64)> {
     touched.sort_unstable();
     let entries = touched.iter().map(|&at| (at, std::mem::take(&mut sum[at]))).collect();

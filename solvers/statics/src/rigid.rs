@@ -1,8 +1,9 @@
-//! Rigid motions left free, found from the supports themselves and before factoring: a pivot tells neither the
-//! motion nor the node.
+//! Detection of free rigid motions from the supports themselves, before factorisation: a zero pivot
+//! identifies neither the motion nor the node.
 //!
-//! The node graph falls into connected pieces; constraint rows join pieces into clusters. A cluster of m pieces has
-//! 6 m rigid modes, each support gives a row over them, and the null space of those rows moves freely.
+//! The node graph consists of connected pieces; constraint rows join pieces into clusters. A cluster of m
+//! pieces has 6 m rigid modes. Each support gives a row over these modes, and the null space of the rows is
+//! free to move.
 
 use algebra::Connectivity;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -14,9 +15,9 @@ use crate::{Body, SolveError, WeakSupport};
 /// A rigid motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RigidMode {
-    /// Along this unit vector.
+    /// Translation along this unit vector.
     Translation(Vector3),
-    /// About an axis along this unit vector (through some point).
+    /// Rotation about an axis along this unit vector (through some point).
     Rotation(Vector3),
 }
 
@@ -29,7 +30,7 @@ impl std::fmt::Display for RigidMode {
         match v.iter().position(|c| c.abs() > 1.0 - 1e-6) {
             Some(axis) => write!(f, "{word} {}", ["x", "y", "z"][axis]),
             None => {
-                // No "-0.000".
+                // Avoids "-0.000".
                 let v = v.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
                 write!(f, "{word} ({:.3}, {:.3}, {:.3})", v.x, v.y, v.z)
             }
@@ -37,11 +38,12 @@ impl std::fmt::Display for RigidMode {
     }
 }
 
-/// Squared relative size below which a support row counts as not felt: motions are felt at 1e-6 of their size.
+/// Squared relative size below which a motion counts as free: supports resist motions from 1e-6 of their
+/// size.
 const FREE: f64 = 1e-12;
 
-/// Values of the six modes at a node: three translations, then rotations about x, y, z through `centre`, divided
-/// by the size of the piece so that all are dimensionless alike.
+/// Returns the values of the six modes at a node: three translations, then the rotations about x, y, z
+/// through `centre`. Rotations are divided by the size of the piece, so all modes are dimensionless.
 fn modes_at(x: &Point3, centre: &Point3, size: f64, axis: usize) -> [f64; 6] {
     let r = (x - centre) / size;
     let mut m = [0.0; 6];
@@ -64,7 +66,7 @@ impl Pieces {
         i
     }
 
-    /// Whether they were apart.
+    /// Joins two sets and returns whether they were separate.
     fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b)] = a.min(b);
@@ -72,7 +74,7 @@ impl Pieces {
     }
 }
 
-/// One piece: its nodes' number, lowest node, centre and size (m), and its place in its cluster.
+/// A connected piece: lowest node, number of nodes, centre and size (m), cluster, and place in the cluster.
 struct Piece {
     first: usize,
     count: usize,
@@ -82,10 +84,10 @@ struct Piece {
     place: usize,
 }
 
-/// Takes the terms (node, axis, factor) of a row that a support keeps at a value.
+/// Receives the terms (node, axis, factor) of a row prescribed by a support.
 pub(crate) type AddRow<'a> = &'a mut dyn FnMut(&mut dyn Iterator<Item = (usize, usize, f64)>);
 
-/// Fails with the free motions of the first cluster that has any.
+/// Returns the free motions of the first cluster with free motions as an error.
 pub(crate) fn check(
     body: &Body,
     points: Connectivity,
@@ -96,14 +98,14 @@ pub(crate) fn check(
     check_rows(body.nodes, points, rows, |add| add_all(prescribed, rows, weak, add))
 }
 
-/// The rows of prescribed degrees of freedom.
+/// Adds the rows of prescribed degrees of freedom.
 pub(crate) fn add_prescribed(prescribed: &[Option<f64>], add: AddRow) {
     for dof in (0..prescribed.len()).filter(|&dof| prescribed[dof].is_some()) {
         add(&mut std::iter::once((dof / 3, dof % 3, 1.0)));
     }
 }
 
-/// The rows of displacements along `axes` at the points of a table.
+/// Adds the rows of displacements along `axes` at the points of a table.
 pub(crate) fn add_surface(table: &Rows, axes: [bool; 3], add: AddRow) {
     for q in 0..table.len() {
         let (nodes, values) = table.row(q);
@@ -113,7 +115,7 @@ pub(crate) fn add_surface(table: &Rows, axes: [bool; 3], add: AddRow) {
     }
 }
 
-/// As [`check`], with the rows that `supports` adds; `joints` join pieces to clusters.
+/// Checks as [`check`] does, with the rows that `supports` adds; `joints` join pieces into clusters.
 pub(crate) fn check_rows(
     positions: &[Point3],
     points: Connectivity,
@@ -122,7 +124,7 @@ pub(crate) fn check_rows(
 ) -> Result<(), SolveError> {
     let Motions { pieces, clusters, free } = motions(positions, points, joints, supports);
     for (members, free) in clusters.iter().zip(free) {
-        // The piece that moves most is the one to name.
+        // The message names the piece that moves most.
         let motion = |place: usize| free.iter().map(|v| v.rows(6 * place, 6).norm_squared()).sum::<f64>();
         if let Some(place) = (0..members.len()).rev().max_by(|&a, &b| motion(a).total_cmp(&motion(b))) {
             if free.is_empty() {
@@ -143,7 +145,7 @@ pub(crate) fn check_rows(
     Ok(())
 }
 
-/// Number of rigid motions that the supports of an assembled body leave free.
+/// Returns the number of rigid motions that the supports of an assembled body leave free.
 pub(crate) fn free_motions(
     body: &Body,
     points: Connectivity,
@@ -155,7 +157,7 @@ pub(crate) fn free_motions(
     motions.free.iter().map(Vec::len).sum()
 }
 
-/// The rows of all supports of a linear problem.
+/// Adds the rows of all supports of a linear problem.
 fn add_all(prescribed: &[Option<f64>], rows: &[Row], weak: &[WeakSupport], add: AddRow) {
     add_prescribed(prescribed, add);
     for r in rows {
@@ -166,7 +168,7 @@ fn add_all(prescribed: &[Option<f64>], rows: &[Row], weak: &[WeakSupport], add: 
     }
 }
 
-/// Pieces, clusters of them, and the free motions of each cluster.
+/// Pieces, clusters of pieces, and the free motions of each cluster.
 struct Motions {
     pieces: Vec<Piece>,
     clusters: Vec<Vec<usize>>,
@@ -219,7 +221,7 @@ fn motions(
     let free = gram.into_iter().map(|gram| {
         let eigen = SymmetricEigen::new(gram);
         let limit = FREE * eigen.eigenvalues.max();
-        // `!(e > limit)`: no support at all gives 0 > 0.
+        // `!(e > limit)` includes 0 > 0, the case of no support.
         let free = (0..eigen.eigenvalues.len()).filter(|&k| !(eigen.eigenvalues[k] > limit));
         free.map(|k| eigen.eigenvectors.column(k).into_owned()).collect()
     });
@@ -227,10 +229,12 @@ fn motions(
     Motions { pieces, clusters, free }
 }
 
-/// Belongs to no piece: a node that no point sees. It is constrained along all axes (or was refused as an orphan).
+/// Marks a node that belongs to no piece because no point has it in its support. Such a node is constrained
+/// along all axes (otherwise it was refused as an orphan).
 const NOWHERE: usize = usize::MAX;
 
-/// Connected pieces of the quadrature's node graph, the piece of each node, and clusters as lists of pieces.
+/// Returns the connected pieces of the quadrature's node graph, the piece of each node, and the clusters as
+/// lists of pieces.
 fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, Vec<usize>, Vec<Vec<usize>>) {
     let mut find = Pieces((0..nodes.len()).collect());
     let mut seen = vec![false; nodes.len()];
@@ -241,7 +245,8 @@ fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, 
             seen[node as usize] = true;
             joints += usize::from(find.join(row[0] as usize, node as usize));
         }
-        // All in one piece: what other points join is joined. A cloud is there after a tenth of its points.
+        // All nodes are in one piece, so further points join nothing new. For a cloud this happens after a
+        // tenth of its points.
         if joints + 1 == nodes.len() {
             break;
         }
@@ -267,7 +272,8 @@ fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, 
         pieces[p].size = pieces[p].size.max((x - pieces[p].centre).norm());
     }
     for piece in &mut pieces {
-        // All nodes at one place: no size to divide by. Its rotations are then felt nowhere, and refused as free.
+        // All nodes coincide, so there is no size to divide by. Rotations are then not resisted and are
+        // refused as free.
         piece.size = if piece.size > 0.0 { piece.size } else { 1.0 };
     }
     let mut find = Pieces((0..pieces.len()).collect());
@@ -294,10 +300,11 @@ fn pieces(nodes: &[Point3], points: Connectivity, rows: &[Row]) -> (Vec<Piece>, 
     (pieces, piece_of, clusters)
 }
 
-/// Names a null space (6, k): pure translations first, then the rotations, along coordinate axes where possible.
+/// Identifies the motions of a null space (6, k): pure translations first, then rotations, along coordinate
+/// axes where possible.
 fn name(null: &DMatrix<f64>) -> Vec<RigidMode> {
     let rotation = null.rows(3, 3).into_owned();
-    // Eigenvectors of R^T R with zero eigenvalue combine the null vectors into pure translations.
+    // Eigenvectors of R^T R with eigenvalue zero combine the null vectors into pure translations.
     let eigen = SymmetricEigen::new(rotation.transpose() * &rotation);
     let (mut moves, mut turns) = (Vec::new(), Vec::new());
     for k in 0..null.ncols() {
@@ -312,7 +319,7 @@ fn name(null: &DMatrix<f64>) -> Vec<RigidMode> {
     translations.chain(along_axes(&turns).into_iter().map(RigidMode::Rotation)).collect()
 }
 
-/// The same span by orthonormal vectors: coordinate axes that lie in it first, then the rest.
+/// Returns an orthonormal basis of the same span: the coordinate axes in the span first, then the rest.
 fn along_axes(span: &[Vector3]) -> Vec<Vector3> {
     let mut basis: Vec<Vector3> = Vec::new();
     let reduce = |basis: &[Vector3], v: &Vector3| basis.iter().fold(*v, |v, b| v - b * b.dot(&v));
@@ -327,7 +334,7 @@ fn along_axes(span: &[Vector3]) -> Vec<Vector3> {
     for b in &basis {
         let rest = reduce(&named, b);
         if named.len() < basis.len() && rest.norm() > 1e-3 {
-            // One sign for one direction.
+            // Both signs of a direction are reported as the same vector.
             let unit = rest.normalize();
             named.push(if unit[unit.iamax()] < 0.0 { -unit } else { unit });
         }

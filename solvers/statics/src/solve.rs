@@ -11,51 +11,52 @@ use crate::pressure::not_definite;
 use crate::problem::Assembled;
 use crate::reduction::Reduction;
 
-/// What conjugate gradients did.
+/// Counters of conjugate gradients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterated {
-    /// Iterations.
+    /// Number of iterations.
     pub count: usize,
-    /// Entries of the matrices of all levels over those of the finest.
+    /// Matrix entries of all levels divided by those of the finest level.
     pub complexity: f64,
 }
 
-/// What a solve did.
+/// Counters and accuracy of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveInfo {
-    /// Unknowns of the system: free degrees of freedom and multipliers.
+    /// Number of unknowns of the system: free degrees of freedom and multipliers.
     pub dofs: usize,
-    /// Lagrange multipliers among them.
+    /// Number of Lagrange multipliers among the unknowns.
     pub multipliers: usize,
-    /// Constraint rows that were eliminated.
+    /// Number of constraint rows that were eliminated.
     pub eliminated: usize,
-    /// Constraint rows that were to be eliminated and follow from the others.
+    /// Number of constraint rows dropped from elimination because they follow from the others.
     pub dropped: usize,
     /// Numbers stored in the factor, or in the matrices of all levels.
     pub factor_nonzeros: usize,
-    /// Of conjugate gradients, if they served.
+    /// Counters of conjugate gradients; `None` for a direct solution.
     pub iterations: Option<Iterated>,
     /// Relative residual `|b - A x| / |b|` of the reduced system.
     pub residual: f64,
-    /// What a solution by a factor is judged by.
+    /// Accuracy measures of a direct solution.
     pub solved: Option<Solved>,
-    /// The factorisation that served.
+    /// Solver that was used.
     pub path: SolverPath,
 }
 
-/// Nodal parameters and what the solve did.
+/// Nodal parameters with counters and accuracy of the solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// Nodal parameters, m; displacements only where the basis is Kronecker.
+    /// Nodal parameters, m; displacements only for a basis with the Kronecker property.
     pub u: Vec<Vector3>,
-    /// One multiplier per constraint row: the force (N per unit of coefficient) with which the row acts against the
-    /// body, `K u + sum_k lambda_k c_k = f`. Zero for rows without a free term and for dropped ones.
+    /// One multiplier per constraint row: the force (N per unit of coefficient) of the row against the body,
+    /// `K u + sum_k lambda_k c_k = f`. The multiplier is zero for dropped rows and for rows without a free
+    /// term.
     pub multipliers: Vec<f64>,
-    /// What the solve did.
+    /// Counters and accuracy of the solve.
     pub info: SolveInfo,
 }
 
-/// What takes a right-hand side to the unknowns.
+/// Solver of the reduced system.
 enum Solver {
     Direct(Factorization),
     /// Conjugate gradients to a relative residual of `tolerance`.
@@ -65,24 +66,24 @@ enum Solver {
     },
 }
 
-/// A factored problem: solves for any load level or set of loads without factoring again.
+/// A factored problem, which is solved for any load level or set of loads without another factorisation.
 pub struct Factored<'a> {
     problem: Assembled<'a>,
     solver: Solver,
     reduction: Reduction,
-    /// Constraint rows that keep a free term: index, and the scale by which they were multiplied.
+    /// Constraint rows with a free term: index, and the scale applied to the row.
     active: Vec<(usize, f64)>,
 }
 
 impl<'a> Assembled<'a> {
-    /// Eliminates the prescribed degrees of freedom, appends the constraint rows and factors: Cholesky without
-    /// constraint rows, `L D L^T` with them; dense if small.
+    /// Eliminates the prescribed degrees of freedom, appends the constraint rows and factors: Cholesky
+    /// without constraint rows, `L D L^T` with them; dense if small.
     pub fn factor(self) -> Result<Factored<'a>, SolveError> {
         self.factor_with(DENSE_LIMIT)
     }
 
-    /// As [`Assembled::factor`] with the size (unknowns) up to which the dense factorisation serves: for comparing
-    /// the two.
+    /// Factors as [`Assembled::factor`] does, with a given size (unknowns) up to which the dense
+    /// factorisation is used. It serves to compare the two factorisations.
     pub fn factor_with(self, dense_limit: usize) -> Result<Factored<'a>, SolveError> {
         let reduction = Reduction::new(&self.prescribed, &[])?;
         let mut matrix = reduction.matrix(&self.stiffness);
@@ -90,9 +91,11 @@ impl<'a> Assembled<'a> {
         self.factored(reduction, matrix, active, dense_limit)
     }
 
-    /// Eliminates the constraint rows too, so that the matrix stays positive definite: each independent row gives one of
-    /// its parameters away to the others, what depends on other rows is dropped and counted. Parameters in rows that
-    /// hang together are all coupled: the factor grows with the square of their number.
+    /// Factors after elimination of the constraint rows, so the matrix stays positive definite.
+    ///
+    /// Each independent row expresses one of its parameters by the others; dependent rows are dropped and
+    /// counted. All parameters in connected rows become coupled, so the factor grows with the square of their
+    /// number.
     pub fn factor_eliminated(self) -> Result<Factored<'a>, SolveError> {
         let reduction = Reduction::new(&self.prescribed, &self.rows)?;
         let matrix = reduction.matrix(&self.stiffness);
@@ -116,17 +119,21 @@ impl<'a> Assembled<'a> {
         Ok(Factored { problem: self, solver: Solver::Direct(factorization), reduction, active })
     }
 
-    /// The multigrid hierarchy of the stiffness, with the linear mesh of a quadratic one as first coarse level if it is given.
+    /// Builds the multigrid hierarchy of the stiffness. `linear`, the linear mesh of a quadratic mesh,
+    /// becomes the first coarse level if it is given.
     pub fn multigrid(&self, linear: Option<&Coarser>) -> Result<Multigrid, SolveError> {
         Multigrid::new(&self.stiffness, self.body.nodes, self.held(), linear).map_err(not_definite)
     }
 
-    /// Whether each degree of freedom `3 node + axis` is prescribed.
+    /// Returns a flag for each degree of freedom `3 node + axis`: true if it is prescribed.
     pub(crate) fn held(&self) -> Vec<bool> {
         self.prescribed.iter().map(Option::is_some).collect()
     }
 
-    /// Conjugate gradients with this preconditioner, to a relative residual of `tolerance`. Constraint rows are not for it: refused.
+    /// Prepares conjugate gradients with this preconditioner, to a relative residual of `tolerance`.
+    ///
+    /// # Errors
+    /// [`SolveError::RowsNeedFactor`] if there are constraint rows, and invalid prescribed values.
     pub fn iterated(self, multigrid: Multigrid, tolerance: f64) -> Result<Factored<'a>, SolveError> {
         if !self.rows.is_empty() {
             return Err(SolveError::RowsNeedFactor { rows: self.rows.len() });
@@ -136,7 +143,7 @@ impl<'a> Assembled<'a> {
         Ok(Factored { problem: self, solver, reduction, active: Vec::new() })
     }
 
-    /// Appends the constraint rows with a free term to the matrix over the unknowns, and returns which, with their scales.
+    /// Appends the constraint rows with a free term to the matrix and returns their indices and scales.
     fn append_rows(&self, m: &mut Symmetric, place: &[usize]) -> Result<Vec<(usize, f64)>, SolveError> {
         const CONSTRAINED: usize = usize::MAX;
         let largest = (0..m.dim()).fold(0.0f64, |l, j| l.max(m.diagonal(j).abs()));
@@ -152,7 +159,7 @@ impl<'a> Assembled<'a> {
                 }
                 continue;
             }
-            // Scaled to the size of the stiffness, so that one regularisation fits both.
+            // Rows are scaled to the size of the stiffness, so one regularisation fits both.
             let scale = if largest > 0.0 { largest / size } else { 1.0 / size };
             for t in terms() {
                 m.rows.push(place[t.0]);
@@ -169,29 +176,30 @@ impl<'a> Assembled<'a> {
 }
 
 impl<'a> Factored<'a> {
-    /// The solution at `factor` times all given data: loads and prescribed displacements alike.
+    /// Solves at `factor` times all given data, i.e. loads and prescribed displacements.
     pub fn solve(&self, factor: f64) -> Result<Solution, SolveError> {
         self.solve_for(&self.problem.load, factor, factor)
     }
 
-    /// The solution under other loads with the same supports.
+    /// Solves for other loads with the same supports.
     pub fn solve_loads(&self, loads: &[Load]) -> Result<Solution, SolveError> {
         let force = self.problem.other_load(loads)?;
         self.solve_for(&force, 1.0, 1.0)
     }
 
-    /// The solution under nodal forces (N) with supports at `factor` times what they prescribe.
+    /// Solves for nodal forces (N), with supports at `factor` times their prescribed values.
     pub fn solve_forces(&self, forces: &[Vector3], factor: f64) -> Result<Solution, SolveError> {
         check_len("nodal forces", forces.len(), self.node_count())?;
         self.solve_for(forces, 1.0, factor)
     }
 
-    /// The problem again, for another solver.
+    /// Returns the problem, for another solver.
     pub fn into_assembled(self) -> Assembled<'a> {
         self.problem
     }
 
-    /// The displacement under nodal forces (N) with supports at rest, without refinement: for an iteration that corrects itself.
+    /// Returns the displacement (m) under nodal forces (N) with supports at rest, without refinement. It
+    /// serves iterations that correct their own errors.
     pub(crate) fn solve_roughly(&self, forces: &[Vector3]) -> Result<Vec<Vector3>, SolveError> {
         let factorization = match &self.solver {
             Solver::Direct(factorization) => factorization,
@@ -209,8 +217,8 @@ impl<'a> Factored<'a> {
         Ok(u)
     }
 
-    /// Decimal digits that the largest displacement of a solution has at least, by the condition of the matrix: about five more
-    /// solves. Not known of iterations.
+    /// Returns a lower bound of the accurate decimal digits of the largest displacement, from the condition
+    /// of the matrix. This costs about five more solves. The result is `None` for an iterative solution.
     pub fn digits(&self, info: &SolveInfo) -> Result<Option<f64>, SolveError> {
         match (&self.solver, &info.solved) {
             (Solver::Direct(factorization), Some(solved)) => Ok(Some(factorization.digits(solved)?)),
@@ -218,12 +226,12 @@ impl<'a> Factored<'a> {
         }
     }
 
-    /// Smallest factor of Nitsche's method, if any support is of that kind.
+    /// Smallest factor of Nitsche's method, if any support uses this method.
     pub(crate) fn gamma(&self) -> Option<f64> {
         self.problem.gamma
     }
 
-    /// The forms point by point, where supports are weak.
+    /// The forms point by point, kept for weak supports and constraint rows.
     pub(crate) fn forms(&self) -> Option<&crate::problem::Pointwise> {
         self.problem.pointwise.as_ref()
     }
@@ -233,7 +241,7 @@ impl<'a> Factored<'a> {
         self.problem.load.len()
     }
 
-    /// At `part` times the load and `factor` times what supports prescribe.
+    /// Solves at `part` times the load and `factor` times the prescribed values.
     fn solve_for(&self, load: &[Vector3], part: f64, factor: f64) -> Result<Solution, SolveError> {
         if !(part.is_finite() && factor.is_finite()) {
             return Err(SolveError::NotFinite { what: "load factor", index: 0 });
@@ -280,7 +288,7 @@ impl<'a> Factored<'a> {
         Ok(Solution { u, multipliers, info })
     }
 
-    /// Adds what conjugate gradients find for `forces` to what is prescribed.
+    /// Solves for `forces` by conjugate gradients and adds the result to the prescribed part.
     fn iterate(
         &self,
         multigrid: &Multigrid,
@@ -304,9 +312,11 @@ impl<'a> Factored<'a> {
         Ok(Solution { u, multipliers: Vec::new(), info })
     }
 
-    /// At most two steps of refinement with the residual of the forms themselves, at parts of the load and of what supports
-    /// prescribe. A step shrinks the error by about what the factorisation is wrong by, which the first step tells
-    /// (Higham 2002, section 12.1): one of less than 1e-9 leaves nothing to the second.
+    /// Refines the solution in at most two steps, with the residual of the forms themselves at `part` of the
+    /// load and `factor` of the prescribed values.
+    ///
+    /// A step reduces the error by about the relative error of the factorisation, which the first step
+    /// reveals (Higham 2002, section 12.1). After a first step below 1e-9 the second is omitted.
     fn refine(
         &self,
         factorization: &Factorization,
@@ -330,7 +340,7 @@ impl<'a> Factored<'a> {
         Ok(())
     }
 
-    /// Multipliers of eliminated rows: `E^T (f - K u)` at the parameters they gave away.
+    /// Computes the multipliers of eliminated rows: `E^T (f - K u)` at the parameters they eliminate.
     fn add_forces_of_eliminated(
         &self,
         u: &[Vector3],
@@ -352,9 +362,9 @@ impl<'a> Factored<'a> {
         }
     }
 
-    /// Forces (N) that the eliminated supports exert on the nodes at nodal parameters `u` under `factor` times the
-    /// problem's own loads: `K u - f` at prescribed degrees of freedom, less what constraint rows take there; zero
-    /// elsewhere.
+    /// Returns the forces (N) that the eliminated supports exert on the nodes, for a solution under `factor`
+    /// times the problem's own loads. The force is `K u - f` at prescribed degrees of freedom, minus the part
+    /// taken by constraint rows, and zero elsewhere.
     pub fn reactions(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
         let p = &self.problem;
         let mut out = p.stiffness.multiply(&solution.u);
@@ -372,7 +382,8 @@ impl<'a> Factored<'a> {
         out
     }
 
-    /// Resultant (N) of the forces that each constraint row exerts on the body: `-lambda_k c_k`, summed along each axis.
+    /// Returns the resultant (N) of the forces that each constraint row exerts on the body: `-lambda_k c_k`,
+    /// summed along each axis.
     pub fn forces_of_rows(&self, solution: &Solution) -> Vec<Vector3> {
         let each = self.problem.rows.iter().zip(&solution.multipliers);
         each.map(|(row, lambda)| {
@@ -384,12 +395,12 @@ impl<'a> Factored<'a> {
         .collect()
     }
 
-    /// Resultant (N) of the forces that each weak support exerts on the body.
+    /// Returns the resultant (N) of the forces that each weak support exerts on the body.
     pub fn forces_of_weak(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
         self.problem.pointwise.as_ref().map_or_else(Vec::new, |forms| forms.resultants(&solution.u, factor))
     }
 
-    /// The stiffness, before elimination.
+    /// Stiffness before elimination.
     pub fn stiffness(&self) -> &Stiffness {
         &self.problem.stiffness
     }

@@ -1,11 +1,11 @@
-//! Supports by exact elimination: a nodal parameter that *is* a displacement (a Kronecker basis) is set and leaves
-//! the system. For other bases use constraint rows or weak supports.
+//! Supports by exact elimination: a nodal parameter that *is* a displacement (a Kronecker basis) is set and
+//! removed from the system. Other bases need constraint rows or weak supports.
 
 use shape::FixedDof;
 
 use crate::SolveError;
 
-/// The prescribed value of every degree of freedom `3 node + axis`, `None` where it is free.
+/// Returns the prescribed value of every degree of freedom `3 node + axis`, `None` if it is free.
 pub(crate) fn prescribed(node_count: usize, fixed: &[FixedDof]) -> Result<Vec<Option<f64>>, SolveError> {
     let mut values: Vec<Option<f64>> = vec![None; 3 * node_count];
     for (index, f) in fixed.iter().enumerate() {
@@ -24,7 +24,7 @@ pub(crate) fn prescribed(node_count: usize, fixed: &[FixedDof]) -> Result<Vec<Op
         }
         let slot = &mut values[3 * f.node as usize + f.axis as usize];
         match *slot {
-            // Two groups that share an edge may both hold it, at one value.
+            // Two groups with a common edge may both constrain it, to the same value.
             Some(first) if first != f.value => {
                 return Err(SolveError::Conflict {
                     node: f.node as usize,

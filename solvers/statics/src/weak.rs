@@ -1,6 +1,6 @@
 #![allow(non_snake_case)] // Ni, Nj as in the formulas
-//! Weak supports: prescribed displacements by Nitsche's method or by penalty, for bases whose parameters are not
-//! displacements. Each axis may be constrained on its own (rollers).
+//! Weak supports: prescribed displacements by Nitsche's method or by penalty, for bases whose parameters are
+//! not displacements. Axes can be constrained individually (rollers).
 
 use algebra::Stiffness;
 use algebra::{Connectivity, Incidence};
@@ -12,42 +12,46 @@ use crate::body::{check_len, check_regions, region_of};
 use crate::dilation::Projected;
 use crate::{Body, SolveError};
 
-/// How a weak support holds.
+/// Method of a weak support.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weak {
-    /// Symmetric Nitsche with `beta = gamma (lambda + 2 mu) / h`: consistent, and definite if gamma is large enough.
-    /// About 10 serves moving least squares with h the node spacing (Griebel & Schweitzer 2003; Fernandez-Mendez &
-    /// Huerta 2004).
+    /// Symmetric Nitsche method with `beta = gamma (lambda + 2 mu) / h`: consistent, and definite if gamma is
+    /// large enough. About 10 suits moving least squares with h the node spacing (Griebel & Schweitzer 2003;
+    /// Fernandez-Mendez & Huerta 2004).
     Nitsche {
         /// Stabilisation factor, dimensionless.
         gamma: f64,
     },
-    /// Penalty with `beta = factor E / h`: always definite, leaves an error of order `1 / factor`.
+    /// Penalty with `beta = factor E / h`: always definite, with an error of order `1 / factor`.
     Penalty {
         /// Penalty factor, dimensionless.
         factor: f64,
     },
 }
 
-/// A surface constrained weakly.
+/// A weakly constrained surface.
 #[derive(Clone, Debug)]
 pub struct WeakSupport<'a> {
     /// Values, gradients, weights and normals on the surface.
     pub flux: &'a FluxRows,
-    /// Which of x, y, z are constrained; for each of them the traction component `t_a = (sigma n)_a` enters Nitsche's terms.
+    /// Constrained axes x, y, z. For each of them the traction component `t_a = (sigma n)_a` enters Nitsche's
+    /// terms.
     pub axes: [bool; 3],
-    /// Prescribed displacement at each surface point, m; components along axes not constrained are ignored.
+    /// Prescribed displacement at each surface point, m; components along unconstrained axes are ignored.
     pub values: Vec<Vector3>,
-    /// Region of each surface point (index into the body's materials); empty when all are of region 0.
+    /// Region of each surface point (index into the body's materials); empty if all points are in region 0.
     pub region: &'a [u16],
-    /// Nitsche or penalty.
+    /// Nitsche's method or penalty.
     pub method: Weak,
-    /// Length scale of the discretisation at the surface, m; with a trace Nitsche's `h` is the trace's own.
+    /// Length scale of the discretisation at the surface, m. With a trace, Nitsche's `h` is the length of the
+    /// trace instead.
     pub h: f64,
-    /// From what Nitsche's traction is made: the body's own quadrature points, with their projected dilation if there
-    /// is one, or, without a trace, the gradients of `flux` by the plain law. With a trace the matrix is definite for
-    /// every `gamma > 1` and any Poisson's ratio: `|sigma n|^2 <= (lambda + 2 mu) sigma : eps` pointwise, and the trace's
-    /// lengths bound the surface integral by the energy.
+    /// Source of Nitsche's traction: the body's own quadrature points, with their projected dilation if there
+    /// is one. Without a trace the traction follows from the gradients of `flux` by the plain law.
+    ///
+    /// With a trace the matrix is definite for every `gamma > 1` and any Poisson's ratio:
+    /// `|sigma n|^2 <= (lambda + 2 mu) sigma : eps` holds pointwise, and the trace's lengths bound the
+    /// surface integral by the energy.
     pub trace: Option<&'a TraceRows>,
 }
 
@@ -79,24 +83,25 @@ impl WeakSupport<'_> {
     }
 }
 
-/// One support's rows ready for assembly: nodes ascending in each row.
+/// Rows of a support prepared for assembly, with ascending nodes in each row.
 pub(crate) struct WeakTable {
     offsets: Vec<usize>,
     nodes: Vec<u32>,
     /// Shape values.
     phi: Vec<f64>,
-    /// `P T_I` (3, 3), Pa/m: constrained components of the traction of node I's unit displacements; zero for a penalty.
+    /// `P T_I` (3, 3), Pa/m: constrained components of the traction due to unit displacements of node I; zero
+    /// for a penalty.
     traction: Vec<Matrix3>,
     weights: Vec<f64>,
     /// Stabilisation, Pa/m.
     beta: Vec<f64>,
-    /// Prescribed displacement, constrained components only, m.
+    /// Prescribed displacement, m; zero along unconstrained axes.
     target: Vec<Vector3>,
     /// `P = diag(axes)`.
     constrained: Matrix3,
 }
 
-/// What one node contributes at one surface point.
+/// Contribution of a node at a surface point.
 #[derive(Clone, Copy)]
 struct Entry {
     phi: f64,
@@ -157,7 +162,7 @@ impl WeakTable {
                 seen[node as usize] = false;
                 nodes.push(node);
                 phi.push(value);
-                // t_a of a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c)
+                // t_a for a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c).
                 traction.push(if nitsche {
                     constrained
                         * (n * (g * shear + b * bulk).transpose()
@@ -175,7 +180,7 @@ impl WeakTable {
                 Weak::Penalty { factor } => factor * law.young() / support.h,
             });
         }
-        // `constrained * v` would turn an ignored NaN into a NaN; the choice does not.
+        // Components are selected because `constrained * v` would spread an ignored NaN.
         let target =
             support.values.iter().map(|v| Vector3::from_fn(|a, _| if support.axes[a] { v[a] } else { 0.0 }));
         let (weights, target) = (support.flux.weights().to_vec(), target.collect());
@@ -190,7 +195,8 @@ impl WeakTable {
         Incidence::new(node_count, self.connectivity(), 0..self.weights.len())
     }
 
-    /// Adds the bilinear form `sum over constrained axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
+    /// Adds the bilinear form
+    /// `sum over constrained axes of integral of (beta u_a v_a - t_a(u) v_a - u_a t_a(v))`.
     pub fn add_stiffness(&self, stiffness: &mut Stiffness, incidence: &Incidence) {
         stiffness.for_each_row(|i, slot, row| {
             for &(q, k) in incidence.of(i) {
@@ -217,7 +223,8 @@ impl WeakTable {
         });
     }
 
-    /// Adds `integral of (t_a(u) v_a + u_a t_a(v))`, what the bilinear form lacks of a positive one.
+    /// Adds `integral of (t_a(u) v_a + u_a t_a(v))`, the terms that the bilinear form subtracts from a
+    /// positive form.
     pub fn add_consistency(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
         let at = |q: usize| {
             let range = self.offsets[q]..self.offsets[q + 1];
@@ -236,7 +243,7 @@ impl WeakTable {
         });
     }
 
-    /// Takes both forms at `u` and `factor` times the prescribed displacement `g` from `residual`:
+    /// Subtracts both forms at `u` and `factor` times the prescribed displacement `g` from `residual`:
     /// `integral of (beta (u_a - g_a) v_a - t_a(u) v_a - (u_a - g_a) t_a(v))`.
     pub fn subtract_residual(
         &self,

@@ -1,4 +1,4 @@
-//! What can end a nonlinear solution.
+//! Errors that end a nonlinear solution.
 
 use algebra::AlgebraError;
 use contact::ContactError;
@@ -6,24 +6,24 @@ use shape::Point3;
 
 use crate::SolveError;
 
-/// A point turned inside out.
+/// An inverted quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("quadrature point {point} is inverted: J = {det:.3e}")]
 pub struct Inverted {
     /// Quadrature point.
     pub point: usize,
-    /// Its `J = det F`.
+    /// Value of `J = det F` at the point.
     pub det: f64,
 }
 
-/// Where the residual of a failed step is largest.
+/// Location of the largest residual of a failed step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Worst {
     /// Node.
     pub node: usize,
     /// Its reference position, m.
     pub at: Point3,
-    /// Force out of balance there, N.
+    /// Unbalanced force at the node, N.
     pub force: f64,
 }
 
@@ -33,24 +33,24 @@ impl From<AlgebraError> for StaticError {
     }
 }
 
-/// Why a static solution ended before its time.
+/// Reason why a static solution ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticError {
-    /// The problem itself, or a linear system of it.
+    /// An error of the problem itself or of one of its linear systems.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// Contact with a tool has no meaning.
+    /// Contact with a tool that is not valid.
     #[error("tool[{tool}]: {cause}")]
     Contact {
-        /// Its index.
+        /// Index of the tool.
         tool: usize,
-        /// Why.
+        /// Reason.
         cause: ContactError,
     },
     /// An inverted point.
     #[error(transparent)]
     Inverted(#[from] Inverted),
-    /// No dilation gives the pressure asked for at a point (mixed method).
+    /// A pressure that no dilation gives at a point (mixed method).
     #[error("no volume change gives the pressure {pressure:.3e} Pa at quadrature point {point}")]
     NoDilation {
         /// Quadrature point.
@@ -58,7 +58,7 @@ pub enum StaticError {
         /// Pressure, Pa.
         pressure: f64,
     },
-    /// No shift of the diagonal makes a tangent definite on the way.
+    /// A tangent that no tested shift of the diagonal makes definite.
     #[error(
         "the body is unstable here: its tangent is not positive definite, not even with the diagonal doubled, and \
          shows no way down to a stable equilibrium"
@@ -76,21 +76,21 @@ pub enum StaticError {
         iterations: usize,
         /// Relative residual reached.
         residual: f64,
-        /// Limit asked for.
+        /// Required relative residual.
         tolerance: f64,
-        /// Where it is largest.
+        /// Location of the largest residual.
         worst: Worst,
         /// Smallest J of all points.
         smallest: f64,
         /// The point with the smallest J.
         smallest_at: usize,
     },
-    /// Load steps were cut back to nothing.
+    /// A load step that failed at the smallest allowed length.
     #[error("stopped at {time:.4} of the load: a step of {step:.1e} failed too ({cause})")]
     Stalled {
-        /// Part of the load that was carried, 0 to 1.
+        /// Applied load fraction reached, 0 to 1.
         time: f64,
-        /// Step that failed, part of the load.
+        /// Length of the failed step as a load fraction.
         step: f64,
         /// Why the last trial failed.
         cause: Box<StaticError>,
@@ -98,18 +98,19 @@ pub enum StaticError {
     /// A parameter that is not usable.
     #[error("{what} is {value}; {need}")]
     Parameter {
-        /// Which one.
+        /// Name of the parameter.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// Requirement on the value.
         need: &'static str,
     },
 }
 
 impl StaticError {
-    /// The step below which cutting back is given up after this: `smallest`, where a tool went too deep or all the way through no
-    /// more than `shortest`, and none is short enough where it stands in the body without a force.
+    /// Returns the step below which cutting back is given up after this error. The result is `smallest` in
+    /// general, at most `shortest` if a tool went too deep or through the body, and infinity if a tool
+    /// overlaps the body without a force, because shorter steps do not help.
     pub(crate) fn finest(&self, smallest: f64, shortest: f64) -> f64 {
         match self {
             StaticError::Contact { cause: ContactError::Overlap { .. }, .. } => f64::INFINITY,

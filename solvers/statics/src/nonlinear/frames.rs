@@ -1,4 +1,4 @@
-//! A static problem solved again and again at other parts of its load, as a simulator does, prepared once.
+//! Repeated solutions of a static problem at varying load, as in a simulator; the problem is prepared once.
 
 use shape::Vector3;
 
@@ -6,21 +6,22 @@ use super::error::StaticError;
 use super::newton::{Descent, Newton, State, near, shortest_travel};
 use super::statics::{StaticParams, StaticProblem, Step};
 
-/// Equilibria in frames: each starts from the last, forwards or backwards along the loading. Residuals are relative to the
-/// largest forces so far: where tools lift off, the digits of a force near zero are no use to a simulator.
+/// Sequence of equilibria ("frames"), each of which starts from the last, forwards or backwards along the
+/// loading. Residuals are relative to the largest forces so far: when tools lift off, a simulator does not
+/// need the digits of a force near zero.
 pub struct Frames<'a> {
     newton: Newton<'a>,
     state: State,
     before: Option<State>,
     augmentations: usize,
-    /// Part of the load below which cutting a frame is given up.
+    /// Load fraction below which a frame is not divided further.
     smallest: f64,
-    /// The same where a tool travels too far.
+    /// The same limit for frames in which a tool travels too far.
     shortest: f64,
 }
 
 impl<'a> Frames<'a> {
-    /// Starts undeformed.
+    /// Starts from the undeformed body.
     pub fn new(problem: &'a StaticProblem<'a>, params: &'a StaticParams) -> Result<Frames<'a>, StaticError> {
         Ok(Frames {
             newton: Newton::new(problem, &params.newton)?.repeat(),
@@ -32,9 +33,11 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Equilibrium at `time` (part of the load, above 0): in one step, or in halves of it where that fails.
+    /// Finds the equilibrium at `time` (load fraction, above 0) in one step, or in halved steps if that
+    /// fails.
     pub fn to(&mut self, time: f64) -> Result<Step, StaticError> {
-        // On a thread of the pool: from outside each of an iteration's twenty loops would have to wake one.
+        // Runs on a thread of the pool. Called from outside, each of an iteration's twenty loops would have
+        // to wake a thread.
         rayon::scope(|_| self.go(time))
     }
 
@@ -52,7 +55,7 @@ impl<'a> Frames<'a> {
                 Ok((reached, step)) => {
                     self.newton.keep_scale();
                     let last = std::mem::replace(&mut self.state, reached);
-                    // A frame without motion predicts nothing.
+                    // A frame at the same load predicts nothing for the next frame.
                     if last.time != self.state.time {
                         self.before = Some(last);
                     }
@@ -73,7 +76,7 @@ impl<'a> Frames<'a> {
         }
     }
 
-    /// Nodal parameters of the last frame, m.
+    /// Returns the nodal parameters of the last frame, m.
     pub fn u(&self) -> &[Vector3] {
         &self.state.u
     }

@@ -1,5 +1,5 @@
 #![allow(non_snake_case)] // J as in the formulas
-//! Volume changes that points share: which point has which share in which group, and means over groups.
+//! Volume changes shared by points: the points' shares in the groups, and means over groups.
 
 use algebra::Connectivity;
 use material::Material as _;
@@ -8,15 +8,15 @@ use shape::{DilationGroups, Rows};
 
 use super::{Inverted, Solid};
 
-/// For each point its (group, place in the flat pair list, share): the transpose of the groups.
+/// The transpose of the groups: for each point its triples (group, place in the flat pair list, share).
 pub(crate) struct Pairs {
     offsets: Vec<usize>,
-    /// (group, share), point by point.
+    /// Pairs (group, share), point by point.
     of_point: Vec<(u32, f64)>,
-    /// For each entry of the groups' own list its place in `of_point`.
+    /// Place in `of_point` of every entry of the groups' own list.
     place: Vec<usize>,
     group_offsets: Vec<usize>,
-    /// Nodes that the points of each group see, ascending.
+    /// Nodes of the points of each group, ascending.
     nodes: Vec<u32>,
     node_offsets: Vec<usize>,
 }
@@ -66,24 +66,24 @@ impl Pairs {
         &self.of_point[self.offsets[q]..self.offsets[q + 1]]
     }
 
-    /// Places in the pair list of a group's entries.
+    /// Returns the places of a group's entries in the pair list.
     pub fn places(&self, group: usize) -> &[usize] {
         &self.place[self.group_offsets[group]..self.group_offsets[group + 1]]
     }
 
-    /// Nodes that the points of a group see, ascending.
+    /// Returns the nodes of a group's points, ascending.
     pub fn nodes(&self, group: usize) -> &[u32] {
         &self.nodes[self.node_offsets[group]..self.node_offsets[group + 1]]
     }
 
-    /// The groups with their nodes as rows.
+    /// Returns the groups with their nodes as rows.
     pub fn connectivity(&self) -> Connectivity<'_> {
         Connectivity { offsets: &self.node_offsets, nodes: &self.nodes, seen_by: &[] }
     }
 }
 
 impl Solid<'_> {
-    /// `J_a - 1` of each group.
+    /// Returns `J_a - 1` of each group.
     pub(super) fn group_dilations(
         &self,
         groups: &DilationGroups,
@@ -103,7 +103,8 @@ impl Solid<'_> {
                 }
                 let mean = sum / volume;
                 let q = points[0] as usize;
-                // Shares of quadratic or meshless bases may be negative: a mean of positive J's need not be positive.
+                // Shares of quadratic or meshless bases may be negative, so a mean of positive J's need not
+                // be positive.
                 if mean > -1.0 || self.law(q).is_small_strain() {
                     Ok(mean)
                 } else {
@@ -118,7 +119,8 @@ impl Solid<'_> {
         points.iter().zip(shares).map(|(&q, s)| s * self.volume.weights()[q as usize]).sum()
     }
 
-    /// `sum_q share w value / V_a`; `value` by point and place in the pair list.
+    /// Returns the group means `sum_q share w value / V_a`; `value` takes the point and the place in the pair
+    /// list.
     pub(super) fn group_mean(
         &self,
         groups: &DilationGroups,

@@ -1,12 +1,12 @@
-//! What a step in real time adds to the balance of forces: scales of its own for loads, supports and tools, inertia,
-//! relaxation.
+//! Terms that implicit dynamics adds to the balance of forces: separate scales of loads, supports and tools,
+//! inertia and relaxation.
 
 use shape::{Matrix3, Vector3};
 
 use super::relaxing::Relaxing;
 use super::system::SurfaceTable;
 
-/// Parts of the full values that act at the end of a step.
+/// Fractions of the full values at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scales {
     pub loads: f64,
@@ -15,13 +15,13 @@ pub(crate) struct Scales {
 }
 
 impl Scales {
-    /// One for all.
+    /// Uses one fraction for everything.
     pub fn all(scale: f64) -> Scales {
         Scales { loads: scale, supports: scale, tools: scale }
     }
 }
 
-/// What one step adds.
+/// Terms added by a time step.
 #[derive(Clone, Debug)]
 pub(crate) struct TimeTerms {
     pub scales: Scales,
@@ -29,34 +29,34 @@ pub(crate) struct TimeTerms {
     pub relaxing: Option<Relaxing>,
 }
 
-/// Inertia and damping of one step of an implicit scheme, the force `carried - M r`, with
+/// Inertia and damping of one step of an implicit scheme: the force `carried - M r`, with
 /// `r = factor (u - from) + settled` in free degrees of freedom and `r = settled` in constrained ones, m/s^2.
 #[derive(Clone, Debug)]
 pub(crate) struct InertiaTerms {
-    /// 1/s^2.
+    /// Derivative of `r` with respect to `u`, 1/s^2.
     pub factor: f64,
     /// Displacement at the start of the step, m.
     pub from: Vec<Vector3>,
-    /// `r` at the start's displacement, m/s^2.
+    /// `r` at the displacement `from`, m/s^2.
     pub settled: Vec<Vector3>,
-    /// The part that the forces at the start of the step have in the balance, N.
+    /// Contribution of the forces at the start of the step to the balance, N.
     pub carried: Vec<Vector3>,
     /// First guess of the displacement at the end, m.
     pub guess: Vec<Vector3>,
 }
 
-/// Nodal forces at the end of a step, N, and what relaxes.
+/// Nodal forces at the end of a step, N, and the relaxing stresses.
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {
-    /// Loads, surfaces constrained by penalty and contact.
+    /// Forces of loads, of surfaces constrained by penalty and of contact.
     pub external: Vec<Vector3>,
     pub internal: Vec<Vector3>,
-    /// Deviators that a Prony series relaxes, per point, Pa; empty in an elastic body.
+    /// Deviatoric stresses that a Prony series relaxes, per point, Pa; empty for an elastic body.
     pub deviator: Vec<Matrix3>,
 }
 
 impl Ended {
-    /// Larger of external and internal forces, N.
+    /// Returns the norm of the external or internal forces, whichever is larger, N.
     pub fn size(&self) -> f64 {
         let norm = |f: &[Vector3]| f.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
         norm(&self.external).max(norm(&self.internal))
@@ -64,8 +64,8 @@ impl Ended {
 }
 
 impl InertiaTerms {
-    /// Adds the force to `out`; the size of `M settled`, N, which is what a residual here is small against: the two
-    /// parts of `r` cancel in free flight.
+    /// Adds the force to `out` and returns the norm of `M settled`, N. A residual is measured against this
+    /// norm, because the two parts of `r` cancel in free flight.
     pub fn add_force(
         &self,
         mass: &SurfaceTable,
@@ -88,12 +88,12 @@ impl InertiaTerms {
         mass.product(&self.settled).iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
     }
 
-    /// `factor w I` of every point of the mass table.
+    /// Returns `factor w I` for every point of the mass table.
     pub fn blocks(&self, mass: &SurfaceTable) -> Vec<Matrix3> {
         mass.weights.iter().map(|w| Matrix3::identity() * (self.factor * w)).collect()
     }
 
-    /// Adds `factor M moves`.
+    /// Adds `factor M moves` to `right`.
     pub fn give_back(&self, mass: &SurfaceTable, moves: &[Vector3], right: &mut [Vector3]) {
         for (right, product) in right.iter_mut().zip(mass.product(moves)) {
             *right += product * self.factor;
@@ -102,7 +102,7 @@ impl InertiaTerms {
 }
 
 impl SurfaceTable {
-    /// `M v`, `M_IJ = sum_q w N_I N_J`.
+    /// Returns `M v` with `M_IJ = sum_q w N_I N_J`.
     pub fn product(&self, v: &[Vector3]) -> Vec<Vector3> {
         let mut out = vec![Vector3::zeros(); v.len()];
         self.add_force(&self.displacement(v), &mut out);

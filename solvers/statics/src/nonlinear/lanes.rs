@@ -1,9 +1,11 @@
 #![allow(non_snake_case)] // D, K, M as in the formulas
-//! The inner loops of a tangent in wide registers: products of the points, rows of the groups, products of these.
+//! The inner loops of a tangent in wide registers: products of the points, rows of the groups, and products
+//! of these rows.
 //!
-//! Multiply and add stay apart and go in the same order on every path, so the bits do not depend on the processor. A block
-//! of nine numbers is eight lanes and one number over. That one, by itself, would cost as much as the eight; its three products
-//! are lanes of their own, and are summed at the end.
+//! Multiplication and addition stay separate and in the same order on every path, so the bits do not depend
+//! on the processor. A block has nine numbers: eight fill the lanes, and the ninth alone would cost as much
+//! as the eight. The three products of the ninth number therefore occupy lanes of their own and are summed at
+//! the end.
 
 use algebra::Connectivity;
 use lanes::on_path;
@@ -15,7 +17,7 @@ use super::sorted::Sorted;
 
 pub(crate) type Vector4 = nalgebra::Vector4<f64>;
 
-/// Eight numbers, a line of the cache: two vectors, padded to four each.
+/// Eight numbers in one cache line: two vectors, each padded to four numbers.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Lanes([f64; 8]);
@@ -33,7 +35,7 @@ impl Lanes {
     }
 }
 
-/// A block in the making: its first eight numbers by columns, and what the ninth is the sum of.
+/// A block under construction: its first eight numbers by columns, and the summands of the ninth.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct BlockSum {
@@ -51,8 +53,9 @@ impl BlockSum {
     }
 }
 
-/// The tangent of a point as [`point_products`] reads it. `M_l = sum_k g_k D_kl` are three blocks, of which lanes `8 l` on hold
-/// the first eight numbers each, and lanes 24 on the three ninths; for every k the same lanes of `D_kl`.
+/// The tangent of a point in the layout of [`point_products`]. `M_l = sum_k g_k D_kl` are three blocks. Lanes
+/// `8 l` onwards hold the first eight numbers of block l, and lanes 24 onwards the three ninth numbers. For
+/// every k the same lanes hold `D_kl`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct PointTangent([[f64; 32]; 3]);
@@ -72,13 +75,14 @@ impl PointTangent {
     }
 }
 
-/// `b` and `n` of a node in a group, each with the number of column c in the lanes of that column of a block.
+/// `b` and `n` of a node in a group. The component of column c is repeated in all lanes of that column of a
+/// block.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct GroupRow {
     b: [f64; 8],
     n: [f64; 8],
-    /// The last of b and of n.
+    /// Last components of b and n.
     ninth: [f64; 4],
 }
 
@@ -88,7 +92,7 @@ impl GroupRow {
         GroupRow { b: by_column(b), n: by_column(n), ninth: [b.z, n.z, 0.0, 0.0] }
     }
 
-    /// `b` and `n`.
+    /// Returns `b` and `n`.
     pub fn both(&self) -> (Vector3, Vector3) {
         let vector = |v: &[f64; 8]| Vector3::new(v[0], v[3], v[6]);
         (vector(&self.b), vector(&self.n))
@@ -96,7 +100,8 @@ impl GroupRow {
 }
 
 on_path! {
-    /// `K_ij += sum_l M_l g_jl` over the points `seen` by node i and their nodes j <= i, at `slot[j]` of `sums`.
+    /// Adds `sum_l M_l g_jl` to `K_ij` over the points `seen` by node i and their nodes j <= i, at `slot[j]`
+    /// of `sums`.
     pub(super) fn point_products(
         points: &Sorted<Vector4>,
         tangents: &[PointTangent],
@@ -135,7 +140,7 @@ fn point_products_in<const FMA: bool>(
 }
 
 on_path! {
-    /// `K_ij += b_i n_j^T + n_i b_j^T` over the groups `seen` by node i and their nodes j <= i.
+    /// Adds `b_i n_j^T + n_i b_j^T` to `K_ij` over the groups `seen` by node i and their nodes j <= i.
     pub(super) fn group_products(
         nodes: Connectivity<'_>,
         groups: &[GroupHessian],

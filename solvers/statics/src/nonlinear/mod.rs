@@ -1,4 +1,5 @@
-//! Bodies under large displacements: internal energy with projected volume change, and statics by Newton's method.
+//! Bodies under large displacements: internal energy with projected volume change, and equilibrium by
+//! Newton's method.
 
 mod error;
 mod frames;

@@ -1,9 +1,9 @@
 #![allow(non_snake_case)] // F, H, J, S as in the formulas
-//! Prony relaxation of a body: the deviatoric part of its stress fades, the volumetric one stays elastic.
+//! Prony relaxation of a body: the deviatoric part of the stress relaxes, the volumetric part stays elastic.
 //!
-//! With `psi(F, theta)` of [`Split`] every projection of the volume change has the deviatoric stress `d psi / dF`,
-//! which is `F S_dev`; the sum over the dilation groups of a point is linear in it, so that one history per point does.
-//! Source: Simo and Hughes, Computational Inelasticity, section 10.3.
+//! With `psi(F, theta)` of [`Split`] every projection of the volume change has the deviatoric stress
+//! `d psi / dF`, which is `F S_dev`. The sum over the dilation groups of a point is linear in this stress, so
+//! one history per point suffices. Source: Simo and Hughes, Computational Inelasticity, section 10.3.
 
 use material::{Law, Material as _, Prony, PronyStep, Tangent};
 use rayon::prelude::*;
@@ -14,12 +14,12 @@ use super::solid::{Hessian, Internal};
 use super::split::{Split, cofactor, flat};
 use super::{Dilation, Solid, StaticError};
 
-/// What the points of a body remember.
+/// Stress history of all points of a body.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory<'a> {
     solid: Solid<'a>,
     series: &'a [Option<Prony>],
-    /// Start of each point's `h_i`.
+    /// Offset of each point's `h_i` in `history`.
     offsets: Vec<usize>,
     /// `h_i` of all points, Pa.
     history: Vec<Matrix3>,
@@ -27,17 +27,17 @@ pub(crate) struct Memory<'a> {
     deviator: Vec<Matrix3>,
 }
 
-/// Relaxation in one step: `S_dev = modulus S0 + carried`.
+/// Relaxation over one step: `S_dev = modulus S0 + carried`.
 #[derive(Clone, Debug)]
 pub(crate) struct Relaxing {
-    /// By point.
+    /// Factor of the instantaneous deviator, by point.
     modulus: Vec<f64>,
-    /// By point, Pa.
+    /// Relaxed stress from earlier steps, by point, Pa.
     carried: Vec<Matrix3>,
 }
 
 impl<'a> Memory<'a> {
-    /// A body at rest, without any stress so far; one series per law.
+    /// Starts with an unstressed body at rest; one series per law.
     pub fn new(solid: Solid<'a>, series: &'a [Option<Prony>]) -> Memory<'a> {
         let points = solid.volume.weights().len();
         let mut memory = Memory {
@@ -64,7 +64,7 @@ impl<'a> Memory<'a> {
         &self.history[self.offsets[q]..self.offsets[q + 1]]
     }
 
-    /// Steps of `dt` seconds by law.
+    /// Returns the relaxation over a step of `dt` seconds, by law.
     fn steps(&self, dt: f64) -> Vec<Option<PronyStep>> {
         let step = |s: &Option<Prony>| s.as_ref().map(|s| s.step(dt).expect("a step is not negative"));
         self.series.iter().map(step).collect()
@@ -74,7 +74,7 @@ impl<'a> Memory<'a> {
         self.solid.region.get(q).copied().unwrap_or(0) as usize
     }
 
-    /// For a step of `dt` seconds.
+    /// Returns the relaxation over a step of `dt` seconds, by point.
     pub fn relaxing(&self, dt: f64) -> Relaxing {
         let steps = self.steps(dt);
         let (modulus, carried) = (0..self.deviator.len())
@@ -86,7 +86,7 @@ impl<'a> Memory<'a> {
         Relaxing { modulus, carried }
     }
 
-    /// After a step of `dt` seconds that ended at the deviators `new`.
+    /// Updates the history after a step of `dt` seconds that ended with the deviators `new` (Pa).
     pub fn advance(&mut self, dt: f64, new: Vec<Matrix3>) {
         let steps = self.steps(dt);
         for (q, new) in new.iter().enumerate() {
@@ -99,7 +99,7 @@ impl<'a> Memory<'a> {
     }
 }
 
-/// A point as the projection of the volume change sees it: `H`, `J - 1` and (share, `theta - 1`) of each dilation.
+/// A point with its projected volume change: `H`, `J - 1` and pairs (share, `theta - 1`) of the dilations.
 struct Point<'a> {
     law: &'a Law,
     H: Matrix3,
@@ -107,7 +107,8 @@ struct Point<'a> {
 }
 
 impl Relaxing {
-    /// Turns the elastic stresses of `internal` into relaxed ones; the instantaneous deviators, Pa.
+    /// Turns the elastic stresses of `internal` into relaxed stresses and returns the instantaneous
+    /// deviators, Pa.
     pub fn relax(
         &self,
         solid: &Solid,
@@ -124,7 +125,7 @@ impl Relaxing {
                 (elastic, self.carried[q])
             } else {
                 let F = Matrix3::identity() + point.H;
-                // F^-1 = cof^T / J; J > 0 has been looked at.
+                // F^-1 = cof^T / J; J > 0 is already checked.
                 let inverse = cofactor(false, &point.H).transpose() / F.determinant();
                 (inverse * elastic, F * self.carried[q])
             };
@@ -137,9 +138,12 @@ impl Relaxing {
         Ok(deviator)
     }
 
-    /// The same for the tangent. Where the deviatoric stress of a law follows the volume too (neo-Hookean with
-    /// `ln J`, St. Venant-Kirchhoff), the exact one is not symmetric: with one dilation per point its symmetric part
-    /// is taken, with shared ones and a pressure field the small coupling of the two stays elastic.
+    /// Turns the elastic tangent into the relaxed tangent.
+    ///
+    /// For some laws the deviatoric stress also depends on the volume (neo-Hookean with `ln J`, St.
+    /// Venant-Kirchhoff), and the exact tangent is not symmetric. With one dilation per point its symmetric
+    /// part is taken. With shared dilations or a pressure field the small coupling of the two parts stays
+    /// elastic.
     pub fn relax_tangent(
         &self,
         solid: &Solid,
@@ -179,7 +183,7 @@ impl Relaxing {
     }
 }
 
-/// `value` at every point.
+/// Returns `value` at every point.
 fn points<T: Send>(
     solid: &Solid,
     pairs: Option<&Pairs>,

@@ -1,7 +1,9 @@
 #![allow(non_snake_case)] // F, H, J, P as in the formulas
-//! Stresses and tangents of points that share their volume change: the energy `sum over (a, q) of share w psi(F_q, J_a)`.
+//! Stresses and tangents of points that share their volume change: the energy is
+//! `sum over (a, q) of share w psi(F_q, J_a)`.
 //!
-//! By point where the law parts into shape and volume ([`Separated`]), else by every pair of group and point.
+//! Terms are computed by point if the law is separable into shape and volume ([`Separated`]), otherwise by
+//! every pair of group and point.
 
 use lanes::LanePath;
 use material::{Material, Separated, Tangent};
@@ -17,18 +19,21 @@ use super::split::{Split, add_dilation_hessian, cofactor};
 
 /// Groups per task.
 const GROUPS: usize = 8;
-/// Points that the groups of a task go through together: of a cloud with 35 neighbours each 140 KB of rows.
+/// Number of points that the groups of a task traverse together: for a cloud with 35 neighbours per group,
+/// 140 KB of rows.
 const POINTS: usize = 64;
 
-/// The share of one dilation group in the second derivatives: `k b b^T + b m^T + m b^T`, of rank two, is `b n^T + n b^T`
-/// with `n = m + k b / 2`. Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` carried to the nodes (N) and `k` is
+/// Contribution of one dilation group to the second derivatives: `k b b^T + b m^T + m b^T`, of rank two,
+/// written as `b n^T + n b^T` with `n = m + k b / 2`.
+///
+/// Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` transferred to the nodes (N), and `k` is
 /// `d2 psi / d theta2` over the group (J).
 pub(crate) struct GroupHessian {
-    /// By the nodes of the group, ascending.
+    /// Rows by the nodes of the group, ascending.
     pub rows: Vec<GroupRow>,
 }
 
-/// A solid at a displacement, with the dilations its points share.
+/// A solid at a displacement, with the dilations that its points share.
 pub(super) struct Shared<'a> {
     solid: &'a Solid<'a>,
     groups: &'a DilationGroups,
@@ -36,11 +41,11 @@ pub(super) struct Shared<'a> {
     kinematics: &'a Kinematics,
     /// `J_a - 1` of each group.
     theta: Vec<f64>,
-    /// Of each group, where the one law of the body parts.
+    /// Separated volume terms of each group, if the body has a single, separable law.
     parts: Option<Vec<Separated>>,
 }
 
-/// What the tangent of one point leaves for its groups.
+/// Terms of a point's second derivatives that its groups need.
 struct PairSecond {
     by_theta: f64,
     by_theta_theta: f64,
@@ -62,14 +67,14 @@ impl<'a> Shared<'a> {
         Ok(Shared { solid, groups, pairs, kinematics, theta, parts })
     }
 
-    /// The plain loop, which the one by point is compared with.
+    /// Selects the loop over pairs, against which the loop over points is tested.
     #[cfg(test)]
     pub fn plain(mut self) -> Shared<'a> {
         self.parts = None;
         self
     }
 
-    /// `w P` and the energy of every point, J.
+    /// Returns `w P` and the energy of every point, J.
     pub fn stress(&self) -> (Vec<Matrix3>, Vec<f64>) {
         match &self.parts {
             Some(parts) => self.stress_by_point(parts),
@@ -77,7 +82,7 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// `w d2/dF2` of every point, J, and what every group adds.
+    /// Returns `w d2/dF2` of every point, J, and the contribution of every group.
     pub fn hessian(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
         match &self.parts {
             Some(parts) => self.hessian_by_point(parts),
@@ -85,7 +90,7 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// `F_q` through the dilation `theta`.
+    /// Returns the split of `F_q` for the dilation `theta`.
     fn split(&self, q: usize, theta_minus_1: f64) -> Split {
         Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.j_minus_1[q], theta_minus_1)
     }
@@ -94,12 +99,12 @@ impl<'a> Shared<'a> {
         cofactor(self.solid.law(q).is_small_strain(), &self.kinematics.H[q])
     }
 
-    /// `sum_a share value_a` of a point.
+    /// Returns `sum_a share value_a` of a point.
     fn at_point(&self, q: usize, of_group: impl Fn(usize) -> f64) -> f64 {
         self.pairs.of(q).iter().map(|&(a, share)| share * of_group(a as usize)).sum()
     }
 
-    /// `value` of every point.
+    /// Returns `value` of every point.
     fn points<T: Send>(&self, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         (0..self.kinematics.H.len()).into_par_iter().with_min_len(64).map(value).collect()
     }
@@ -162,7 +167,8 @@ impl<'a> Shared<'a> {
         let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
         let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
         let point = self.point_tangents(&pressure, point);
-        // The same for all groups of a point, which are as many as its neighbours where the bases are meshless.
+        // These rows are the same for all groups of a point. A meshless point has as many groups as
+        // neighbours.
         let rows = self.solid.volume.rows();
         let mixed: Vec<Vec<Lanes>> = (0..shape.len().div_ceil(POINTS))
             .into_par_iter()
@@ -223,7 +229,7 @@ impl<'a> Shared<'a> {
         (point, groups)
     }
 
-    /// `w D` with what the change of J itself adds.
+    /// Returns `w D` including the second derivative of J.
     fn point_tangents(&self, pressure: &[f64], mut point: Vec<Tangent>) -> Vec<Tangent> {
         point.par_iter_mut().with_min_len(64).enumerate().for_each(|(q, D)| {
             let p = self.at_point(q, |a| pressure[a]);
@@ -233,15 +239,16 @@ impl<'a> Shared<'a> {
         point
     }
 
-    /// What the neighbours of a point have of `b` and, with `by_F_theta`, of `m`.
+    /// Returns the contributions of a point's neighbours to `b` and, with `by_F_theta`, to `m`.
     fn mixed_rows(&self, q: usize, by_F_theta: Matrix3) -> impl Iterator<Item = Lanes> + '_ {
         let (cofactor, weight) = (self.cofactor(q), self.solid.volume.weights()[q]);
         let of_node = move |g: &Vector3| Lanes::pair(&(cofactor * g * weight), &(by_F_theta * g * weight));
         self.solid.volume.row(q).1.iter().map(of_node)
     }
 
-    /// `stiffness` gives k of a group and a factor of its m; `add` adds what a point has of b and m to the sums of the group,
-    /// at the slot of each node: by point, place in the pair list and share.
+    /// Computes the Hessians of all groups. `stiffness` gives k of a group and a factor of its m. `add` adds
+    /// a point's contributions to b and m to the sums of the group, at the slot of each node; its arguments
+    /// are the point, the place in the pair list and the share.
     fn group_hessians(
         &self,
         stiffness: impl Fn(usize) -> (f64, f64) + Sync + Send,
@@ -259,7 +266,8 @@ impl<'a> Shared<'a> {
                     sums.clear();
                     sums.resize(nodes.len(), Lanes::ZERO);
                 }
-                // All groups go through a tile of points before the next one, so that its rows stay in the cache.
+                // All groups process a tile of points before the next tile, so the rows of the tile stay in
+                // the cache.
                 let mut done = [0; GROUPS];
                 let next = |done: &[usize]| {
                     groups

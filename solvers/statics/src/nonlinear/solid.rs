@@ -12,27 +12,27 @@ use super::shared::{GroupHessian, Shared};
 use super::split::{Split, add_dilation_hessian, cofactor, dilation, dilation_at_pressure};
 use super::{Inverted, StaticError};
 
-/// How a body carries its volume change.
+/// Treatment of the volume change.
 #[derive(Clone, Copy, Debug)]
 pub enum Dilation<'a> {
-    /// As the displacement gives it, point by point.
+    /// Dilation of the displacement, point by point.
     Standard,
-    /// One dilation per group: `J_a = sum_q share w J_q / V_a`, energy `sum over (a, q) of share w W(F_bar)`. Element
-    /// mean and nodal mean alike.
+    /// One dilation per group: `J_a = sum_q share w J_q / V_a`, energy `sum over (a, q) of share w W(F_bar)`.
+    /// Element means and nodal means both have this form.
     Groups(&'a DilationGroups),
-    /// A pressure field of its own, its shape values at the volume points (mixed u-p). The energy is
+    /// A separate pressure field, given by its shape values at the volume points (mixed u-p). The energy is
     /// `sum_q w (psi(F, theta) + p (J - theta))`, with theta eliminated at each point.
     Mixed(&'a Rows),
 }
 
-/// A quadrature with laws: what has internal forces.
+/// A quadrature with laws, from which internal forces follow.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid<'a> {
     /// Values and gradients at the points, with weights.
     pub volume: &'a VolumeRows,
     /// Laws by region.
     pub laws: &'a [Law],
-    /// Region of each point; empty when all are of region 0.
+    /// Region of each point; empty if all points are in region 0.
     pub region: &'a [u16],
     /// Projection of the volume change.
     pub dilation: Dilation<'a>,
@@ -40,19 +40,20 @@ pub struct Solid<'a> {
 
 /// First derivatives of the energy.
 pub(crate) struct Internal {
-    /// `w P` per point (3, 3), J: nodal forces are `sum_q (w P) grad N`.
+    /// `w P` per point (3, 3), J; nodal forces are `sum_q (w P) grad N`.
     pub stress: Vec<Matrix3>,
-    /// `w (J - theta)` per point, m^3, where a pressure field is there; the pressure's residual is `sum_q M (...)`.
+    /// `w (J - theta)` per point, m^3, if there is a pressure field; the pressure's residual is
+    /// `sum_q M (...)`.
     pub misfit: Vec<f64>,
-    /// Strain energy, J (with a pressure field: of the saddle functional).
+    /// Strain energy, J; with a pressure field, the value of the saddle-point functional.
     pub energy: f64,
-    /// The point with the smallest J, and J.
+    /// Point with the smallest J, and this J.
     pub smallest: (usize, f64),
 }
 
 /// Second derivatives of the energy.
 pub(crate) struct Hessian {
-    /// Per point (9, 9), J: `w d2/dF2` with everything local to the point.
+    /// Per point (9, 9), J: `w d2/dF2` including all terms local to the point.
     pub point: Vec<Tangent>,
     /// Per group: the rows of `b n^T + n b^T`.
     pub groups: Vec<GroupHessian>,
@@ -68,7 +69,7 @@ pub(super) struct Kinematics {
 }
 
 impl Solid<'_> {
-    /// The law at a point.
+    /// Returns the law at a point.
     pub(crate) fn law(&self, q: usize) -> &Law {
         &self.laws[self.region.get(q).copied().unwrap_or(0) as usize]
     }
@@ -110,7 +111,7 @@ impl Solid<'_> {
         let mut smallest = (0, f64::INFINITY);
         for (q, &j_minus_1) in j_minus_1.iter().enumerate() {
             let J = 1.0 + j_minus_1;
-            // A small-strain law knows no inversion; a NaN must not pass either way.
+            // A small-strain law has no inversion. NaN is refused in both cases.
             if !(J > 0.0) && !self.law(q).is_small_strain() || J.is_nan() {
                 return Err(Inverted { point: q, det: J });
             }
@@ -121,7 +122,7 @@ impl Solid<'_> {
         Ok(Kinematics { H, j_minus_1, smallest })
     }
 
-    /// `theta - 1` at a point of the mixed method.
+    /// Returns `theta - 1` at a point of the mixed method.
     pub(super) fn mixed_dilation(
         &self,
         q: usize,
@@ -131,7 +132,7 @@ impl Solid<'_> {
     ) -> Result<f64, StaticError> {
         let law = self.law(q);
         dilation_at_pressure(law, H, j_minus_1, p, j_minus_1)
-            // Far from J the guess p = kappa (theta - 1) may be the better one.
+            // Far from J the guess p = kappa (theta - 1) may be better.
             .or_else(|| {
                 let guess = (p / (law.lambda() + 2.0 / 3.0 * law.mu())).max(-0.9);
                 dilation_at_pressure(law, H, j_minus_1, p, guess)
@@ -139,7 +140,7 @@ impl Solid<'_> {
             .ok_or(StaticError::NoDilation { point: q, pressure: p })
     }
 
-    /// Pressure of the mixed method at each point, Pa.
+    /// Returns the pressure of the mixed method at each point, Pa.
     pub(super) fn pressures(&self, rows: &Rows, p: &[f64]) -> Vec<f64> {
         (0..rows.len())
             .map(|q| {
@@ -149,7 +150,7 @@ impl Solid<'_> {
             .collect()
     }
 
-    /// Energy and stresses at nodal parameters `u` (and pressures `p`).
+    /// Computes energy and stresses at nodal parameters `u` (m) and pressures `p` (Pa).
     pub(crate) fn internal(
         &self,
         pairs: Option<&Pairs>,
@@ -195,7 +196,7 @@ impl Solid<'_> {
         Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: *smallest })
     }
 
-    /// Second derivatives at nodal parameters `u` (and pressures `p`).
+    /// Computes second derivatives at nodal parameters `u` (m) and pressures `p` (Pa).
     pub(crate) fn hessian(
         &self,
         pairs: Option<&Pairs>,
@@ -225,7 +226,8 @@ impl Solid<'_> {
                         let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
                         let (_, second) = Split::new(law, &H[q], j_minus_1[q], theta).second(law);
                         let by_p = second.by_F_theta / second.by_theta_theta;
-                        // theta follows F at constant p: the Schur complement of the local elimination.
+                        // theta follows F at constant p: this is the Schur complement of the local
+                        // elimination.
                         let v = super::split::flat(&second.by_F_theta);
                         let mut D = second.by_FF - v * v.transpose() / second.by_theta_theta;
                         let small = law.is_small_strain();

@@ -1,5 +1,5 @@
-//! Rows with ascending, unique nodes: the partners `j <= i` of an entry are then the entries before it, which is what
-//! the assembly of a lower triangle wants.
+//! Rows with ascending, unique nodes. The partners `j <= i` of an entry are the entries before it, as the
+//! assembly of a lower triangle requires.
 
 use std::ops::AddAssign;
 
@@ -14,7 +14,7 @@ pub(crate) struct Sorted<T> {
 }
 
 impl<T: Copy + AddAssign> Sorted<T> {
-    /// Sorts each row; data of a node that a row names twice add up.
+    /// Sorts each row; the data of repeated nodes add up.
     pub fn new<R: Iterator<Item = (u32, T)>>(rows: impl Iterator<Item = R>) -> Sorted<T> {
         let mut sorted = Sorted { offsets: vec![0], nodes: Vec::new(), data: Vec::new() };
         let mut row: Vec<(u32, T)> = Vec::new();
@@ -48,7 +48,7 @@ impl<T: Copy + AddAssign> Sorted<T> {
         Incidence::new(node_count, self.connectivity(), 0..self.len())
     }
 
-    /// Nodes and data of one row.
+    /// Returns nodes and data of a row.
     pub fn row(&self, row: usize) -> (&[u32], &[T]) {
         let range = self.offsets[row]..self.offsets[row + 1];
         (&self.nodes[range.clone()], &self.data[range])

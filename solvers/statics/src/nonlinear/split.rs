@@ -1,17 +1,22 @@
 #![allow(non_snake_case)] // F, H, J, P, T as in the formulas
-//! A law seen through a dilation of its own: `psi(F, theta) = W(F_bar)`, `F_bar = (theta / J)^(1/3) F`, `J = det F`.
+//! A law with an independent dilation: `psi(F, theta) = W(F_bar)`, `F_bar = (theta / J)^(1/3) F`,
+//! `J = det F`.
 //!
-//! This is what every projection of the volume change needs. With `theta = J` it is the law itself; with the average
-//! over an element or a nodal patch it is the mean-dilation method (Simo, Taylor & Pister 1985) in a form that
-//! derives from an energy for any law, so that its tangent is symmetric; with `theta` free and a pressure it is the
-//! mixed method. The small-strain law takes `J = 1 + tr H` and `H_bar = H + (theta - J) I / 3` instead.
+//! Every projection of the volume change needs this form:
 //!
-//! Dilations are handed over less one (`theta - 1`), exact where the strain is small.
+//! - With `theta = J` it is the law itself.
+//! - With the average over an element or a nodal patch it is the mean-dilation method (Simo, Taylor & Pister
+//!   1985). In this form the method derives from an energy for any law, so its tangent is symmetric.
+//! - With a free `theta` and a pressure it is the mixed method.
+//!
+//! The small-strain law uses `J = 1 + tr H` and `H_bar = H + (theta - J) I / 3` instead. Dilations are passed
+//! minus one (`theta - 1`), which is exact for small strain.
 
 use material::{Law, Material, Tangent, volume_change};
 use shape::{Matrix3, Vector3};
 
-/// `J - 1`: `tr H + second invariant + det H` of `H = grad u`, exact for small H; `tr H` at small strain.
+/// Returns `J - 1`: `tr H + second invariant + det H` of `H = grad u`, exact for small H; `tr H` at small
+/// strain.
 pub(crate) fn dilation(small_strain: bool, H: &Matrix3) -> f64 {
     if small_strain {
         return H.trace();
@@ -19,7 +24,7 @@ pub(crate) fn dilation(small_strain: bool, H: &Matrix3) -> f64 {
     volume_change(H)
 }
 
-/// `dJ/dF = J F^-T`, the cofactor matrix; the identity at small strain.
+/// Returns `dJ/dF = J F^-T`, the cofactor matrix; the identity at small strain.
 pub(crate) fn cofactor(small_strain: bool, H: &Matrix3) -> Matrix3 {
     if small_strain {
         return Matrix3::identity();
@@ -29,7 +34,8 @@ pub(crate) fn cofactor(small_strain: bool, H: &Matrix3) -> Matrix3 {
     Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
 }
 
-/// Second derivative of J with respect to F (9, 9): entry (ij, kl) is `e_ikm e_jln F_mn`; zero at small strain.
+/// Adds `factor` times the second derivative of J with respect to F (9, 9) to `D`: entry (ij, kl) is
+/// `e_ikm e_jln F_mn`. The derivative is zero at small strain.
 pub(crate) fn add_dilation_hessian(small_strain: bool, H: &Matrix3, factor: f64, D: &mut Tangent) {
     if small_strain || factor == 0.0 {
         return;
@@ -48,7 +54,7 @@ const PERMUTATIONS: [(usize, usize, usize, f64); 6] =
 
 /// Energy and first derivatives of `psi(F, theta)`.
 pub(crate) struct First {
-    /// `d psi / dF` (3, 3), Pa: free of pressure.
+    /// `d psi / dF` (3, 3), Pa, which contains no pressure.
     pub by_F: Matrix3,
     /// `d psi / d theta`, Pa: the mean stress.
     pub by_theta: f64,
@@ -60,15 +66,15 @@ pub(crate) struct Second {
     pub by_FF: Tangent,
     /// `d2 psi / dF d theta` (3, 3), Pa.
     pub by_F_theta: Matrix3,
-    /// `d2 psi / d theta2`, Pa: the bulk modulus where the strain is small.
+    /// `d2 psi / d theta2`, Pa: the bulk modulus at small strain.
     pub by_theta_theta: f64,
 }
 
-/// The pair (F, theta) with what all derivatives share.
+/// The pair (F, theta) with the quantities common to all derivatives.
 pub(crate) struct Split {
     /// Displacement gradient of `F_bar`.
     H_bar: Matrix3,
-    /// `F_bar`; the identity at small strain, whose derivatives then have the same form.
+    /// `F_bar`; the identity at small strain, for which the derivatives then have the same form.
     F_bar: Matrix3,
     /// `F^-T`; the identity at small strain.
     T: Matrix3,
@@ -79,14 +85,14 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// At `H` (with `J - 1` already known) and `theta - 1`; both dilations must be positive.
+    /// Builds the pair from `H`, its known `J - 1`, and `theta - 1`; both dilations must be positive.
     pub fn new(law: &Law, H: &Matrix3, j_minus_1: f64, theta_minus_1: f64) -> Split {
         if law.is_small_strain() {
             let I = Matrix3::identity();
             let H_bar = H + I * ((theta_minus_1 - j_minus_1) / 3.0);
             return Split { H_bar, F_bar: I, T: I, scale: 1.0, theta: 1.0, small_strain: true };
         }
-        // ln(theta / J) / 3 by log1p: the difference of two nearly equal dilations keeps its digits.
+        // ln(theta / J) / 3 by log1p keeps the digits of the difference of two nearly equal dilations.
         let log = (theta_minus_1.ln_1p() - j_minus_1.ln_1p()) / 3.0;
         let (scale, grown) = (log.exp(), log.exp_m1());
         let F = Matrix3::identity() + H;
@@ -101,12 +107,12 @@ impl Split {
         }
     }
 
-    /// `psi`, J/m^3.
+    /// Returns `psi`, J/m^3.
     pub fn energy(&self, law: &Law) -> f64 {
         law.energy(&self.H_bar)
     }
 
-    /// First derivatives.
+    /// Returns the first derivatives.
     pub fn first(&self, law: &Law) -> First {
         self.first_of(&law.stress(&self.H_bar))
     }
@@ -116,13 +122,13 @@ impl Split {
         First { by_F: P * self.scale - self.T * (s / 3.0), by_theta: s / (3.0 * self.theta) }
     }
 
-    /// First and second derivatives.
+    /// Returns the first and second derivatives.
     pub fn second(&self, law: &Law) -> (First, Second) {
         let (P, A) = law.stress_and_tangent(&self.H_bar);
         let Y = unflat(&(A * flat(&self.F_bar)));
         let s = P.dot(&self.F_bar);
         let FAF = Y.dot(&self.F_bar);
-        // At small strain F_bar is constant: the terms by which its own change acts drop out.
+        // At small strain F_bar is constant, so the terms due to its change vanish.
         let (P_term, s_term) = if self.small_strain { (Matrix3::zeros(), 0.0) } else { (P, s) };
         let (c, T, theta) = (self.scale, &self.T, self.theta);
         let Z = (Y + P_term) * (c / 3.0);
@@ -147,18 +153,18 @@ impl Split {
     }
 }
 
-/// A matrix as the vector of its columns.
+/// Returns the columns of a matrix as one vector.
 pub(crate) fn flat(m: &Matrix3) -> nalgebra::SVector<f64, 9> {
     nalgebra::SVector::from_column_slice(m.as_slice())
 }
 
-/// The matrix whose columns a vector lists.
+/// Returns the matrix whose columns are listed in a vector.
 pub(crate) fn unflat(v: &nalgebra::SVector<f64, 9>) -> Matrix3 {
     Matrix3::from_column_slice(v.as_slice())
 }
 
-/// `theta - 1` at which `d psi / d theta = p`, by Newton's method from a guess; `None` where it leaves the positive
-/// dilations or does not settle.
+/// Solves `d psi / d theta = p` for `theta - 1` by Newton's method from a guess. The result is `None` if the
+/// iteration leaves the positive dilations or does not converge.
 pub(crate) fn dilation_at_pressure(
     law: &Law,
     H: &Matrix3,
@@ -173,7 +179,7 @@ pub(crate) fn dilation_at_pressure(
         if !step.is_finite() {
             return None;
         }
-        // No step may take away more than half of the volume; at small strain any dilation has a pressure.
+        // A step may remove at most half of the volume. At small strain every dilation has a pressure.
         theta_minus_1 += if law.is_small_strain() { step } else { step.max(-0.5 * (1.0 + theta_minus_1)) };
         if step.abs() <= 1e-14 * (1.0 + theta_minus_1.abs()) {
             return Some(theta_minus_1);

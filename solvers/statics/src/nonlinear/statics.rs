@@ -9,12 +9,12 @@ use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near, short
 use super::solid::Solid;
 use crate::Load;
 
-/// A surface constrained by a penalty: for bases whose parameters are not displacements.
+/// A surface constrained by a penalty, for bases whose parameters are not displacements.
 #[derive(Clone, Debug)]
 pub struct PenaltySurface<'a> {
-    /// Values and weights.
+    /// Shape values and weights at the surface points.
     pub surface: &'a SurfaceRows,
-    /// Which of x, y, z are constrained.
+    /// Constrained axes x, y, z.
     pub axes: [bool; 3],
     /// Prescribed displacement at each point at the end of the loading, m.
     pub values: Vec<Vector3>,
@@ -22,59 +22,63 @@ pub struct PenaltySurface<'a> {
     pub beta: f64,
 }
 
-/// A body with loads, supports and tools. Loads are dead loads (per reference area or volume); loads, prescribed
-/// displacements and drives grow in proportion to the time 0 to 1.
+/// A body with loads, supports and tools. Loads are dead loads (per reference area or volume). Loads,
+/// prescribed displacements and drives grow in proportion to the time, 0 to 1.
 #[derive(Clone, Debug)]
 pub struct StaticProblem<'a> {
     /// Reference positions, m.
     pub nodes: &'a [Point3],
     /// The body.
     pub solid: Solid<'a>,
-    /// Loads; they add up.
+    /// Loads, which are summed.
     pub loads: &'a [Load<'a>],
-    /// Nodal parameters prescribed.
+    /// Prescribed nodal parameters.
     pub fixed: &'a [FixedDof],
     /// Surfaces constrained by penalty.
     pub penalties: &'a [PenaltySurface<'a>],
-    /// Where tools may touch.
+    /// Surface on which tools may touch the body.
     pub contact: Option<&'a ContactSurface<'a>>,
     /// The tools.
     pub tools: &'a [DrivenTool<'a>],
 }
 
-/// How a static solution is stepped.
+/// Parameters of load stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticParams {
-    /// Number of equal steps at whose ends results are wanted. Steps are never longer; a step that fails is halved.
+    /// Number of equal output intervals. Steps are never longer; a step that fails is halved.
     pub steps: usize,
-    /// Part of a step below which cutting back is given up; where a tool travels too far in it, an eighth of the deepest that
-    /// the tool may penetrate, if that is less.
+    /// Smallest step as a fraction of the output interval; shorter steps are given up. For a tool that
+    /// travels too far in a step, the limit is a travel of an eighth of the tool's deepest allowed
+    /// penetration, if that is less.
     pub smallest: f64,
     /// Newton's method.
     pub newton: NewtonParams,
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
     pub augmentations: usize,
-    /// Part of the load to within which the first limit or bifurcation point is sought, if it is: steps on which a tangent
-    /// is not definite are halved down to it, or to twice the smallest step. Without it such a point is seen only where a step ends beyond it.
+    /// Load fraction to within which the first limit or bifurcation point is located; `None` if it is not
+    /// sought. Steps with an indefinite tangent are halved down to this fraction or to twice the smallest
+    /// step. Without this search such a point is noticed only if a step ends beyond it.
     pub limit_within: Option<f64>,
 }
 
 /// A converged step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// Part of the loading, 0 to 1.
+    /// Load fraction, 0 to 1.
     pub time: f64,
-    /// True where results were asked for (a multiple of `1 / steps`).
+    /// Whether results are requested at the end of this step (a multiple of `1 / steps`).
     pub wanted: bool,
-    /// The iterations that led there.
+    /// Newton iterations of the step.
     pub iterations: Vec<Iteration>,
-    /// Whether it gave way on the way: no equilibrium was near, and where the tangent was not definite energy was still
-    /// set free beyond the Newton step; or, where a limit point is sought, the nearest one was not stable.
+    /// Whether the body gave way in this step. Then no equilibrium was nearby, and with an indefinite tangent
+    /// energy was released beyond the Newton step. In a search for a limit point the flag also marks a
+    /// nearest equilibrium that was not stable.
     pub gave_way: bool,
-    /// Whether it ends in a stable equilibrium: the last tangent was positive definite, with friction its symmetric part.
-    /// One that is not is a point beyond a limit or a bifurcation, which a body left to itself does not keep to.
+    /// Whether the step ends in a stable equilibrium: the last tangent (with friction, its symmetric part)
+    /// was positive definite. An unstable equilibrium lies beyond a limit or bifurcation point, and the body
+    /// would leave it by itself.
     pub stable: bool,
-    /// One per tool.
+    /// States of the tools.
     pub tools: Vec<ToolState>,
     /// Strain energy, J.
     pub energy: f64,
@@ -82,51 +86,53 @@ pub struct Step {
     pub smallest: f64,
 }
 
-/// Work of a static solution: everything that was done, with steps that failed and trials that were thrown away.
+/// Counters of a static solution, including failed steps and discarded trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StaticWork {
-    /// Tangents assembled: one per iteration.
+    /// Number of assembled tangents: one per iteration.
     pub assemblies: u64,
-    /// Numeric factorisations, more than assemblies where a tangent is not definite.
+    /// Number of numeric factorisations, more than assemblies if tangents are not definite.
     pub factorisations: u64,
-    /// Linear systems solved: one per iteration, and with a pressure field one per trial whose residual did not fall.
+    /// Number of linear systems solved: one per iteration, and with a pressure field one per trial whose
+    /// residual did not fall.
     pub solves: u64,
-    /// Iterations of the linear solver: with a factor kept from another tangent, or with sliding friction.
+    /// Number of iterations of the linear solver, with a factor kept from another tangent or with sliding
+    /// friction.
     pub inner: u64,
-    /// Evaluations of the forces, one per trial state.
+    /// Number of force evaluations, one per trial state.
     pub forces: u64,
 }
 
-/// What a static solution gave: everything up to its end, and why it ended if that was early.
+/// Result of a static solution up to its end, with the reason of an early end.
 #[derive(Clone, Debug)]
 pub struct StaticPath {
     /// Converged steps in order.
     pub steps: Vec<Step>,
     /// Nodal parameters after the last converged step, m.
     pub u: Vec<Vector3>,
-    /// Pressure parameters (mixed method), Pa.
+    /// Pressure parameters of the mixed method, Pa.
     pub pressure: Vec<f64>,
-    /// What the contact of each tool remembers after the last converged step.
+    /// Contact history of each tool after the last converged step.
     pub history: Vec<ContactHistory>,
-    /// Steps that failed and were cut back.
+    /// Number of steps that failed and were cut back.
     pub cut_back: usize,
-    /// What the contact search did and skipped.
+    /// Counters of the contact search.
     pub counts: ContactCounts,
-    /// Work in all.
+    /// Counters of the whole solution.
     pub work: StaticWork,
-    /// Why it ended early, if it did.
+    /// Reason of an early end.
     pub failure: Option<StaticError>,
 }
 
 impl StaticPath {
-    /// The part of the load that was carried.
+    /// Applied load fraction reached, 0 to 1.
     pub fn time(&self) -> f64 {
         self.steps.last().map_or(0.0, |s| s.time)
     }
 }
 
-/// A body at rest at the end of a step: nodal parameters (m), parameters of a pressure field (Pa), and the force of the nodal supports
-/// on every node (N), zero in free degrees of freedom.
+/// Equilibrium at the end of a step: nodal parameters (m), parameters of a pressure field (Pa), and the
+/// reaction force of the nodal supports on every node (N), zero in free degrees of freedom.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub struct Rest<'a> {
@@ -135,9 +141,13 @@ pub struct Rest<'a> {
     pub reaction: &'a [Vector3],
 }
 
-/// Solves; `observe` is called after every converged step with the step and the body at its end.
-/// An error here is one of the problem itself; a solution that ends early is a [`StaticPath`] with its failure.
-/// Rigid motions that neither supports nor, at the end, tools prevent are such an error: where they went is chance.
+/// Solves a static problem in load steps. `observe` is called after every converged step with the step and
+/// the state at its end.
+///
+/// # Errors
+/// Errors of the problem itself. A rigid motion that neither supports nor, at the end, tools prevent is such
+/// an error, because its result is arbitrary. A solution that ends early is a [`StaticPath`] with its
+/// `failure`.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,
@@ -162,24 +172,25 @@ pub fn solve_static(
         failure: None,
     };
     let (mut next, mut step) = (1, longest);
-    // No finer than a step that can be halved once more: one that can't has to take any way there is.
+    // At least a step that can still be halved once: a step that cannot be halved has to accept any
+    // equilibrium.
     let finest = 2.0 * params.smallest * longest;
     let shortest = shortest_travel(problem);
     let (mut within, mut near_limit) = (params.limit_within.map(|within| within.max(finest)), false);
     while next <= count {
         let target = next as f64 * longest;
         let left = target - state.time;
-        // A rest shorter than a tenth of the step would be one for its own sake.
+        // Avoids a last step shorter than a tenth of the current step.
         let reaches = step > 0.9 * left;
         let time = if reaches { target } else { state.time + step };
-        // The way so far is the best guess of the way to come; without a converged step, or where the guess inverts
-        // a point, the last state is.
+        // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
+        // point, the last state is the guess.
         let mut to = |descent| newton.find(&state, before.as_ref(), time, params.augmentations, descent);
         let reached = if within.is_some_and(|within| time - state.time > within) {
             to(Descent::Smooth)
         } else {
             match near(!state.pressure.is_empty(), &mut to) {
-                // The limit point that is sought: on to where the body comes to rest.
+                // The sought limit point: the solution continues to the next stable equilibrium.
                 Ok((_, done)) if within.is_some() && !done.stable => {
                     to(Descent::Down).map(|(reached, done)| (reached, Step { gave_way: true, ..done }))
                 }

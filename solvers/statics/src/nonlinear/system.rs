@@ -1,5 +1,5 @@
 #![allow(non_snake_case)] // K, D, M as in the formulas
-//! The linear system of one Newton iteration: symbolic structure once, numbers at every iteration.
+//! Linear system of one Newton iteration: symbolic structure computed once, values at every iteration.
 
 use algebra::Stiffness;
 use algebra::Symmetric;
@@ -14,14 +14,15 @@ use super::solid::{Hessian, Internal};
 use super::sorted::Sorted;
 use super::{Dilation, Solid};
 
-/// Place of a constrained degree of freedom among the unknowns.
+/// Index that marks a constrained degree of freedom among the unknowns.
 pub(crate) const CONSTRAINED: usize = usize::MAX;
 
-/// Gradients of points that the rows of a task go through together: with the tangents of their points 500 KB at most, which
-/// stay in the second-level cache.
+/// Number of gradients of points that the rows of a task traverse together. With the tangents of their points
+/// they take at most 500 KB, which stay in the second-level cache.
 const TILE: usize = 4096;
 
-/// Values on a surface (or of any quadrature whose values alone count) with its weights, ready for assembly.
+/// Shape values on a surface (or at the points of any quadrature that needs values only) with weights, ready
+/// for assembly.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceTable {
     pub rows: Sorted<f64>,
@@ -34,7 +35,7 @@ impl SurfaceTable {
         SurfaceTable::weighted(surface.rows(), surface.weights().to_vec())
     }
 
-    /// Any values with weights of their own.
+    /// Builds a table of any shape values with separate weights.
     pub fn weighted(rows: &shape::Rows, weights: Vec<f64>) -> SurfaceTable {
         let sorted = Sorted::new((0..rows.len()).map(|q| {
             let (nodes, values) = rows.row(q);
@@ -44,20 +45,20 @@ impl SurfaceTable {
         SurfaceTable { rows: sorted, weights, of_node }
     }
 
-    /// One point in each node.
+    /// Builds a table with one point in each node.
     pub fn nodal(weights: Vec<f64>) -> SurfaceTable {
         let rows = Sorted::new((0..weights.len() as u32).map(|i| std::iter::once((i, 1.0))));
         let of_node = rows.incidence(weights.len());
         SurfaceTable { rows, weights, of_node }
     }
 
-    /// `sum_q w N_I^2` of every node.
+    /// Returns `sum_q w N_I^2` of every node.
     pub fn diagonal(&self, nodes: usize) -> Vec<f64> {
         let entry = |&(q, k): &(u32, u32)| self.weights[q as usize] * self.rows.data[k as usize].powi(2);
         (0..nodes).map(|i| self.of_node.of(i).iter().map(entry).sum()).collect()
     }
 
-    /// Displacement at the surface points, m.
+    /// Returns the displacement at the surface points, m.
     pub fn displacement(&self, u: &[Vector3]) -> Vec<Vector3> {
         (0..self.rows.len())
             .into_par_iter()
@@ -69,7 +70,7 @@ impl SurfaceTable {
             .collect()
     }
 
-    /// Adds `sum_q w N t` to nodal forces.
+    /// Adds the nodal forces `sum_q w N t` of a traction to `force`.
     pub fn add_force(&self, traction: &[Vector3], force: &mut [Vector3]) {
         force.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, force)| {
             for &(q, k) in self.of_node.of(i) {
@@ -80,24 +81,24 @@ impl SurfaceTable {
     }
 }
 
-/// Structure of the system of a solid with surfaces on which something acts.
+/// Structure of the system of a solid with loaded or constrained surfaces.
 pub(crate) struct System<'a> {
     solid: Solid<'a>,
     pub pairs: Option<Pairs>,
-    /// Gradients, 1/m, and a zero each.
+    /// Gradients, 1/m, each padded with a zero.
     points: Sorted<Vector4>,
     points_of: Incidence,
     groups_of: Option<Incidence>,
-    /// Pressure nodes: the (point, value) pairs that each sees.
+    /// For each pressure node, its pairs (point, value).
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
     stiffness: Stiffness,
-    /// Place of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
+    /// Index of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
     pub place: Vec<usize>,
     /// Number of free displacement degrees of freedom.
     pub free: usize,
-    /// The matrix is that of pressures over this scale (Pa per unknown): a pressure's own entries are 1e-15 of a
-    /// stiffness, and the static regularisation would drown them.
+    /// Scale of the pressure unknowns, Pa. Unscaled pressure entries of the matrix are 1e-15 of a stiffness,
+    /// and the static regularisation would swamp them.
     pub pressure_scale: f64,
 }
 
@@ -159,7 +160,7 @@ impl<'a> System<'a> {
         self.free + self.pressure_of.len()
     }
 
-    /// Internal nodal forces `sum_q (w P) grad N`, N.
+    /// Returns the internal nodal forces `sum_q (w P) grad N`, N.
     pub fn internal_force(&self, internal: &Internal) -> Vec<Vector3> {
         (0..self.solid.node_count())
             .into_par_iter()
@@ -172,14 +173,15 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Derivative of the energy with respect to each pressure parameter, m^3.
+    /// Returns the derivative of the energy with respect to each pressure parameter, m^3.
     pub fn pressure_gradient(&self, internal: &Internal) -> Vec<f64> {
         (self.pressure_of.iter())
             .map(|seen| seen.iter().map(|&(q, v)| v * internal.misfit[q as usize]).sum())
             .collect()
     }
 
-    /// The matrix at `hessian` with `surface[s][q] = -w dt/dx` (symmetric part taken) on each surface.
+    /// Assembles the matrix at `hessian`, with `surface[s][q] = -w dt/dx` (its symmetric part) on each
+    /// surface.
     pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) -> Symmetric {
         let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
         let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
@@ -213,7 +215,7 @@ impl<'a> System<'a> {
         self.reduced(hessian)
     }
 
-    /// Upper triangle over the free degrees of freedom, then the pressures.
+    /// Returns the upper triangle over the free degrees of freedom, followed by the pressures.
     fn reduced(&mut self, hessian: &Hessian) -> Symmetric {
         let mut matrix = Symmetric::displacements(&self.stiffness, &self.place, self.free);
         let nodes = self.solid.node_count();
@@ -270,7 +272,8 @@ impl<'a> System<'a> {
         matrix
     }
 
-    /// The entries `(row, column, value)` that the skew parts of `surface` add to the symmetric matrix.
+    /// Returns the entries `(row, column, value)` that the skew parts of `surface` add to the symmetric
+    /// matrix.
     pub fn skew(&self, surface: &[Vec<Matrix3>]) -> Vec<(usize, usize, f64)> {
         let mut entries = Vec::new();
         for (table, blocks) in self.surfaces.iter().zip(surface) {
@@ -296,7 +299,7 @@ impl<'a> System<'a> {
         entries
     }
 
-    /// Unknowns gathered from nodal vectors and pressures.
+    /// Gathers the unknowns from nodal vectors and pressures.
     pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.dim()];
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
@@ -316,12 +319,14 @@ impl<'a> System<'a> {
         }
     }
 
-    /// `K du` of constrained degrees of freedom that move: what they take from the right-hand side of the free ones.
+    /// Returns `K du` for the increments `du` of constrained degrees of freedom, to be subtracted from the
+    /// right-hand side of the free ones.
     pub fn held_part(&self, step: &[Vector3]) -> Vec<Vector3> {
         self.stiffness.multiply(step)
     }
 
-    /// Takes from the pressures' right-hand side what constrained degrees of freedom that move by `step` do to it.
+    /// Subtracts the effect of the increments `step` of constrained degrees of freedom from the right-hand
+    /// side of the pressures.
     pub fn subtract_held_pressure(&self, hessian: &Hessian, step: &[Vector3], right: &mut [f64]) {
         if right.is_empty() {
             return;

@@ -1,5 +1,5 @@
 #![allow(non_snake_case)]
-//! Derivatives of the internal energy against differences, for every law and projection.
+//! Derivatives of the internal energy against finite differences, for every law and projection.
 
 use fem::VolumeRule;
 use geometry::CellKind;
@@ -21,7 +21,7 @@ fn laws() -> Vec<Law> {
     Law::all(YOUNG, POISSON).unwrap()
 }
 
-/// A displacement gradient of about 0.3 without any symmetry.
+/// An asymmetric displacement gradient of about 0.3.
 fn gradient() -> Matrix3 {
     Matrix3::new(0.21, -0.13, 0.08, 0.17, -0.19, 0.11, -0.05, 0.23, 0.14)
 }
@@ -74,7 +74,8 @@ fn split_at_its_own_dilation_is_the_law() {
     }
 }
 
-/// Central differences of `A`, `U` and their slopes, and the energy of the parts against that of the law.
+/// Checks `A`, `U` and their slopes by central differences, and the energy of the separated parts against
+/// that of the law.
 #[test]
 fn laws_part_into_shape_and_volume() {
     let h = 1e-6;
@@ -127,7 +128,7 @@ fn case() -> Case {
     let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
     let element = fem::element_dilation(&mesh, &VolumeRule::STANDARD).unwrap();
     let pressure = fem::pressure_rows(&mesh, &VolumeRule::STANDARD, &[]).unwrap();
-    // Positive shares that overlap: the corner values of the pressure.
+    // Positive, overlapping shares: the corner values of the pressure.
     let mut lists = vec![Vec::new(); pressure.node_count()];
     for q in 0..pressure.len() {
         let (nodes, values) = pressure.row(q);
@@ -140,7 +141,7 @@ fn case() -> Case {
     Case { volume, element, nodal, pressure }
 }
 
-/// A smooth field of size 0.1 with a wiggle, in place of random numbers.
+/// A smooth oscillating field of the given size, in place of random numbers.
 fn field(count: usize, size: f64) -> Vec<Vector3> {
     (0..count).map(|i| Vector3::from_fn(|a, _| size * (1.7 * (3 * i + a) as f64).sin())).collect()
 }
@@ -175,7 +176,7 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
             let hessian = solid.hessian(pairs.as_ref(), &u, &p).unwrap();
             let matrix = system.assemble(&hessian, &[]);
             let n = total.len();
-            // Displacements of size 1e-2 and pressures of size 1e3 in one direction of differentiation.
+            // Displacements of size 1e-2 and pressures of size 1e3 form one direction of differentiation.
             let direction: Vec<f64> =
                 (0..n).map(|k| (0.9 * k as f64).cos() * if k < 3 * nodes { 1e-2 } else { 1e3 }).collect();
             let h = 1e-5;
@@ -193,7 +194,7 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
             let size: f64 = total.iter().zip(&direction).map(|(f, d)| (f * d).abs()).sum();
             assert!((slope - work).abs() < 1e-7 * size, "{name}: {slope} {work}");
             let mut product = vec![0.0; n];
-            // The matrix is that of scaled pressures.
+            // The matrix refers to scaled pressures.
             let unscaled =
                 |x: &mut [f64]| x[3 * nodes..].iter_mut().for_each(|p| *p /= system.pressure_scale);
             let mut scaled = direction.clone();
@@ -221,7 +222,7 @@ fn tangent_is_the_weak_form() {
         let mut system = System::new(solid, &vec![false; 3 * nodes], Vec::new());
         let matrix = system.assemble(&solid.hessian(None, &u, &[]).unwrap(), &[]);
         let plain = crate::plain::tangent(&solid, &u);
-        // The upper triangle is what the matrix has.
+        // The matrix stores the upper triangle.
         let mut difference = plain.upper_triangle();
         for j in 0..matrix.dim() {
             for k in matrix.offsets[j]..matrix.offsets[j + 1] {
@@ -233,7 +234,8 @@ fn tangent_is_the_weak_form() {
     }
 }
 
-/// Where a law parts, points are summed before groups: the same but for rounding, as sums go in another order.
+/// For separable laws, points are summed before groups. Results are equal except for rounding, because the
+/// order of sums differs.
 #[test]
 fn laws_that_part_give_what_pairs_give() {
     let case = case();
@@ -270,7 +272,8 @@ fn laws_that_part_give_what_pairs_give() {
     }
 }
 
-/// Shares below zero can make the mean of positive J's negative: `J_a = 1 + 2 (-0.8) - 0` of points of one weight.
+/// Negative shares can make the mean of positive J's negative: `J_a = 1 + 2 (-0.8) - 0` for points of equal
+/// weight.
 #[test]
 fn a_group_turned_inside_out_is_refused_with_its_volume_change() {
     let case = case();

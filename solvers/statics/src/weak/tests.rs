@@ -1,5 +1,5 @@
-//! The forms of weak supports against one another and against the traction of an affine field. A solution does not show a wrong
-//! right-hand side: refinement by the residual mends it.
+//! The forms of weak supports against one another and against the traction of an affine field. A solution
+//! would not show a wrong right-hand side, because refinement by the residual corrects it.
 
 use algebra::{BlockPattern, Stiffness};
 use fem::{SurfaceRule, VolumeRule};
@@ -41,7 +41,7 @@ impl Block {
         WeakSupport { flux: &self.flux, axes, values, region: &[], method, h: 0.01, trace }
     }
 
-    /// Made of the volume points in turn, two for each point of the surface.
+    /// A trace built from the volume points in turn, two for each surface point.
     fn trace(&self) -> TraceRows {
         let (count, points) = (self.volume.weights().len(), self.flux.weights().len());
         let of = (0..2 * points).map(|k| (7 * k % count) as u32).collect();
@@ -59,7 +59,7 @@ fn affine(x: &Point3) -> Vector3 {
     gradient() * x.coords + Vector3::new(1e-4, -2e-4, 3e-4)
 }
 
-/// `K u - factor f`, from the matrix and the right-hand side of a table.
+/// Returns `K u - factor f` from the matrix and the right-hand side of a table.
 fn assembled(table: &WeakTable, u: &[Vector3], factor: f64) -> Vec<Vector3> {
     let of = table.incidence(u.len());
     let mut stiffness = Stiffness::zeros(BlockPattern::new(u.len(), &[(table.connectivity(), &of)]));
@@ -69,7 +69,7 @@ fn assembled(table: &WeakTable, u: &[Vector3], factor: f64) -> Vec<Vector3> {
     stiffness.multiply(u).iter().zip(&force).map(|(ku, f)| ku - f * factor).collect()
 }
 
-/// Largest distance over the largest of `b`.
+/// Returns the largest difference relative to the largest vector of `b`.
 fn apart(a: &[Vector3], b: &[Vector3]) -> f64 {
     let largest = b.iter().fold(0.0f64, |l, b| l.max(b.norm()));
     a.iter().zip(b).fold(0.0f64, |l, (a, b)| l.max((a - b).norm())) / largest
@@ -79,7 +79,8 @@ fn nodal(mesh: &Mesh, of: impl Fn(&Point3) -> Vector3) -> Vec<Vector3> {
     mesh.points().iter().map(of).collect()
 }
 
-/// The residual is summed by itself, from differences: it has to be that of the matrix and the right-hand side.
+/// The residual is summed separately, from differences. It must equal the residual of the matrix and the
+/// right-hand side.
 #[test]
 fn matrix_and_right_hand_side_make_the_residual() {
     let block = Block::new();
@@ -101,7 +102,7 @@ fn matrix_and_right_hand_side_make_the_residual() {
     }
 }
 
-/// Where the displacement is the prescribed one, all that is left of the forms is the work of the exact traction.
+/// If the displacement is the prescribed one, only the work of the exact traction remains of the forms.
 #[test]
 fn the_prescribed_field_leaves_its_traction() {
     let block = Block::new();
@@ -122,7 +123,8 @@ fn the_prescribed_field_leaves_its_traction() {
     }
 }
 
-/// What is left when the consistency terms are added back is the stabilisation, as a penalty of the same `beta` has it.
+/// If the consistency terms are added back, only the stabilisation remains, equal to a penalty with the same
+/// `beta`.
 #[test]
 fn consistency_is_all_that_parts_nitsche_from_a_penalty() {
     let block = Block::new();

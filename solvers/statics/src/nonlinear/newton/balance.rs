@@ -1,4 +1,4 @@
-//! Forces in a state, and how far they and the constrained degrees of freedom are from where they are to be.
+//! Forces in a state, their residual, and the remaining error of prescribed degrees of freedom.
 
 use contact::Contacts;
 use material::Material as _;
@@ -9,10 +9,10 @@ use crate::nonlinear::error::{StaticError, Worst};
 use crate::nonlinear::in_time::{Ended, Scales};
 use crate::nonlinear::solid::{Internal, Solid};
 
-/// Of the force that a node's own displacement makes.
+/// Rounding error of a nodal force, relative to the force due to the node's own displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// `sum of w (lambda + 2 mu) |grad N|^2` of each node, N/m.
+/// Returns `sum of w (lambda + 2 mu) |grad N|^2` for each node, N/m.
 pub(super) fn stiffness(solid: &Solid) -> Vec<f64> {
     let mut sums = vec![0.0; solid.node_count()];
     for (q, w) in solid.volume.weights().iter().enumerate() {
@@ -27,19 +27,20 @@ pub(super) fn stiffness(solid: &Solid) -> Vec<f64> {
 /// Forces in a trial state.
 pub(super) struct Balance {
     pub(super) internal: Internal,
-    /// External less internal nodal forces, N; supports not yet taken out.
+    /// External minus internal nodal forces, N, including constrained degrees of freedom.
     pub(super) out: Vec<Vector3>,
-    /// Negative derivative of the energy by the pressures, m^3.
+    /// Negative derivative of the energy with respect to the pressures, m^3.
     pub(super) pressure: Vec<f64>,
     pub(super) contacts: Vec<Option<Contacts>>,
-    /// The forces and deviators by themselves, in real time.
+    /// Separate forces and deviators, for implicit dynamics.
     pub(super) ended: Option<Ended>,
-    /// Larger of internal and external forces, N.
+    /// Norm of the internal or external forces, whichever is larger, N.
     pub(super) scale: f64,
 }
 
 impl Newton<'_> {
-    /// What constrained degrees of freedom still lack of their values at `time`.
+    /// Returns the difference of constrained degrees of freedom from their prescribed values at `time`;
+    /// `None` if all are reached.
     pub(super) fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
         let scale = self.scales(time).supports;
         let mut lacking = false;
@@ -67,9 +68,11 @@ impl Newton<'_> {
         }
     }
 
-    /// Relative residual in a state of displacement `u`: forces on free degrees of freedom, volumes of the
-    /// pressures, forces of driven tools. Forces are relative to no less than what rounding of the
-    /// displacement leaves of them: a body that moves as a whole has no others.
+    /// Returns the relative residual at displacement `u`: the largest of the forces on free degrees of
+    /// freedom, the volume residuals of the pressures, and the missing forces of force-driven tools.
+    ///
+    /// The scale of forces is at least the rounding error of the displacement's forces over the tolerance,
+    /// because a body that moves as a whole has no other forces.
     pub(super) fn residual(&self, balance: &Balance, u: &[Vector3], time: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
@@ -88,7 +91,7 @@ impl Newton<'_> {
         residual
     }
 
-    /// What balances `out` in constrained degrees of freedom, N.
+    /// Returns the forces that balance `out` in constrained degrees of freedom, N.
     pub(super) fn held_back(&self, out: &[Vector3]) -> Vec<Vector3> {
         let held = |i: usize, a: usize| self.prescribed[3 * i + a].is_some();
         (0..out.len()).map(|i| Vector3::from_fn(|a, _| if held(i, a) { -out[i][a] } else { 0.0 })).collect()
@@ -109,7 +112,7 @@ impl Newton<'_> {
         StaticError::NotConverged { iterations, residual, tolerance, worst, smallest, smallest_at }
     }
 
-    /// Forces in a state.
+    /// Computes the forces in a state.
     pub(super) fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
         self.work.forces += 1;
         let Scales { loads, supports, .. } = self.scales(time);

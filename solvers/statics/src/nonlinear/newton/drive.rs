@@ -1,4 +1,4 @@
-//! Tools driven by force: their closures are unknowns.
+//! Force-driven tools, whose displacements are unknowns.
 
 use algebra::Border;
 use contact::Drive;
@@ -8,16 +8,17 @@ use super::{Balance, Descent, Newton, State};
 use crate::SolveError;
 use crate::nonlinear::{StaticError, Step};
 
-/// Strides of a start under displacement control before it is given up: a tool that slips off never reaches its force. Starts of the
-/// kidney between jaws take 10 to 13.
+/// Number of strides under displacement control after which the approach is given up: a tool that slips off
+/// never reaches its force. Approaches of the kidney between jaws take 10 to 13.
 const STRIDES: usize = 50;
-/// Part of the first stride below which a start is given up.
+/// Fraction of the first stride below which a stride is not cut further and a failed approach is given up.
 const SHORTEST: f64 = 0.1;
-/// Iterations of a stride after which the next is twice as long.
+/// Number of iterations up to which the next stride is doubled.
 const QUICK: usize = 6;
 
 impl Newton<'_> {
-    /// As [`Newton::step`]; where that fails and tools driven by force do not touch yet, under displacement control.
+    /// Solves a step as [`Newton::step`] does. If that fails and force-driven tools do not touch yet, the
+    /// step is solved under displacement control.
     pub fn find(
         &mut self,
         start: &State,
@@ -36,7 +37,7 @@ impl Newton<'_> {
                 Descent::Guarded | Descent::Down => Err(error),
             })
             .map_err(|error| match error {
-                // A body that carried something holds together.
+                // A body that has carried load is held together, so an indefinite tangent is an instability.
                 StaticError::Solve(SolveError::NotPositiveDefinite) if start.time > 0.0 => {
                     StaticError::Unstable
                 }
@@ -44,8 +45,9 @@ impl Newton<'_> {
             })
     }
 
-    /// What each tool driven by force still lacks of it, N: its share in the line search's work, without which a tool
-    /// alone out of balance gives a slope of zero and every step is cut. 0 for one driven by closure.
+    /// Returns the missing force of each force-driven tool, N; 0 for a displacement-driven tool. The missing
+    /// force enters the work of the line search. Without this term, a tool out of balance alone would give a
+    /// slope of zero, and every step would be cut.
     pub(super) fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
         (self.problem.tools.iter().zip(&balance.contacts).enumerate())
             .map(|(k, (driven, contacts))| {
@@ -56,7 +58,8 @@ impl Newton<'_> {
             .collect()
     }
 
-    /// The force that drives a tool at `time`, N; `None` for one driven or under displacement control.
+    /// Returns the force that drives a tool at `time`, N; `None` for a tool driven by displacement or under
+    /// displacement control.
     pub(super) fn force(&self, tool: usize, time: f64) -> Option<f64> {
         match self.problem.tools[tool].drive {
             Drive::Force(full) if !self.displacement_driven[tool] => Some(full * self.scales(time).tools),
@@ -64,9 +67,11 @@ impl Newton<'_> {
         }
     }
 
-    /// The tools driven by force that touch, each with its row and column of the tangent: with `a = sum w N S along`
-    /// (S = -dt/dx) and `a'` the same of S transposed, a closure `dd` gives `K du - a dd = r`, and
-    /// `D dd - a' . du = F - Q` balances the tool, `D = sum w along . S along`.
+    /// Returns the force-driven tools in contact, each with its row and column of the tangent.
+    ///
+    /// With `a = sum w N S along` (S = -dt/dx) and `a'` the same with S transposed, a displacement increment
+    /// `dd` of the tool gives `K du - a dd = r`. The tool is balanced by `D dd - a' . du = F - Q` with
+    /// `D = sum w along . S along`.
     pub(super) fn borders(&self, balance: &Balance) -> Vec<(usize, Border)> {
         let Some(surface) = self.problem.contact else { return Vec::new() };
         let rows = surface.rows();
@@ -98,8 +103,8 @@ impl Newton<'_> {
         borders
     }
 
-    /// Closure that brings a tool which does not touch into contact, with the penetration that a hundredth of the
-    /// surface would need for `force`.
+    /// Returns the displacement, m, that brings a tool into contact, with the penetration at which a
+    /// hundredth of the surface carries `force`.
     pub(super) fn approach(&self, tool: usize, state: &State, force: f64) -> f64 {
         let Some(surface) = self.problem.contact else { return 0.0 };
         let driven = self.problem.tools[tool].tool;
@@ -108,10 +113,13 @@ impl Newton<'_> {
         gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area)
     }
 
-    /// From `start`, where tools driven by force do not touch, to equilibrium at `time`: they are under displacement control until
-    /// each reaches its force, and driven by it from there. At first contact a tool's force hangs on one or two points,
-    /// whose tangent says nothing of those to come: Newton's method goes from no contact to deep contact and back,
-    /// where a closure that is given is taken up by the body. `None` where all touch, or that leads to no equilibrium either.
+    /// Finds the equilibrium at `time` from `start` with force-driven tools that do not touch yet. These
+    /// tools are under displacement control until each reaches its force, and are driven by this force
+    /// afterwards. The result is `None` if all tools touch, or if no equilibrium is found in this way either.
+    ///
+    /// At first contact the force acts on one or two points, whose tangent does not anticipate further
+    /// points. Newton's method would alternate between no contact and deep contact, whereas the body can
+    /// follow a given displacement.
     pub(super) fn under_displacement_control(
         &mut self,
         start: &State,
@@ -147,7 +155,7 @@ impl Newton<'_> {
         let gaps: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, 0.0)).collect();
         let unit: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, forces[k]) - gaps[k]).collect();
         let mut state = start.clone();
-        // Motion of the nodes for a stride of one, once the tools touch: the guess of the next.
+        // Displacement of the nodes per unit stride, once the tools touch: the guess for the next stride.
         let mut per_stride: Option<Vec<Vector3>> = None;
         let mut before = vec![0.0; tools.len()];
         let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
@@ -175,7 +183,8 @@ impl Newton<'_> {
                         .zip(&step.tools)
                         .map(|(t, now)| -now.force.dot(&t.tool.along()))
                         .collect();
-                    // Beyond its force a tool would go back, and friction turn round: less of the stride then.
+                    // A tool beyond its force would move back, and friction would reverse. The stride is cut
+                    // instead.
                     let part = (0..tools.len())
                         .filter(|&k| self.displacement_driven[k] && pressed[k] > 1.1 * forces[k])
                         .map(|k| (forces[k] - before[k]) / (pressed[k] - before[k]))

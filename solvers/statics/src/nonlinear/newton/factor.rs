@@ -1,4 +1,4 @@
-//! The factor of a tangent, or a kept one that does in its place.
+//! Factors of the tangent: new factors, and kept factors that serve as preconditioners.
 
 use std::sync::Arc;
 
@@ -11,41 +11,46 @@ use super::{Descent, Newton, NewtonParams};
 use crate::SolveError;
 use crate::nonlinear::StaticError;
 
-/// Multiplications of a factorisation over those of a solution for each iteration that a step with a kept factor may take: a
-/// factorisation runs in the caches, and does nine multiplications in the time in which a solution does one.
+/// Ratio of the multiplications of a factorisation to those of a solution that pays for one iteration with a
+/// kept factor. A factorisation runs in the caches and does nine multiplications in the time in which a
+/// solution does one.
 const ITERATION: f64 = 9.0;
-/// Iterations with a kept factor at most, and at most where a factor is cheap.
+/// Largest number of iterations with a kept factor: `MOST` for expensive factors, `LEAST` for cheap factors.
 const MOST: usize = 12;
 const LEAST: usize = 4;
 
-/// Entries of an unsymmetric part.
+/// Entries of the unsymmetric part.
 type Skew = Vec<(usize, usize, f64)>;
 
-/// A tangent with a kept factor and the step it gives, or the tangent as it was where that does not do.
+/// A tangent with a kept factor and the resulting step, or the unchanged tangent if the kept factor does not
+/// suffice.
 type Kept = Result<(Factored, Vec<f64>), (Symmetric, Skew)>;
 
-/// Shifts of the diagonal that are tried on the way down the energy.
+/// Relative shifts of the diagonal that are tried during descent.
 const SHIFTS: [f64; 7] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
 
 impl Newton<'_> {
-    /// Multiplications of a factorisation over those of a solution; 0 where the factor is dense, and so small.
+    /// Returns the ratio of the multiplications of a factorisation to those of a solution; 0 for a dense,
+    /// hence small, factor.
     fn solutions(&self) -> f64 {
         self.symbolic.as_ref().and_then(Option::as_ref).map_or(0.0, |symbolic| symbolic.solutions())
     }
 
-    /// Whether a factor costs so much that tries which are likely to fail are worth leaving out.
+    /// Whether a factor is so expensive that attempts which are likely to fail should be avoided.
     fn dear(&self) -> bool {
         self.solutions() > NewtonParams::KEEPS
     }
 
-    /// Whether factors are large enough to be kept, and to be made in single precision. With a pressure field the regularisation
-    /// would be lost in rounding; a simulator's loop has its own way of keeping them.
+    /// Whether factors are large enough to be kept and to be computed in single precision. Pressure fields
+    /// are excluded because their regularisation would be lost in rounding; a simulator's loop keeps factors
+    /// in another way.
     pub(super) fn keeps(&self) -> bool {
         self.solutions() > self.params.keeps && !self.repeats && self.problem.solid.pressure_count() == 0
     }
 
-    /// The step with the last factor as the preconditioner, where that is expected to be quicker than a factor of its own: only on
-    /// the way to the nearest equilibrium, whose steps do not ask whether the tangent is definite.
+    /// Computes the step with the last factor as preconditioner if this is expected to be faster than a new
+    /// factorisation. This is allowed only on the way to the nearest equilibrium, whose steps do not require
+    /// a definite tangent.
     pub(super) fn with_kept(
         &mut self,
         matrix: Symmetric,
@@ -70,8 +75,9 @@ impl Newton<'_> {
         Ok(Ok((Factored::Unsymmetric(near), step)))
     }
 
-    /// Whether the tangent of a step with a kept or a rounded factor is definite, by a factor of its own, which is the next to be kept:
-    /// in single precision, and in double where rounding leaves that open.
+    /// Tests by a factor of its own whether the tangent of a step with a kept or rounded factor is definite.
+    /// This factor is kept next. The test uses single precision, and double precision if rounding leaves the
+    /// result open.
     pub(super) fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
         let Factored::Unsymmetric(near) = &last.factored else { return Ok(()) };
         let matrix = near.matrix();
@@ -100,7 +106,7 @@ impl Newton<'_> {
         Ok(())
     }
 
-    /// The numbers of a factor; in single precision where it is for a preconditioner alone.
+    /// Computes a numerical factor, in single precision if the factor is only a preconditioner.
     fn numbers(&mut self, matrix: &Symmetric, kind: Kind) -> Result<Arc<Factor>, FactorError> {
         let symbolic = self.symbolic.as_ref().expect("analysed").as_ref();
         self.work.factorisations += 1;
@@ -111,9 +117,12 @@ impl Newton<'_> {
         got.map(Arc::new)
     }
 
-    /// Cholesky, or `L D L^T` with a pressure field; the factor of the symmetric part as a preconditioner with sliding
-    /// friction. Past a limit point the tangent is not definite and its step leads to the nearest equilibrium, stable
-    /// or not; with [`Descent::Down`] its diagonal is raised until it is definite, and the step leads down.
+    /// Factors the tangent: Cholesky, or `L D L^T` with a pressure field. With sliding friction the factor of
+    /// the symmetric part is a preconditioner.
+    ///
+    /// Past a limit point the tangent is not definite, and its step leads to the nearest equilibrium, stable
+    /// or not. With [`Descent::Down`] the diagonal is raised until the tangent is definite, and the step
+    /// reduces the energy.
     pub(super) fn factor(
         &mut self,
         mut matrix: Symmetric,
@@ -139,7 +148,8 @@ impl Newton<'_> {
         })
     }
 
-    /// The factor of the matrix as it is. After a tangent that was not definite the next one rarely is: then `L D L^T` at once.
+    /// Factors the unshifted matrix. A tangent that follows an indefinite tangent is rarely definite, so
+    /// `L D L^T` is then used at once.
     fn as_it_is(&mut self, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let at_once =
@@ -168,8 +178,9 @@ impl Newton<'_> {
         }
     }
 
-    /// The factor with the least of some shifts that makes the matrix definite. Directions in which it is not, found with the last
-    /// factor, show of most shifts that they are too small: what a try with them would show for the price of a factor.
+    /// Factors the matrix with the smallest of the shifts that makes it definite. Directions of negative
+    /// curvature, found with the last factor, show that most shifts are too small. This saves a factorisation
+    /// for each of these shifts.
     fn lifted(&mut self, matrix: &mut Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
@@ -178,7 +189,7 @@ impl Newton<'_> {
         if let (true, true, Some(factor)) = (searches, self.doubtful, self.factor.clone()) {
             known = self.curvature.shift(matrix, &diagonal, &factor, false)?;
             if known <= 0.0 {
-                // A factor that fails shows nothing more, this one where the matrix is not definite.
+                // A failed Cholesky factorisation gives no further information; an indefinite factor does.
                 if let Ok(factor) = self.numbers(matrix, Kind::Indefinite) {
                     if factor.negative_pivots() == 0 {
                         return Ok((factor, Kind::Indefinite));

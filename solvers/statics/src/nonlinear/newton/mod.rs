@@ -1,4 +1,4 @@
-//! One load step: Newton's method with line search on the balance of internal, external and contact forces.
+//! A load step: Newton's method with line search on the balance of internal, external and contact forces.
 
 mod balance;
 mod drive;
@@ -27,43 +27,47 @@ use crate::nonlinear::statics::{StaticProblem, StaticWork, Step};
 use crate::nonlinear::system::{SurfaceTable, System};
 use crate::support::prescribed;
 
-/// How Newton's method runs.
+/// Parameters of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonParams {
     /// Residual of the free degrees of freedom relative to the larger of internal and external forces.
     pub tolerance: f64,
-    /// Iterations per step.
+    /// Largest number of iterations per step.
     pub iterations: usize,
-    /// Whether the last ones may take the tangent of the one before where that is expected to do: no longer quadratic, and a
-    /// quarter faster (the published kidney, tet4).
+    /// Allows the last iterations to reuse the previous tangent if the expected residual reduction suffices.
+    /// Convergence is then no longer quadratic, but the run is a quarter faster (the published kidney, tet4).
     pub chords: bool,
-    /// Multiplications of a factorisation over those of a solution from which factors are kept from one tangent to the next and made
-    /// in single precision: systems are then solved by iterations, to the digits that the next step asks for.
+    /// Cost ratio of factorisation to solution (in multiplications) above which factors are kept from one
+    /// tangent to the next and computed in single precision. Systems are then solved iteratively, to the
+    /// accuracy that the next step needs.
     pub keeps: f64,
 }
 
 impl NewtonParams {
-    /// From where that pays. Measured on the kidney between jaws (7 mm; factors kept / made anew for each tangent, in CPU seconds):
-    /// 1.5 / 2.2 at 83 (hex20 with reduced integration, 1,201 nodes), 6.3 / 11.5 at 98 (tet10, 2,273 nodes).
+    /// Ratio above which keeping factors pays off. Measured on the kidney between jaws (7 mm; factors kept /
+    /// renewed for each tangent, in CPU seconds): 1.5 / 2.2 at a ratio of 83 (hex20 with reduced integration,
+    /// 1,201 nodes), 6.3 / 11.5 at 98 (tet10, 2,273 nodes).
     pub const KEEPS: f64 = 80.0;
 }
 
-/// One iteration.
+/// Record of one Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
-    /// Relative residual before it.
+    /// Relative residual before the iteration.
     pub residual: f64,
-    /// `|du . r|` of the step it took, relative to that of the first iteration.
+    /// `|du . r|` of the step, relative to that of the first iteration.
     pub energy: f64,
-    /// Length of the step over that of the Newton step: what the line search left, or how often it went on.
+    /// Length of the step relative to the Newton step: below 1 if the line search cut the step, above 1 if it
+    /// extended the step.
     pub length: f64,
-    /// Whether the tangent was positive definite (on the kernel of the pressures), tools driven by force included.
+    /// Whether the tangent was positive definite (on the kernel of the pressures), force-driven tools
+    /// included.
     pub definite: bool,
-    /// Whether that was the tangent of the iteration before: a chord.
+    /// Whether the tangent was that of the previous iteration (a chord).
     pub chord: bool,
 }
 
-/// What a load step starts from and ends with.
+/// State at the start or end of a load step.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub time: f64,
@@ -95,7 +99,7 @@ impl State {
     }
 }
 
-/// The system of a problem with what is kept from one iteration to the next.
+/// The system of a problem, with all data kept from one iteration to the next.
 pub(crate) struct Newton<'a> {
     problem: &'a StaticProblem<'a>,
     params: &'a NewtonParams,
@@ -106,54 +110,57 @@ pub(crate) struct Newton<'a> {
     counts: ContactCounts,
     work: StaticWork,
     volume: f64,
-    /// Stiffness of each node against a displacement of its own where the body is undeformed, N/m.
+    /// Stiffness of each node of the undeformed body against its own displacement, N/m.
     stiffness: Vec<f64>,
     terms: Option<TimeTerms>,
     ended: Option<Ended>,
     /// Force of the nodal supports at the end of the last step, N.
     reaction: Vec<Vector3>,
-    /// Largest forces so far in real time and in loops, N: what swings passes through states without any.
+    /// Largest forces so far in implicit dynamics and in loops, N: an oscillation passes through states
+    /// without forces.
     peak: f64,
     /// Forces at the end of the last step, N.
     reached: f64,
-    /// Where a tangent that is not definite leads.
+    /// Treatment of a tangent that is not definite.
     descent: Descent,
     /// Whether the last tangent was not definite.
     indefinite: bool,
-    /// Whether the last tangent that was factored was not definite: the next one rarely is.
+    /// Whether the last factored tangent was not definite; the next tangent is then rarely definite.
     doubtful: bool,
-    /// Whether factors are made in double precision.
+    /// Whether factors are computed in double precision.
     exact: bool,
-    /// The last factor, where it is large enough to be kept.
+    /// The last factor, if it is large enough to be kept.
     factor: Option<Arc<Factor>>,
-    /// The last direction along which a tangent was not definite.
+    /// Last direction of negative curvature of a tangent.
     curvature: Curvature,
     /// Relative residual to which unsymmetric systems are solved.
     forcing: f64,
-    /// Tools driven by force that are under displacement control for the time being.
+    /// Force-driven tools that are temporarily under displacement control.
     displacement_driven: Vec<bool>,
-    /// Whether steps are the frames of a simulator's loop: each starts with the tangent of the last where that is expected to do,
-    /// and a step that is cut goes on to where something touches.
+    /// Whether steps are the frames of a simulator's loop. A frame starts with the last tangent if that is
+    /// expected to suffice, and a step that is cut is extended until a point touches.
     repeats: bool,
     /// The last tangent.
     kept: Option<Direction>,
 }
 
-/// What Newton's method looks for where the tangent is not definite.
+/// Goal of Newton's method when the tangent is not definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Descent {
-    /// The nearest equilibrium by tangents that are all definite: on a branch that stays stable.
+    /// The nearest equilibrium by tangents that are all definite, on a branch that stays stable.
     Smooth,
-    /// The nearest equilibrium: a symmetric one stays symmetric. With a pressure field every step is a full one.
+    /// The nearest equilibrium; a symmetric state stays symmetric. With a pressure field every step is a full
+    /// step.
     Nearest,
-    /// The nearest equilibrium, with a pressure field by steps that are cut: where full ones cycle between sticking
-    /// and sliding points. Not the first choice, as on other ways it takes about 1.6 times the iterations.
+    /// The nearest equilibrium; with a pressure field steps may be cut. This helps if full steps cycle
+    /// between sticking and sliding points. Otherwise it takes about 1.6 times the iterations, so it is not
+    /// the first choice.
     Guarded,
-    /// A stable one, down the energy.
+    /// A stable equilibrium, reached by reducing the energy.
     Down,
 }
 
-/// The nearest equilibrium, with a pressure field by steps that are cut where full ones come to none.
+/// Finds the nearest equilibrium. With a pressure field, steps are cut if full steps do not converge.
 pub(crate) fn near<T>(
     saddle: bool,
     to: &mut impl FnMut(Descent) -> Result<T, StaticError>,
@@ -161,31 +168,34 @@ pub(crate) fn near<T>(
     to(Descent::Nearest).or_else(|error| if saddle { to(Descent::Guarded) } else { Err(error) })
 }
 
-/// Iterations without a residual smaller by a tenth after which the nearest equilibrium is given up. Steps of the kidney
-/// between jaws that came through went up to 7 without; to go on to 40 took twice the time of the whole path.
+/// Iterations without a reduction of the residual by a tenth after which the nearest equilibrium is given up.
+/// Successful steps of the kidney between jaws took up to 7 such iterations. A limit of 40 doubled the time
+/// of the whole path.
 const PATIENCE: usize = 10;
 
-/// Relative residual to which a chord is solved for, where a factor is dear: it leaves as much by itself.
+/// Relative residual to which a chord is solved if factors are expensive. The chord itself leaves as much.
 const CHORD: f64 = 0.03;
 
-/// Residual over the tolerance up to which a frame starts with the tangent of the last one. That leaves a tenth of the residual and
-/// less while no point starts or ends to touch or to slide; where one does, a second such step rarely helps.
+/// Ratio of residual to tolerance up to which a frame starts with the last tangent. The step leaves at most a
+/// tenth of the residual while no point starts or ceases to touch or to slide. If a point does, a second such
+/// step rarely helps.
 const NEAR: f64 = 10.0;
 
-/// The same where each of them went an eighth of its step or less with a tangent that is not definite: past a limit point there is no
-/// equilibrium near. Ten of them took a sixth of the time of the kidney's whole path.
+/// The limit replacing `PATIENCE` if every one of these iterations took at most an eighth of its step with an
+/// indefinite tangent: past a limit point no equilibrium is near. Ten such iterations took a sixth of the
+/// time of the kidney's whole path.
 const LOST: usize = 4;
 
-/// Iterations without a residual smaller by a tenth that are waited for.
+/// Returns the number of iterations without a reduction of the residual by a tenth that are tolerated.
 fn patience(log: &[Iteration]) -> usize {
     let last = log.len().saturating_sub(LOST);
     let lost = log.len() >= LOST && log[last..].iter().all(|i| !i.definite && i.length <= 0.125);
     if lost { LOST } else { PATIENCE }
 }
 
-/// Whether steps with the tangent of the iteration before are expected to end the iterations at `residual`: no more than
-/// three, each of which costs a sixth of one with its own tangent (tet4, 3855 unknowns). Where residuals fall as `C r^2`, the
-/// first leaves `2 r / r_before` of the residual, and so do the next.
+/// Whether steps with the previous tangent are expected to converge from `residual` in at most three
+/// iterations. Each costs a sixth of an iteration with its own tangent (tet4, 3855 unknowns). If residuals
+/// fall as `C r^2`, the first step leaves `2 r / r_before` of the residual, and so do the next steps.
 fn chord_suffices(log: &[Iteration], residual: f64, tolerance: f64) -> bool {
     if log.iter().all(|i| i.chord) {
         return log.is_empty() && residual <= NEAR * tolerance;
@@ -202,7 +212,7 @@ fn chord_suffices(log: &[Iteration], residual: f64, tolerance: f64) -> bool {
     }
 }
 
-/// `x . r`.
+/// Returns the work `x . r`.
 fn work(x: &[f64], r: &[f64]) -> f64 {
     x.iter().zip(r).map(|(x, r)| x * r).sum()
 }
@@ -212,7 +222,7 @@ impl<'a> Newton<'a> {
         Newton::with_mass(problem, params, None)
     }
 
-    /// With a mass table, for steps in real time that have inertia.
+    /// Prepares a problem with a mass table, for implicit dynamics with inertia.
     pub fn with_mass(
         problem: &'a StaticProblem<'a>,
         params: &'a NewtonParams,
@@ -265,7 +275,7 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// Steps are the frames of a simulator's loop from now on.
+    /// Declares the following steps as frames of a simulator's loop.
     pub fn repeat(mut self) -> Newton<'a> {
         self.repeats = true;
         self
@@ -275,51 +285,51 @@ impl<'a> Newton<'a> {
         self.counts
     }
 
-    /// What has been done so far, failed steps and trials included.
+    /// Returns the counters so far, including failed steps and trials.
     pub fn work(&self) -> StaticWork {
         self.work
     }
 
-    /// What the next step has besides the forces of statics.
+    /// Sets the terms that the next step adds to the forces of statics.
     pub fn set_terms(&mut self, terms: TimeTerms) {
         self.terms = Some(terms);
     }
 
-    /// Forces at the end of the last step in real time, which is with that accepted.
+    /// Returns the forces at the end of the last time step, which is thereby accepted.
     pub fn ended(&mut self) -> Ended {
         let ended = self.ended.take().expect("a step in real time has ended");
         self.peak = self.peak.max(ended.size());
         ended
     }
 
-    /// Force (N) of the nodal supports on every node at the end of the last step: what statics leaves unbalanced there; zero in free
-    /// degrees of freedom.
+    /// Returns the reaction force (N) of the nodal supports on every node at the end of the last step: the
+    /// force that statics leaves unbalanced there, zero in free degrees of freedom.
     pub fn reaction(&self) -> &[Vector3] {
         &self.reaction
     }
 
-    /// Residuals are relative to no less than the forces at the end of the last step from now on.
+    /// Makes the forces at the end of the last step the smallest scale of all following residuals.
     pub fn keep_scale(&mut self) {
         self.peak = self.peak.max(self.reached);
     }
 
-    /// Prescribed value at the end of the ramp by degree of freedom.
+    /// Returns the prescribed value at the end of the ramp for every degree of freedom.
     pub fn prescribed(&self) -> &[Option<f64>] {
         &self.prescribed
     }
 
-    /// Forces in a state, without inertia, and the strain energy, J.
+    /// Returns the forces in a state, without inertia, and the strain energy, J.
     pub fn forces_at(&mut self, state: &State) -> Result<(Ended, f64), StaticError> {
         let balance = self.balance(state, state.time)?;
         Ok((balance.ended.expect("terms of real time are set"), balance.internal.energy))
     }
 
-    /// The parts of loads, supports and drives at `time`.
+    /// Returns the fractions of loads, supports and drives at `time`.
     fn scales(&self, time: f64) -> Scales {
         self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
     }
 
-    /// From `start` to equilibrium at `time`; `before` is the state before `start`, for extrapolation.
+    /// Finds the equilibrium at `time` from `start`; `before` is the state before `start`, for extrapolation.
     pub fn step(
         &mut self,
         start: &State,
@@ -346,7 +356,7 @@ impl<'a> Newton<'a> {
         let mut iterations = Vec::new();
         let mut balance = match self.balance(&state, time) {
             Ok(balance) => balance,
-            // The guess is no use; the last converged state is always valid.
+            // The guess is invalid; the last converged state is always valid.
             Err(_) if moved => {
                 state.u.clone_from(&start.u);
                 state.pressure.clone_from(&start.pressure);
@@ -381,7 +391,7 @@ impl<'a> Newton<'a> {
             time,
             wanted: false,
             gave_way: descent == Descent::Down && iterations.iter().any(|i| !i.definite && i.length > 1.0),
-            // The tangent of the last iteration is one Newton step short of the end.
+            // The tangent of the last iteration belongs to the state one Newton step before the end.
             stable: iterations.iter().rev().find(|i| i.length > 0.0).is_none_or(|i| i.definite),
             iterations,
             tools,
@@ -391,8 +401,8 @@ impl<'a> Newton<'a> {
         Ok((state, step))
     }
 
-    /// Carries the motion of the last step on, or takes it back where the load turns; prescribed values come out right by
-    /// themselves, as they are linear in time.
+    /// Extrapolates the displacement of the last step, or reverses it if the load reverses. Prescribed values
+    /// are linear in time and are therefore extrapolated exactly.
     fn extrapolate(&self, state: &mut State, start: &State, before: &State, time: f64) -> bool {
         let ratio = (time - start.time) / (start.time - before.time);
         if !ratio.is_finite() || before.time == 0.0 && !self.problem.tools.is_empty() {
@@ -411,7 +421,7 @@ impl<'a> Newton<'a> {
         true
     }
 
-    /// Newton's iterations at fixed multipliers.
+    /// Runs Newton's iterations at fixed multipliers.
     fn equilibrate(
         &mut self,
         state: &mut State,
@@ -430,7 +440,8 @@ impl<'a> Newton<'a> {
             if settled {
                 if let Some(unproven) = last.as_mut().filter(|last| !last.proven) {
                     self.prove(unproven)?;
-                    // That is the tangent of the last iteration which was not a chord, and of those after it.
+                    // The proven tangent belongs to the last iteration that was not a chord and to all chords
+                    // after it.
                     let own = log[first..].iter().rposition(|i| !i.chord).unwrap_or(0);
                     log[first + own..].iter_mut().for_each(|i| i.definite = unproven.definite);
                 }
@@ -439,21 +450,23 @@ impl<'a> Newton<'a> {
                 return Ok(balance);
             }
             let done = log.len() - first;
-            // Forces before constrained degrees of freedom have moved are those of the last state, and small.
+            // Before constrained degrees of freedom have moved, the forces are those of the last state, hence
+            // small.
             if prescribed_move.is_some() || residual < 0.9 * best.1 {
                 best = (done, if prescribed_move.is_some() { f64::INFINITY } else { residual });
             }
-            // On the way down the energy forces first grow.
+            // During descent the forces grow at first.
             let stuck = self.descent != Descent::Down && done >= best.0 + patience(&log[first..]);
             if done >= self.params.iterations || stuck || !residual.is_finite() {
                 return Err(self.not_converged(&balance, residual, done));
             }
             self.indefinite = false;
-            // Inexact steps with sliding friction: a tenth of the residual keeps the order of convergence (Dembo,
-            // Eisenstat & Steihaug 1982), and far from equilibrium more digits are thrown away.
+            // Systems with sliding friction are solved inexactly: a tenth of the residual preserves the order
+            // of convergence (Dembo, Eisenstat & Steihaug 1982). Far from equilibrium further digits would be
+            // useless.
             self.forcing = (0.1 * residual).clamp(1e-7, 1e-2);
             if self.keeps() {
-                // No more digits than the tolerance asks for.
+                // The tolerance needs no further digits.
                 self.forcing = self.forcing.max((0.1 * self.params.tolerance / residual).min(1e-2));
             }
             let chord = self.params.chords

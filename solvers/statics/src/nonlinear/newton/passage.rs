@@ -1,4 +1,4 @@
-//! Tools that jumped over the surface or stand in it, and how short a step may become to prevent it.
+//! Checks for tools that jumped over the surface or overlap the body, and the step length that prevents this.
 
 use contact::{ContactError, ContactSurface, Drive, Stand, Tool};
 
@@ -6,12 +6,12 @@ use super::{Newton, State};
 use crate::nonlinear::StaticError;
 use crate::nonlinear::statics::{StaticProblem, Step};
 
-/// Part of the deepest penetration that a tool may always be asked to travel in one step: at the touch, where nothing has moved
-/// yet, its travel is its penetration.
+/// Fraction of the deepest penetration to which the travel of a tool in a step can always be reduced. At
+/// first touch nothing has moved yet, and the travel of the tool is its penetration.
 const SHORTEST: f64 = 0.125;
 
 impl Newton<'_> {
-    /// The converged step from `start`, refused where a tool has jumped over the surface on the way.
+    /// Returns the converged step from `start`, or an error if a tool has jumped over the surface.
     pub fn checked(&self, start: &State, reached: (State, Step)) -> Result<(State, Step), StaticError> {
         let (state, step) = &reached;
         self.each_tool(|surface, k, tool| {
@@ -22,8 +22,8 @@ impl Newton<'_> {
         Ok(reached)
     }
 
-    /// Refuses a state that is reported, after `step`, where a tool stands in the body without a force; at the end of the loading,
-    /// where no way is left to the next contact point, however little.
+    /// Refuses a reported state, after `step`, in which a tool overlaps the body without a force. At the end
+    /// of the loading a state is also refused if a tool has no distance left to the next contact point.
     pub fn check_overlap(&self, state: &State, step: &Step, ends: bool) -> Result<(), StaticError> {
         self.each_tool(|surface, k, tool| {
             let stand = Stand { closure: state.closures[k], u: &state.u };
@@ -47,8 +47,8 @@ impl Newton<'_> {
     }
 }
 
-/// The part of its full closure that a tool has to be able to travel in a step, the least of all tools: how finely a path can be
-/// stepped must not hang on how many results of it are wanted.
+/// Returns the smallest load fraction of the tools' full displacements to which a step can always be reduced
+/// (the least over all tools). The resolution of a path must not depend on the number of requested results.
 pub(crate) fn shortest_travel(problem: &StaticProblem) -> f64 {
     let each = problem.tools.iter().map(|driven| match driven.drive {
         Drive::Closure(full) if full != 0.0 => SHORTEST * driven.tool.deepest() / full.abs(),

@@ -1,4 +1,4 @@
-//! Rigid motions that neither supports nor tools prevent.
+//! Detection of rigid motions that neither supports nor tools prevent.
 
 use algebra::Connectivity;
 
@@ -7,8 +7,8 @@ use crate::nonlinear::error::StaticError;
 use crate::rigid::{add_prescribed, add_surface, check_rows};
 
 impl Newton<'_> {
-    /// Refuses a state in which a rigid motion meets no support and no tool: without friction tools prevent what goes
-    /// against their surface, with friction every motion of the points they touch.
+    /// Refuses a state in which a rigid motion meets no support and no tool. Tools without friction prevent
+    /// only motions against their surface; tools with friction prevent every motion of the points they touch.
     pub fn check_rigid(&mut self, state: &State) -> Result<(), StaticError> {
         let problem = self.problem;
         let touching = match problem.tools {

@@ -1,4 +1,4 @@
-//! The tangent of an iteration: assembled, factored, and the step it gives.
+//! The tangent of an iteration: assembly, factorisation, and the resulting step.
 
 use algebra::{AlgebraError, Border, Factorization, Unsymmetric};
 use shape::{Matrix3, Vector3};
@@ -7,29 +7,30 @@ use super::{Balance, Descent, Newton, State};
 use crate::SolveError;
 use crate::nonlinear::StaticError;
 
-/// A factored tangent, of the free unknowns and of the closures of the tools that have a border.
+/// A factored tangent over the free unknowns and the displacements of the tools that have a border.
 pub(super) enum Factored {
     Symmetric(Factorization),
     Unsymmetric(Unsymmetric),
 }
 
-/// The Newton step with the factor that gave it.
+/// A Newton step with the factor that gave it.
 pub(super) struct Direction {
-    /// Of the free unknowns.
+    /// Increments of the free unknowns.
     pub step: Vec<f64>,
-    /// Of the closures of tools driven by force.
+    /// Increments of the displacements of force-driven tools.
     pub closures: Vec<f64>,
-    /// Whether the tangent was positive definite, tools driven by force included.
+    /// Whether the tangent was positive definite, force-driven tools included.
     pub definite: bool,
-    /// Whether that is of a factor of its own, not of the kept one, and beyond rounding.
+    /// Whether `definite` was found with a factor of this very tangent and beyond rounding.
     pub proven: bool,
     pub factored: Factored,
-    /// The tools whose borders the factor has.
+    /// Tools whose borders the factor contains.
     tools: Vec<usize>,
 }
 
 impl Factored {
-    /// Whether tools driven by force leave the tangent definite, if it is so with them constrained.
+    /// Whether force-driven tools leave the tangent definite, provided it is definite with these tools
+    /// constrained.
     fn stable(&self) -> bool {
         match self {
             Factored::Symmetric(_) => true,
@@ -37,12 +38,12 @@ impl Factored {
         }
     }
 
-    /// Whether a factor in single precision proves its tangent to be definite.
+    /// Whether a factor in single precision proves the tangent to be definite.
     fn is_clear(&self) -> bool {
         matches!(self, Factored::Unsymmetric(f) if f.is_clear())
     }
 
-    /// Solves in place; the iterations it took.
+    /// Solves in place and returns the number of iterations.
     fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
         match self {
             Factored::Symmetric(f) => f.solve(b).map(|_| 0),
@@ -52,7 +53,8 @@ impl Factored {
 }
 
 impl Newton<'_> {
-    /// `-w dt/dx` of every surface point, by surface: constrained ones first, then contact.
+    /// Returns `-w dt/dx` of every surface point, by surface: surfaces constrained by penalty first, then
+    /// contact.
     fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
         let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
             .map(|h| {
@@ -77,7 +79,7 @@ impl Newton<'_> {
         blocks
     }
 
-    /// The Newton step: free unknowns, and closures of the tools driven by force.
+    /// Computes the Newton step: free unknowns, and displacements of the force-driven tools.
     pub(super) fn direction(
         &mut self,
         state: &State,
@@ -101,7 +103,8 @@ impl Newton<'_> {
             for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
                 *r -= k;
             }
-            // The accelerations of constrained degrees of freedom are given: they don't follow the move.
+            // The accelerations of constrained degrees of freedom are given, so they do not depend on this
+            // move.
             if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
                 let mass = self.system.surfaces.last().expect("inertia has a mass table");
                 inertia.give_back(mass, moves, &mut right);
@@ -135,7 +138,7 @@ impl Newton<'_> {
         self.take(last, right, state, balance, time)
     }
 
-    /// The chord: a step with the tangent of `last`.
+    /// Computes a chord: a step with the tangent of `last`.
     pub(super) fn again(
         &mut self,
         last: Direction,
@@ -161,7 +164,8 @@ impl Newton<'_> {
         Ok(self.finish(last, step, state, time))
     }
 
-    /// The direction of a solution: free unknowns, then the closures of the tools that have a border.
+    /// Builds the direction of a solution: free unknowns, then the displacements of the tools that have a
+    /// border.
     fn finish(&self, last: Direction, mut step: Vec<f64>, state: &State, time: f64) -> Direction {
         let moves = step.split_off(self.system.dim());
         let mut closures = vec![0.0; self.problem.tools.len()];
@@ -175,7 +179,7 @@ impl Newton<'_> {
         Direction { step, closures, ..last }
     }
 
-    /// Solves with the matrix as it was assembled, pressures scaled.
+    /// Solves with the assembled matrix, whose pressures are scaled.
     pub(super) fn solve(&mut self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
         self.work.solves += 1;
         let (scale, pressures) = (self.system.pressure_scale, self.system.free..self.system.dim());

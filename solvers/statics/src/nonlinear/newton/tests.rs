@@ -1,4 +1,4 @@
-//! Where the steps past a limit point lead.
+//! Steps past a limit point.
 
 use fem::VolumeRule;
 use geometry::CellKind;
@@ -11,8 +11,9 @@ use super::{Descent, Iteration, Newton, NewtonParams, State, patience};
 use crate::nonlinear::solid::{Dilation, Solid};
 use crate::nonlinear::statics::StaticProblem;
 
-/// A column of 20 x 1 x 1, its ends constrained but for a guided one that sways, pressed by 1 %: five times the strain at which
-/// it buckles, `pi^2 / 12 (1 / 20)^2`. Straight it is in equilibrium, but not in a stable one.
+/// A column of 20 x 1 x 1 with both ends constrained except that one end may sway, compressed by 1 %. This is
+/// five times the buckling strain `pi^2 / 12 (1 / 20)^2`: the straight column is in equilibrium, but the
+/// equilibrium is not stable.
 #[test]
 fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
     const PRESSED: f64 = -0.01;
@@ -42,7 +43,7 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
     };
     let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
     let mut newton = Newton::new(&problem, &params).unwrap();
-    // Pressed straight, with a sway of a millionth of the length.
+    // Compressed straight, with a sway of a millionth of the length.
     let mut start = State::start(&problem);
     start.time = 1.0;
     for (u, p) in start.u.iter_mut().zip(mesh.points()) {
@@ -56,8 +57,8 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
     };
     let (straight, above, stable, longest) = sway(Descent::Nearest);
     assert!(straight.abs() < 1e-6 && !stable && longest == 1.0, "sway {straight}, length {longest}");
-    // An inextensible guided column shortens by (pi s)^2 / (16 L) at a sway s in the shape of a cosine: 1 % less the
-    // fifth that stays in its strain gives a sway of 2.3.
+    // An inextensible guided column shortens by (pi s)^2 / (16 L) at a sway s in the shape of a cosine. Of
+    // the 1 %, a fifth stays in the column's strain; the rest gives a sway of 2.3.
     let (buckled, below, stable, longest) = sway(Descent::Down);
     assert!((buckled - 2.3).abs() < 0.1 && stable, "sway {buckled}");
     assert!(longest > 1.0 && longest <= 64.0, "length {longest}");
