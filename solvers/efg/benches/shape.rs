@@ -1,21 +1,30 @@
-//! Shape functions: moving least squares with gradients per point, against a plain loop over dynamic matrices, and
-//! the whole preparation of a kidney-sized cloud.
+//! Shape functions: moving least squares with gradients per point, compared with a plain loop over dynamic
+//! matrices, and the whole preparation of a kidney-sized cloud.
 //!
-//! Per point, eight points side by side in registers, multiply and add apart (no fused products: bits are the same on every
-//! path), a quotient or square root as one; 30 Gflop/s are one operation on eight per cycle of 3.7 GHz:
+//! The estimates per point assume eight points in parallel in registers and separate multiplication and
+//! addition (no fused products: the bits are the same on every path). A quotient or square root counts as one
+//! operation. 30 Gflop/s are one operation on eight numbers per cycle at 3.7 GHz:
 //!
 //! | basis, neighbours | flops | bytes read and written | arithmetic at 30 Gflop/s | memory at 20 GB/s |
 //! |---|---|---|---|---|
-//! | linear, 24 | 2 900 (24 x 112, 220 for factors and condition) | 1 700 (32 per candidate of 50 and 36 per entry) | 0.10 us | 0.09 us |
-//! | quadratic, 35 | 10 900 (35 x 240, 2 500) | 3 500 | 0.36 us | 0.18 us |
+//! | linear, 24 | 2 900 | 1 700 | 0.10 us | 0.09 us |
+//! | quadratic, 35 | 10 900 | 3 500 | 0.36 us | 0.18 us |
 //!
-//! Measured at 2.6 GHz beside busy neighbours, medians: 0.38 us (linear) and 0.90 us (quadratic), 4 and 2.5 times the arithmetic
-//! (10 and 12 times less than the plain loop, which does not search).
-//! Of the linear point about a quarter is the search, which keeps every second candidate, and a quarter the way of neighbours into
-//! lanes and of values out of them, one number at a time. Handing such a batch to the pool and waiting would take 0.6 us per point:
-//! it stays on the calling thread. What a run on 83 nodes prepares takes two threads 2.7 ms (6144 points, 29 neighbours).
-//! Functions of maximum entropy take 4.8 us at 89 neighbours (gamma = 1.8) and 2.9 us at 27 (gamma = 4) beside 0.38 us of the linear
-//! point at 24: 54 ns for each neighbour, 16 there, since each step of Newton's method comes by all of them.
+//! The flops of the linear basis are 24 x 112 for the neighbours and 220 for factors and condition; those of
+//! the quadratic basis are 35 x 240 and 2 500. The bytes of the linear basis are 32 per candidate of 50 and
+//! 36 per entry.
+//!
+//! Medians measured at 2.6 GHz on a busy machine are 0.38 us (linear) and 0.90 us (quadratic), 4 and 2.5
+//! times the arithmetic. They are 10 and 12 times less than the plain loop, which does no search. For the
+//! linear point about a quarter is the search, which keeps every second candidate. Another quarter is the
+//! transfer of neighbours into lanes and of values out of lanes, one number at a time. Passing such a batch
+//! to the pool and waiting would take 0.6 us per point, so the batch stays on the calling thread. The
+//! preparation of a run on 83 nodes takes two threads 2.7 ms (6144 points, 29 neighbours).
+//!
+//! Maximum-entropy functions take 4.8 us at 89 neighbours (gamma = 1.8) and 2.9 us at 27 (gamma = 4),
+//! compared with 0.38 us for the linear point at 24. This is 54 ns per neighbour instead of 16, because every
+//! step of Newton's method visits all neighbours.
+//!
 //! Not covered: search structures of millions of nodes, other kernels.
 
 use std::hint::black_box;
@@ -32,24 +41,25 @@ use shape::{Point3, Vector3};
 
 const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 
-/// Points per measurement: one parallel task, so that one thread does the work.
+/// Number of points per measurement: one parallel task, so that a single thread works.
 const POINTS: usize = 128;
 
-/// A lattice of 12^3 nodes and points well inside, at which the mean number of neighbours comes out near `wanted`.
+/// A lattice of 12^3 nodes with inner points, at which the mean number of neighbours is close to `wanted`.
 fn lattice(wanted: usize, basis: Basis) -> (Approximation, Vec<Point3>) {
     let n = 12;
     let node = |i: usize| Point3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64) * 0.01;
     let nodes: Vec<Point3> = (0..n * n * n).map(node).collect();
     let radius = 0.01 * (wanted as f64 * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
     let radii = vec![radius; nodes.len()];
-    // Low-discrepancy: multiples of irrational steps.
+    // Low-discrepancy points: multiples of irrational steps.
     let at = |q: usize, step: f64| 0.03 + 0.05 * (q as f64 * step).fract();
     let points =
         (1..=POINTS).map(|q| Point3::new(at(q, 0.8191725), at(q, 0.6710436), at(q, 0.5497005))).collect();
     (Approximation::new(nodes, radii, KERNEL, basis).unwrap(), points)
 }
 
-/// The textbook: dynamic matrices, moment derivatives as matrices, one LU per point; neighbours known beforehand.
+/// Reference implementation with dynamic matrices, moment derivatives as matrices, and one LU factorisation
+/// per point. The neighbours are known beforehand.
 fn textbook(
     mls: &Approximation,
     basis: Basis,
@@ -111,7 +121,7 @@ fn points(criterion: &mut Criterion) {
             }
         };
         all(&mut values, &mut grads);
-        // Both must compute the same thing for the comparison to mean anything.
+        // Both must compute the same values, otherwise the comparison is meaningless.
         let off = values.iter().zip(rows.rows().values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let steep = grads.iter().zip(rows.grads()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(off < 1e-11 && steep < 1e-8, "{off:e} {steep:e}");
@@ -123,7 +133,7 @@ fn points(criterion: &mut Criterion) {
     }
 }
 
-/// Functions of maximum entropy at the same points.
+/// Maximum-entropy functions at the same points.
 fn entropy(criterion: &mut Criterion) {
     let (mls, points) = lattice(24, Basis::Linear);
     for gamma in [1.8, 4.0] {
@@ -140,12 +150,12 @@ fn entropy(criterion: &mut Criterion) {
     }
 }
 
-/// On a thread of the pool, where a run is.
+/// Measures on a thread of the pool, as in a run.
 fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {
     rayon::scope(|_| bencher.iter(make));
 }
 
-/// What a run on 83 nodes prepares, the kidney in 1536 cells.
+/// Preparation of a run on 83 nodes, with the kidney divided into 1536 cells.
 fn prepare(criterion: &mut Criterion) {
     let background = kidney_mesh(CellKind::Tet4, 4).unwrap();
     let cloud = cloud(&Kidney, 83, 1, &[]).unwrap();

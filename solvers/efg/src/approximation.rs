@@ -1,4 +1,4 @@
-//! The approximation over a cloud: which neighbours, and which fit.
+//! The approximation over a cloud: neighbour search, fits and tables.
 
 mod fill;
 mod ladder;
@@ -16,41 +16,48 @@ use crate::mls::{Ball, Group};
 use crate::row_list::{RowList, sample_step};
 use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
 
-/// Points per parallel task: fixed, so that results are the same bits at any thread count.
+/// Points per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
-/// Tables of up to so many points are made in one wave, and their size is counted, not estimated: one of 1331 points in two
-/// waves leaves threads idle at the end of either, and is copied once more where the estimate falls short.
+/// Largest number of points whose table is made in one wave, with a counted instead of estimated size. Two
+/// waves for 1331 points would leave threads idle at the end of each, and too low an estimate costs another
+/// copy.
 const SMALL: usize = 16 * CHUNK;
-/// Rows sum to one within this; those of sound supports do within 1e-14.
+/// Tolerance of the row sums, which must be one. With sound supports the error is below 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);
-/// Shape functions over a cloud of nodes, each with a support radius of its own: by moving least squares or of maximum
+/// Shape functions over a cloud of nodes with individual support radii, by moving least squares or maximum
 /// entropy.
 ///
-/// Node `I` counts at `x` if `|x - x_I| < R_I`, or within its [`Ellipsoid`]. Where the neighbours do not determine the basis, a ladder is
-/// climbed and every rung counted in [`MlsInfo`]: enlarge all supports seen from that point (to 1.4 times the
-/// `2m`-th neighbour's relative distance, at most 3 times); regularise the quadratic block; fall back from the
-/// quadratic basis to the linear one. The linear basis gives way to nothing: a point it fails at is an error. So is a point
-/// outside the convex hull of its neighbours, with maximum entropy: no positive functions reproduce linear fields there.
+/// Node `I` contributes at `x` if `|x - x_I| < R_I`, or if `x` lies in its [`Ellipsoid`]. If the neighbours
+/// do not determine the basis at a point, these remedies are tried in order, and each is counted in
+/// [`MlsInfo`]:
+///
+/// - All supports seen from that point are enlarged (to 1.4 times the `2m`-th neighbour's relative distance,
+///   at most 3 times).
+/// - The quadratic block is regularised.
+/// - The quadratic basis is replaced by the linear basis.
+///
+/// A point at which the linear basis fails is an error. With maximum entropy, a point outside the convex hull
+/// of its neighbours is also an error: no positive functions reproduce linear fields there.
 pub struct Approximation {
     nodes: Vec<Point3>,
     balls: Vec<Ball>,
-    /// Supports that follow the cloud, within those balls; empty where the balls are the supports.
+    /// Supports adapted to the cloud, within `balls`; empty if the balls are the supports.
     ellipsoids: Vec<Ellipsoid>,
     functions: Functions,
     buckets: Buckets,
-    /// The finite elements beside them; their nodes come after those of the cloud.
+    /// Coupled finite elements; their nodes follow those of the cloud.
     coupling: Option<Coupling>,
-    /// Region of each node of the cloud, where a node counts in its own region alone; empty where it counts everywhere.
+    /// Region of each node of the cloud, if nodes contribute only in their own region; empty otherwise.
     regions: Vec<u16>,
-    /// The gaps of the body that supports would reach across, if there are any.
+    /// Gaps in the body that supports would bridge, if there are any.
     gaps: Option<Gaps>,
 }
 
-/// Makes the cells of the background that points are in, where these are known: only a body with gaps needs
-/// them.
+/// Function that finds the background cells of the points, if they are not yet known; only a body with gaps
+/// needs the cells.
 pub(crate) type Cells<'a> = Option<&'a dyn Fn() -> Vec<u32>>;
 
-/// What the shape functions are.
+/// Kind of shape functions.
 enum Functions {
     MovingLeastSquares(LeastSquares),
     /// `beta = gamma / h^2` of every node, 1/m^2.
@@ -65,24 +72,25 @@ struct LeastSquares {
     mu: f64,
 }
 
-/// What becomes of one chunk of points.
+/// Results and workspace of one chunk of points.
 #[derive(Default)]
 struct Chunk {
     rows: RowList,
     outcomes: Vec<Outcome>,
-    /// Points by number of neighbours, most first: lists of a group are as long as the longest, and grow once.
+    /// Points in descending order of their number of neighbours. The lists of a group have the length of the
+    /// longest list, so this order makes them grow only once.
     order: Vec<u32>,
     group: Group,
     neighbours: Neighbours,
-    /// What finite elements have at each point; empty without any.
+    /// Finite-element part at each point; empty without coupling.
     layers: Vec<Layer>,
-    /// The cell of each point, and the detour of every neighbour; empty in a body without gaps.
+    /// Cell of each point, and detour of every neighbour; empty for a body without gaps.
     cells: Vec<u32>,
     detours: Vec<Detour>,
 }
 
 impl Approximation {
-    /// Checks and wraps: positions (m) and support radii (m), one per node.
+    /// Builds moving least squares from checked positions (m) and support radii (m), one per node.
     pub fn new(
         nodes: Vec<Point3>,
         radii: Vec<f64>,
@@ -93,8 +101,9 @@ impl Approximation {
         Approximation::over(nodes, radii, functions, basis.terms())
     }
 
-    /// Local maximum-entropy functions: positions and spacings `h` (m), one each per node, and the locality `gamma`, 0.6 to 4
-    /// as a rule. Larger ones are sharper and tend to linear interpolation.
+    /// Builds local maximum-entropy functions from positions and spacings `h` (m), one per node, and the
+    /// locality `gamma`, usually 0.6 to 4. A larger `gamma` makes the functions narrower; they approach
+    /// linear interpolation.
     pub fn maximum_entropy(
         nodes: Vec<Point3>,
         spacing: &[f64],
@@ -145,7 +154,8 @@ impl Approximation {
         })
     }
 
-    /// As [`Approximation::new`], with supports that follow the cloud, one per node.
+    /// Builds moving least squares as [`Approximation::new`] does, with ellipsoidal supports adapted to the
+    /// cloud, one per node.
     pub fn stretched(
         nodes: Vec<Point3>,
         ellipsoids: Vec<Ellipsoid>,
@@ -157,9 +167,9 @@ impl Approximation {
         Ok(Approximation { ellipsoids, ..approximation })
     }
 
-    /// With the quadratic block of the moment matrix regularised at every point, by `mu` times the sum of the weights (modified
-    /// moving least squares; Joldes et al. 2015): linear fields stay exact, quadratic ones are almost. The linear
-    /// basis has no such block, nor has maximum entropy.
+    /// Regularises the quadratic block of the moment matrix at every point by `mu` times the sum of the
+    /// weights (modified moving least squares; Joldes et al. 2015). Linear fields stay exact, quadratic
+    /// fields nearly so. The setting has no effect on the linear basis and on maximum entropy.
     pub fn regularised(self, mu: f64) -> Result<Approximation, EfgError> {
         if !(0.0..=1.0).contains(&mu) {
             let what = "regularisation";
@@ -172,28 +182,31 @@ impl Approximation {
         Ok(Approximation { functions, ..self })
     }
 
-    /// With supports that reach through the body only, whose cells of tet4 these are: not across its slits,
-    /// nor from one of its pieces to another. Supports of a body that is convex stay as they are. Comes
-    /// before [`Approximation::coupled`].
+    /// Restricts supports to paths through the body, whose tet4 cells are given: they do not cross slits or
+    /// connect separate pieces. Supports of a convex body do not change. This method must precede
+    /// [`Approximation::coupled`].
     pub fn within(self, background: &Mesh) -> Result<Approximation, EfgError> {
         let gaps = Gaps::find(&self, background)?;
         Ok(Approximation { gaps, ..self })
     }
 
-    /// Coupled to linear finite elements at the listed vertices of a mesh of tet4 (ascending), which become nodes after those of the
-    /// cloud, with the hat functions `N_h` of the cells for shape functions. The others take on what these leave of
-    /// reproducing linear fields:
+    /// Couples the cloud to linear finite elements at the listed vertices (ascending) of a tet4 mesh.
+    ///
+    /// The vertices become nodes after those of the cloud, with the hat functions `N_h` of the cells as shape
+    /// functions. The functions of the cloud restore the reproduction of linear fields:
     ///
     /// ```text
     /// phi_I(x) = (p(x) - sum_h N_h(x) p(x_h))^T A(x)^-1 p(x_I) w_I(x)
     /// ```
     ///
-    /// They vanish on faces and in cells all of whose corners are listed, where parameters of the vertices are displacements.
-    /// Nodes of the cloud at which the hats sum to one half or more give way. What is left around such a point may lie in one
-    /// plane: supports are enlarged there, on the ladder. The layer of cells is about as stiff as linear tetrahedra are: on a
-    /// bending prism of 4 cells of depth the error of the displacement is 19 times that of constraints of the same cloud, and
-    /// falls with the spacing to the power 2.6. Linear basis only: of a
-    /// quadratic one the hats reproduce too little for the others to vanish. Source: Huerta and Fernandez-Mendez (2000),
+    /// They vanish on faces and in cells whose corners are all listed; the parameters of the vertices are
+    /// displacements there. Nodes of the cloud at which the hats sum to one half or more are removed. The
+    /// remaining neighbours of such a point may lie in one plane; their supports are then enlarged.
+    ///
+    /// The layer of cells is about as stiff as linear tetrahedra. On a bending prism of 4 cells of depth, the
+    /// error of the displacement is 19 times that of constraints on the same cloud, and decreases with the
+    /// spacing to the power 2.6. Only the linear basis can be coupled: for a quadratic basis the hats
+    /// reproduce too little for the other functions to vanish. Source: Huerta and Fernandez-Mendez (2000),
     /// Int. J. Numer. Meth. Engng 48, 1615-1636.
     pub fn coupled(self, background: &Mesh, vertices: &[u32]) -> Result<Approximation, EfgError> {
         self.couple(background, vertices, false)
@@ -228,9 +241,10 @@ impl Approximation {
         })
     }
 
-    /// As [`Approximation::coupled`], with the [vertices of borders](crate::border_vertices) between regions of the background
-    /// among those listed, and nodes of the cloud that count at points of their own region alone: across a border the field is
-    /// continuous and its gradient may jump.
+    /// Couples the cloud as [`Approximation::coupled`] does, by region. The [vertices of
+    /// borders](crate::border_vertices) between regions of the background are added to the list, and nodes of
+    /// the cloud contribute only at points of their own region. Across a border the field is continuous and
+    /// its gradient may jump.
     pub fn coupled_by_region(self, background: &Mesh, vertices: &[u32]) -> Result<Approximation, EfgError> {
         let mut all = [vertices, &border_vertices(background)].concat();
         all.sort_unstable();
@@ -238,27 +252,28 @@ impl Approximation {
         self.couple(background, &all, true)
     }
 
-    /// Node positions, m; those of finite elements after those of the cloud.
+    /// Node positions, m; finite-element nodes follow those of the cloud.
     pub fn nodes(&self) -> &[Point3] {
         &self.nodes
     }
 
-    /// Support radius of one node, m; of an ellipsoid the longest semi-axis, of a finite-element node zero: its support is cells.
+    /// Returns the support radius of a node, m: the longest semi-axis of an ellipsoid, and zero for a
+    /// finite-element node, whose support consists of cells.
     pub fn radius(&self, node: usize) -> f64 {
         self.balls.get(node).map_or(0.0, |ball| ball.radius)
     }
 
-    /// The largest support radius, m.
+    /// Returns the largest support radius, m.
     pub(crate) fn widest(&self) -> f64 {
         self.balls.iter().map(|ball| ball.radius).fold(0.0, f64::max)
     }
 
-    /// Values at points; nodes of a row by ascending index.
+    /// Computes shape values at points (m); nodes of a row are in ascending order.
     pub fn point_rows(&self, points: &[Point3]) -> Result<(PointRows, MlsInfo), EfgError> {
         self.point_rows_in(points.to_vec(), None)
     }
 
-    /// As [`Approximation::point_rows`], of points whose cells of the background may be known.
+    /// Computes [`Approximation::point_rows`] for points whose background cells may be known.
     pub(crate) fn point_rows_in(
         &self,
         points: Vec<Point3>,
@@ -268,12 +283,12 @@ impl Approximation {
         Ok((PointRows::new(points, rows)?, info))
     }
 
-    /// Values and gradients (1/m) at points; nodes of a row by ascending index.
+    /// Computes shape values and gradients (1/m) at points (m); nodes of a row are in ascending order.
     pub fn grad_rows(&self, points: &[Point3]) -> Result<(GradRows, MlsInfo), EfgError> {
         self.grad_rows_in(points.to_vec(), None)
     }
 
-    /// As [`Approximation::grad_rows`], of points whose cells of the background may be known.
+    /// Computes [`Approximation::grad_rows`] for points whose background cells may be known.
     pub(crate) fn grad_rows_in(
         &self,
         points: Vec<Point3>,
@@ -293,9 +308,10 @@ impl Approximation {
             (Some(_), Some(known)) => known(),
             (Some(gaps), None) => gaps.cells(points, &self.nodes)?,
         };
-        // In waves that reuse their buffers: all chunks at once would touch twice the memory, and in a single call
-        // fresh pages cost as much as the arithmetic. Results do not depend on the length of a wave. One joins the table while
-        // the next is filled: joining is a quarter of the work, and one thread's.
+        // Waves of chunks reuse their buffers: all chunks at once would touch twice the memory, and in a
+        // single call fresh pages cost as much as the arithmetic. Results do not depend on the length of a
+        // wave. One wave is appended to the table while the next is filled: appending is a quarter of the
+        // work and uses a single thread.
         let small = points.len() <= SMALL;
         let wave = if small { SMALL } else { 4 * CHUNK * rayon::current_num_threads() };
         let expected = if small { 0 } else { self.expected_entries(points) };
@@ -319,7 +335,8 @@ impl Approximation {
         for (number, part) in points.chunks(wave).enumerate() {
             let cells = cells.get(number * wave..).unwrap_or_default();
             let mut fill = || self.fill_wave::<GRAD>(part, cells, &mut next);
-            // Beside the first there is nothing to join; a batch of one chunk then never leaves the calling thread.
+            // Nothing is to be appended during the first wave. A batch of one chunk therefore stays on the
+            // calling thread.
             let done = if filled.is_empty() { fill() } else { rayon::join(fill, || join(&mut filled)).0 };
             done?;
             std::mem::swap(&mut next, &mut filled);
@@ -330,8 +347,8 @@ impl Approximation {
         Ok((rows, grads, tally.info()))
     }
 
-    /// Fills one chunk for every so many points, or tells the first that fails. There may be more cells than
-    /// points, or none.
+    /// Fills one chunk per `CHUNK` points, or returns the first error. There may be more cells than points,
+    /// or none.
     fn fill_wave<const GRAD: bool>(
         &self,
         points: &[Point3],
@@ -352,7 +369,7 @@ impl Approximation {
         done.into_iter().collect()
     }
 
-    /// Entries of a table by the neighbours of a few of its points.
+    /// Estimates the number of entries of a table from the neighbours of a few points.
     fn expected_entries(&self, points: &[Point3]) -> usize {
         let mut found = RowList::default();
         for x in points.iter().step_by(sample_step(points.len())) {
@@ -361,7 +378,8 @@ impl Approximation {
         found.expected_entries(points.len())
     }
 
-    /// Appends the nodes whose supports cover the point, as a row: those of its region, if nodes have one.
+    /// Appends the nodes whose supports cover the point as a row; if nodes have regions, only those of the
+    /// point's region.
     #[inline(always)]
     fn find(&self, x: &Point3, layer: Option<&Layer>, rows: &mut RowList) {
         let first = rows.nodes.len();
@@ -381,7 +399,7 @@ impl Approximation {
         rows.close();
     }
 
-    /// Moves the nodes whose ellipsoids cover the point to the front and counts them.
+    /// Moves the nodes whose ellipsoids cover the point to the front and returns their number.
     fn within_ellipsoids(&self, x: &Point3, nodes: &mut [u32]) -> usize {
         let mut n = 0;
         for k in 0..nodes.len() {
@@ -391,17 +409,18 @@ impl Approximation {
         n
     }
 
-    /// Whether a node counts in the region of a layer.
+    /// Whether a node contributes in the region of a layer.
     fn counts_in(&self, node: u32, layer: &Layer) -> bool {
         self.regions.get(node as usize).is_none_or(|region| *region == layer.region)
     }
 
-    /// Distance of a point from a node over what the node's support reaches in its direction.
+    /// Returns the distance of a point from a node, relative to the extent of the node's support in this
+    /// direction.
     fn relative(&self, node: u32, x: &Point3) -> f64 {
         self.length(node, &(self.nodes[node as usize] - x))
     }
 
-    /// Length of an offset (m) over what the support of a node reaches in its direction.
+    /// Returns the length of an offset (m), relative to the extent of the node's support in its direction.
     pub(crate) fn length(&self, node: u32, e: &Vector3) -> f64 {
         match self.ellipsoids.get(node as usize) {
             Some(ellipsoid) => ellipsoid.square((*e).into()).max(0.0).sqrt(),

@@ -13,7 +13,7 @@ impl Basis {
     /// Both bases.
     pub const ALL: [Basis; 2] = [Basis::Linear, Basis::Quadratic];
 
-    /// The name used in scene files and tables.
+    /// Name in scene files and tables.
     pub fn name(self) -> &'static str {
         match self {
             Basis::Linear => "linear",
@@ -21,12 +21,12 @@ impl Basis {
         }
     }
 
-    /// The basis of that name.
+    /// Returns the basis with this name.
     pub fn from_name(name: &str) -> Option<Basis> {
         Basis::ALL.into_iter().find(|basis| basis.name() == name)
     }
 
-    /// Number of terms: 4 or 10. At least so many neighbours are needed at every point.
+    /// Number of terms, 4 or 10: the least number of neighbours at every point.
     pub fn terms(self) -> usize {
         match self {
             Basis::Linear => 4,
@@ -35,16 +35,17 @@ impl Basis {
     }
 }
 
-/// The `M` terms at one scaled offset; `M` is 4 or 10, and the terms beyond the fourth are the quadratic block.
+/// Evaluates the `M` terms at a scaled offset; `M` is 4 or 10. The terms after the fourth form the quadratic
+/// block.
 #[inline(always)]
 pub(crate) fn terms<const M: usize>([x, y, z]: [f64; 3]) -> [f64; M] {
     first([1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, z * x])
 }
 
-/// Monomials of three variables up to degree 4.
+/// Number of monomials of three variables up to degree 4.
 pub(crate) const MONOMIALS: usize = 35;
 
-/// Exponents of x, y and z in each; the first ten are the terms of the basis.
+/// Exponents of x, y and z of each monomial; the first ten are the terms of the basis.
 #[rustfmt::skip]
 const EXPONENTS: [[u8; 3]; MONOMIALS] = [
     [0, 0, 0],
@@ -55,8 +56,8 @@ const EXPONENTS: [[u8; 3]; MONOMIALS] = [
     [2, 2, 0], [0, 2, 2], [2, 0, 2], [2, 1, 1], [1, 2, 1], [1, 1, 2],
 ];
 
-/// Which monomial the product of two terms is: sums of weighted products have 35 distinct entries where the lower triangle
-/// of the quadratic basis has 55.
+/// Index of the monomial that is the product of two terms. Sums of weighted products have 35 distinct
+/// entries, whereas the lower triangle of the quadratic basis has 55.
 pub(crate) const PRODUCT: [[usize; 10]; 10] = {
     let mut table = [[MONOMIALS; 10]; 10];
     let (mut i, mut j, mut n) = (0, 0, 0);
@@ -76,7 +77,8 @@ pub(crate) const PRODUCT: [[usize; 10]; 10] = {
     table
 };
 
-/// The first `N` monomials (10, 20 or 35: up to degree 2, 3 or 4) at one scaled offset, times a weight.
+/// Evaluates the first `N` monomials (10, 20 or 35: up to degree 2, 3 or 4) at a scaled offset, times a
+/// weight.
 #[inline(always)]
 pub(crate) fn monomials<const N: usize>(w: f64, [x, y, z]: [f64; 3]) -> [f64; N] {
     let (wx, wy, wz) = (w * x, w * y, w * z);
@@ -125,7 +127,7 @@ pub(crate) fn monomials<const N: usize>(w: f64, [x, y, z]: [f64; 3]) -> [f64; N]
     ])
 }
 
-/// A loop, not `array::from_fn`: that is not always inlined, and then not on wide registers.
+/// Copies by a loop: `array::from_fn` is not always inlined and then not compiled for wide registers.
 #[inline(always)]
 fn first<const A: usize, const N: usize>(all: [f64; A]) -> [f64; N] {
     let mut some = [0.0; N];
@@ -139,7 +141,7 @@ mod tests {
 
     #[test]
     fn products_of_terms_are_the_monomials_of_the_table() {
-        // Powers of two of distinct exponents: every product is exact, and no two monomials are alike.
+        // Powers of two with distinct exponents: every product is exact, and all monomials differ.
         let x = [2.0, 2f64.powi(9), 2f64.powi(-30)];
         let p = terms::<10>(x);
         let all = monomials::<MONOMIALS>(3.0, x);

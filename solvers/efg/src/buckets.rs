@@ -1,19 +1,20 @@
-//! Which supports cover a point? A uniform grid whose cells list the nodes whose support balls touch them: a query reads one
-//! list. Few nodes are all asked, side by side, in less time than it takes to gather those of a list.
+//! Search for the supports that cover a point. In a uniform grid, each cell lists the nodes whose support
+//! balls touch the cell, and a query reads one list. For few nodes, testing all nodes in lanes takes less
+//! time than gathering those of a list.
 
 use lanes::{LANES, Lanes};
 use shape::Point3;
 
 use crate::mls::Ball;
 
-/// Up to so many nodes, all are asked.
+/// Number of nodes up to which all nodes are tested.
 const FEW: usize = 128;
-/// Cells per support radius: finer cells hold fewer false candidates but more entries in all. With 2 there would be a sixth fewer
-/// candidates, and 23 bytes more for every integration point.
+/// Cells per support radius: finer cells hold fewer false candidates but more entries in all. With 2 there
+/// would be a sixth fewer candidates, and 23 bytes more for every integration point.
 const CELLS_PER_RADIUS: f64 = 1.6;
 
 pub(crate) enum Buckets {
-    /// Every ball by axis and radius, by eights, filled up with balls of no radius.
+    /// All balls by axis and radius, in groups of eight, padded with balls of zero radius.
     Few(Vec<[Lanes; 4]>),
     Grid(Grid),
 }
@@ -41,7 +42,7 @@ impl Buckets {
         Buckets::Few(balls.chunks(LANES).map(side_by_side).collect())
     }
 
-    /// Appends the nodes whose balls cover the point, by ascending index.
+    /// Appends the nodes whose balls cover the point, in ascending order.
     #[inline(always)]
     pub(crate) fn find(&self, x: &Point3, balls: &[Ball], nodes: &mut Vec<u32>) {
         let first = nodes.len();
@@ -74,7 +75,7 @@ impl Buckets {
     }
 }
 
-/// Positions and radii of eight balls.
+/// Returns the positions and radii of eight balls.
 #[inline(always)]
 fn gathered(balls: &[Ball], nodes: &[u32; LANES]) -> [Lanes; 4] {
     let mut lanes = [[0.0; LANES]; 4];
@@ -85,7 +86,7 @@ fn gathered(balls: &[Ball], nodes: &[u32; LANES]) -> [Lanes; 4] {
     lanes
 }
 
-/// One for each of eight balls that covers the point, zero for the others.
+/// Returns 1 for each of eight balls that covers the point, and 0 for the others.
 #[inline(always)]
 fn covered([at_x, at_y, at_z, radius]: [Lanes; 4], x: &Point3) -> [u64; LANES] {
     let mut covered = [0; LANES];
@@ -96,13 +97,13 @@ fn covered([at_x, at_y, at_z, radius]: [Lanes; 4], x: &Point3) -> [u64; LANES] {
     covered
 }
 
-/// Moves the nodes that count to the front of the room and counts them. Written always: about half of the candidates do not
-/// count, and a branch would be mispredicted.
+/// Moves the covering nodes to the front of `room` and returns their number. Every candidate is written:
+/// about half are rejected, and a branch would be mispredicted.
 #[inline(always)]
 fn keep(nodes: &[u32; LANES], covered: &[u64; LANES], room: &mut [u32]) -> usize {
     let mut kept = 0;
     for l in 0..LANES {
-        // At most `l` are kept so far: the remainder is the number itself, and no place beyond the room.
+        // At most `l` nodes are kept so far, so the remainder equals `kept` and avoids the bounds check.
         room[kept % LANES] = nodes[l];
         kept += covered[l] as usize;
     }
@@ -110,7 +111,7 @@ fn keep(nodes: &[u32; LANES], covered: &[u64; LANES], room: &mut [u32]) -> usize
 }
 
 impl Grid {
-    /// Lists every ball in the cells it touches, by ascending node index.
+    /// Lists every ball in the cells it touches, in ascending order of nodes.
     fn new(balls: &[Ball]) -> Grid {
         let bound = |axis: usize, sign: f64| {
             let ends = balls.iter().map(|ball| sign * ball.at[axis] + ball.radius);
@@ -120,7 +121,7 @@ impl Grid {
         let extent: [f64; 3] = std::array::from_fn(|a| bound(a, 1.0) - origin[a]);
         let mut size =
             balls.iter().map(|ball| ball.radius).sum::<f64>() / balls.len() as f64 / CELLS_PER_RADIUS;
-        // A few nodes far from the rest must not make a grid of empty cells.
+        // Prevents a huge grid of empty cells if a few nodes are far from the rest.
         let limit = (64 * balls.len() + 4096) as f64;
         let cells = |size: f64| extent.iter().map(|e| (e / size).floor() + 1.0).product::<f64>();
         while cells(size) > limit {
@@ -150,13 +151,14 @@ impl Grid {
         grid
     }
 
-    /// Nodes whose supports may cover the point, by ascending index; a superset of those that do.
+    /// Returns the nodes whose supports may cover the point, in ascending order: a superset of the covering
+    /// nodes.
     #[inline]
     fn candidates(&self, point: &Point3) -> &[u32] {
         let mut cell = 0;
         for axis in 0..3 {
             let at = (point[axis] - self.origin[axis]) * self.inverse_size;
-            // A point beyond the outermost support is covered by none; a NaN fails the test, too.
+            // A point beyond all supports is covered by none; NaN also fails the test.
             if !(at >= 0.0 && at < self.counts[axis] as f64) {
                 return &[];
             }
@@ -166,7 +168,7 @@ impl Grid {
     }
 
     fn for_each_touched(&self, ball: &Ball, mut visit: impl FnMut(usize)) {
-        // In cell units, with a margin far above rounding.
+        // Cell units, with a margin far above rounding.
         let radius = ball.radius * self.inverse_size + 1e-9;
         let at: [f64; 3] = std::array::from_fn(|a| (ball.at[a] - self.origin[a]) * self.inverse_size);
         let range = |a: usize| {
@@ -197,7 +199,7 @@ mod tests {
     fn both_ways_find_the_balls_that_cover() {
         let at = |i: usize, c: f64| (i as f64 * c).fract();
         let place = |i: usize| [at(i, 0.754_877), at(i, 0.569_84), at(i, 0.317_8)];
-        // Not a multiple of eight.
+        // The number is not a multiple of eight.
         let balls: Vec<Ball> =
             (0..83).map(|i| Ball { at: place(i), radius: 0.2 + 0.01 * (i % 7) as f64 }).collect();
         let (few, grid) = (Buckets::new(&balls), Buckets::Grid(Grid::new(&balls)));

@@ -1,4 +1,5 @@
-//! Rows of cells with gradients smoothed by their moments: one table of face points serves both sides of every face.
+//! Rows of cells with gradients smoothed by their moments. One table of face points serves both sides of
+//! every face.
 
 use geometry::Mesh;
 use geometry::quadrature::{self, Rule};
@@ -10,13 +11,13 @@ use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
 use crate::row_list::{RowList, sample_step};
 use crate::{Approximation, EfgError, MlsInfo};
 
-/// Cells per parallel task: fixed, so that results are the same bits at any thread count.
+/// Cells per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
 
-/// Cells per wave and thread: their rows are kept twice while they are joined to the others.
+/// Cells per wave and thread. The rows of a wave are stored twice while they are appended to the others.
 const WAVE: usize = 4 * CHUNK;
 
-/// Rows of every cell of a mesh of tet4, P for each: values at its points, and the smoothed gradients there.
+/// Rows of every cell of a tet4 mesh, with P points per cell: values and smoothed gradients at these points.
 #[derive(Default)]
 pub(crate) struct CellRows {
     pub rows: RowList,
@@ -25,19 +26,19 @@ pub(crate) struct CellRows {
     pub points: Vec<Point3>,
 }
 
-/// Values at further points, evaluated together with those of the cells: one call, one report.
+/// Values at further points, evaluated together with those of the cells in one call.
 pub(crate) struct Beside {
     at: PointRows,
     first: usize,
 }
 
-/// What a cell is made of: the points of its faces and its own, as rows of one table.
+/// Components of the cells: the points of their faces and their own points, as rows of one table.
 struct Parts<'a, const P: usize> {
     mesh: &'a Mesh,
     faces: Faces,
     areas: Vec<Vector3>,
     rule: Rule<2>,
-    /// Face points first, cell points after.
+    /// Face points first, then cell points.
     at: PointRows,
     first_inner: usize,
     volumes: Vec<f64>,
@@ -54,7 +55,8 @@ impl CellRows {
         Ok((rows, info))
     }
 
-    /// The rows of the cells, and values at points beside them, each with a cell that it is in.
+    /// Computes the rows of the cells, and values at further points (m), each given with a cell that contains
+    /// the point.
     pub fn with<const P: usize>(
         approximation: &Approximation,
         mesh: &Mesh,
@@ -68,7 +70,7 @@ impl CellRows {
             let (volume, centroid) = tet_measure(mesh, cell)?;
             volumes.push(volume);
             for b in &volume_basis::<P>() {
-                // About the centroid: the point of P = 1 is the centroid itself.
+                // Offset from the centroid: for P = 1 the point is the centroid itself.
                 let offset: Vector3 = if P == 1 {
                     Vector3::zeros()
                 } else {
@@ -98,7 +100,8 @@ impl CellRows {
         let mut rows = RowList::with_capacity(P * count, entries, entries);
         let cells: Vec<usize> = (0..count).collect();
         for wave in cells.chunks(WAVE * rayon::current_num_threads()) {
-            // A sum has a place for every node of the cloud: one for each chunk would make the whole quadratic.
+            // A sum has a place for every node of the cloud. A sum per chunk would make the total cost
+            // quadratic.
             let sum = || Sum::<P>::new(approximation.nodes().len());
             let work = |sum: &mut Sum<P>, chunk: &[usize]| {
                 let mut batch = RowList::default();
@@ -134,7 +137,7 @@ impl<const P: usize> Parts<'_, P> {
         sum.drain_into(&self.basis, rows);
     }
 
-    /// Entries of all rows by those of a few cells.
+    /// Estimates the number of entries of all rows from those of a few cells.
     fn expected_entries(&self, nodes: usize) -> usize {
         let count = self.volumes.len();
         let (mut sum, mut batch) = (Sum::<P>::new(nodes), RowList::default());
@@ -153,7 +156,7 @@ fn combine<const P: usize>(slopes: &[Vector3; P], basis: &[f64; P]) -> Vector3 {
     g
 }
 
-/// The basis at the P integration points of a cell.
+/// Returns the basis at the P integration points of a cell.
 pub(crate) fn volume_basis<const P: usize>() -> [[f64; P]; P] {
     let rule: Rule<3> = quadrature::tet(P).expect("1 and 4 points are tabulated");
     std::array::from_fn(|q| {
@@ -162,7 +165,7 @@ pub(crate) fn volume_basis<const P: usize>() -> [[f64; P]; P] {
     })
 }
 
-/// The basis at a point of the face whose canonical corners are these corners of the cell.
+/// Returns the basis at a point of the face whose canonical corners are the given corners of the cell.
 pub(crate) fn face_basis<const P: usize>(corners: [usize; 3], xi: &[f64; 2]) -> [f64; P] {
     let mut barycentric = [0.0; 4];
     for (corner, b) in corners.into_iter().zip([1.0 - xi[0] - xi[1], xi[0], xi[1]]) {
@@ -175,7 +178,7 @@ fn of_barycentric<const P: usize>(barycentric: [f64; 4]) -> [f64; P] {
     std::array::from_fn(|j| if P == 1 { 1.0 } else { barycentric[j] })
 }
 
-/// Gradients (1/m) of the basis over a cell.
+/// Returns the gradients (1/m) of the basis over a cell.
 fn basis_slopes<const P: usize>(mesh: &Mesh, cell: usize) -> [Vector3; P] {
     if P == 1 {
         return [Vector3::zeros(); P];
@@ -188,7 +191,7 @@ fn basis_slopes<const P: usize>(mesh: &Mesh, cell: usize) -> [Vector3; P] {
     })
 }
 
-/// Which corners of the cell the canonical corners of one of its faces are.
+/// Returns the corners of a cell that correspond to the canonical corners of one of its faces.
 pub(crate) fn local_corners(mesh: &Mesh, cell: usize, face: usize) -> [usize; 3] {
     let (nodes, local) = (mesh.cell(cell), mesh.kind(cell).faces()[face]);
     let mut corners = [local[0], local[1], local[2]];
@@ -196,7 +199,7 @@ pub(crate) fn local_corners(mesh: &Mesh, cell: usize, face: usize) -> [usize; 3]
     corners
 }
 
-/// A cell being summed, dense over the nodes with a list of those touched.
+/// Sums of the cell in progress, dense over the nodes with a list of the touched nodes.
 pub(crate) struct Sum<const P: usize> {
     values: Vec<[f64; P]>,
     /// Moments `integral grad~_I b_j / V`, 1/m.
@@ -244,7 +247,7 @@ impl<const P: usize> Sum<P> {
         }
     }
 
-    /// Appends the rows of the cell's points, by ascending node, and clears.
+    /// Appends the rows of the cell's points, with ascending nodes, and resets the sums.
     pub fn drain_into(&mut self, basis: &[[f64; P]; P], rows: &mut RowList) {
         self.touched.sort_unstable();
         for (q, basis) in basis.iter().enumerate() {
@@ -267,7 +270,7 @@ impl<const P: usize> Sum<P> {
 }
 
 impl Sum<1> {
-    /// Adds the constant gradients of a cell, `share` of them.
+    /// Adds the constant gradients of a cell times `share`.
     pub fn add_share(&mut self, cells: &CellRows, cell: usize, share: f64) {
         for i in cells.rows.range(cell) {
             self.touch(cells.rows.nodes[i]);
@@ -275,26 +278,27 @@ impl Sum<1> {
         }
     }
 
-    /// Adds the values at a point beside the cells.
+    /// Adds the values at one of the further points.
     pub fn add_values(&mut self, beside: &Beside, point: usize) {
         self.add_inner(&beside.at, beside.first + point, 0, &[Vector3::zeros()]);
     }
 }
 
-/// Coefficients from moments. The mass matrix of barycentric coordinates is `V / 20 (I + 1 1^T)`, its inverse
-/// `20 / V (I - 1 1^T / 5)`.
+/// Returns coefficients from moments. The mass matrix of barycentric coordinates is `V / 20 (I + 1 1^T)`, its
+/// inverse `20 / V (I - 1 1^T / 5)`.
 fn solve_moments<const P: usize>(moments: [Vector3; P]) -> [Vector3; P] {
     let mean = moments.iter().sum::<Vector3>() / 5.0;
     moments.map(|m| (m - mean) * 20.0)
 }
 
-/// The distinct faces of the cells of a mesh of tet4, each once.
+/// The distinct faces of the cells of a tet4 mesh.
 struct Faces {
     /// Canonical corners of each face.
     corners: Vec<[u32; 3]>,
-    /// A cell of each.
+    /// A cell of each face.
     cell: Vec<u32>,
-    /// The four faces of each cell, and -1 where the cell's outward normal opposes the canonical one.
+    /// The four faces of each cell with a sign: -1 if the cell's outward normal is opposite to the canonical
+    /// normal.
     of_cell: Vec<[(u32, f64); 4]>,
 }
 

@@ -1,4 +1,4 @@
-//! Straight-sided background cells: where the integration points lie and what they weigh.
+//! Straight-sided background cells: positions and weights of the integration points.
 
 use geometry::quadrature::Rule;
 use geometry::{CellKind, Mesh};
@@ -6,7 +6,7 @@ use shape::{Matrix3, Point3, Vector3};
 
 use crate::EfgError;
 
-/// Appends the points and weights (m^3) of one tet4.
+/// Appends the points and weights (m^3) of a tet4.
 pub(crate) fn tet_points(
     mesh: &Mesh,
     cell: usize,
@@ -24,7 +24,7 @@ pub(crate) fn tet_points(
     Ok(())
 }
 
-/// Appends the points and weights (m^3) of one hex8.
+/// Appends the points and weights (m^3) of a hex8.
 pub(crate) fn hex_points(
     mesh: &Mesh,
     cell: usize,
@@ -48,7 +48,7 @@ pub(crate) fn hex_points(
     Ok(())
 }
 
-/// Volume (m^3) and centroid of a tet4.
+/// Returns volume (m^3) and centroid of a tet4.
 pub(crate) fn tet_measure(mesh: &Mesh, cell: usize) -> Result<(f64, Point3), EfgError> {
     if mesh.kind(cell) != CellKind::Tet4 {
         let (kind, what) = (mesh.kind(cell), "cell smoothing");

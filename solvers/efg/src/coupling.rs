@@ -1,10 +1,14 @@
-//! A cloud coupled to linear finite elements: hat functions of some vertices of the background, and what they leave to the cloud.
+//! A cloud coupled to linear finite elements: hat functions of some background vertices, and the remaining
+//! moments of the cloud.
 //!
-//! With `N_h` the hats of the listed vertices, the cloud's functions have the moments `p(x) - sum_h N_h(x) p(x_h)` in place of `p(x)`.
-//! In a tetrahedron that is `sum_v N_v(x) p(x_v)` over its other corners, so that they vanish, but for rounding, where it has none,
-//! and towards faces without any. In cells without a listed corner they are those of plain moving least squares, and the hats are
-//! continuous: so are all functions. Where the vertices of a border between regions are listed, the cloud's functions vanish there
-//! from both sides, and each side may have nodes of its own alone: the field is continuous and its gradient may jump. Source:
+//! With the hats `N_h` of the listed vertices, the cloud's functions have the moments
+//! `p(x) - sum_h N_h(x) p(x_h)` instead of `p(x)`. In a tetrahedron this is `sum_v N_v(x) p(x_v)` over its
+//! unlisted corners. The functions therefore vanish, except for rounding, in cells without unlisted corners,
+//! and towards faces without unlisted corners. In cells without listed corners they are plain moving least
+//! squares. The hats are continuous, and so are all functions.
+//!
+//! If the vertices of a border between regions are listed, the cloud's functions vanish there from both
+//! sides, and each side may have its own nodes: the field is continuous and its gradient may jump. Source:
 //! Huerta and Fernandez-Mendez (2000), Int. J. Numer. Meth. Engng 48, 1615-1636.
 
 use geometry::{CellKind, Locator, Mesh};
@@ -14,14 +18,16 @@ use crate::EfgError;
 use crate::mls::Moments;
 use crate::row_list::RowList;
 
-/// Marks a vertex that is no finite-element node.
+/// Marks a vertex that is not a finite-element node.
 const NONE: u32 = u32::MAX;
 
-/// Nodes of a cloud stay where more than this is left of one. A node on the constrained surface would have a function that vanishes at the node
-/// itself and is negative around: its dilation has no positive volume, as that of one near by (kidney, 1331 nodes: at 0.3 left).
+/// Remainder of the partition of unity above which a node of the cloud is kept. A node on the constrained
+/// surface would have a function that vanishes at the node and is negative around it. The volume of its
+/// dilation group would not be positive. The same happens to nodes nearby (kidney, 1331 nodes: at a remainder
+/// of 0.3).
 const LEAST_SHARE: f64 = 0.5;
 
-/// Vertices of the cells of two regions or more, ascending.
+/// Returns the vertices shared by cells of two or more regions, ascending.
 pub fn border_vertices(mesh: &Mesh) -> Vec<u32> {
     let mut first = vec![None; mesh.points().len()];
     let mut border = Vec::new();
@@ -38,29 +44,29 @@ pub fn border_vertices(mesh: &Mesh) -> Vec<u32> {
     border
 }
 
-/// Background cells and which of their corners are finite-element nodes.
+/// Background cells with the corners that are finite-element nodes.
 pub(crate) struct Coupling {
     locator: Locator,
     /// Region of each cell.
     regions: Vec<u16>,
-    /// For each corner of each cell its index among the finite-element nodes, or [`NONE`].
+    /// Index of each corner of each cell among the finite-element nodes, or [`NONE`].
     corners: Vec<[u32; 4]>,
 }
 
-/// What finite elements have at a point.
+/// Finite-element part of the shape functions at a point.
 #[derive(Clone, Copy)]
 pub(crate) struct Layer {
     count: usize,
     /// Index, value and gradient (1/m) of the first `count` hats, by ascending index.
     hats: [(u32, f64, Vector3); 4],
-    /// What they leave to the cloud.
+    /// Moments left to the cloud.
     pub(crate) moments: Moments,
     /// Region of the cell.
     pub(crate) region: u16,
 }
 
-/// Positions (m) of the nodes of a cloud that is [coupled](crate::Approximation::coupled) to finite elements: those of its own that
-/// stay (elements have less than half of the value there), then the vertices.
+/// Returns the node positions (m) of a cloud that is [coupled](crate::Approximation::coupled) to finite
+/// elements: the kept nodes of the cloud (at which the hats sum to less than one half), then the vertices.
 pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> Result<Vec<Point3>, EfgError> {
     let kept = Coupling::new(background, vertices)?.kept(nodes)?;
     let of_cloud = kept.into_iter().map(|(n, _)| nodes[n]);
@@ -68,12 +74,12 @@ pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> R
 }
 
 impl Layer {
-    /// Whether there is no finite-element node at the cell.
+    /// Whether the cell has no finite-element node.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Whether nothing is left to the cloud: the cell is a finite element like any other.
+    /// Whether nothing is left to the cloud: all corners of the cell are finite-element nodes.
     pub fn is_full(&self) -> bool {
         self.count == 4
     }
@@ -102,7 +108,7 @@ impl Coupling {
         Ok(Coupling { locator: Locator::new(background)?, regions, corners })
     }
 
-    /// Indices of the nodes of a cloud that stay, and the region that each is in.
+    /// Returns the indices of the kept nodes of a cloud, with their regions.
     pub fn kept(&self, nodes: &[Point3]) -> Result<Vec<(usize, u16)>, EfgError> {
         let mut layers = Vec::new();
         self.layers(nodes, &mut layers)?;
@@ -111,7 +117,7 @@ impl Coupling {
         Ok(each.filter(|(_, layer)| stays(layer)).map(|(n, layer)| (n, layer.region)).collect())
     }
 
-    /// What finite elements have at each point.
+    /// Computes the finite-element part at each point.
     pub fn layers(&self, points: &[Point3], layers: &mut Vec<Layer>) -> Result<(), EfgError> {
         layers.clear();
         let places = self.locator.locate(points)?;
@@ -119,7 +125,8 @@ impl Coupling {
         Ok(())
     }
 
-    /// At a point in, or closest to, a cell. Beyond it the hats go on linearly.
+    /// Computes the part at a point in a cell or closest to the cell. Outside the cell the hats are extended
+    /// linearly.
     fn layer(&self, x: &Point3, cell: usize) -> Layer {
         let region = self.regions[cell];
         let mut layer =
@@ -150,7 +157,8 @@ impl Coupling {
     }
 }
 
-/// The rows of the cloud's own functions, each with its hats behind: their indices count from `first`.
+/// Returns the rows of the cloud's own functions, each followed by its hats, whose indices count from
+/// `first`.
 pub(crate) fn joined<const GRAD: bool>(rows: &RowList, layers: &[Layer], first: usize) -> RowList {
     let room = rows.nodes.len() + 4 * layers.len();
     let mut all = RowList::with_capacity(layers.len(), room, if GRAD { room } else { 0 });

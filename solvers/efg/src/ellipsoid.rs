@@ -1,9 +1,11 @@
-//! Supports that follow the cloud: at every node an ellipsoid, a ball in the metric in which the cells around are isotropic.
+//! Supports adapted to the cloud: an ellipsoid at every node, i.e. a ball in the metric in which the
+//! surrounding cells are isotropic.
 //!
-//! The cells' second moment is `S_I = mean_c mean_e (e e^T)`, the mean over the cells around node `I` of that over their edges, and
-//! lengths are taken in the metric `S_I^-1`: `|e|_I = sqrt(e^T S_I^-1 e)`. An affine map of body and cloud maps `S` along, so
-//! lengths, weights and shape values stay what they were, however flat it makes the cells. Where `S_I` is a multiple of the unit
-//! matrix the ellipsoid is the ball that [`Support::radii`] gives.
+//! The second moment of the cells is `S_I = mean_c mean_e (e e^T)`: the mean over the edges of a cell,
+//! averaged over the cells around node `I`. Lengths are measured in the metric `S_I^-1`:
+//! `|e|_I = sqrt(e^T S_I^-1 e)`. An affine map of body and cloud transforms `S` accordingly. Lengths, weights
+//! and shape values therefore do not change, however flat the cells become. If `S_I` is a multiple of the
+//! identity, the ellipsoid is the ball given by [`Support::radii`].
 
 use geometry::{Mesh, Search, edges};
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -12,7 +14,8 @@ use shape::Point3;
 
 use crate::{EfgError, Support};
 
-/// A cell whose longest extent is more than this times its shortest is taken to be flat: rounding of coordinates is left.
+/// Ratio of the longest to the shortest extent of a cell above which the cell counts as flat: only rounding
+/// of coordinates is left.
 const FLAT: f64 = 1e7;
 
 /// The support `(x - x_I)^T M_I (x - x_I) < 1` of a node.
@@ -30,7 +33,7 @@ impl Ellipsoid {
         self.radius
     }
 
-    /// `M_I e` (1/m) of an offset `e` (m).
+    /// Returns `M_I e` (1/m) for an offset `e` (m).
     #[inline(always)]
     pub(crate) fn normal(&self, e: [f64; 3]) -> [f64; 3] {
         let [xx, yy, zz, xy, yz, zx] = self.metric;
@@ -41,25 +44,30 @@ impl Ellipsoid {
         ]
     }
 
-    /// Squared relative distance of an offset (m): below 1 inside.
+    /// Returns the squared relative distance of an offset (m), below 1 inside.
     #[inline(always)]
     pub(crate) fn square(&self, e: [f64; 3]) -> f64 {
         let n = self.normal(e);
         n[0] * e[0] + n[1] * e[1] + n[2] * e[2]
     }
 
-    /// The ball of radius `length` in `metric` (1/m^2), whose unit ball has the longest semi-axis `widest` (m).
+    /// Builds the ball of radius `length` in `metric` (1/m^2), whose unit ball has the longest semi-axis
+    /// `widest` (m).
     fn new(metric: &Matrix3<f64>, widest: f64, length: f64) -> Ellipsoid {
         let m = metric / (length * length);
         let metric = [m[(0, 0)], m[(1, 1)], m[(2, 2)], m[(0, 1)], m[(1, 2)], m[(2, 0)]];
-        // Above rounding of the metric: the ball is to hold the whole ellipsoid.
+        // The margin exceeds the rounding of the metric: the ball must contain the whole ellipsoid.
         Ellipsoid { metric, radius: widest * length * (1.0 + 1e-9) }
     }
 }
 
 impl Support {
-    /// Supports of the nodes of a mesh that follow its cells: [`Support::Dilatation`] measures the mean of the edges at a node,
-    /// [`Support::Neighbours`] the `count`-th nearest other node, both in the node's own metric.
+    /// Computes supports of the nodes of a mesh that are adapted to its cells. [`Support::Dilatation`] uses
+    /// the mean length of the edges at a node, [`Support::Neighbours`] the distance of the `count`-th nearest
+    /// other node, both in the node's own metric.
+    ///
+    /// # Errors
+    /// Invalid parameters, and nodes whose cells are flat or missing.
     pub fn ellipsoids(self, mesh: &Mesh) -> Result<Vec<Ellipsoid>, EfgError> {
         let nodes = mesh.points();
         self.check(nodes)?;
@@ -89,7 +97,7 @@ impl Support {
     }
 }
 
-/// What lengths at a node are measured in.
+/// Metric of lengths at a node.
 struct Metric {
     /// `S^-1`, 1/m^2.
     inverse: Matrix3<f64>,
@@ -104,7 +112,7 @@ impl Metric {
     }
 }
 
-/// One metric per node.
+/// Returns one metric per node.
 fn metrics(mesh: &Mesh) -> Result<Vec<Metric>, EfgError> {
     let points = mesh.points();
     let mut moments = vec![(Matrix3::zeros(), 0u32); points.len()];
@@ -124,7 +132,7 @@ fn metrics(mesh: &Mesh) -> Result<Vec<Metric>, EfgError> {
     let metric = |(node, (sum, count)): (usize, &(Matrix3<f64>, u32))| {
         let moment = sum / f64::from(*count);
         let extents = SymmetricEigen::new(moment).eigenvalues;
-        // A node without cells has a moment that is no number.
+        // The moment of a node without cells is NaN and fails the test.
         if !(extents.max() < FLAT * FLAT * extents.min()) {
             return Err(EfgError::FlatCells { node });
         }
@@ -134,7 +142,7 @@ fn metrics(mesh: &Mesh) -> Result<Vec<Metric>, EfgError> {
     moments.iter().enumerate().map(metric).collect()
 }
 
-/// Mean length of the edges that meet at each node, in its metric.
+/// Returns the mean length of the edges that meet at each node, in the node's metric.
 fn mean_edges(mesh: &Mesh, metrics: &[Metric]) -> Vec<f64> {
     let points = mesh.points();
     let mut sums = vec![(0.0, 0u32); points.len()];
@@ -148,8 +156,9 @@ fn mean_edges(mesh: &Mesh, metrics: &[Metric]) -> Vec<f64> {
     sums.into_iter().map(|(sum, count)| sum / f64::from(count)).collect()
 }
 
-/// Length to the `count`-th nearest other node in the node's metric. Nodes within its ellipsoid lie within the ball around that:
-/// the search takes in more of the nearest until the ball holds no others.
+/// Returns the length to the `count`-th nearest other node in the node's metric. Nodes within the ellipsoid
+/// of this length also lie within the ball around the ellipsoid. The search therefore takes more of the
+/// nearest nodes until the ball contains no others.
 fn kth_length(nodes: &[Point3], search: &Search, node: usize, metric: &Metric, count: usize) -> f64 {
     let at = &nodes[node];
     let mut taken = count + 1;
@@ -158,7 +167,7 @@ fn kth_length(nodes: &[Point3], search: &Search, node: usize, metric: &Metric, c
         let near = search.nearest(at, taken);
         let mut lengths: Vec<f64> =
             near.iter().map(|n| metric.length(at, &nodes[n.index as usize])).collect();
-        // The node itself, at zero, is the first.
+        // The first entry is the node itself, at zero.
         let (_, &mut length, _) = lengths.select_nth_unstable_by(count, f64::total_cmp);
         let reached = near.last().map_or(0.0, |n| n.distance);
         if taken == nodes.len() || metric.widest * length <= reached {

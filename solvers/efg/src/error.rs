@@ -1,22 +1,22 @@
-//! What makes a cloud, a support or a background unusable. Lengths in metres.
+//! Errors of clouds, supports and backgrounds. Lengths are in metres.
 
 use geometry::{CellKind, LocateError};
 use shape::{Point3, ShapeError};
 
-/// What makes an approximation or its integration impossible.
+/// Reason why an approximation or its integration is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EfgError {
-    /// Two lists that must be of one length.
+    /// Two lists that must have the same length.
     #[error("{what}: {found} given, {expected} are needed (one per node)")]
     Length {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length it needs.
+        /// Required length.
         expected: usize,
     },
-    /// Fewer nodes in all than the basis has terms.
+    /// A cloud with fewer nodes than the basis has terms.
     #[error("the cloud has {found} nodes; the basis needs at least {needed}")]
     TooFewNodes {
         /// Nodes in the cloud.
@@ -38,7 +38,7 @@ pub enum EfgError {
         /// Its radius, m.
         radius: f64,
     },
-    /// A node without cells, or with flat ones.
+    /// A node without cells, or with flat cells.
     #[error(
         "the cells around node {node} are flat, or there are none; a support that follows them needs cells with a volume"
     )]
@@ -49,14 +49,14 @@ pub enum EfgError {
     /// A parameter outside its range.
     #[error("{what} is {value}; {allowed} is needed")]
     BadParameter {
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What is allowed, in words.
+        /// Description of the allowed values.
         allowed: &'static str,
     },
-    /// A point that too few nodes cover, even with the supports enlarged as far as allowed.
+    /// A point covered by too few nodes, even with the largest allowed enlargement of supports.
     #[error(
         "point ({:e}, {:e}, {:e}) m has {found} neighbours with supports enlarged {enlargement:.2} times; {needed} are needed",
         point.x, point.y, point.z
@@ -66,12 +66,13 @@ pub enum EfgError {
         point: Point3,
         /// Neighbours found.
         found: usize,
-        /// Terms of the basis asked for.
+        /// Number of terms of the requested basis.
         needed: usize,
-        /// Factor on the support radii at which they were counted.
+        /// Factor on the support radii at which the neighbours were counted.
         enlargement: f64,
     },
-    /// A point whose neighbours do not span the basis (they lie in one plane, say), after the whole ladder.
+    /// A point whose neighbours do not span the basis (for example because they lie in one plane), even after
+    /// all remedies.
     #[error(
         "the {found} neighbours of point ({:e}, {:e}, {:e}) m do not span the linear basis, supports enlarged {enlargement:.2} times \
          (do they lie in one plane?); the basis asked for has {needed} terms",
@@ -82,12 +83,13 @@ pub enum EfgError {
         point: Point3,
         /// Neighbours found.
         found: usize,
-        /// Terms of the basis asked for.
+        /// Number of terms of the requested basis.
         needed: usize,
         /// Factor on the support radii at the last attempt.
         enlargement: f64,
     },
-    /// A point at which no positive functions reproduce linear fields: it lies outside the convex hull of its neighbours.
+    /// A point outside the convex hull of its neighbours, at which no positive functions reproduce linear
+    /// fields.
     #[error(
         "point ({:e}, {:e}, {:e}) m lies outside the convex hull of its {found} neighbours: no mean of theirs came nearer \
          than {gap:e} m in {iterations} steps (maximum-entropy functions are positive and cannot extrapolate)",
@@ -98,24 +100,24 @@ pub enum EfgError {
         point: Point3,
         /// Neighbours found.
         found: usize,
-        /// Least distance of the point from a weighted mean of the neighbours, m.
+        /// Smallest distance of the point from a weighted mean of the neighbours, m.
         gap: f64,
         /// Steps of Newton's method.
         iterations: usize,
     },
-    /// A cell kind that this integration cannot use.
+    /// A cell kind that the integration does not support.
     #[error("cell {cell} is a {}; {what} takes {allowed}", kind.name())]
     CellKind {
         /// Cell index.
         cell: usize,
         /// Its kind.
         kind: CellKind,
-        /// The integration that refuses it.
+        /// Integration that refuses the cell.
         what: &'static str,
-        /// The kinds it takes.
+        /// Supported kinds.
         allowed: &'static str,
     },
-    /// A background cell with no positive volume at an integration point.
+    /// A background cell without positive volume at an integration point.
     #[error("background cell {cell} is inverted or flat: det J = {det_j:e} m^3")]
     InvertedCell {
         /// Cell index.
@@ -134,50 +136,50 @@ pub enum EfgError {
     /// A number of points for which there is no rule.
     #[error("no {what} rule has {points} points; offered: {offered}")]
     NoRule {
-        /// Which shape of cell or face.
+        /// Shape of the cell or face.
         what: &'static str,
-        /// Points asked for.
+        /// Requested number of points.
         points: usize,
-        /// What is offered.
+        /// Available numbers of points.
         offered: &'static str,
     },
-    /// A grid none of whose points lies in the body.
+    /// A grid without a point in the body.
     #[error(
         "none of the {points} grid points lies in the body; the grid spacing {spacing:e} m is too coarse"
     )]
     EmptyGrid {
-        /// Grid points tried.
+        /// Number of grid points tested.
         points: usize,
-        /// Grid spacing asked for, m.
+        /// Requested grid spacing, m.
         spacing: f64,
     },
-    /// A grid too large to be meant.
+    /// A grid with too many points.
     #[error("a grid spacing of {spacing:e} m makes {points:e} points; at most {limit:e} are allowed")]
     HugeGrid {
-        /// Grid points it would take.
+        /// Number of grid points that would be needed.
         points: f64,
-        /// Grid spacing asked for, m.
+        /// Requested grid spacing, m.
         spacing: f64,
-        /// Most points allowed.
+        /// Largest allowed number of points.
         limit: f64,
     },
     /// Shape functions that cannot be coupled to finite elements.
     #[error("only moving least squares with the linear basis are coupled to finite elements")]
     NotCoupled,
-    /// A list of finite-element nodes that is none.
+    /// An invalid list of finite-element nodes.
     #[error(
         "vertex {vertex} of the background can't be a finite-element node: there are {count}, to be listed ascending, each once"
     )]
     BadVertex {
         /// The vertex.
         vertex: u32,
-        /// Vertices of the background.
+        /// Number of vertices of the background.
         count: usize,
     },
     /// Cells or points that cannot be located.
     #[error(transparent)]
     Locate(#[from] LocateError),
-    /// A table that breaks a promise.
+    /// A table that violates its own conditions.
     #[error(transparent)]
     Shape(#[from] ShapeError),
 }

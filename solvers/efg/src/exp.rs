@@ -1,15 +1,16 @@
-//! The exponential, written so that the compiler makes eight of them at a time.
+//! Exponential function that the compiler vectorises eightfold.
 
-/// `e^x` for `x <= 0`, to 3e-16 relative; zero below -708. The library's is a call for each number.
+/// Returns `e^x` for `x <= 0`, with a relative error of 3e-16, and zero below -708. The library's function
+/// would be a call for each number.
 #[inline(always)]
 pub(crate) fn exp(x: f64) -> f64 {
-    /// `1.5 * 2^52`: a sum with it has the nearest integer in its last bits.
+    /// `1.5 * 2^52`: a sum with this number has the nearest integer in its last bits.
     const ROUND: f64 = 6755399441055744.0;
     const LN2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
     let inside = if x > -708.0 { x } else { -708.0 };
     let shifted = inside * std::f64::consts::LOG2_E + ROUND;
     let k = shifted - ROUND;
-    // |r| <= ln(2)/2, where the first term left out of the series is 2e-16.
+    // |r| <= ln(2)/2, for which the first omitted term of the series is 2e-16.
     let r = (inside - k * LN2[0]) - k * LN2[1];
     let mut sum = 1.0 / 479001600.0;
     for factorial in

@@ -1,6 +1,6 @@
-//! Points on faces. Smoothing, tractions and supports share the points made here: a triangle's points depend on its
-//! three corners alone, not on the side it is seen from nor on the order of its corners, and that is what makes the
-//! integration constraint hold to rounding.
+//! Integration points on faces, shared by smoothing, tractions and supports. The points of a triangle depend
+//! on its three corners alone, neither on the side from which the triangle is seen nor on the order of its
+//! corners. The integration constraint therefore holds to rounding.
 
 use geometry::quadrature::{self, Parts, Rule};
 use geometry::{CellKind, Facet, Mesh};
@@ -16,10 +16,12 @@ struct FacetPoints {
     normals: Vec<Vector3>,
 }
 
-/// Values on boundary facets of a background of tet4 and hex8, for tractions and constraints: `face_points` points
-/// per triangle (symmetric rules) or, where square, per quadrilateral (Gauss).
+/// Computes shape values on boundary facets of a background of tet4 and hex8, for tractions and constraints.
+/// There are `face_points` points per triangle (symmetric rules) or, if the number is a square, per
+/// quadrilateral (Gauss).
 ///
-/// With the same `face_points` as [`crate::smoothed_rows`] the points on triangles are the same, bit for bit.
+/// With the same `face_points` as in [`crate::smoothed_rows`] the points on triangles are identical bit for
+/// bit.
 pub fn surface_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -29,7 +31,8 @@ pub fn surface_rows(
     divided_surface_rows(approximation, background, facets, face_points, &[])
 }
 
-/// As [`surface_rows`], with the points on parts of the facets: parts for each, or none for whole facets.
+/// Computes [`surface_rows`] with the points on parts of the facets: a division for each facet, or an empty
+/// list for whole facets.
 pub(crate) fn divided_surface_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -43,8 +46,8 @@ pub(crate) fn divided_surface_rows(
     Ok((SurfaceRows::new(at, weights, normals)?, info))
 }
 
-/// [`surface_rows`] with gradients (1/m), for the boundary stress of Nitsche's method. The gradients are those of the
-/// shape functions themselves, not smoothed ones.
+/// Computes [`surface_rows`] with gradients (1/m), for the boundary stress of Nitsche's method. The gradients
+/// are those of the shape functions themselves, not smoothed gradients.
 pub fn flux_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -56,13 +59,13 @@ pub fn flux_rows(
     Ok((FluxRows::new(at, weights, normals)?, info))
 }
 
-/// The symmetric rule of that many points on the reference triangle.
+/// Returns the symmetric rule with `points` points on the reference triangle.
 pub(crate) fn triangle_rule(points: usize) -> Result<Rule<2>, EfgError> {
     let offered = "see geometry::quadrature::TRI_RULES";
     quadrature::tri(points).ok_or(EfgError::NoRule { what: "triangle", points, offered })
 }
 
-/// A triangle by ascending corner numbers, and whether that turned its normal round.
+/// Returns a triangle by ascending corner numbers, and whether this reversed its normal.
 pub(crate) fn canonical([a, b, c]: [u32; 3]) -> ([u32; 3], bool) {
     let mut sorted = [a, b, c];
     sorted.sort_unstable();
@@ -70,7 +73,7 @@ pub(crate) fn canonical([a, b, c]: [u32; 3]) -> ([u32; 3], bool) {
     (sorted, !even)
 }
 
-/// Vector area (m^2) of the triangle of canonical corners: its normal times its area.
+/// Returns the vector area (m^2) of the triangle of canonical corners: its normal times its area.
 pub(crate) fn vector_area(mesh: &Mesh, corners: [u32; 3]) -> Vector3 {
     let [p, q, r] = corners.map(|n| mesh.points()[n as usize]);
     (q - p).cross(&(r - p)) / 2.0

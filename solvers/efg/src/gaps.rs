@@ -1,20 +1,19 @@
-//! Gaps in the body that supports would reach across: slits, folds, and pieces that lie close together.
+//! Gaps in the body that supports would bridge: slits, folds, and pieces that lie close together.
 //!
-//! Where two faces of the boundary that face each other lie within a support, the distance of a point from
-//! the node is taken through the body: the straight distance and a detour. At a vertex `v` of the background
-//! the detour is
+//! If two boundary faces that face each other lie within a support, the distance of a point from the node is
+//! measured through the body: the straight distance plus a detour. At a vertex `v` of the background the
+//! detour is
 //!
 //! ```text
 //! d_I(v) = 2 max(0, g_I(v) - 1.5 |v - x_I|)
 //! ```
 //!
-//! with the shortest way `g_I` along the edges of the cells, and within a cell it is linear between its
-//! corners. Weights stay continuous in the body, all points of a cell are cut by the same four numbers, and
-//! the shape functions reproduce what their basis does. A way that is less than half as long again as the
-//! straight one is no detour: edges zigzag, and around blunt inner corners supports stay as they are.
-//! Distances are relative to the support. A body without such faces is not touched. The detour around the end
-//! of a slit is that of the diffraction method: Organ, Fleming, Terry and Belytschko (1996), Computational
-//! Mechanics 18, 225-235.
+//! with the shortest path `g_I` along the edges of the cells. Within a cell the detour is linear between its
+//! corners. Weights stay continuous in the body, all points of a cell depend on the same four numbers, and
+//! the shape functions reproduce their basis. A path less than 1.5 times as long as the straight distance is
+//! no detour: edges zigzag, and supports at obtuse re-entrant corners do not change. Distances are relative
+//! to the support. A body without such faces is not affected. The detour around the end of a slit is that of
+//! the diffraction method: Organ, Fleming, Terry and Belytschko (1996), Computational Mechanics 18, 225-235.
 
 mod ways;
 
@@ -26,27 +25,28 @@ use crate::row_list::RowList;
 use crate::{Approximation, EfgError};
 use ways::{Graph, Ways};
 
-/// Faces whose normals have a smaller product than this face each other: at an inner corner of less than 84
+/// Product of unit normals below which two faces face each other: at a re-entrant corner of less than 84
 /// degrees.
 const TURNED: f64 = -0.1;
-/// Faces overlap by rounding, over their size, where pieces touch.
+/// Overlap of touching faces due to rounding, relative to their size.
 const TOUCHING: f64 = 1e-6;
-/// Ways that are longer than the straight one by less than this factor are no detour.
+/// Ratio of path to straight distance below which a path is no detour.
 const STRAIGHT: f64 = 1.5;
-/// Factor on what a way is longer by.
+/// Factor on the excess length of a path.
 const STEEP: f64 = 2.0;
-/// Relative length up to which ways are searched: what lies beyond is cut off even next to the node.
+/// Relative length up to which paths are searched: a point beyond is outside the support even next to the
+/// node.
 const FARTHEST: f64 = STRAIGHT + 1.0 / STEEP;
 
-/// Nodes with detours, cell by cell.
+/// Gaps of a body: the nodes with detours, cell by cell.
 pub(crate) struct Gaps {
     locator: Locator,
     graph: Graph,
     /// Corners of each cell.
     corners: Vec<[u32; 4]>,
-    /// The cell that each node is in or closest to.
+    /// Cell of each node, or the closest cell.
     homes: Vec<u32>,
-    /// The detours to cell `c`: `cuts[offsets[c]..offsets[c + 1]]`, by ascending node.
+    /// Offsets of the detours to cell `c`, which are `cuts[offsets[c]..offsets[c + 1]]`, by ascending node.
     offsets: Vec<usize>,
     cuts: Vec<Cut>,
 }
@@ -58,15 +58,15 @@ struct Cut {
     at: [f64; 4],
 }
 
-/// Detour from a node to a point (path through the body minus straight distance) over the node's support
-/// radius, and its gradient (1/m).
+/// Detour from a node to a point (path through the body minus straight distance) relative to the node's
+/// support radius, and its gradient (1/m).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Detour {
     pub(crate) longer: f64,
     pub(crate) slope: Vector3,
 }
 
-/// A face of the boundary: its centre and outward unit normal, and the ball around it, m.
+/// A boundary face: its centre, outward unit normal, and the radius of the ball around it, m.
 struct Face {
     centre: Point3,
     normal: Vector3,
@@ -74,7 +74,7 @@ struct Face {
 }
 
 impl Gaps {
-    /// The gaps that supports reach across, if there are any.
+    /// Finds the gaps that supports bridge; `None` if there are none.
     pub fn find(approximation: &Approximation, background: &Mesh) -> Result<Option<Gaps>, EfgError> {
         let faces = facing(background, 2.0 * approximation.widest());
         if faces.is_empty() {
@@ -85,7 +85,7 @@ impl Gaps {
         let corners: Vec<[u32; 4]> =
             (0..background.cell_count()).map(|cell| [0, 1, 2, 3].map(|k| background.cell(cell)[k])).collect();
         let homes = if nodes == background.points() {
-            // By number: where pieces touch, another's cells have the place, too.
+            // Assigned by number, because touching pieces have cells at the same place.
             let mut homes = vec![0; nodes.len()];
             for (cell, corners) in corners.iter().enumerate() {
                 corners.iter().for_each(|&vertex| homes[vertex as usize] = cell as u32);
@@ -136,14 +136,15 @@ impl Gaps {
         self.cuts = found.into_iter().map(|(_, cut)| cut).collect();
     }
 
-    /// The ball about the mean of a cell's corners that holds it.
+    /// Returns the centre and radius (m) of a ball around the mean of a cell's corners that contains the
+    /// cell.
     fn ball(&self, cell: usize) -> (Point3, f64) {
         let corners = self.locator.corners(cell);
         let centre = Point3::from(corners.iter().map(|p| p.coords / 4.0).sum::<Vector3>());
         (centre, corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max))
     }
 
-    /// The gaps for some of the nodes, by ascending number.
+    /// Returns the gaps for some of the nodes, given in ascending order.
     pub fn of_nodes(mut self, kept: impl Iterator<Item = usize>) -> Gaps {
         let mut number = vec![u32::MAX; self.homes.len()];
         let homes = kept.enumerate().map(|(new, old)| {
@@ -162,7 +163,7 @@ impl Gaps {
         Gaps { offsets, cuts, ..self }
     }
 
-    /// The cell of each point; that of a node is its own.
+    /// Returns the cell of each point; for a node its own cell.
     pub fn cells(&self, points: &[Point3], nodes: &[Point3]) -> Result<Vec<u32>, EfgError> {
         if points == &nodes[..self.homes.len()] {
             return Ok(self.homes.clone());
@@ -170,8 +171,8 @@ impl Gaps {
         Ok(self.locator.locate(points)?.into_iter().map(|place| place.cell).collect())
     }
 
-    /// Appends the detour of every node of the last row, and drops the nodes that then lie beyond their
-    /// supports. `relative` is the straight distance over the support radius.
+    /// Appends the detour of every node of the last row, and removes the nodes whose supports no longer cover
+    /// the point. `relative` is the straight distance divided by the support radius.
     pub fn cut(
         &self,
         x: &Point3,
@@ -208,7 +209,7 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// Detours from a point in a cell to all nodes, m: infinite beyond `farthest`.
+    /// Returns the detours from a point in a cell to all nodes, m; infinite beyond `farthest` (m).
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();
@@ -228,7 +229,7 @@ impl Gaps {
 }
 
 impl Face {
-    /// Whether the two faces face each other, with nothing or a gap between them.
+    /// Whether the two faces face each other, in contact or with a gap between them.
     fn faces(&self, other: &Face) -> bool {
         let (apart, slack) = (other.centre - self.centre, TOUCHING * (self.radius + other.radius));
         self.normal.dot(&other.normal) < TURNED
@@ -237,7 +238,7 @@ impl Face {
     }
 }
 
-/// The faces of the boundary that face another one nearer than `reach` (m).
+/// Returns the boundary faces that face another face closer than `reach` (m).
 fn facing(mesh: &Mesh, reach: f64) -> Vec<Face> {
     let face = |facet| {
         let corners: Vec<Point3> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();

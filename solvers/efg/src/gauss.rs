@@ -7,17 +7,19 @@ use shape::VolumeRows;
 use crate::cells::{hex_points, tet_points};
 use crate::{Approximation, EfgError, MlsInfo};
 
-/// The rules of the two cell kinds for one number of points, as far as the mesh needs them.
+/// Rules of the two cell kinds for a number of points.
 enum CellRule {
     Tet(Rule<3>),
     Hex(Rule<3>),
 }
 
-/// Values and gradients at `points_per_cell` points in every cell, in cell order, `w = w_ref det J` (m^3).
+/// Computes shape values and gradients at `points_per_cell` points in every cell, in cell order, with weights
+/// `w = w_ref det J` (m^3).
 ///
-/// Tet4 cells take the symmetric rules of [`quadrature::tet`]; hex8 cells `n^3` Gauss points. The nodes of the
-/// cloud need not be those of the mesh. Shape functions are rational and their supports overlap cells at will, so no
-/// number of points integrates them exactly: a linear patch test is passed to 1e-3 with 4 points per tet4, not to rounding.
+/// Tet4 cells take the symmetric rules of [`quadrature::tet`]; hex8 cells take `n^3` Gauss points. The nodes
+/// of the cloud may differ from those of the mesh. Shape functions are rational and their supports overlap
+/// cells arbitrarily, so no number of points integrates them exactly. A linear patch test is passed to 1e-3
+/// with 4 points per tet4, not to rounding.
 pub fn gauss_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -42,7 +44,7 @@ pub fn gauss_rows(
     Ok((VolumeRows::new(at, weights)?, info))
 }
 
-/// Region of the background at every point of [`gauss_rows`].
+/// Returns the region of the background at every point of [`gauss_rows`].
 pub fn gauss_regions(background: &Mesh, points_per_cell: usize) -> Vec<u16> {
     (0..background.cell_count())
         .flat_map(|cell| std::iter::repeat_n(background.region(cell), points_per_cell))

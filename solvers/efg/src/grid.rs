@@ -1,34 +1,36 @@
-//! Gauss points on a regular grid laid over the body, those outside dropped.
+//! Gauss points on a regular grid over the body; points outside are dropped.
 
 use geometry::quadrature;
 use shape::{Point3, VolumeRows};
 
 use crate::{Approximation, EfgError, MlsInfo};
 
-/// Beyond this many points a grid is refused: a slip in units, as a rule.
+/// Largest number of points of a grid. A larger grid usually indicates a wrong unit.
 const MOST_POINTS: f64 = 2e7;
 
-/// What the clipping of a grid did.
+/// Result of clipping a grid by the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridInfo {
     /// Grid cells along each axis.
     pub cells: [usize; 3],
     /// Size of a cell, m.
     pub size: [f64; 3],
-    /// Points kept: those inside the body.
+    /// Number of points kept, i.e. inside the body.
     pub kept: usize,
-    /// Points dropped.
+    /// Number of points dropped.
     pub dropped: usize,
-    /// Sum of the weights kept, m^3. Its difference from the body's volume is the clipping error.
+    /// Sum of the kept weights, m^3. The difference from the body's volume is the clipping error.
     pub volume: f64,
 }
 
-/// Values and gradients at `points_per_axis^3` Gauss points per grid cell, for those points that lie `inside`.
+/// Computes shape values and gradients at `points_per_axis^3` Gauss points per grid cell, for the points that
+/// lie `inside`.
 ///
-/// The grid fills the box from `min` to `max` with cells of `spacing` (m) or a little less. Points outside the body
-/// are dropped with their whole weight, so that the volume is right only on average: the error, of the order of the
-/// surface area times the distance between points, is reported in [`GridInfo::volume`] and not corrected. This is how the first
-/// element-free codes integrated over a body without a mesh (Belytschko, Lu and Gu 1994).
+/// The grid fills the box from `min` to `max` with cells of size `spacing` (m) or slightly less. Points
+/// outside the body are dropped with their whole weight, so the volume is correct only on average. The error
+/// is of the order of the surface area times the distance between points; it is reported in
+/// [`GridInfo::volume`] and not corrected. The first element-free codes integrated over a body without a mesh
+/// in this way (Belytschko, Lu and Gu 1994).
 pub fn grid_rows(
     approximation: &Approximation,
     inside: impl Fn(&Point3) -> bool,
@@ -55,7 +57,8 @@ pub fn grid_rows(
             allowed: "a positive length",
         });
     }
-    // An extent that is a whole number of spacings but for rounding takes exactly so many cells.
+    // An extent that is an integer multiple of the spacing, except for rounding, gives exactly this number of
+    // cells.
     let exact: [f64; 3] = std::array::from_fn(|a| (extent[a] / spacing - 1e-9).ceil().max(1.0));
     let total = exact.iter().product::<f64>() * (points_per_axis as f64).powi(3);
     if total > MOST_POINTS {

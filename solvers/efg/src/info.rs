@@ -1,30 +1,30 @@
-//! What moving least squares met: neighbours, conditioning, fallbacks.
+//! Statistics of moving least squares: neighbours, conditioning, fallbacks.
 
-/// Report over all points of one call. Every fallback is counted; none is silent.
+/// Statistics over all points of a call. Every fallback is counted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MlsInfo {
-    /// Points evaluated.
+    /// Number of points evaluated.
     pub points: usize,
-    /// Fewest neighbours at a point.
+    /// Smallest number of neighbours at a point.
     pub neighbours_min: usize,
     /// Mean number of neighbours.
     pub neighbours_mean: f64,
-    /// Most neighbours at a point.
+    /// Largest number of neighbours at a point.
     pub neighbours_max: usize,
-    /// Largest condition number of the moment matrix in shifted and scaled coordinates, in the 1-norm: an upper
-    /// bound of the spectral one, at most 4 (linear) or 10 (quadratic) times as large.
+    /// Largest condition number of the moment matrix in shifted and scaled coordinates, in the 1-norm. It is
+    /// an upper bound of the spectral condition number, at most 4 (linear) or 10 (quadratic) times as large.
     pub condition_max: f64,
-    /// Median of the same.
+    /// Median of the condition number.
     pub condition_median: f64,
-    /// Points at which the supports had to be enlarged.
+    /// Number of points at which the supports had to be enlarged.
     pub enlarged: usize,
-    /// Points at which the quadratic block of the moment matrix had to be regularised.
+    /// Number of points at which the quadratic block of the moment matrix had to be regularised.
     pub regularised: usize,
-    /// Points at which the quadratic basis had to give way to the linear one.
+    /// Number of points at which the quadratic basis had to be replaced by the linear basis.
     pub reduced: usize,
 }
 
-/// One point's share of the report.
+/// Statistics of a single point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) neighbours: u32,
@@ -35,13 +35,14 @@ pub(crate) struct Outcome {
 }
 
 impl MlsInfo {
-    /// Points that needed any fallback are at most this many: the sum of the three counts.
+    /// Returns an upper bound of the number of points that needed any fallback: the sum of the three counts.
     pub fn fallbacks(&self) -> usize {
         self.enlarged + self.regularised + self.reduced
     }
 }
 
-/// The report of points met so far. Of each only the condition is kept, for the median: 8 bytes where an [`Outcome`] has 24.
+/// Accumulated statistics. Only the condition of each point is kept, for the median: 8 bytes instead of the
+/// 24 of an [`Outcome`].
 pub(crate) struct Tally {
     conditions: Vec<f64>,
     fewest: u32,

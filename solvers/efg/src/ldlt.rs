@@ -1,8 +1,8 @@
-//! `A = L D L^T` of small symmetric matrices, one to a lane, with a pivot check.
+//! Factorisation `A = L D L^T` of small symmetric matrices, one per lane, with a pivot check.
 
 use lanes::{LANES, Lanes};
 
-/// `M` x `K` matrices, one to a lane.
+/// `M` x `K` matrices, one per lane.
 pub(crate) type Matrices<const M: usize, const K: usize> = [[Lanes; K]; M];
 
 /// Factors of `M` x `M` symmetric positive definite matrices.
@@ -10,13 +10,13 @@ pub(crate) struct Ldlt<const M: usize> {
     /// Unit lower triangle; the diagonal and the upper part are unused.
     lower: Matrices<M, M>,
     inverse_pivots: [Lanes; M],
-    /// Above zero where the factors can be used.
+    /// Positive in lanes whose factors are valid.
     sound: Lanes,
 }
 
 impl<const M: usize> Ldlt<M> {
-    /// Factors `a` (lower triangle read). A lane is unsound if a pivot falls below `tolerance` times its own diagonal
-    /// entry (a test no scaling of rows and columns changes) or is not a number.
+    /// Factors `a` (lower triangle read). A lane is invalid if a pivot is NaN or falls below `tolerance`
+    /// times its own diagonal entry. This test is invariant to scaling of rows and columns.
     #[inline(always)]
     pub(crate) fn new(a: &Matrices<M, M>, tolerance: f64) -> Ldlt<M> {
         let mut lower = *a;
@@ -25,7 +25,7 @@ impl<const M: usize> Ldlt<M> {
         for j in 0..M {
             for l in 0..LANES {
                 let pivot = lower[j][j][l];
-                // A NaN must not pass.
+                // NaN is rejected.
                 let passes = pivot > tolerance * a[j][j][l] && pivot < f64::INFINITY;
                 sound[l] = if passes { sound[l] } else { 0.0 };
                 inverse_pivots[j][l] = 1.0 / pivot;
@@ -41,7 +41,8 @@ impl<const M: usize> Ldlt<M> {
                     }
                 }
             }
-            // Only now: the update above needs L D of this column, the solve needs L.
+            // The scaling follows here because the update above needs L D of this column, whereas the solve
+            // needs L.
             for i in j + 1..M {
                 for l in 0..LANES {
                     lower[i][j][l] *= inverse_pivots[j][l];
@@ -51,12 +52,12 @@ impl<const M: usize> Ldlt<M> {
         Ldlt { lower, inverse_pivots, sound }
     }
 
-    /// Whether a lane's factors can be used.
+    /// Whether the factors of a lane are valid.
     pub(crate) fn is_sound(&self, lane: usize) -> bool {
         self.sound[lane] > 0.0
     }
 
-    /// Solves for `K` right-hand sides at once, in place: `b[row][column]`.
+    /// Solves for `K` right-hand sides at once, in place; indices are `b[row][column]`.
     #[inline(always)]
     pub(crate) fn solve<const K: usize>(&self, b: &mut Matrices<M, K>) {
         for i in 1..M {
@@ -78,7 +79,7 @@ impl<const M: usize> Ldlt<M> {
         }
     }
 
-    /// Row `i` less `factor` times row `j`.
+    /// Subtracts `factor` times row `j` from row `i`.
     #[inline(always)]
     fn subtract<const K: usize>(&self, b: &mut Matrices<M, K>, i: usize, j: usize, factor: &Lanes) {
         for k in 0..K {
@@ -88,7 +89,8 @@ impl<const M: usize> Ldlt<M> {
         }
     }
 
-    /// Largest column sum of `|A^-1|`, from `A^-1 = L^-T D^-1 L^-1`: a third of the products of `M` solves.
+    /// Returns the largest column sum of `|A^-1|`, from `A^-1 = L^-T D^-1 L^-1`: a third of the products of
+    /// `M` solves.
     #[inline(always)]
     pub(crate) fn inverse_norm(&self) -> Lanes {
         // L^-1 below its unit diagonal.
@@ -130,7 +132,7 @@ impl<const M: usize> Ldlt<M> {
     }
 }
 
-/// Largest column sum of absolute values (the 1-norm) of symmetric matrices.
+/// Returns the largest column sum of absolute values (the 1-norm) of symmetric matrices.
 #[inline(always)]
 pub(crate) fn norm<const M: usize>(a: &Matrices<M, M>) -> Lanes {
     let mut columns = [[0.0; LANES]; M];
@@ -169,7 +171,7 @@ fn largest<const M: usize>(columns: &[Lanes; M]) -> Lanes {
 mod tests {
     use super::*;
 
-    /// A matrix in lane 5, others in the rest.
+    /// Puts a matrix in lane 5 and other matrices in the remaining lanes.
     fn in_lane_5<const M: usize>(a: [[f64; M]; M]) -> Matrices<M, M> {
         let other = |i: usize, j: usize, l: usize| if i == j { 1.0 + l as f64 } else { 0.01 };
         std::array::from_fn(|i| {
@@ -196,7 +198,7 @@ mod tests {
 
     #[test]
     fn measures_the_inverse_that_solves_give() {
-        // Ten rows, as the quadratic basis has: a Hilbert matrix with a diagonal of its own in every lane.
+        // Ten rows, as for the quadratic basis: a Hilbert matrix with a different diagonal in every lane.
         let a: Matrices<10, 10> = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let entry = 1.0 / (i + j + 1) as f64;
@@ -211,7 +213,7 @@ mod tests {
             let column = |j: usize| (0..10).map(|i| inverse[i][j][l].abs()).sum::<f64>();
             let expected = (0..10).map(column).fold(0.0, f64::max);
             let found = ldlt.inverse_norm()[l];
-            // Both are off by rounding times a condition number of at most 20.
+            // Both have rounding errors times a condition number of at most 20.
             assert!((found / expected - 1.0).abs() < 1e-13, "{l}: {found} {expected}");
         }
     }
@@ -226,7 +228,7 @@ mod tests {
         assert!(!sound([[1.0, 1.0], [1.0, 1.0]]));
         assert!(!sound([[1.0, 2.0], [2.0, 1.0]]));
         assert!(!sound([[f64::NAN, 0.0], [0.0, 1.0]]));
-        // The test is relative to each diagonal: units of the basis do not matter.
+        // The test is relative to each diagonal entry, so units of the basis do not matter.
         assert!(sound([[1.0, 0.0], [0.0, 1e-30]]));
     }
 }

@@ -1,6 +1,7 @@
-//! Element-free Galerkin: a cloud of nodes, a kernel and a polynomial basis make moving-least-squares shape
-//! functions, a cloud and a locality maximum-entropy ones; background cells or a grid make the integration points. What
-//! comes out are shape tables, as from finite elements, so that assembly, supports and output are the same code.
+//! Element-free Galerkin method. A cloud of nodes, a kernel and a polynomial basis define
+//! moving-least-squares shape functions; a cloud and a locality define maximum-entropy functions. Background
+//! cells or a grid provide the integration points. The results are shape tables like those of finite
+//! elements, so assembly, supports and output use the same code.
 //!
 //! ```
 //! use efg::{Approximation, Basis, CubicSpline, Kernel, Support};
@@ -11,7 +12,8 @@
 //! let mls = Approximation::new(nodes, radii, Kernel::CubicSpline(CubicSpline), Basis::Linear)?;
 //! let (rows, info) = mls.point_rows(&[Point3::new(0.9e-3, 1.2e-3, 0.4e-3)])?;
 //! assert!(info.neighbours_min >= 4 && info.enlarged == 0);
-//! let x: f64 = rows.rows().row(0).0.iter().zip(rows.rows().row(0).1).map(|(&i, v)| (i % 3) as f64 * 1e-3 * v).sum();
+//! let x: f64 =
+//!     rows.rows().row(0).0.iter().zip(rows.rows().row(0).1).map(|(&i, v)| (i % 3) as f64 * 1e-3 * v).sum();
 //! assert!((x - 0.9e-3).abs() < 1e-15); // linear fields are reproduced
 //! # Ok::<(), efg::EfgError>(())
 //! ```

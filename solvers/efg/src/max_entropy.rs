@@ -1,15 +1,17 @@
 //! Local maximum-entropy shape functions: a convex approximant.
 //!
-//! `p_a(x) = exp(-beta_a |r_a|^2 + lambda . r_a) / Z`, `r_a = x - x_a`, with the `lambda` at which `sum_a p_a r_a = 0`: of all
-//! positive functions that reproduce linear fields these are the least biased at a given locality `beta_a = gamma / h_a^2`.
-//! `lambda` minimises `log Z`, which is convex: Newton's method with the Hessian `J = sum_a p_a r_a r_a^T` and a line search.
-//! With `s_a = -2 beta_a r_a` and `M = sum_a p_a r_a s_a^T` gradients are
-//! `grad p_a = p_a (s_a - sum_b p_b s_b - (I + M)^T J^-1 r_a)`; for one `beta` that is the published `-p_a J^-1 r_a`.
-//! Source: Arroyo and Ortiz (2006), International Journal for Numerical Methods in Engineering 65, 2167.
+//! The functions are `p_a(x) = exp(-beta_a |r_a|^2 + lambda . r_a) / Z` with `r_a = x - x_a`, and `lambda` is
+//! such that `sum_a p_a r_a = 0`. Of all positive functions that reproduce linear fields these are the least
+//! biased for a given locality `beta_a = gamma / h_a^2`. `lambda` minimises `log Z`, which is convex, by
+//! Newton's method with the Hessian `J = sum_a p_a r_a r_a^T` and a line search. With `s_a = -2 beta_a r_a`
+//! and `M = sum_a p_a r_a s_a^T` the gradients are
+//! `grad p_a = p_a (s_a - sum_b p_b s_b - (I + M)^T J^-1 r_a)`; for a uniform `beta` this is the published
+//! `-p_a J^-1 r_a`. Source: Arroyo and Ortiz (2006), International Journal for Numerical Methods in
+//! Engineering 65, 2167.
 //!
-//! On a face of the convex hull of the neighbours `lambda` is infinite across it, and only the nodes in the face count (the
-//! weak Kronecker property): there the same problem is solved in the face's own plane, line or point. Gradients there are
-//! one-sided: those at a point [`INWARD`] inside.
+//! On a face of the convex hull of the neighbours `lambda` is infinite across the face, and only the nodes in
+//! the face contribute (the weak Kronecker property). The same problem is then solved in the plane, line or
+//! point of the face. Gradients are one-sided there: they are evaluated at a point [`INWARD`] inside.
 
 use lanes::{LANES, Lanes};
 use shape::{Matrix3, Point3, Vector3};
@@ -17,26 +19,28 @@ use shape::{Matrix3, Point3, Vector3};
 use crate::exp::exp;
 use crate::gaps::Detour;
 
-/// Nodes count up to the distance at which `exp(-beta r^2)` has fallen to this: 2.8 spacings with `gamma = 1.8`.
+/// Value of `exp(-beta r^2)` below which a node does not contribute: 2.8 spacings with `gamma = 1.8`.
 pub(crate) const CUT: f64 = 1e-6;
-/// What is left of `sum_a p_a r_a`, in units of the mean `1/sqrt(beta)`: rounding leaves 1e-16.
+/// Tolerance of `sum_a p_a r_a`, in units of the mean `1/sqrt(beta)`; rounding leaves 1e-16.
 const TOLERANCE: f64 = 1e-14;
-/// Newton's method converges in a few steps inside, and takes about one more for each factor e nearer to a face.
+/// Largest number of Newton steps. Inside the hull a few steps suffice; each factor e closer to a face takes
+/// about one more.
 const ITERATIONS: usize = 60;
-/// From this step on the point may lie on a face.
+/// Step from which the point is tested for lying on a face.
 const PATIENCE: usize = 6;
-/// Nodes this near to a plane through the point, in the same unit, lie in it with the point.
+/// Distance, in the same unit, below which a node lies in a plane through the point.
 const IN_FACE: f64 = 1e-9;
-/// Nodes of a weight below this part of the largest say nothing of the face.
+/// Relative weight (to the largest) below which a node is ignored in the search for a face.
 const SIGNIFICANT: f64 = 1e-3;
-/// Part of the way from a face to the mean of the neighbours at which its gradients are taken: `J` loses six digits there,
-/// sixteen on the face.
+/// Relative distance, from a face to the mean of the neighbours, at which gradients on the face are
+/// evaluated: `J` loses six digits there, but sixteen on the face.
 const INWARD: f64 = 1e-6;
 
-/// Exponent of a node that does not count.
+/// Exponent of a node that does not contribute.
 const NEVER: f64 = f64::NEG_INFINITY;
 
-/// The neighbours of one point, eight side by side, and what is made of them. Reused from point to point.
+/// Neighbours of a point, eight per entry, with the quantities derived from them. The buffers are reused from
+/// point to point.
 #[derive(Default)]
 pub(crate) struct Neighbours {
     count: usize,
@@ -46,19 +50,19 @@ pub(crate) struct Neighbours {
     beta: Vec<Lanes>,
     /// `-beta_a |r_a|^2`, or [`NEVER`].
     prior: Vec<Lanes>,
-    /// `p_a Z`, with `Z` such that the largest is one.
+    /// `p_a Z`, with `Z` such that the largest value is one.
     weight: Vec<Lanes>,
     /// Unit of length, m.
     scale: f64,
-    /// Nodes with a detour: which, its length (m) and how that grows with the point.
+    /// Nodes with a detour: index, length of the detour (m), and its gradient with respect to the point.
     bent: Vec<(usize, f64, Vector3)>,
 }
 
-/// `lambda` and the moments there.
+/// `lambda` with the corresponding moments.
 struct State {
     lambda: Vector3,
     log_z: f64,
-    /// `sum_a p_a`, before division.
+    /// `sum_a p_a` before normalisation.
     total: f64,
     /// `sum_a p_a r_a`.
     gap: Vector3,
@@ -66,24 +70,26 @@ struct State {
     spread: Matrix3,
 }
 
-/// What stopped the search for `lambda`.
+/// Failure of the search for `lambda`.
 #[derive(Debug)]
 pub(crate) struct NoPoint {
-    /// Steps made.
+    /// Number of steps taken.
     pub iterations: usize,
-    /// Distance by which the neighbours' mean misses the point, m.
+    /// Distance of the neighbours' mean from the point, m.
     pub gap: f64,
 }
 
 impl Neighbours {
-    /// Sets the detours of the nodes of the next point, over their support radii: none, or one for each.
+    /// Sets the detours of the nodes of the next point, relative to their support radii: none, or one for
+    /// each node.
     pub(crate) fn bend(&mut self, detours: &[Detour], radius: impl Fn(usize) -> f64) {
         self.bent.clear();
         let bent = detours.iter().enumerate().filter(|(_, detour)| detour.longer > 0.0);
         self.bent.extend(bent.map(|(k, detour)| (k, detour.longer * radius(k), detour.slope * radius(k))));
     }
 
-    /// Values, and gradients (1/m) if `grads` has room, of the nodes at `x`; the condition of `J` in the 1-norm.
+    /// Computes values, and gradients (1/m) if `grads` has room, of the nodes at `x`; returns the condition
+    /// number of `J` in the 1-norm.
     #[inline(always)]
     pub(crate) fn evaluate<const GRAD: bool>(
         &mut self,
@@ -97,7 +103,7 @@ impl Neighbours {
         for (k, value) in values.iter_mut().enumerate() {
             *value = self.weight[k / LANES][k % LANES] / state.total;
         }
-        // Of `J` in the face where the point lies on one.
+        // For a point on a face, the condition number is that of `J` in the face.
         let across = Matrix3::identity() - span;
         let trace = state.spread.trace();
         let size = if trace > IN_FACE { trace } else { 1.0 };
@@ -148,17 +154,17 @@ impl Neighbours {
         }
     }
 
-    /// Straight distance of a node, in units of `scale`.
+    /// Returns the straight distance of a node, in units of `scale`.
     fn distance(&self, node: usize) -> f64 {
         self.vector(node).norm()
     }
 
-    /// `r_a` of a node, in units of `scale`.
+    /// Returns `r_a` of a node, in units of `scale`.
     fn vector(&self, node: usize) -> Vector3 {
         Vector3::from_fn(|axis, _| self.offset[node / LANES][axis][node % LANES])
     }
 
-    /// Weights and moments at `lambda`.
+    /// Computes weights and moments at `lambda`.
     #[inline(always)]
     fn moments(&mut self, lambda: Vector3) -> State {
         let mut largest = [NEVER; LANES];
@@ -170,7 +176,7 @@ impl Neighbours {
             }
         }
         let largest = largest.into_iter().fold(NEVER, f64::max);
-        // One loop over the lanes for each sum: all ten in one loop stay single numbers.
+        // One loop over the lanes for each sum: a single loop for all ten is not vectorised.
         let mut sums = [[0.0; LANES]; 10];
         for ([x, y, z], weight) in self.offset.iter().zip(&mut self.weight) {
             let mut w = [0.0; LANES];
@@ -200,11 +206,12 @@ impl Neighbours {
         }
     }
 
-    /// `lambda`, and the projection on the face that the point lies on, the identity if on none.
+    /// Solves for `lambda`, and returns the projection on the face that contains the point, or the identity
+    /// if there is no such face.
     #[inline(always)]
     fn solve(&mut self) -> Result<(State, Matrix3), NoPoint> {
         let mut state = self.moments(Vector3::zeros());
-        // Projection on the face that the point lies on: on the whole space, until one is found.
+        // Projection on the face that contains the point; the identity until a face is found.
         let mut span = Matrix3::identity();
         let mut nearest = f64::INFINITY;
         for iteration in 0..ITERATIONS {
@@ -220,19 +227,19 @@ impl Neighbours {
                 state = self.moments(span * state.lambda);
                 continue;
             }
-            // The Hessian in the span, anything definite across it.
+            // The Hessian within the span, and an arbitrary definite part across the span.
             let across = (Matrix3::identity() - span) * state.spread.trace().max(f64::MIN_POSITIVE);
             let hessian = span * (state.spread - state.gap * state.gap.transpose()) * span + across;
             let Some(step) = hessian.cholesky().map(|c| span * c.solve(&gap)) else { break };
             let expected = step.dot(&gap);
             let mut part = 1.0;
             let mut next = self.moments(state.lambda - step);
-            // Below 1e-10 the decrease of log Z is lost in its rounding; there the full step is the right one.
+            // Below 1e-10 the decrease of log Z is lost in its rounding, and the full step is appropriate.
             while expected > 1e-10 && !(next.log_z < state.log_z - 1e-4 * part * expected) && part > 1e-6 {
                 part /= 2.0;
                 next = self.moments(state.lambda - step * part);
             }
-            // Rounding alone is left.
+            // Only rounding is left.
             if gap.norm() < 1e3 * TOLERANCE && !((span * next.gap).norm() < 0.5 * gap.norm()) {
                 let state = self.moments(state.lambda);
                 return Ok((state, span));
@@ -242,9 +249,9 @@ impl Neighbours {
         Err(NoPoint { iterations: ITERATIONS, gap: nearest * self.scale })
     }
 
-    /// The plane, line or point of the nodes that carry the weight, if it holds the point and all others lie on one side
-    /// of it as `lambda` sees them, so that `exp(lambda . r)` tends to zero for them: the projection on it. The others count
-    /// no more.
+    /// Returns the projection on the plane, line or point of the nodes with significant weight, provided this
+    /// face contains the point and all other nodes lie on one side of it. The direction of `lambda` must be
+    /// such that `exp(lambda . r)` tends to zero for the other nodes, which no longer contribute.
     #[cold]
     fn face(&mut self, state: &State, span: &Matrix3) -> Option<Matrix3> {
         let offset = |k: usize| self.vector(k);
@@ -274,7 +281,7 @@ impl Neighbours {
         Some(face)
     }
 
-    /// Gradients, 1/m; `None` if `J` is singular.
+    /// Computes the gradients, 1/m; `None` if `J` is singular.
     #[inline(always)]
     fn gradients(&self, state: &State, grads: &mut [Vector3]) -> Option<()> {
         let inverse = state.spread.try_inverse()?;
@@ -319,8 +326,8 @@ impl Neighbours {
         Some(())
     }
 
-    /// Gradients where `s_a` is not along `r_a`: with a detour `d_a` it is `-2 beta_a (|r_a| + d_a) grad
-    /// (|r_a| + d_a)`.
+    /// Computes the gradients if `s_a` is not parallel to `r_a`: with a detour `d_a`,
+    /// `s_a = -2 beta_a (|r_a| + d_a) grad (|r_a| + d_a)`.
     #[cold]
     fn bent_gradients(&self, state: &State, inverse: &Matrix3, grads: &mut [Vector3]) {
         let mut slopes: Vec<Vector3> =
@@ -356,7 +363,7 @@ fn add(sum: &mut Lanes, term: &Lanes) {
     }
 }
 
-/// Condition number in the 1-norm; infinite if singular.
+/// Returns the condition number in the 1-norm; infinite if the matrix is singular.
 fn condition(m: &Matrix3) -> f64 {
     let norm = |m: &Matrix3| m.column_iter().map(|c| c.abs().sum()).fold(0.0, f64::max);
     m.try_inverse().map_or(f64::INFINITY, |inverse| norm(m) * norm(&inverse))

@@ -1,9 +1,11 @@
-//! Moving least squares at eight points at a time, one to a lane: moment matrix, one factorisation, value and gradient.
+//! Moving least squares at eight points at a time, one per lane: moment matrix, one factorisation, value and
+//! gradient.
 //!
-//! With `p_I = p((x_I - x)/s)`, `A = sum_I w_I p_I p_I^T` and `c0 = A^-1 e0`, values are `phi_I = c0.p_I w_I`.
-//! Gradients hold the basis frozen at `x`: `c_a = A^-1 (e_a/s - A_,a c0)`, `phi_I,a = c_a.p_I w_I + c0.p_I w_I,a`,
-//! with `A_,a c0` summed as a vector. Source: Belytschko, Krongauz, Organ, Fleming and Krysl (1996), in local coordinates.
-//! Shape functions that leave a part of their [`Moments`] to others have these for `e0` and their slopes for `e_a/s`.
+//! With `p_I = p((x_I - x)/s)`, `A = sum_I w_I p_I p_I^T` and `c0 = A^-1 e0`, values are
+//! `phi_I = c0.p_I w_I`. For gradients the basis is frozen at `x`: `c_a = A^-1 (e_a/s - A_,a c0)`,
+//! `phi_I,a = c_a.p_I w_I + c0.p_I w_I,a`, with `A_,a c0` summed as a vector. Source: Belytschko, Krongauz,
+//! Organ, Fleming and Krysl (1996), in local coordinates. For shape functions that leave a part of the
+//! [`Moments`] to other functions, the remaining moments replace `e0` and their slopes replace `e_a/s`.
 
 mod distances;
 
@@ -15,13 +17,14 @@ use crate::basis::{PRODUCT, monomials, terms};
 use crate::kernel::Kernel;
 use crate::ldlt::{Ldlt, Matrices, norm};
 
-/// Smallest pivot relative to its diagonal entry; rounding leaves 1e-16 where neighbours do not span the basis.
+/// Smallest pivot relative to its diagonal entry; rounding leaves 1e-16 if the neighbours do not span the
+/// basis.
 const PIVOT_TOLERANCE: f64 = 1e-10;
 
-/// Largest error of reproduction of the basis, in the 2-norm over its terms, at which a solution is accepted.
+/// Largest accepted error of reproduction of the basis, in the 2-norm over its terms.
 const REPRODUCTION_TOLERANCE: f64 = 1e-9;
 
-/// A node and its support, side by side in memory.
+/// A node and its support, adjacent in memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Ball {
     pub(crate) at: [f64; 3],
@@ -39,8 +42,9 @@ impl Ball {
     }
 }
 
-/// Linear moments that shape functions are to have about the point, `sum_I phi_I p(x_I - x)`, and how they change with it if the
-/// basis stays; lengths in metres, by term (1, x, y, z) and axis.
+/// Linear moments that the shape functions must have about the point, `sum_I phi_I p(x_I - x)`, and their
+/// derivatives with respect to the point for a frozen basis. Lengths are in metres; indices are the term (1,
+/// x, y, z) and the axis.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments {
     pub(crate) values: [f64; 4],
@@ -48,46 +52,48 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Those of functions that reproduce the basis alone.
+    /// Moments of functions that reproduce the basis alone.
     pub(crate) const COMPLETE: Moments = Moments {
         values: [1.0, 0.0, 0.0, 0.0],
         slopes: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 }
 
-/// The neighbours of eight points and what is made of them, entry `k` of every list for the `k`-th neighbour of every
-/// point. Reused from group to group: no allocation in the loop.
+/// Neighbours of eight points with derived quantities. Entry `k` of every list belongs to the `k`-th
+/// neighbour of every point. The lists are reused from group to group, so the loop does not allocate.
 #[derive(Default)]
 pub(crate) struct Group {
-    /// Neighbours of each point; lists are as long as the longest, with zero weight beyond a point's own.
+    /// Number of neighbours of each point. All lists have the length of the longest, with zero weight beyond
+    /// a point's own neighbours.
     counts: [usize; LANES],
-    /// Offsets `x_I - x` by axis, m; sums over them are scaled instead, once for all neighbours.
+    /// Offsets `x_I - x` by axis, m. Sums over offsets are scaled afterwards, once for all neighbours.
     offset: Vec<[Lanes; 3]>,
     /// Whether supports are ellipsoids.
     stretched: bool,
-    /// `M_I (x_I - x)` of ellipsoids, 1/m: along it the relative distance changes.
+    /// `M_I (x_I - x)` of ellipsoids, 1/m: the direction in which the relative distance changes.
     normal: Vec<[Lanes; 3]>,
-    /// Support radius (m), then `1/(d R)` (1/m^2), of an ellipsoid `1/q`, or zero at the node itself.
+    /// Support radius (m), later `1/(d R)` (1/m^2). For an ellipsoid `1/q`. Zero at the node itself.
     chain: Vec<Lanes>,
     /// Relative distance `q = d/R`.
     relative: Vec<Lanes>,
     weight: Vec<Lanes>,
-    /// `dw/dq`; then `-(dw/dq)/(d R) c0.p_I` (1/m^2), which times the offset is the part of the gradient that the weight has; of
-    /// an ellipsoid `-(dw/dq)/q c0.p_I`, which times the normal is.
+    /// `dw/dq`, later `-(dw/dq)/(d R) c0.p_I` (1/m^2), which times the offset is the contribution of the
+    /// weight to the gradient. For an ellipsoid the factor is `-(dw/dq)/q c0.p_I`, and it multiplies the
+    /// normal.
     slope: Vec<Lanes>,
     /// `c0.p_I`.
     fit: Vec<Lanes>,
     values: Vec<Lanes>,
     grads: Vec<[Lanes; 3]>,
-    /// `s`, the largest radius among a point's neighbours, m.
+    /// `s`, the largest support radius of a point's neighbours, m.
     scale: Lanes,
     moments: Matrices<4, 1>,
     moment_slopes: Matrices<4, 3>,
 }
 
 impl Group {
-    /// Takes up to eight points with their neighbours, whose supports, `enlargement` times their radii, cover them; `ellipsoids`
-    /// is empty where these are the balls.
+    /// Loads up to eight points with the neighbours whose supports, `enlargement` times their radii, cover
+    /// them. `ellipsoids` is empty if the supports are balls.
     #[inline(always)]
     pub(crate) fn load<'a>(
         &mut self,
@@ -133,10 +139,10 @@ impl Group {
                 scale[l] = if r > scale[l] { r } else { scale[l] };
                 let square = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
                 let product = square.sqrt() * r;
-                // A quotient of selected numbers: a selected quotient would be a branch.
+                // A quotient of selected numbers; a selected quotient would be compiled as a branch.
                 let at_node = !(product > 0.0);
                 inverse[l] = if at_node { 0.0 } else { 1.0 } / if at_node { 1.0 } else { product };
-                // Rounding must not lift q beyond 1, where kernels written for q < 1 need not vanish.
+                // Rounding must not raise q above 1, where kernels written for q < 1 need not vanish.
                 q[l] = (square * inverse[l]).min(1.0);
             }
             (chain[k], relative[k]) = (inverse, q);
@@ -151,7 +157,7 @@ impl Group {
         }
     }
 
-    /// Sets the moments of one point's shape functions; [`Group::load`] sets them complete.
+    /// Sets the moments of a point's shape functions; [`Group::load`] sets complete moments.
     #[inline(always)]
     pub(crate) fn aim(&mut self, lane: usize, moments: &Moments) {
         for i in 0..4 {
@@ -162,7 +168,7 @@ impl Group {
         }
     }
 
-    /// Neighbours of one point.
+    /// Returns the number of neighbours of a point.
     pub(crate) fn count(&self, lane: usize) -> usize {
         self.counts[lane]
     }
@@ -171,11 +177,13 @@ impl Group {
         self.counts.into_iter().fold(0, usize::max)
     }
 
-    /// Fits the `M`-term basis over the neighbours loaded: values, and gradients if `GRAD`. `PRODUCTS` and `FLOWS`
-    /// count the monomials of twice and of one more than the degree of the basis. `mu` regularises the
-    /// quadratic block: `A + mu A_00 diag(0, .., 0, 1, .., 1)`, free of scale, exact for linear fields at any `mu`
-    /// (Joldes et al. 2015, modified MLS); without one, of the linear block. Returns the condition number of each matrix in
-    /// the 1-norm, or `None` if it is singular to working precision.
+    /// Fits the `M`-term basis over the loaded neighbours: values, and gradients if `GRAD`. Returns the
+    /// condition number of each matrix in the 1-norm, or `None` if it is singular to working precision.
+    ///
+    /// `PRODUCTS` is the number of monomials of twice the degree of the basis, `FLOWS` that of one more than
+    /// the degree. `mu` regularises the quadratic block: `A + mu A_00 diag(0, .., 0, 1, .., 1)`, independent
+    /// of scale and exact for linear fields at any `mu` (Joldes et al. 2015, modified MLS). For the linear
+    /// basis, `mu` regularises the linear block.
     #[inline(always)]
     pub(crate) fn fit<const M: usize, const PRODUCTS: usize, const FLOWS: usize, const GRAD: bool>(
         &mut self,
@@ -188,8 +196,8 @@ impl Group {
         let offset = &self.offset[..longest];
 
         let mut sums = [[0.0; LANES]; PRODUCTS];
-        // The 35 sums of the quadratic basis are more than there are registers (32 of AVX-512), and what spills is stored at
-        // every neighbour: by two passes, of 20 and of 15, a point takes two thirds of the time.
+        // The 35 sums of the quadratic basis exceed the number of registers (32 of AVX-512), and sums that
+        // spill are stored at every neighbour. Two passes, of 20 and of 15 sums, take two thirds of the time.
         add_products::<PRODUCTS, 0, FLOWS>(&mut sums, weight, offset);
         add_products::<PRODUCTS, FLOWS, PRODUCTS>(&mut sums, weight, offset);
         let powers = powers::<M>(&self.scale);
@@ -233,7 +241,7 @@ impl Group {
         condition
     }
 
-    /// Weights and their slopes.
+    /// Computes the weights and their slopes.
     #[inline(always)]
     fn weigh(&mut self, kernel: Kernel) {
         let longest = self.longest();
@@ -249,7 +257,7 @@ impl Group {
         }
     }
 
-    /// Values and gradients from the factors and `c0`.
+    /// Computes values and gradients from the factors and `c0`.
     #[inline(always)]
     fn with_gradients<const M: usize, const FLOWS: usize>(
         &mut self,
@@ -291,7 +299,8 @@ impl Group {
         }
     }
 
-    /// Values, and how the moment matrix changes with the point times `c0`, by term and axis; `spread` is that of `A_00` alone.
+    /// Computes the values, and the derivative of the moment matrix times `c0`, by term and axis; `spread` is
+    /// that of `A_00` alone.
     #[inline(always)]
     fn flows<const M: usize, const FLOWS: usize>(
         &mut self,
@@ -302,7 +311,8 @@ impl Group {
         let (slope, fit, values) =
             (&mut self.slope[..longest], &mut self.fit[..longest], &mut self.values[..longest]);
         let offset = &self.offset[..longest];
-        // A_,a c0: the basis frozen, so that only the weights change with x; grad w_I = -(dw/dq)/(d R) (x_I - x).
+        // A_,a c0: the basis is frozen, so only the weights change with x; grad w_I = -(dw/dq)/(d R) (x_I -
+        // x).
         let (mut sums, mut spread) = ([[0.0; LANES]; FLOWS], [[0.0; LANES]; 3]);
         for k in 0..longest {
             let (w, [x, y, z]) = (weight[k], offset[k]);
@@ -331,7 +341,8 @@ impl Group {
         (flows, spread)
     }
 
-    /// As [`Group::flows`] where weights change along the normals of ellipsoids: sums of their own, as a normal is no monomial.
+    /// Computes [`Group::flows`] for weights that change along the normals of ellipsoids. Normals are not
+    /// monomials, so separate sums are needed.
     #[inline(always)]
     fn stretched_flows<const M: usize>(&mut self, c: &Matrices<M, 1>) -> (Matrices<M, 3>, [Lanes; 3]) {
         let longest = self.longest();
@@ -359,7 +370,7 @@ impl Group {
         (flows, spread)
     }
 
-    /// Writes one point's values, and its gradients (1/m) if there is room for them.
+    /// Writes the values of a point, and its gradients (1/m) if there is room for them.
     #[inline(always)]
     pub(crate) fn store(&self, lane: usize, values: &mut [f64], grads: &mut [Vector3]) {
         for (value, of_lanes) in values.iter_mut().zip(&self.values) {
@@ -371,7 +382,8 @@ impl Group {
     }
 }
 
-/// `s` to the minus degree of each term: what makes sums over offsets those over scaled offsets.
+/// Returns `s` to the minus degree of each term, which converts sums over offsets to sums over scaled
+/// offsets.
 #[inline(always)]
 fn powers<const M: usize>(scale: &Lanes) -> [Lanes; M] {
     let mut powers = [[1.0; LANES]; M];
@@ -384,7 +396,7 @@ fn powers<const M: usize>(scale: &Lanes) -> [Lanes; M] {
     powers
 }
 
-/// Every row times its power: coefficients of scaled offsets become those of offsets.
+/// Multiplies every row by its power, which converts coefficients of scaled offsets to those of offsets.
 #[inline(always)]
 fn scaled<const M: usize, const K: usize>(c: &Matrices<M, K>, powers: &[Lanes; M]) -> Matrices<M, K> {
     let mut scaled = *c;
@@ -398,7 +410,7 @@ fn scaled<const M: usize, const K: usize>(c: &Matrices<M, K>, powers: &[Lanes; M
     scaled
 }
 
-/// One column in one lane times the terms.
+/// Returns the product of a column in a lane with the terms.
 #[inline(always)]
 fn dot<const M: usize, const K: usize>(c: &Matrices<M, K>, column: usize, l: usize, p: &[f64; M]) -> f64 {
     let mut sum = 0.0;
@@ -417,7 +429,8 @@ fn add_products<const N: usize, const FIRST: usize, const END: usize>(
 ) {
     let mut local = *sums;
     for (&w, &[x, y, z]) in weight.iter().zip(offset) {
-        // Of local numbers the compiler knows that they do not overlap: else lanes are worked through one by one.
+        // The compiler knows that local numbers do not overlap; otherwise the loop over lanes would not be
+        // vectorised.
         for l in 0..LANES {
             add_to_lane::<N, FIRST, END>(&mut local, l, &monomials(w[l], [x[l], y[l], z[l]]));
         }
@@ -436,7 +449,7 @@ fn add_to_lane<const N: usize, const FIRST: usize, const END: usize>(
     }
 }
 
-/// Condition number of each matrix, or `None` where `c0` must not be used.
+/// Returns the condition number of each matrix, or `None` if `c0` is invalid.
 #[inline(always)]
 fn conditions<const M: usize>(
     a: &Matrices<M, M>,
@@ -453,7 +466,7 @@ fn conditions<const M: usize>(
             }
         }
         for l in 0..LANES {
-            // A NaN must not pass: a sum of squares keeps it, a maximum would not.
+            // NaN must be detected: a sum of squares keeps NaN, a maximum would not.
             residual[l] += row[l] * row[l];
         }
     }

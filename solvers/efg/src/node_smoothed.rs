@@ -1,5 +1,5 @@
-//! Node smoothing: one integration point per vertex of the background, its gradients the mean over the quarters of the
-//! tetrahedra around it; the cells themselves may take a share of the weight.
+//! Node smoothing: one integration point per vertex of the background, whose gradients are the mean over the
+//! quarters of the surrounding tetrahedra. The cells themselves may take a fraction of the weight.
 
 use geometry::{Facet, Mesh};
 use rayon::prelude::*;
@@ -11,30 +11,36 @@ use crate::facets::{triangle_rule, vector_area};
 use crate::row_list::RowList;
 use crate::{Approximation, EfgError, MlsInfo};
 
-/// Vertices per parallel task: fixed, so that results are the same bits at any thread count.
+/// Vertices per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 64;
 
-/// Rows over a tet4 background with node-smoothed gradients (1/m): one point at each of its vertices `K`, of weight
-/// `(1 - stabilisation) V_K`, where
+/// Computes rows over a tet4 background with node-smoothed gradients (1/m).
+///
+/// Each vertex `K` has a point of weight `(1 - stabilisation) V_K`, where
 ///
 /// ```text
 /// V_K = sum_cells V_c / 4,    grad~_I(x_K) = 1 / V_K sum_cells V_c / 4 grad~_I|c
 /// ```
 ///
-/// run over the cells around the vertex and `grad~_I|c` is that of [`crate::smoothed_rows`]. A vertex between regions
-/// has a point for each, so that no point is of two materials. The nodes of the cloud need not be the vertices.
+/// are sums over the cells around the vertex, and `grad~_I|c` is the gradient of [`crate::smoothed_rows`]. A
+/// vertex between regions has a point for each region, so every point has a single material. The nodes of the
+/// cloud may differ from the vertices.
 ///
-/// The mean is blind to gradients that alternate from cell to cell. In pure bending by 225 nodes at a Poisson's ratio of
-/// 0.3 the tip goes 16 % too far and stresses oscillate (error in energy 0.62); both fall with the square of the spacing.
-/// With `stabilisation` above 0 the points of [`crate::smoothed_rows`] come first, with weights `stabilisation V_c`: of a
-/// quadratic energy `W` the sum is that of the mean plus `stabilisation sum_c V_c / 4 sum_K W(grad~|c - grad~(x_K))`, the
-/// form of Puso, Chen, Zywicz and Elmer with the tissue's own moduli. A share of 0.05 damps the oscillation (0.24) and leaves
-/// the softness (14 %). Near incompressibility that share locks as the cells do (tip 47 % short at 0.4999) unless the
+/// The mean does not see gradients that alternate from cell to cell. In pure bending with 225 nodes at a
+/// Poisson's ratio of 0.3 the tip displacement is 16 % too large and stresses oscillate (error in energy
+/// 0.62); both errors decrease with the square of the spacing.
+///
+/// With `stabilisation` above 0 the points of [`crate::smoothed_rows`] come first, with weights
+/// `stabilisation V_c`. For a quadratic energy `W` the sum is the energy of the mean plus
+/// `stabilisation sum_c V_c / 4 sum_K W(grad~|c - grad~(x_K))`, the form of Puso, Chen, Zywicz and Elmer with
+/// the tissue's own moduli. A value of 0.05 damps the oscillation (0.24) but not the softness (14 %). Near
+/// incompressibility this part locks like the cells (tip displacement 47 % too small at 0.4999), unless the
 /// dilation is averaged over nodes.
 ///
-/// Every sum over the body is that of cell smoothing, so with [`crate::surface_rows`] at the same `face_points` linear
-/// patch tests pass to rounding; quadratic ones do not. Sources: Chen, Wu, Yoon and You (2001), Int. J. Numer. Meth. Engng 50,
-/// 435-466; Puso, Chen, Zywicz and Elmer (2008), the same journal 74, 416-446.
+/// Every sum over the body equals that of cell smoothing. With [`crate::surface_rows`] at the same
+/// `face_points`, linear patch tests therefore pass to rounding; quadratic patch tests do not. Sources: Chen,
+/// Wu, Yoon and You (2001), Int. J. Numer. Meth. Engng 50, 435-466; Puso, Chen, Zywicz and Elmer (2008), the
+/// same journal 74, 416-446.
 pub fn node_smoothed_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -78,17 +84,19 @@ pub fn node_smoothed_rows(
     Ok((VolumeRows::new(GradRows::new(points, table, grads)?, weights)?, info))
 }
 
-/// What the gradients of [`node_smoothed_rows`] are at the points of [`crate::flux_rows`] on the same facets: those of the
-/// three vertices, linear between them. The lengths are, with `b_K` the linear functions of the vertices and `A_K` (m^2) a
-/// third of the area of all listed facets around `K`,
+/// Expresses the gradients of [`node_smoothed_rows`] at the points of [`crate::flux_rows`] on the same
+/// facets: the gradients of the three vertices, interpolated linearly.
+///
+/// With the linear functions `b_K` of the vertices and `A_K` (m^2), a third of the area of all listed facets
+/// around `K`, the lengths are
 ///
 /// ```text
 /// 1 / h = sum_K b_K a_K,    a_K = A_K / ((1 - stabilisation) V_K)
 /// ```
 ///
 /// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is definite for every `gamma > 1`, as with
-/// [`crate::smoothed_trace`]: `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` by Cauchy and Schwarz, with equality for
-/// `f = a`, and over the facets `b_K` sums to `A_K`.
+/// [`crate::smoothed_trace`]. This follows from `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` by Cauchy and
+/// Schwarz, with equality for `f = a`, because over the facets `b_K` sums to `A_K`.
 pub fn node_smoothed_trace(
     background: &Mesh,
     facets: &[Facet],
@@ -101,7 +109,7 @@ pub fn node_smoothed_trace(
     let volumes = (0..background.cell_count()).map(|cell| Ok(tet_measure(background, cell)?.0));
     let volumes: Vec<f64> = volumes.collect::<Result<_, EfgError>>()?;
     let first = if stabilisation > 0.0 { background.cell_count() } else { 0 };
-    // A facet's corners of its cell, and their points.
+    // Corners of the facet in its cell, and the corresponding points.
     let around = |facet: &Facet| {
         let cell = facet.cell as usize;
         let corners = local_corners(background, cell, facet.face as usize);
@@ -131,7 +139,7 @@ pub fn node_smoothed_trace(
     Ok(TraceRows::new(first + domains.len(), offsets, of_row, coefficients, lengths)?)
 }
 
-/// Region of the background at every point of [`node_smoothed_rows`].
+/// Returns the region of the background at every point of [`node_smoothed_rows`].
 pub fn node_smoothed_regions(background: &Mesh, stabilisation: f64) -> Vec<u16> {
     let cells = if stabilisation > 0.0 { background.cell_count() } else { 0 };
     let domains = Domains::new(background);
@@ -145,17 +153,17 @@ fn check(value: f64) -> Result<(), EfgError> {
     if sound { Ok(()) } else { Err(EfgError::BadParameter { what: "stabilisation", value, allowed }) }
 }
 
-/// The corners of tetrahedra that share a vertex and a region.
+/// Groups of tetrahedron corners with a common vertex and region.
 struct Domains {
     vertices: Vec<u32>,
     offsets: Vec<usize>,
     cells: Vec<u32>,
-    /// The domains of each cell's four corners.
+    /// Domains of each cell's four corners.
     of_corner: Vec<[u32; 4]>,
 }
 
 impl Domains {
-    /// By ascending vertex and region.
+    /// Builds the domains by ascending vertex and region.
     fn new(mesh: &Mesh) -> Domains {
         let corner = |cell: usize| {
             let region = mesh.region(cell);
@@ -184,16 +192,16 @@ impl Domains {
         self.vertices.len()
     }
 
-    /// The cells around, ascending.
+    /// Returns the cells around a domain, ascending.
     fn cells(&self, domain: usize) -> &[u32] {
         &self.cells[self.offsets[domain]..self.offsets[domain + 1]]
     }
 
-    /// A quarter of the volume (m^3) of every cell around.
+    /// Returns a quarter of the volume (m^3) of the cells around a domain.
     fn volume(&self, domain: usize, volumes: &[f64]) -> f64 {
         0.25 * self.cells(domain).iter().map(|&cell| volumes[cell as usize]).sum::<f64>()
     }
 }
 
-/// Rows sum to one within this; those of sound supports do within 1e-14.
+/// Tolerance of the row sums, which must be one. With sound supports the error is below 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);

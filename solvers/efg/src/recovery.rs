@@ -1,8 +1,9 @@
-//! How far a cloud's gradients are from recovered ones.
+//! Recovery of a cloud's gradients, as an error indicator.
 //!
-//! At every node the displacement gradients at the points its support covers are fitted by a linear field, least squares weighted
-//! by `w_q phi_I(x_q)`; between nodes the fits are blended by the shape functions. What the gradients differ by from that is an
-//! error indicator: Zienkiewicz & Zhu (1992), patches of a cloud in place of those of elements.
+//! At every node the displacement gradients at the points in its support are fitted by a linear field, by
+//! least squares with weights `w_q phi_I(x_q)`. Between nodes the fits are blended by the shape functions.
+//! The difference of the gradients from this field is an error indicator: Zienkiewicz & Zhu (1992), with
+//! patches of a cloud instead of patches of elements.
 
 use nalgebra::{Matrix4, SMatrix};
 use rayon::prelude::*;
@@ -11,8 +12,8 @@ use shape::{Matrix3, Point3, Vector3, VolumeRows};
 /// Coefficients of a linear field of displacement gradients: 1, x, y, z by the nine components.
 type Fit = SMatrix<f64, 4, 9>;
 
-/// Error of the displacement gradient at each node, root mean square over the points its support covers, from nodal parameters
-/// `u` (m).
+/// Returns the estimated error of the displacement gradient at each node: the root mean square over the
+/// points in its support, for nodal parameters `u` (m).
 pub fn gradient_error(volume: &VolumeRows, u: &[Vector3], nodes: &[Point3]) -> Vec<f64> {
     let gradients: Vec<Matrix3> = volume.at().displacement_gradients(u);
     let points = volume.points();
@@ -41,7 +42,8 @@ pub fn gradient_error(volume: &VolumeRows, u: &[Vector3], nodes: &[Point3]) -> V
     of_nodes.iter().map(mean).collect()
 }
 
-/// The points in each node's support with their weights `w_q phi_I(x_q)`; a quadratic basis has negative values, which weigh nothing.
+/// Returns the points in each node's support with their weights `w_q phi_I(x_q)`. Negative values of a
+/// quadratic basis are left out.
 fn covered(volume: &VolumeRows, nodes: usize) -> Vec<Vec<(u32, f64)>> {
     let mut of_nodes = vec![Vec::new(); nodes];
     for (q, w) in volume.weights().iter().enumerate() {
@@ -53,7 +55,7 @@ fn covered(volume: &VolumeRows, nodes: usize) -> Vec<Vec<(u32, f64)>> {
     of_nodes
 }
 
-/// `None` where the points do not determine a linear field.
+/// Fits a linear field; `None` if the points do not determine it.
 fn fit(at: &Point3, rows: &[(u32, f64)], points: &[Point3], gradients: &[Matrix3]) -> Option<Fit> {
     let reach = rows.iter().map(|&(q, _)| (points[q as usize] - at).norm()).fold(0.0, f64::max);
     let (mut moment, mut right) = (Matrix4::zeros(), Fit::zeros());

@@ -1,26 +1,27 @@
-//! Rows under construction, one after another.
+//! Compressed rows under construction, appended one after another.
 
 use shape::Vector3;
 
-/// About so many rows, or one in [`SPARING`], give an estimate of a table's size. Growing by doubling would take up to three times
-/// the memory while it copies, and touch pages anew.
+/// Number of sampled rows for an estimate of a table's size, at most one in [`SPARING`]. Growth by doubling
+/// would take up to three times the memory during copies, and touch new pages.
 const SAMPLES: usize = 16_000;
-/// Of small tables one row in so many is enough.
+/// Small tables are sampled by one row in this number.
 const SPARING: usize = 25;
 
-/// One row in so many is to be made for [`RowList::expected_entries`].
+/// Returns the step between the rows that are sampled for [`RowList::expected_entries`].
 pub(crate) fn sample_step(rows: usize) -> usize {
     (rows / SAMPLES).max(SPARING)
 }
 
-/// Nodes, values and gradients of many rows; those of one chunk of points are appended to those of the chunks before.
+/// Nodes, values and gradients of many rows. The rows of one chunk of points are appended to those of the
+/// previous chunks.
 pub(crate) struct RowList {
-    /// Row starts, one more than rows.
+    /// Row starts: one more than the number of rows.
     pub offsets: Vec<usize>,
     /// Nodes of each row, ascending.
     pub nodes: Vec<u32>,
     pub values: Vec<f64>,
-    /// Gradients (1/m), one per value, or none at all.
+    /// Gradients (1/m), one per value, or none.
     pub grads: Vec<Vector3>,
 }
 
@@ -42,37 +43,38 @@ impl RowList {
         }
     }
 
-    /// Room for so many entries more, and no more than that where there is none: a table grows at its end only.
+    /// Reserves room for the given numbers of further entries, without spare room: a table grows only at its
+    /// end.
     pub fn reserve(&mut self, entries: usize, grads: usize) {
         self.nodes.reserve_exact(entries);
         self.values.reserve_exact(entries);
         self.grads.reserve_exact(grads);
     }
 
-    /// True without rows.
+    /// Whether the list has no rows.
     pub fn is_empty(&self) -> bool {
         self.offsets.len() == 1
     }
 
-    /// Entry range of one row.
+    /// Returns the range of entries of a row.
     pub fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.offsets[row]..self.offsets[row + 1]
     }
 
-    /// Ends a row, whose nodes are already there.
+    /// Ends a row whose nodes are already appended.
     pub fn close(&mut self) {
         self.offsets.push(self.nodes.len());
     }
 
-    /// Ends the last row at an entry before its end.
+    /// Ends the last row at an earlier entry.
     pub fn shorten_last(&mut self, end: usize) {
         self.nodes.truncate(end);
         self.offsets.pop();
         self.close();
     }
 
-    /// Entries of a table of so many rows by those of these few, and two standard errors of that where lengths scatter by a
-    /// third: 0.5 % of a large table.
+    /// Estimates the entries of a table with `rows` rows from the sampled rows. The estimate includes a
+    /// margin of two standard errors for row lengths that scatter by a third: 0.5 % of a large table.
     pub fn expected_entries(&self, rows: usize) -> usize {
         let sampled = (self.offsets.len() - 1).max(1) as f64;
         let margin = 1.0 + 2.0 / (3.0 * sampled.sqrt());

@@ -1,5 +1,5 @@
-//! Conforming cell smoothing: over each tet4 the gradients are those polynomials, constant or linear, whose moments
-//! Gauss's theorem gives. One table of face points serves both sides of every face.
+//! Conforming cell smoothing: over each tet4 the gradients are constant or linear polynomials, whose moments
+//! follow from Gauss's theorem. One table of face points serves both sides of every face.
 
 use geometry::{Facet, Mesh};
 use shape::{GradRows, Rows, TraceRows, Unity, VolumeRows};
@@ -13,15 +13,15 @@ use crate::{Approximation, EfgError, MlsInfo};
 /// The field of smoothed gradients inside a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothing {
-    /// Constant, one integration point: exact for linear displacements. Goes with the linear basis.
+    /// Constant gradients with one integration point, exact for linear displacements; suits the linear basis.
     Constant,
-    /// Linear, the four points of degree 2: exact for quadratic displacements. Goes with the quadratic basis and with
-    /// face rules of degree 3 or more (6 points).
+    /// Linear gradients with the four points of degree 2, exact for quadratic displacements; suits the
+    /// quadratic basis and face rules of degree 3 or more (6 points).
     Linear,
 }
 
 impl Smoothing {
-    /// Integration points per tet4.
+    /// Returns the number of integration points per tet4.
     pub fn points_per_cell(self) -> usize {
         match self {
             Smoothing::Constant => 1,
@@ -29,9 +29,9 @@ impl Smoothing {
         }
     }
 
-    /// `c` of the trace inequality `integral_F p^2 <= c (A / V) integral_T p^2` for polynomials of that degree on a
-    /// tetrahedron with face area `A` and volume `V`: `(k + 1) (k + 3) / 3`. Sharp. Source: Warburton and Hesthaven
-    /// (2003), doi:10.1016/S0045-7825(03)00294-9.
+    /// Returns the sharp constant `c` of the trace inequality `integral_F p^2 <= c (A / V) integral_T p^2`
+    /// for polynomials of this degree on a tetrahedron with face area `A` and volume `V`:
+    /// `(k + 1) (k + 3) / 3`. Source: Warburton and Hesthaven (2003), doi:10.1016/S0045-7825(03)00294-9.
     fn trace_constant(self) -> f64 {
         match self {
             Smoothing::Constant => 1.0,
@@ -40,28 +40,30 @@ impl Smoothing {
     }
 }
 
-/// Rows over a tet4 background, in cell order, with smoothed gradients `grad~_I` (1/m) and the values of the shape
-/// functions themselves, at the centroid ([`Smoothing::Constant`], weight the cell's volume `V`) or at four points
-/// ([`Smoothing::Linear`], weights `V / 4`).
+/// Computes rows over a tet4 background, in cell order, with smoothed gradients `grad~_I` (1/m) and the
+/// values of the shape functions themselves.
 ///
-/// `grad~_I` is the polynomial with, for every `p` of its degree,
+/// The points are the centroid ([`Smoothing::Constant`], weight `V`, the cell's volume) or four points
+/// ([`Smoothing::Linear`], weights `V / 4`). `grad~_I` is the polynomial for which, for every `p` of its
+/// degree,
 ///
 /// ```text
 /// integral_cell grad~_I p = sum_faces sum_q w_q phi_I(x_q) n p(x_q) - sum_q w_q phi_I(x_q) grad p
 /// ```
 ///
-/// where the last sum runs over the cell's own points. Each interior face's points are evaluated once and serve both
-/// sides with opposite normals, so that with [`crate::surface_rows`] at the same `face_points`, and body forces at
-/// the same points, stresses of that degree balance their loads to rounding: linear patch tests pass with `Constant`,
-/// quadratic ones with `Linear`. A constant gradient per cell locks near incompressibility unless the dilation is
-/// projected. Sources: Chen, Wu, Yoon and You (2001), smoothing on the background's cells; Duan, Li, Zhang and
-/// Belytschko (2012), doi:10.1002/nme.4325, to second order.
+/// with the last sum over the cell's own points. The points of an interior face are evaluated once and serve
+/// both sides with opposite normals. With [`crate::surface_rows`] at the same `face_points`, and body forces
+/// at the same points, stresses of this degree therefore balance their loads to rounding: linear patch tests
+/// pass with `Constant`, quadratic patch tests with `Linear`. A constant gradient per cell locks near
+/// incompressibility unless the dilation is projected. Sources: Chen, Wu, Yoon and You (2001), smoothing on
+/// the background's cells; Duan, Li, Zhang and Belytschko (2012), doi:10.1002/nme.4325, to second order.
 ///
-/// `Linear` is variationally consistent integration in its symmetric form: the product of two linear fields is of the
-/// degree that four points integrate, so its four moments are the conditions `sum_g w_g (phi_I,a q + phi_I q,a) =
-/// integral_faces phi_I q n_a` for q in {1, x, y, z}, solved for the four corrected derivatives. The form of Chen, Hillman
-/// and Rueter (2013), doi:10.1002/nme.4512, corrects the test functions alone: the stiffness loses its symmetry, and with it
-/// the strain energy that dilation, Nitsche's supports and large strain are made of, and every point needs two tables.
+/// `Linear` is variationally consistent integration in its symmetric form. The product of two linear fields
+/// has the degree that four points integrate, so its four moments are the conditions
+/// `sum_g w_g (phi_I,a q + phi_I q,a) = integral_faces phi_I q n_a` for q in {1, x, y, z}, solved for the
+/// four corrected derivatives. The form of Chen, Hillman and Rueter (2013), doi:10.1002/nme.4512, corrects
+/// only the test functions. Its stiffness is not symmetric, there is no strain energy as needed for dilation,
+/// Nitsche's supports and large strain, and every point needs two tables.
 pub fn smoothed_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -77,13 +79,14 @@ pub fn smoothed_rows(
     Ok((VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?, info))
 }
 
-/// What the smoothed gradients of [`smoothed_rows`] are at the points of [`crate::flux_rows`] on the same facets: those
-/// of the cell behind the facet, as combinations of its own integration points. The lengths are `h = V / (c A)` with `A`
-/// (m^2) the area of all listed facets of the cell and `c` = 1 for constant, 8/3 for linear gradients.
+/// Expresses the smoothed gradients of [`smoothed_rows`] at the points of [`crate::flux_rows`] on the same
+/// facets: the gradients of the cell behind the facet, as combinations of its own integration points. The
+/// lengths are `h = V / (c A)` with `A` (m^2) the area of all listed facets of the cell and `c` = 1 for
+/// constant, 8/3 for linear gradients.
 ///
-/// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma > 1`, whatever supports
-/// overlap and whatever Poisson's ratio. With gradients of the shape functions themselves no such factor is known:
-/// smoothing does not see all of them.
+/// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma > 1`, for any
+/// overlap of supports and any Poisson's ratio. With gradients of the shape functions themselves no such
+/// factor is known, because smoothing does not see all of them.
 pub fn smoothed_trace(
     background: &Mesh,
     facets: &[Facet],
@@ -118,8 +121,8 @@ pub fn smoothed_trace(
     Ok(TraceRows::new(count * background.cell_count(), offsets, points, coefficients, lengths)?)
 }
 
-/// Coefficients by which the values at the four points of degree 2 make those at a point of given barycentric
-/// coordinates, for linear fields. The points have coordinates `a` once and `b` three times, so that
+/// Returns the coefficients that interpolate linear fields from the four points of degree 2 to a point of
+/// given barycentric coordinates. The points have the coordinate `a` once and `b` three times, so
 /// `f(x) = sum_q (l_q - b) / (a - b) f(x_q)`.
 fn from_four_points(barycentric: [f64; 4]) -> [f64; 4] {
     let basis = volume_basis::<4>();
@@ -130,12 +133,12 @@ fn from_four_points(barycentric: [f64; 4]) -> [f64; 4] {
     })
 }
 
-/// Region of the background at every point of [`smoothed_rows`].
+/// Returns the region of the background at every point of [`smoothed_rows`].
 pub fn smoothed_regions(background: &Mesh, smoothing: Smoothing) -> Vec<u16> {
     (0..background.cell_count())
         .flat_map(|cell| std::iter::repeat_n(background.region(cell), smoothing.points_per_cell()))
         .collect()
 }
 
-/// Rows sum to one within this; those of sound supports do within 1e-14.
+/// Tolerance of the row sums, which must be one. With sound supports the error is below 1e-14.
 const UNITY: Unity = Unity::Within(1e-8);

@@ -1,4 +1,4 @@
-//! A cloud as a source of tables: its shape functions over a background that is integrated over.
+//! A cloud as a source of tables: its shape functions over a background mesh for integration.
 
 use std::sync::Arc;
 
@@ -30,15 +30,16 @@ pub enum Functions {
         /// Supports.
         support: Support,
     },
-    /// Local maximum entropy with this `beta h^2`.
+    /// Local maximum entropy with this dimensionless locality `gamma = beta h^2`.
     MaximumEntropy {
-        /// Locality.
+        /// Locality `gamma`, dimensionless.
         gamma: f64,
     },
 }
 
 impl Functions {
-    /// Shape functions over a cloud; their supports follow the cells of `followed`, where that is given.
+    /// Builds the shape functions over a cloud; supports are adapted to the cells of `followed` if it is
+    /// given.
     fn over(self, cloud: &Cloud, followed: Option<&Mesh>) -> Result<Approximation, EfgError> {
         let nodes = cloud.points.clone();
         match self {
@@ -56,7 +57,7 @@ impl Functions {
     }
 }
 
-/// How a cloud is integrated over.
+/// Integration scheme of a cloud.
 #[derive(Clone)]
 pub enum Integration {
     /// Gauss points in each background cell.
@@ -64,7 +65,7 @@ pub enum Integration {
         /// Points per tetrahedron.
         points: usize,
     },
-    /// Gauss points in the cells of a regular grid, those outside the body dropped.
+    /// Gauss points in the cells of a regular grid, without those outside the body.
     Grid {
         /// Edge of a grid cell, m.
         spacing: f64,
@@ -80,9 +81,9 @@ pub enum Integration {
         /// Points per triangular face.
         face_points: usize,
     },
-    /// Node smoothing: gradients at each vertex of the background, the mean of those of the cells around.
+    /// Node smoothing: the gradients at a vertex of the background are the mean over the surrounding cells.
     NodeSmoothed {
-        /// Share of the weight that the cells keep.
+        /// Fraction of the weight left to the cells.
         stabilisation: f64,
         /// Points per triangular face.
         face_points: usize,
@@ -90,7 +91,8 @@ pub enum Integration {
 }
 
 impl Integration {
-    /// Points per cell, where the points go by background cells: those of a cell stand together, equally many in each.
+    /// Returns the number of points per background cell if each cell has the same number of points in
+    /// sequence, `None` otherwise.
     pub fn points_per_cell(&self) -> Option<usize> {
         match *self {
             Integration::Gauss { points } => Some(points),
@@ -99,7 +101,7 @@ impl Integration {
         }
     }
 
-    /// Face points of smoothed gradients.
+    /// Returns the number of face points of smoothed gradients.
     fn smoothed_face_points(&self) -> Option<usize> {
         match *self {
             Integration::CellSmoothed { face_points, .. } | Integration::NodeSmoothed { face_points, .. } => {
@@ -113,16 +115,18 @@ impl Integration {
 /// Points per background tetrahedron of the error quadrature of clouds (degree 5).
 const ERROR_POINTS: usize = 14;
 
-/// Face points of surface integrals with gradients of the shape functions (degree 4): boundary terms are not what limits them.
+/// Face points of surface integrals with gradients of the shape functions (degree 4). Boundary terms do not
+/// limit their accuracy.
 const FACE_POINTS: usize = 6;
 
-/// Face points of contact with such gradients: as on linear elements, where more change the force by 0.1 %.
+/// Face points of contact with such gradients: as on linear elements, for which more points change the force
+/// by 0.1 %.
 const CONTACT_POINTS: usize = 3;
 
 /// Shape functions over a background of linear tetrahedra.
 pub struct CloudSource {
     approximation: Approximation,
-    /// Nodes of the cloud, and their mean spacing, m.
+    /// Number of nodes of the cloud.
     nodes: usize,
     spacing: f64,
     background: Arc<Mesh>,
@@ -130,12 +134,14 @@ pub struct CloudSource {
 }
 
 impl CloudSource {
-    /// Finds the supports. Those of moving least squares follow the cells of `followed`, where it is given; the vertices of the
-    /// background in `coupled` are nodes of finite elements; where nodes are to count in their own region alone (`by_region`),
-    /// so are those of borders between regions.
+    /// Builds the shape functions and their supports.
+    ///
+    /// Moving least squares have supports adapted to the cells of `followed` if it is given. The background
+    /// vertices in `coupled` become finite-element nodes. With `by_region`, nodes contribute only in their
+    /// own region, and the vertices of borders between regions also become finite-element nodes.
     ///
     /// # Errors
-    /// As [`Approximation::new`], [`Approximation::coupled`].
+    /// The errors of [`Approximation::new`] and [`Approximation::coupled`].
     pub fn new(
         functions: Functions,
         cloud: &Cloud,
@@ -195,7 +201,7 @@ impl RowSource for CloudSource {
         Ok(Quadrature { rows, diagnostics })
     }
 
-    /// A grid does not know the region of its points: a body of one region is all that it serves.
+    /// A grid does not know the region of its points and serves only bodies with a single region.
     fn regions(&self) -> Vec<u16> {
         match self.integration {
             Integration::Gauss { points } => gauss_regions(&self.background, points),
@@ -233,8 +239,8 @@ impl RowSource for CloudSource {
         Ok(surface_rows(&self.approximation, &self.background, facets, self.face_points())?.0)
     }
 
-    /// Smoothed gradients want their own face points: a block of smoothed cells between two plates came out 3 % too wide with
-    /// three contact points on faces of one.
+    /// Smoothed gradients need their own face points: a block of smoothed cells between two plates became 3 %
+    /// too wide with three contact points on faces with one point.
     fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError> {
         let points = self.integration.smoothed_face_points().unwrap_or(CONTACT_POINTS);
         let facets = self.background.boundary();
@@ -262,7 +268,7 @@ impl RowSource for CloudSource {
         Ok(self.approximation.point_rows_in(points, Some(&cells))?.0)
     }
 
-    /// Those of the smoothing, so that the integration constraint holds to rounding.
+    /// Face points of the smoothing, with which the integration constraint holds to rounding.
     fn face_points(&self) -> usize {
         self.integration.smoothed_face_points().unwrap_or(FACE_POINTS)
     }
@@ -271,7 +277,7 @@ impl RowSource for CloudSource {
         Ok(flux_rows(&self.approximation, &self.background, facets, self.face_points())?.0)
     }
 
-    /// Nitsche's traction is made of the smoothed gradients.
+    /// Nitsche's traction is computed from the smoothed gradients.
     fn trace(&self, facets: &[Facet]) -> Result<Option<TraceRows>, SourceError> {
         Ok(match self.integration {
             Integration::CellSmoothed { smoothing, face_points } => {

@@ -1,4 +1,4 @@
-//! How far a node reaches: support radii by dilatation or by the k-th neighbour.
+//! Support radii, by support scale or by the k-th neighbour.
 
 use geometry::Search;
 use rayon::prelude::*;
@@ -9,22 +9,23 @@ use crate::EfgError;
 /// Rule for the support radius of every node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Support {
-    /// `R_I = factor * spacing_I`, the local mean spacing at the node.
+    /// `R_I = factor * spacing_I`, with the local mean spacing at the node.
     Dilatation {
-        /// The dilatation, 1.2 to 3 as a rule.
+        /// Support scale, dimensionless, usually 1.2 to 3.
         factor: f64,
     },
-    /// `R_I = factor *` distance to the `count`-th nearest other node.
+    /// `R_I = factor * d_I`, with the distance `d_I` to the `count`-th nearest other node.
     Neighbours {
-        /// Which neighbour, from 1.
+        /// Number of the neighbour, from 1.
         count: usize,
-        /// Factor on its distance, 1.2 to 1.6 as a rule.
+        /// Factor on the distance, dimensionless, usually 1.2 to 1.6.
         factor: f64,
     },
 }
 
 impl Support {
-    /// Radii (m), one per node. `spacing` (m, one per node) is the cloud's; [`Support::Neighbours`] ignores it.
+    /// Returns the support radii (m), one per node. `spacing` (m, one per node) is the spacing of the cloud;
+    /// [`Support::Neighbours`] ignores it.
     pub fn radii(self, nodes: &[Point3], spacing: &[f64]) -> Result<Vec<f64>, EfgError> {
         self.check(nodes)?;
         let radii: Vec<f64> = match self {
@@ -45,7 +46,7 @@ impl Support {
         Ok(radii)
     }
 
-    /// Refuses parameters and nodes that make no support.
+    /// Refuses invalid parameters and nodes.
     pub(crate) fn check(self, nodes: &[Point3]) -> Result<(), EfgError> {
         if let Some(node) = nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
             return Err(EfgError::NotFinite { node });
@@ -76,9 +77,9 @@ pub(crate) fn check(radii: &[f64]) -> Result<(), EfgError> {
     }
 }
 
-/// Distance (m) from every node to its `count`-th nearest other node.
+/// Returns the distance (m) from every node to its `count`-th nearest other node.
 fn kth_distances(nodes: &[Point3], search: &Search, count: usize) -> Vec<f64> {
-    // The node itself, at zero, is the first of `count + 1`.
+    // The first of the `count + 1` nodes is the node itself, at zero.
     let at = |node: &Point3| search.nearest(node, count + 1).last().map_or(0.0, |n| n.distance);
     nodes.par_iter().map(at).collect()
 }

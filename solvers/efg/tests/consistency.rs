@@ -1,4 +1,4 @@
-//! What the conforming rules promise, compared with its own definition: Gauss's theorem over every cell and over the whole
+//! Conforming integration rules against their definition: Gauss's theorem over every cell and over the whole
 //! body, for jittered cells, in other units and far from the origin.
 
 mod common;
@@ -11,7 +11,7 @@ use efg::{
 use geometry::{CellKind, Facet, Mesh};
 use shape::{Point3, SurfaceRows, Vector3, VolumeRows};
 
-/// The box of the other tests, and the same in millimetres and a metre away.
+/// The box of the other tests, the same box in millimetres, and the same box a metre away.
 fn boxes() -> impl Iterator<Item = (&'static str, Mesh)> {
     let places = [("in metres", 1.0, 0.0), ("in millimetres", 1e3, 0.0), ("a metre away", 1.0, 1.0)];
     places.into_iter().map(|(name, scale, shift)| {
@@ -20,7 +20,7 @@ fn boxes() -> impl Iterator<Item = (&'static str, Mesh)> {
     })
 }
 
-/// `sum_s w phi_I n q(x)` for every node.
+/// Returns `sum_s w phi_I n q(x)` for every node.
 fn outflow(surface: &SurfaceRows, nodes: usize, q: impl Fn(&Point3) -> f64) -> Vec<Vector3> {
     let mut sums = vec![Vector3::zeros(); nodes];
     for (s, x) in surface.points().iter().enumerate() {
@@ -31,7 +31,7 @@ fn outflow(surface: &SurfaceRows, nodes: usize, q: impl Fn(&Point3) -> f64) -> V
     sums
 }
 
-/// Adds `w (grad~_I q + phi_I grad q)` at one point.
+/// Adds `w (grad~_I q + phi_I grad q)` at a point.
 fn add(sums: &mut [Vector3], volume: &VolumeRows, point: usize, q: f64, slope: Vector3) {
     let (nodes, grads) = volume.row(point);
     let values = volume.rows().row(point).1;
@@ -40,14 +40,15 @@ fn add(sums: &mut [Vector3], volume: &VolumeRows, point: usize, q: f64, slope: V
     }
 }
 
-/// Largest difference over nodes, relative to the largest entry of the second.
+/// Returns the largest difference over nodes, relative to the largest entry of `outer`.
 fn violation(inner: &[Vector3], outer: &[Vector3]) -> f64 {
     let largest = outer.iter().map(|v| v.norm()).fold(0.0, f64::max);
     inner.iter().zip(outer).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
 }
 
-/// The four conditions that define consistent integration of second order, per cell, node and direction:
-/// `sum_g w (phi_I,a q + phi_I q,a) = integral_faces phi_I q n_a` for q in {1, x, y, z}, in either basis.
+/// Checks the four conditions that define consistent integration of second order, per cell, node and
+/// direction: `sum_g w (phi_I,a q + phi_I q,a) = integral_faces phi_I q n_a` for q in {1, x, y, z}, in either
+/// basis.
 #[test]
 fn linear_smoothing_meets_all_four_conditions_in_every_cell() {
     for (place, mesh) in boxes() {
@@ -71,7 +72,7 @@ fn linear_smoothing_meets_all_four_conditions_in_every_cell() {
                     worst = worst.max(violation(&inner, &outflow(&surface, nodes, q)));
                 }
             }
-            // Rounding of positions a metre away is 1e-16 m of the 1e-2 m of a cell.
+            // Positions a metre away are rounded by 1e-16 m; a cell is 1e-2 m wide.
             let bound = if place == "a metre away" { 1e-12 } else { 1e-14 };
             assert!(worst < bound, "{place}, {}: {worst:e}", basis.name());
         }
@@ -87,7 +88,8 @@ const RULES: [(&str, Rule); 4] = [
     ("nodal, stabilised", |mls, mesh, points| node_smoothed_rows(mls, mesh, 0.05, points).unwrap().0),
 ];
 
-/// How far `sum_q w grad~_I` is from `integral_surface phi_I n`, both of which linear patch tests need to be the same.
+/// Returns the difference between `sum_q w grad~_I` and `integral_surface phi_I n`, which linear patch tests
+/// require to be equal.
 fn imbalance(mls: &Approximation, mesh: &Mesh, volume: &VolumeRows, face_points: usize) -> f64 {
     let nodes = mls.nodes().len();
     let mut inner = vec![Vector3::zeros(); nodes];
@@ -106,13 +108,13 @@ fn every_conforming_rule_meets_the_constraint_over_the_whole_body() {
             let volume = rule(&mls, &mesh, 6);
             let off = imbalance(&mls, &mesh, &volume, 6);
             assert!(off < 1e-13, "{place}, {name}, {}: {off:e}", basis.name());
-            // Other points on the boundary lose it.
+            // Different points on the boundary violate the constraint.
             assert!(imbalance(&mls, &mesh, &volume, 3) > 1e-4, "{place}, {name}");
         }
     }
 }
 
-/// Finite elements beside a cloud change the values at face points, which still serve both sides.
+/// Coupled finite elements change the values at face points, which still serve both sides.
 #[test]
 fn clouds_coupled_to_finite_elements_meet_it_too() {
     for (place, mesh) in boxes() {
@@ -128,7 +130,7 @@ fn clouds_coupled_to_finite_elements_meet_it_too() {
     }
 }
 
-/// The same body in other units and elsewhere: the same weights and gradients but for the unit.
+/// The same body in other units and elsewhere has the same weights and gradients except for the unit.
 #[test]
 fn units_and_origin_do_not_matter() {
     let all: Vec<(&str, Mesh)> = boxes().collect();
@@ -144,7 +146,8 @@ fn units_and_origin_do_not_matter() {
             for q in 0..first.weights().len() {
                 let weight = other.weights()[q] / scale.powi(3);
                 assert!((weight / first.weights()[q] - 1.0).abs() < 1e-12, "{name} {place}: {weight:e}");
-                // A support's rim may pass on the other side of a point by rounding: compare values, not lists.
+                // By rounding, the boundary of a support may pass on the other side of a point. Values are
+                // therefore compared, not lists.
                 let mut dense = vec![Vector3::zeros(); 80];
                 first.row(q).0.iter().zip(first.row(q).1).for_each(|(&n, g)| dense[n as usize] += g);
                 other.row(q).0.iter().zip(other.row(q).1).for_each(|(&n, g)| dense[n as usize] -= g * scale);

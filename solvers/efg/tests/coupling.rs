@@ -1,4 +1,5 @@
-//! Clouds coupled to finite elements: what both reproduce together, and that the cloud leaves to the elements what they hold.
+//! Clouds coupled to finite elements: joint reproduction of linear fields, and vanishing of the cloud's
+//! functions on the coupled faces.
 
 mod common;
 
@@ -14,7 +15,7 @@ use shape::{GradRows, Point3, Vector3};
 
 const FACES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
 
-/// Clouds to couple: of the mesh's own nodes with balls or ellipsoids, and one that has nothing to do with it.
+/// Clouds to couple: two on the mesh's own nodes, with balls or ellipsoids, and one independent of the mesh.
 const CLOUDS: [&str; 3] = ["of the mesh", "ellipsoids", "of its own"];
 
 fn uncoupled(name: &str, mesh: &Mesh, kernel: Kernel) -> Approximation {
@@ -32,7 +33,7 @@ fn uncoupled(name: &str, mesh: &Mesh, kernel: Kernel) -> Approximation {
     }
 }
 
-/// One face, three that meet in a corner, all six: facets and their vertices.
+/// Facets and vertices of one face, of three faces that meet in a corner, and of all six.
 fn constrained(mesh: &Mesh) -> [(Vec<Facet>, Vec<u32>); 3] {
     [&FACES[..1], &["x-min", "y-min", "z-max"], &FACES].map(|faces| {
         let facets: Vec<Facet> = faces.iter().flat_map(|face| mesh.group(face).unwrap().to_vec()).collect();
@@ -41,7 +42,7 @@ fn constrained(mesh: &Mesh) -> [(Vec<Facet>, Vec<u32>); 3] {
     })
 }
 
-/// Every cloud coupled at every set of vertices.
+/// Returns every cloud coupled at every set of vertices.
 fn coupled(mesh: &Mesh, kernel: Kernel) -> impl Iterator<Item = (String, Approximation, Vec<Facet>)> {
     CLOUDS.into_iter().flat_map(move |cloud| {
         constrained(mesh).map(|(facets, vertices)| {
@@ -52,7 +53,7 @@ fn coupled(mesh: &Mesh, kernel: Kernel) -> impl Iterator<Item = (String, Approxi
     })
 }
 
-/// Three points in every cell, at irrational barycentric coordinates of 0.02 and more.
+/// Three points in every cell, at irrational barycentric coordinates of at least 0.02.
 fn inner(mesh: &Mesh) -> Vec<Point3> {
     let at = |q: usize| {
         let steps: [f64; 4] = [0.754877, 0.569840, 0.430160, 0.324718];
@@ -64,7 +65,7 @@ fn inner(mesh: &Mesh) -> Vec<Point3> {
     (0..3 * mesh.cell_count()).map(at).collect()
 }
 
-/// A field of nodal parameters and its gradient at one point.
+/// Evaluates a field of nodal parameters and its gradient at a point.
 fn apply(rows: &GradRows, q: usize, of: &[f64]) -> (f64, Vector3) {
     let (nodes, values) = rows.rows().row(q);
     let value = nodes.iter().zip(values).map(|(&n, v)| v * of[n as usize]).sum();
@@ -82,7 +83,7 @@ fn linear_fields_and_their_gradients_are_reproduced_in_the_layer_and_beyond() {
             let ones = vec![1.0; of.len()];
             for (q, x) in points.iter().enumerate() {
                 let (unity, none) = apply(&rows, q, &ones);
-                // Rounding times a condition number of up to 1e5; gradients are of 1e2 /m.
+                // Rounding is multiplied by a condition number of up to 1e5; gradients are of order 1e2 /m.
                 assert!((unity - 1.0).abs() < 1e-11 && none.norm() < 1e-9, "{name}: {unity} {none}");
                 let ((value, grad), (exact, slope)) = (apply(&rows, q, &of), field(Basis::Linear, x));
                 assert!((value - exact).abs() < 1e-12, "{name}: {:e}", value - exact);
@@ -115,7 +116,8 @@ fn gradients_are_those_of_the_values() {
                 nodes.iter().zip(grads).for_each(|(&n, g)| off[n as usize] -= g[axis]);
                 worst = off.into_iter().fold(worst, |worst, d| worst.max(d.abs()));
             }
-            // Gradients are of order 1e2 /m; the kernel's third derivative, 1e8 /m^3, times h^2 and rounding over h.
+            // Gradients are of order 1e2 /m. The error is the kernel's third derivative, 1e8 /m^3, times h^2,
+            // plus rounding over h.
             assert!(worst < 1e-4, "{name}, axis {axis}: {worst:e}");
         }
     }
@@ -197,14 +199,15 @@ fn what_cannot_be_coupled_is_refused() {
     assert!(matches!(coupled_nodes(&nodes, &mesh, &vertices), Err(EfgError::Locate(_))));
 }
 
-/// The lower half of the box is one region, the upper another.
+/// Assigns the lower and the upper half of the box to separate regions.
 fn halved(mesh: Mesh) -> Mesh {
     let above = |cell: usize| mesh.cell_points(cell).map(|p| p.z).sum::<f64>() / 4.0 > 0.015;
     let regions = (0..mesh.cell_count()).map(|cell| u16::from(above(cell))).collect();
     mesh.with_regions(regions, vec!["lower".into(), "upper".into()])
 }
 
-/// Each half has nodes of its own, both have those of the border, and a field with a kink there is one of theirs.
+/// Each half has its own nodes, both share the nodes of the border, and a field with a kink there is
+/// reproduced.
 #[test]
 fn separate_regions_share_the_vertices_of_their_border_alone() {
     let max = Point3::new(0.04, 0.03, 0.03);
@@ -230,7 +233,7 @@ fn separate_regions_share_the_vertices_of_their_border_alone() {
                 assert!((value - kinked(x)).abs() < 1e-8, "{x}: {value}");
                 assert!((slope - exact).norm() < 1e-5, "{x}: {slope}");
             }
-            // Nothing of either half is left on the border: it is one field.
+            // The nodes of both halves vanish on the border, where the field is single-valued.
             let on: Vec<Point3> =
                 (0..9).map(|k| Point3::new(0.0044 * k as f64, 0.0033 * k as f64, 0.015)).collect();
             let (rows, _) = separate.point_rows(&on).unwrap();

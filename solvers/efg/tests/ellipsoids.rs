@@ -1,4 +1,4 @@
-//! Supports that follow the cloud: what an affine map does to body and cloud leaves shape values alone.
+//! Supports adapted to the cloud: an affine map of body and cloud leaves shape values unchanged.
 
 mod common;
 
@@ -9,7 +9,7 @@ use geometry::{CellKind, Mesh};
 use nalgebra::Matrix3;
 use shape::{Point3, Vector3};
 
-/// Both rules with supports of about the same width.
+/// Both rules, with supports of about the same width.
 const RULES: [Support; 2] =
     [Support::Dilatation { factor: 2.2 }, Support::Neighbours { count: 24, factor: 1.5 }];
 
@@ -30,7 +30,7 @@ fn probes(mesh: &Mesh) -> Vec<Point3> {
 #[test]
 fn an_affine_map_of_body_and_cloud_leaves_the_shape_values_alone() {
     let mesh = jittered_box(CellKind::Tet4, 4);
-    // Cells 10:1 along an axis, 100:1, and sheared and turned.
+    // Cells with an aspect of 10:1 along an axis, of 100:1, and sheared and rotated cells.
     let maps = [
         Matrix3::from_diagonal(&Vector3::new(10.0, 1.0, 1.0)),
         Matrix3::from_diagonal(&Vector3::new(1.0, 0.01, 1.0)),
@@ -46,12 +46,14 @@ fn an_affine_map_of_body_and_cloud_leaves_the_shape_values_alone() {
                     adapted(&there, rule, kernel, basis).grad_rows(&probes(&there)).unwrap();
                 let label = format!("{} {} {rule:?} {map}", kernel.name(), basis.name());
                 assert_eq!(info.fallbacks(), 0, "{label}");
-                // Rounding of the moments, whose condition the flat cells square (quadratic: once more).
+                // Rounding of the moments, whose condition number flat cells square (quadratic basis: once
+                // more).
                 let tolerance = 1e-15 * info.condition_max.max(1e3);
                 let (back, mut at_rim) = (map.transpose(), 0);
                 for q in 0..here.points().len() {
                     let ((nodes, values), (same, others)) = (here.rows().row(q), stretched.rows().row(q));
-                    // A node at the very rim may drop out by rounding; its value is then as small.
+                    // By rounding, a node at the boundary of its support may drop out; its value is then as
+                    // small as the tolerance.
                     let other = |node: &u32| same.binary_search(node).map_or(0.0, |k| others[k]);
                     for (node, value) in nodes.iter().zip(values) {
                         let off = (value - other(node)).abs();
@@ -75,7 +77,7 @@ fn an_affine_map_of_body_and_cloud_leaves_the_shape_values_alone() {
 
 #[test]
 fn isotropic_cells_have_the_round_support() {
-    // The edges of a regular tetrahedron have an isotropic moment: so has any mesh of such cells.
+    // The edges of a regular tetrahedron have an isotropic moment, and so does any mesh of such cells.
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let points = corners.map(|c| Point3::from(Vector3::from(c) * 1e-3)).to_vec();
     let mesh = Mesh::new(points, &[(CellKind::Tet4, vec![0, 1, 2, 3])]).unwrap();
@@ -89,7 +91,7 @@ fn isotropic_cells_have_the_round_support() {
 
 #[test]
 fn supports_of_flat_cells_hold_as_many_neighbours_as_those_of_cubes() {
-    // Forty cells in a row of 2 x 2: 20:1. Balls see their neighbours in planes there.
+    // Forty layers of 2 x 2 cells, with an aspect of 20:1. The neighbours within a ball lie in planes.
     let max = Point3::new(0.05, 0.05, 0.05);
     let box_of = |cells| box_mesh(CellKind::Tet4, Point3::origin(), max, cells, [1.0; 3], None).unwrap();
     let (flat, long) = (box_of([40, 2, 2]), box_of([4, 4, 4]));

@@ -1,4 +1,4 @@
-//! Supports reach through the body, not across its gaps.
+//! Supports do not extend across gaps of the body.
 
 mod common;
 
@@ -16,7 +16,7 @@ use shape::{Point3, PointRows, Vector3, VolumeRows};
 const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 const HALF: f64 = 0.02;
 
-/// A block of 40 x 10 x 20 mm with a slit from its top down to `tip`, in the middle, bent by `bend`; lengths
+/// A block of 40 x 10 x 20 mm with a slit in the middle, from the top down to `tip`, bent by `bend`; lengths
 /// in metres.
 fn slit(tip: f64, width: f64, bend: f64) -> Mesh {
     let top = Point3::new(2.0 * HALF, 0.01, 0.02);
@@ -42,7 +42,7 @@ fn slit(tip: f64, width: f64, bend: f64) -> Mesh {
     Mesh::new(points, &(0..plain.cell_count()).map(cell).collect::<Vec<_>>()).unwrap()
 }
 
-/// A kind of shape functions over the nodes of a mesh.
+/// Constructor of shape functions over the nodes of a mesh.
 type Functions = fn(&Mesh) -> Approximation;
 
 fn linear(mesh: &Mesh) -> Approximation {
@@ -62,7 +62,7 @@ const ALL: [(&str, Basis, Functions); 5] = [
     ("small supports", Basis::Linear, |mesh| on_mesh(mesh, 1.05, KERNEL, Basis::Linear)),
 ];
 
-/// Side of the slit that each cell is on.
+/// Whether a cell is on the left side of the slit.
 fn is_left(mesh: &Mesh, cell: usize, middle: f64) -> bool {
     mesh.cell_points(cell).map(|p| p.x).sum::<f64>() < 4.0 * middle
 }
@@ -141,7 +141,7 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
             let (exact, slope) = field(basis, &rows.points()[q]);
             assert!((value - exact).abs() < 1e-10 && (grad - slope).norm() < 1e-5, "{name} at {q}");
         }
-        // Around the end of the slit, where detours are neither none nor endless.
+        // Points around the end of the slit, where detours are neither zero nor infinite.
         let near = |q: &usize| (rows.points()[*q] - Point3::new(HALF + 2.6e-3, 5e-3, 7.5e-3)).norm() < 4e-3;
         let some: Vec<usize> = (0..rows.weights().len()).filter(near).step_by(3).collect();
         assert!(some.len() > 20);
@@ -160,7 +160,8 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
                 };
                 for (&n, g) in nodes.iter().zip(grads).filter(|_| mls_is_smooth(name, basis)) {
                     let slope = (of(&ahead, n) - of(&behind, n)) / (2.0 * step);
-                    // Diffuse derivatives leave the basis where it is: to a part of the largest, 300 / m.
+                    // Diffuse derivatives keep the basis fixed. The error is a fraction of the largest
+                    // gradient, 300 / m.
                     assert!((slope - g[axis]).abs() < 1.0, "{name} at {q}: {slope} {}", g[axis]);
                 }
             }
@@ -168,7 +169,7 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
     }
 }
 
-/// Values along lines have one slope unless a point of the line climbs the ladder.
+/// Whether values along lines are differentiable, i.e. no point of the line needs a fallback.
 fn mls_is_smooth(name: &str, basis: Basis) -> bool {
     basis == Basis::Linear && name != "small supports"
 }
@@ -205,7 +206,7 @@ fn conforming_rules_balance_over_a_body_with_a_slit() {
                     nodes.iter().zip(values).for_each(|(&n, v)| sums[n as usize] -= normal * (w * v));
                 }
                 let worst = sums.iter().map(|s| s.norm()).fold(0.0, f64::max);
-                // Of areas of 1e-5 m^2 a node.
+                // Compared with areas of 1e-5 m^2 per node.
                 assert!(worst < 1e-17, "{kind}, {name}, {width} m: {worst:e}");
             }
         }

@@ -1,4 +1,4 @@
-//! Integration: volumes, the integration constraint, and what backgrounds are refused.
+//! Integration: volumes, the integration constraint, and refused backgrounds.
 
 mod common;
 
@@ -13,7 +13,7 @@ use shape::{Point3, Vector3, VolumeRows};
 
 const VOLUME: f64 = 0.04 * 0.03 * 0.03;
 
-/// `sum_q w grad_I` for every node, m^2.
+/// Returns `sum_q w grad_I` for every node, m^2.
 fn integrated_gradients(volume: &VolumeRows, nodes: usize) -> Vec<Vector3> {
     let mut sums = vec![Vector3::zeros(); nodes];
     for q in 0..volume.weights().len() {
@@ -24,7 +24,8 @@ fn integrated_gradients(volume: &VolumeRows, nodes: usize) -> Vec<Vector3> {
     sums
 }
 
-/// Largest violation of `sum w grad_I = sum_boundary w phi_I n` over nodes, relative to the largest side.
+/// Returns the largest violation of `sum w grad_I = sum_boundary w phi_I n` over nodes, relative to the
+/// largest side.
 fn constraint_violation(
     mls: &efg::Approximation,
     mesh: &Mesh,
@@ -57,10 +58,10 @@ fn smoothing_meets_the_integration_constraint_to_rounding() {
             let violation = constraint_violation(&mls, &mesh, &volume, face_points);
             assert!(violation < 1e-14, "{face_points} points: {violation:e}");
         }
-        // The boundary must use the same points, or the constraint is lost: this is what the test above can see.
+        // With different points on the boundary the constraint is violated, so the test above can fail.
         let (volume, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 1).unwrap();
         assert!(constraint_violation(&mls, &mesh, &volume, 3) > 1e-4);
-        // Plain Gauss points do not meet it.
+        // Plain Gauss points violate the constraint.
         let (volume, _) = gauss_rows(&mls, &mesh, 4).unwrap();
         assert!(constraint_violation(&mls, &mesh, &volume, 6) > 1e-5);
     }
@@ -80,7 +81,7 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
         for q in 0..mesh.cell_count() {
             let centroid = mesh.cell_points(q).map(|p| p.coords).sum::<Vector3>() / 4.0;
             assert!((volume.points()[q].coords - centroid).norm() < 1e-17);
-            // Values are those at the centroid, with zeros for nodes that only the faces see.
+            // Values are those at the centroid, with zeros for nodes that contribute only on the faces.
             let (nodes, values) = volume.rows().row(q);
             let nonzero = nodes.iter().zip(values).filter(|(_, v)| **v != 0.0);
             let at_centroid = plain.rows().row(q).0.iter().zip(plain.rows().row(q).1);
@@ -97,7 +98,8 @@ fn smoothed_gradients_reproduce_linear_fields_and_volumes_add_up() {
     }
 }
 
-/// Smoothed gradients are the cell means of the true ones: many Gauss points in the cell and on its faces agree.
+/// Smoothed gradients are the cell means of the exact gradients, as found with many Gauss points in the cell
+/// and on its faces.
 #[test]
 fn smoothed_gradients_are_cell_means() {
     let mesh = jittered_box(CellKind::Tet4, 3);
@@ -154,7 +156,7 @@ fn grids_fill_a_box_exactly_and_report_what_clipping_cost() {
     let (volume, grid, _) = grid_rows(&mls, |_| true, bounds, 0.01, 2).unwrap();
     assert_eq!((grid.cells, grid.kept, grid.dropped), ([4, 3, 3], 288, 0));
     assert!((grid.volume / VOLUME - 1.0).abs() < 1e-13 && volume.weights().len() == 288);
-    // A ball inside: the volume comes right only on average, better with finer cells.
+    // A ball inside: the volume is correct only on average, and more accurate with finer cells.
     let centre = Point3::new(0.02, 0.015, 0.015);
     let inside = |p: &Point3| (p - centre).norm() < 0.014;
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.014f64.powi(3);
@@ -189,7 +191,8 @@ fn surfaces_have_their_area_and_outward_normals() {
             let (flux, _) = flux_rows(&mls, &mesh, facets, face_points).unwrap();
             assert!((surface.weights().iter().sum::<f64>() / area - 1.0).abs() < 1e-13, "{name}");
             assert!(surface.normals().iter().all(|n| (n - normal).norm() < 1e-13), "{name}");
-            // The points are where they should be: both rules integrate squares exactly, here of x + 2 y + 4 z.
+            // Checks the positions of the points: both rules integrate squares exactly, here of x + 2 y + 4
+            // z.
             let along = Vector3::new(1.0, 2.0, 4.0);
             let size = Vector3::new(0.04, 0.03, 0.03);
             let spread = along.component_mul(&size).component_mul(&(Vector3::repeat(1.0) - normal.abs()));
@@ -202,7 +205,7 @@ fn surfaces_have_their_area_and_outward_normals() {
                 .map(|(p, w)| along.dot(&p.coords).powi(2) * w)
                 .sum();
             assert!((found / (area * mean) - 1.0).abs() < 1e-12, "{name}");
-            // Values are the same numbers whether gradients are asked for or not.
+            // Values are identical with and without gradients.
             assert_eq!(surface.rows(), flux.at().rows());
             assert_eq!((surface.points(), surface.weights()), (flux.points(), flux.weights()));
         }
@@ -228,7 +231,7 @@ fn backgrounds_it_cannot_use_are_refused() {
     ));
     let facet = [Facet { cell: 0, face: 0 }];
     assert!(matches!(surface_rows(&mls, &hexes, &facet, 3), Err(EfgError::NoRule { points: 3, .. })));
-    // Mirrored, every cell is inside out.
+    // In the mirrored mesh every cell is inverted.
     let mirrored = mesh.moved(|p| Point3::new(0.04 - p.x, p.y, p.z)).unwrap();
     for refused in
         [gauss_rows(&mls, &mirrored, 4).err(), smoothed_rows(&mls, &mirrored, Smoothing::Constant, 1).err()]
@@ -240,7 +243,7 @@ fn backgrounds_it_cannot_use_are_refused() {
     }
 }
 
-/// To second order: gradients of quadratic fields at all four points, for every kernel.
+/// Second-order smoothing reproduces gradients of quadratic fields at all four points, for every kernel.
 #[test]
 fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
     let mesh = jittered_box(CellKind::Tet4, 3);
@@ -264,12 +267,13 @@ fn linearly_smoothed_gradients_reproduce_quadratic_fields() {
             worst
         };
         assert!(error(6) < 1e-11, "{}: {:e}", kernel.name(), error(6));
-        // Three points per face are of degree 2, one too few.
+        // The rule with three points per face has degree 2, one less than needed.
         assert!(error(3) > 1e-4, "{}: {:e}", kernel.name(), error(3));
     }
 }
 
-/// Traces carry linear fields to the surface, and their lengths bound what they carry by the volume.
+/// Traces reproduce linear fields on the surface, and their lengths bound the surface integral by the volume
+/// integral.
 #[test]
 fn traces_are_exact_and_bounded() {
     let mesh = jittered_box(CellKind::Tet4, 2);
@@ -284,7 +288,7 @@ fn traces_are_exact_and_bounded() {
         };
         let mut sharpest = 0.0f64;
         for seed in 0..50u32 {
-            // Any values at the volume's points, not only smooth ones.
+            // Arbitrary values at the volume's points, not only smooth ones.
             let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
             for cell in facets.iter().map(|f| f.cell as usize) {
                 let own = |s: &usize| facets[s / 6].cell as usize == cell;

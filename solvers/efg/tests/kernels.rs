@@ -1,4 +1,4 @@
-//! One list of properties for every kernel.
+//! Properties common to all kernels.
 
 use catalogue::{Value, Values, find};
 use efg::{KERNELS, Kernel};
@@ -13,14 +13,14 @@ fn one_at_the_centre_zero_from_the_rim_on_and_names_go_round() {
         for q in [1.0, 1.0 + 1e-12, 1.5, f64::INFINITY] {
             assert_eq!(kernel.eval(q), (0.0, 0.0), "{}", kernel.name());
         }
-        // Continuous at the rim.
+        // Continuity at the boundary of the support.
         assert!(kernel.eval(1.0 - 1e-9).0.abs() < 1e-7, "{}", kernel.name());
         assert_eq!(Kernel::from_name(kernel.name()), Some(kernel));
     }
     assert_eq!(Kernel::from_name("cubic"), None);
 }
 
-/// Values worked out by hand, so that a kernel replaced by another is noticed.
+/// Values computed by hand, which detect a kernel that is replaced by another.
 #[test]
 fn values_at_one_half() {
     let rim = (-6.25f64).exp();
@@ -50,7 +50,8 @@ proptest! {
         for kernel in Kernel::all() {
             let (w, dw) = kernel.eval(q);
             prop_assert!(w > 0.0 && dw < 0.0, "{} at {q}: {w} {dw}", kernel.name());
-            // Fourth-order differences: 1e-12 of the slope from the formula, 1e-11 from rounding.
+            // Fourth-order differences have errors of 1e-12 of the slope from the formula, and 1e-11 from
+            // rounding.
             let h = 1e-3 * q.min(1.0 - q);
             let at = |t: f64| kernel.eval(q + t * h).0;
             let difference = (8.0 * (at(1.0) - at(-1.0)) - at(2.0) + at(-2.0)) / (12.0 * h);

@@ -1,4 +1,4 @@
-//! Too few neighbours, duplicates, nodes in one plane: counted fallbacks or clear errors, never silence.
+//! Too few neighbours, duplicate nodes, and nodes in one plane: counted fallbacks or errors.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn small_supports_are_enlarged_and_counted() {
         assert_eq!(info.enlarged, 2, "{info:?}");
         assert!(error < 1e-11 && info.neighbours_min >= 2 * basis.terms(), "{error} {info:?}");
     }
-    // At a sound dilatation nothing is counted.
+    // At a sound support scale no fallback is counted.
     assert_eq!(
         on_mesh(&mesh, 2.2, Kernel::CubicSpline(CubicSpline), Basis::Quadratic)
             .point_rows(&points)
@@ -61,7 +61,7 @@ fn far_from_the_cloud_is_an_error_with_numbers() {
     }
 }
 
-/// Two planes of nodes: enough for the linear basis, not for the quadratic one (no second difference across).
+/// Two planes of nodes determine the linear basis, but not the quadratic basis (no second difference across).
 #[test]
 fn two_planes_regularise_the_quadratic_block() {
     let nodes: Vec<Point3> = (0..72)
@@ -73,7 +73,7 @@ fn two_planes_regularise_the_quadratic_block() {
     let points = [Point3::new(0.0121, 0.0133, 0.0022)];
     let (error, info) = linear_error(&mls, &points);
     assert_eq!((info.regularised, info.reduced), (1, 0), "{info:?}");
-    assert!(error < 1e-8, "{error}"); // the linear part stays exact; conditioning of 1e7 costs digits
+    assert!(error < 1e-8, "{error}"); // the linear part stays exact; a condition number of 1e7 costs digits
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn one_plane_is_an_error() {
     }
 }
 
-/// Moving least squares is indifferent to duplicate nodes: the pair shares what the one node had.
+/// Moving least squares tolerate duplicate nodes: the pair shares the value of the single node.
 #[test]
 fn a_duplicate_node_shares_its_value() {
     let mesh = jittered_box(CellKind::Tet4, 3);
@@ -105,7 +105,7 @@ fn a_duplicate_node_shares_its_value() {
     let value = |n: usize| values[list.iter().position(|&k| k as usize == n).unwrap()];
     assert_eq!(value(40), value(nodes.len() - 1));
     assert!(value(40) > 0.0);
-    // The k-th neighbour rule sees the distance of zero and says so.
+    // The k-th neighbour rule finds a distance of zero and reports it.
     let radii = Support::Neighbours { count: 1, factor: 1.5 }.radii(&nodes, &[]);
     assert_eq!(radii, Err(EfgError::BadRadius { node: 40, radius: 0.0 }));
 }

@@ -1,4 +1,4 @@
-//! Maximum-entropy functions: what makes them convex, and what they refuse.
+//! Maximum-entropy functions: convexity, and refused points and parameters.
 
 mod common;
 
@@ -21,8 +21,8 @@ fn functions(gamma: f64) -> Approximation {
     Approximation::maximum_entropy(points, &spacing, gamma).unwrap()
 }
 
-/// Positive, one in sum, linear fields to rounding with their gradients; the tolerance of gradients next to faces is that of
-/// `slack` times as much.
+/// Checks that values are positive and sum to one, and that linear fields are reproduced to rounding with
+/// their gradients. The tolerance of gradients is multiplied by `slack`, for points on faces.
 fn check(rows: &GradRows, nodes: &[Point3], slack: f64) {
     for (q, x) in rows.points().iter().enumerate() {
         let (list, grads) = rows.row(q);
@@ -32,7 +32,7 @@ fn check(rows: &GradRows, nodes: &[Point3], slack: f64) {
             assert!(p >= 0.0, "{x}: {p:e}");
             unity += p;
             drift += grad;
-            // The field less its value at the point: what cancels is not what is tested.
+            // The field minus its value at the point, which avoids cancellation.
             let v = field(Basis::Linear, &nodes[node as usize]).0 - field(Basis::Linear, x).0;
             u += p * v;
             g += grad * v;
@@ -67,7 +67,8 @@ proptest! {
         for gamma in GAMMAS {
             let functions = functions(gamma);
             let h = 1e-3 * SPACING;
-            // Where a node drops out its value jumps by up to 1e-6: a difference taken across is no derivative.
+            // At the boundary of a support, the value of a node jumps by up to 1e-6; a difference across the
+            // jump is not a derivative.
             let rim = |n: usize| ((functions.nodes()[n] - x).norm() - functions.radius(n)).abs() < 2.5 * h;
             if (0..functions.nodes().len()).any(rim) {
                 continue;
@@ -88,7 +89,7 @@ proptest! {
     }
 }
 
-/// A point of each face, edge and corner of the box.
+/// Returns a point of each face, edge and corner of the box.
 fn boundary() -> Vec<Point3> {
     let along = |end: f64| [0.0, 0.37 * end, end];
     let mut points = Vec::new();
@@ -104,10 +105,11 @@ fn boundary() -> Vec<Point3> {
     points
 }
 
-/// On a face of the box nodes inside have no weight at all, and those of an edge or corner have it alone there.
+/// On a face of the box inner nodes have zero weight; on an edge or corner only the nodes of the edge or
+/// corner have weight.
 #[test]
 fn inner_nodes_vanish_on_faces() {
-    // Turned too: no coordinate is exact then.
+    // The rotated box has no exact coordinates.
     let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
     for (turn, slack) in [(nalgebra::Rotation3::identity(), 1e-15), (turn, 1e-11)] {
         for gamma in GAMMAS {
@@ -125,13 +127,13 @@ fn inner_nodes_vanish_on_faces() {
                     assert!(!off || p < slack, "gamma {gamma} at {x}: node {y} has {p:e}");
                 }
             }
-            // One-sided gradients are as exact on linear fields as J's condition of 1e6 lets them be.
+            // One-sided gradients of linear fields are accurate up to the condition number of J, 1e6.
             check(&rows, functions.nodes(), 1e6);
         }
     }
 }
 
-/// Close to a face and on it there is one function.
+/// The value on a face is the limit of values close to the face.
 #[test]
 fn values_are_continuous_up_to_faces() {
     let functions = functions(1.8);
@@ -161,7 +163,7 @@ fn a_point_outside_the_hull_is_refused_by_name() {
         assert!(*point == x && *found > 4 && *gap > 9e-5 && *gap < 5e-3, "{refused}");
         assert!(refused.to_string().contains("outside the convex hull"), "{refused}");
     }
-    // Nowhere near any node.
+    // A point far from all nodes.
     let far = functions.point_rows(&[Point3::new(1.0, 1.0, 1.0)]).unwrap_err();
     assert!(matches!(far, EfgError::OutsideHull { found: 0, .. }), "{far}");
     for gamma in [0.0, -1.0, f64::NAN] {

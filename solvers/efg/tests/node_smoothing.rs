@@ -1,4 +1,5 @@
-//! Node smoothing: means over the quarters around each vertex, points of one region, traces that bound their stress.
+//! Node smoothing: means over the quarters around each vertex, points with a single region, and traces that
+//! bound the stress on the surface.
 
 mod common;
 
@@ -12,7 +13,7 @@ use shape::{Point3, Vector3};
 
 const VOLUME: f64 = 0.04 * 0.03 * 0.03;
 
-/// Gradients at a point, one for each node of the cloud.
+/// Returns the gradients at a point, one for each node of the cloud.
 fn dense(volume: &shape::VolumeRows, point: usize, nodes: usize) -> Vec<Vector3> {
     let mut all = vec![Vector3::zeros(); nodes];
     volume.row(point).0.iter().zip(volume.row(point).1).for_each(|(&n, g)| all[n as usize] = *g);
@@ -22,7 +23,7 @@ fn dense(volume: &shape::VolumeRows, point: usize, nodes: usize) -> Vec<Vector3>
 #[test]
 fn points_are_the_vertices_and_gradients_the_means_of_the_cells_around() {
     let mesh = jittered_box(CellKind::Tet4, 3);
-    // A cloud of its own, coarser than the background: vertices need not be nodes.
+    // A separate cloud, coarser than the background: vertices need not be nodes.
     let mls = on_mesh(&jittered_box(CellKind::Tet4, 2), 1.6, Kernel::CubicSpline(CubicSpline), Basis::Linear);
     let nodes = mls.nodes().len();
     let (cells, _) = smoothed_rows(&mls, &mesh, Smoothing::Constant, 3).unwrap();
@@ -71,7 +72,7 @@ fn stabilisation_gives_the_cells_their_share() {
     assert!((both.weights().iter().sum::<f64>() / VOLUME - 1.0).abs() < 1e-13);
 }
 
-/// The box with its half x > 20 mm a region of its own.
+/// The box, with its half x > 20 mm as a separate region.
 fn halves() -> Mesh {
     let mesh = jittered_box(CellKind::Tet4, 3);
     let right = |c| mesh.cell_points(c).map(|p| p.x).sum::<f64>() / 4.0 > 0.02;
@@ -87,7 +88,7 @@ fn a_vertex_between_regions_has_a_point_for_each() {
         let (volume, _) = node_smoothed_rows(&mls, &mesh, stabilisation, 1).unwrap();
         let regions = node_smoothed_regions(&mesh, stabilisation);
         assert_eq!(regions.len(), volume.weights().len());
-        // The 4 x 4 vertices of the plane between.
+        // The 4 x 4 vertices of the separating plane.
         let cells = if stabilisation > 0.0 { mesh.cell_count() } else { 0 };
         assert_eq!(regions.len(), cells + mesh.points().len() + 16);
         let of = |region: u16| {
@@ -103,7 +104,8 @@ fn a_vertex_between_regions_has_a_point_for_each() {
     }
 }
 
-/// Traces carry linear fields to the surface, and their lengths bound what they carry by the volume.
+/// Traces reproduce linear fields on the surface, and their lengths bound the surface integral by the volume
+/// integral.
 #[test]
 fn traces_are_exact_and_bounded() {
     for (mesh, facets) in [jittered_box(CellKind::Tet4, 2), halves()].map(|mesh| {
@@ -129,11 +131,11 @@ fn traces_are_exact_and_bounded() {
                 on / (0..volume.weights().len()).map(inside).sum::<f64>()
             };
             for seed in 0..50u32 {
-                // Any values at the volume's points, not only smooth ones.
+                // Arbitrary values at the volume's points, not only smooth ones.
                 let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
                 assert!(bound(&f) <= 1.0 + 1e-12, "{stabilisation} {face_points}: {:e}", bound(&f));
             }
-            // Sharp for what is in each point the area it serves over its weight.
+            // The bound is sharp for values equal to the ratio of a point's tributary area to its weight.
             let mut worst = vec![0.0; volume.weights().len()];
             for s in 0..trace.len() {
                 let (points, coefficients) = trace.row(s);

@@ -1,4 +1,4 @@
-//! One list of properties for every kernel with every basis.
+//! Properties common to all kernels with all bases.
 
 mod common;
 
@@ -8,10 +8,10 @@ use geometry::{CellKind, Mesh, cloud_from_mesh};
 use proptest::prelude::*;
 use shape::{GradRows, Point3, Vector3};
 
-/// Distance scale of the box: gradients are of the order of its inverse.
+/// Length scale of the box, m: gradients are of the order of its inverse.
 const SPACING: f64 = 0.0075;
 
-/// Largest error of value (relative to 40 mm) and of gradient for the field of the basis.
+/// Returns the largest error of the value (relative to 40 mm) and of the gradient for the field of the basis.
 fn reproduction(basis: Basis, nodes: &[Point3], rows: &GradRows) -> (f64, f64) {
     let (mut value_error, mut grad_error) = (0.0f64, 0.0f64);
     for q in 0..rows.points().len() {
@@ -57,25 +57,26 @@ proptest! {
             prop_assert!(drift.norm() * SPACING < 100.0 * tolerance, "{}: sum of gradients {}", label, drift.norm());
             let (value, grad) = reproduction(basis, mls.nodes(), &rows);
             prop_assert!(value < tolerance && grad < 100.0 * tolerance, "{}: {} {} of {}", label, value, grad, tolerance);
-            // Nodes by ascending index, each once: what assembly relies on.
+            // Each node occurs once and nodes ascend, as assembly requires.
             prop_assert!(rows.row(0).0.windows(2).all(|w| w[0] < w[1]));
         }
     }
 
     #[test]
     fn gradients_are_those_of_the_values(x in box_points(), axis in 0usize..3) {
-        // Of the quadratic basis also with its block regularised.
+        // The quadratic basis is also tested with its regularised block.
         let regularised = members().filter(|(_, basis)| *basis == Basis::Quadratic).map(|member| (member, 0.02));
         for ((kernel, basis), mu) in members().map(|member| (member, 0.0)).chain(regularised) {
-            // The regularised kernel varies over 1e-3 of the support next to a node; elsewhere all are smooth.
+            // Next to a node the regularised kernel varies over 1e-3 of the support; elsewhere all kernels
+            // are smooth.
             let nearest = mesh().points().iter().map(|p| (p - x).norm()).fold(f64::INFINITY, f64::min);
             if matches!(kernel, Kernel::RegularisedInterpolating(_)) && nearest < 0.1 * SPACING {
                 continue;
             }
             let mls = on_mesh(mesh(), dilatation(basis), kernel, basis).regularised(mu).unwrap();
             let h = 2e-4 * SPACING;
-            // Kernels have kinks: the Gaussian's slope jumps at the rim, the cubic spline's third derivative at half
-            // the radius. A difference taken across one is no derivative.
+            // Kernels have kinks: the Gaussian's slope jumps at the boundary of the support, the cubic
+            // spline's third derivative at half the radius. A difference across a kink is not a derivative.
             let near_kink = |n: usize| {
                 let d = (mls.nodes()[n] - x).norm();
                 [1.0, 0.5].iter().any(|part| (d - part * mls.radius(n)).abs() < 2.5 * h)
@@ -98,14 +99,14 @@ proptest! {
             let largest = grad.iter().fold(0.0f64, |m, g| m.max(g.abs()));
             for node in 0..grad.len() {
                 let difference = (8.0 * (at[1][node] - at[2][node]) - at[3][node] + at[4][node]) / (12.0 * h);
-                // At most 1e-9 over 3000 points.
+                // The largest difference over 3000 points was 1e-9.
                 prop_assert!((difference - grad[node]).abs() < 1e-7 * largest, "{} {}: node {} {} or {}", kernel.name(), basis.name(), node, grad[node], difference);
             }
         }
     }
 }
 
-/// Centroids of the cells and the nodes themselves: points at which a cloud is used.
+/// Returns the centroids of the cells and the nodes, i.e. the points at which a cloud is used.
 fn probe_points(mesh: &Mesh) -> Vec<Point3> {
     let centroid = |cell| {
         Point3::from(mesh.cell_points(cell).map(|p| p.coords).sum::<Vector3>() / mesh.cell(cell).len() as f64)
@@ -132,8 +133,9 @@ fn not_kronecker_except_nearly_the_regularised_kernel() {
     }
 }
 
-/// Condition numbers in the linear basis at dilatation 1.6: 28 to 100 in the spectral norm, up to 4 times that here;
-/// a basis shifted but not scaled gives 1e5 in metres, one neither shifted nor scaled far more.
+/// Checks the condition numbers of the linear basis at a support scale of 1.6: 28 to 100 in the spectral
+/// norm, up to 4 times as large here. A basis that is shifted but not scaled gives 1e5 in metres, and a basis
+/// that is neither shifted nor scaled gives far more.
 #[test]
 fn conditioning_is_that_of_a_shifted_and_scaled_basis() {
     let points = probe_points(mesh());
@@ -144,14 +146,14 @@ fn conditioning_is_that_of_a_shifted_and_scaled_basis() {
     assert!(info.neighbours_min >= 5 && info.neighbours_mean > 15.0 && info.neighbours_max < 80, "{info:?}");
 }
 
-/// The same cloud in other units, somewhere else, numbered backwards: the same shape functions.
+/// The same cloud in other units, at another place and numbered backwards has the same shape functions.
 #[test]
 fn scale_shift_and_numbering_do_not_matter() {
     for (kernel, basis) in members() {
         let points = probe_points(mesh());
         let mls = on_mesh(mesh(), dilatation(basis), kernel, basis);
         let (rows, info) = mls.grad_rows(&points).unwrap();
-        // 1/1024 is exact in binary, so scaling is, too; 1000 and a shift of a metre round.
+        // 1/1024 is exact in binary, and so is this scaling; 1000 and a shift of a metre cause rounding.
         for (scale, shift, tolerance) in [(1.0 / 1024.0, 0.0, 1e-13), (1000.0, 0.0, 1e-12), (1.0, 1.0, 1e-11)]
         {
             let moved = |p: &Point3| p * scale + Vector3::repeat(shift);
@@ -162,7 +164,8 @@ fn scale_shift_and_numbering_do_not_matter() {
             let last = mls.nodes().len() as u32 - 1;
             let slack = tolerance * info.condition_max.sqrt();
             for q in 0..points.len() {
-                // A support's rim may pass on the other side of a point by rounding: compare values, not lists.
+                // By rounding, the boundary of a support may pass on the other side of a point. Values are
+                // therefore compared, not lists.
                 let mut dense = vec![(0.0, Vector3::zeros()); mls.nodes().len()];
                 for ((&n, v), g) in rows.row(q).0.iter().zip(rows.rows().row(q).1).zip(rows.row(q).1) {
                     dense[n as usize] = (*v, *g);
@@ -206,8 +209,8 @@ fn same_bits_at_any_thread_count() {
     }
 }
 
-/// A node counts within its own radius and nowhere else: halving one node's radius removes it from rows it was in
-/// and changes no other list.
+/// A node contributes only within its own radius: half the radius removes the node from some rows and changes
+/// no other list.
 #[test]
 fn each_node_has_a_radius_of_its_own() {
     let cloud = cloud_from_mesh(mesh());

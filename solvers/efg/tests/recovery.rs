@@ -1,4 +1,4 @@
-//! The error of gradients: none where recovery is exact, most where they change most.
+//! Error indicator of gradients: zero if recovery is exact, largest where gradients change most.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn errors(field: impl Fn(&Point3) -> Vector3, basis: Basis, dilatation: f64) -> 
 
 #[test]
 fn gradients_that_are_linear_are_recovered() {
-    // A quadratic basis has a quadratic field's gradients, of order 1, exactly.
+    // A quadratic basis reproduces the gradients of a quadratic field, of order 1, exactly.
     let field = |p: &Point3| Vector3::new(20.0 * p.x * p.y, 10.0 * p.z * p.z, -15.0 * p.x * p.x);
     let (error, _) = errors(field, Basis::Quadratic, 2.2);
     assert!(error.iter().all(|e| *e < 1e-10), "{error:?}");
@@ -25,12 +25,13 @@ fn gradients_that_are_linear_are_recovered() {
 
 #[test]
 fn the_error_is_largest_at_the_concentration() {
-    // A bump of 4 mm at a corner of the box.
+    // A bump with a width of 4 mm at a corner of the box.
     let field = |p: &Point3| Vector3::x() * 1e-3 * (-p.coords.norm_squared() / 4e-3f64.powi(2)).exp();
     let (error, nodes) = errors(field, Basis::Linear, 1.6);
     let worst = (0..nodes.len()).max_by(|&a, &b| error[a].total_cmp(&error[b])).unwrap();
     assert!(nodes[worst].coords.norm() < 0.01, "{}", nodes[worst]);
-    // Gradients reach over one support, fits over a second, their blend over a third: 45 mm in all, but little of it so far.
+    // Gradients extend over one support, fits over a second, and their blend over a third: 45 mm in total,
+    // but with small values at that distance.
     let far =
         (0..nodes.len()).filter(|&n| nodes[n].coords.norm() > 0.03).map(|n| error[n]).fold(0.0, f64::max);
     assert!(far < 1e-2 * error[worst], "{far:e} of {:e}", error[worst]);

@@ -1,4 +1,5 @@
-//! Statics, implicit dynamics and vibrations over shape tables: assembly, supports, constraints, Newton, recovery.
+//! Statics, implicit dynamics and vibrations over shape tables: assembly, supports, constraints, Newton's
+//! method, recovery.
 //!
 //! This crate knows neither elements nor kernels. A [`Body`] is a quadrature with a material, and a
 //! [`LinearProblem`] is a body with loads and supports. Each stage is a value of its own, which can be timed,
@@ -34,9 +35,12 @@
 //! let mesh = box_mesh(CellKind::Hex8, Point3::origin(), max, [2; 3], [1.0; 3], None)?;
 //! let volume = fem::volume_rows(&mesh, &fem::VolumeRule::STANDARD)?;
 //! let materials = [LinearElastic::new(20e3, 0.3)?];
-//! let body = Body { nodes: mesh.points(), volume: &volume, materials: &materials, region: &[], dilation: None };
+//! let body =
+//!     Body { nodes: mesh.points(), volume: &volume, materials: &materials, region: &[], dilation: None };
 //! let mut fixed = Vec::new();
-//! for (side, axis, value) in [("x-min", 0, 0.0), ("y-min", 1, 0.0), ("z-min", 2, 0.0), ("z-max", 2, -1e-4)] {
+//! for (side, axis, value) in
+//!     [("x-min", 0, 0.0), ("y-min", 1, 0.0), ("z-min", 2, 0.0), ("z-max", 2, -1e-4)]
+//! {
 //!     let nodes = mesh.facet_group_nodes(mesh.group(side).expect("a box has six sides"));
 //!     fixed.extend(nodes.into_iter().map(|node| FixedDof { node, axis, value }));
 //! }

@@ -133,7 +133,7 @@ impl<'a> Assembled<'a> {
     /// Prepares conjugate gradients with this preconditioner, to a relative residual of `tolerance`.
     ///
     /// # Errors
-    /// [`SolveError::RowsNeedFactor`] if there are constraint rows, and invalid prescribed values.
+    /// [`SolveError::RowsNeedFactor`] if there are constraint rows.
     pub fn iterated(self, multigrid: Multigrid, tolerance: f64) -> Result<Factored<'a>, SolveError> {
         if !self.rows.is_empty() {
             return Err(SolveError::RowsNeedFactor { rows: self.rows.len() });

@@ -212,7 +212,8 @@ impl WeakTable {
         });
     }
 
-    /// Adds the linear form `sum over constrained axes of integral of g_a (beta v_a - t_a(v))` to the nodal forces.
+    /// Adds the linear form `sum over constrained axes of integral of g_a (beta v_a - t_a(v))` to the nodal
+    /// forces.
     pub fn add_force(&self, incidence: &Incidence, force: &mut [Vector3]) {
         force.par_iter_mut().enumerate().for_each(|(i, force)| {
             for &(q, k) in incidence.of(i) {

@@ -1,4 +1,4 @@
-//! Fills chunks of points: neighbours, fits and rows.
+//! Computation of chunks of points: neighbours, fits and rows.
 
 use std::cmp::Reverse;
 
@@ -12,14 +12,14 @@ use crate::max_entropy::NoPoint;
 use crate::mls::Group;
 use crate::{Basis, EfgError};
 
-/// Condition number from which supports are enlarged beside finite elements: there the nodes that would stand
-/// on the other side of a point have given way, and a row of that number sums to one within 1e-10. Elsewhere
-/// medians are 10 to 100.
+/// Condition number above which supports next to finite elements are enlarged. The nodes on the other side of
+/// such a point are removed. Up to this number, the sum of a row is one within 1e-10. Elsewhere medians are
+/// 10 to 100.
 const MOST_CONDITION: f64 = 1e5;
 
 impl Approximation {
-    /// The same arithmetic in the same order on every path, so the same bits. Fused multiply-add is left off
-    /// on purpose: it would change last bits from machine to machine.
+    /// Fills a chunk with the same arithmetic in the same order on every path, hence with the same bits.
+    /// Fused multiply-add is not used on purpose: it would change the last bits from machine to machine.
     pub(super) fn fill<const GRAD: bool>(
         &self,
         points: &[Point3],
@@ -34,7 +34,7 @@ impl Approximation {
         Ok(())
     }
 
-    /// Rows of the cloud's own functions.
+    /// Computes the rows of the cloud's own functions.
     fn fill_own<const GRAD: bool>(&self, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> {
         match GRAD {
             true => fill_gradients(LanePath::best(), self, points, chunk),
@@ -63,7 +63,7 @@ impl Approximation {
                 }
             }
         }
-        // Older values are overwritten.
+        // Old values are overwritten.
         rows.values.resize(rows.nodes.len(), 0.0);
         rows.grads.resize(if GRAD { rows.nodes.len() } else { 0 }, Vector3::zeros());
         let fit = match &self.functions {
@@ -93,7 +93,7 @@ impl Approximation {
                 let range = rows.range(q as usize);
                 let outcome = &mut outcomes[q as usize];
                 outcome.neighbours = range.len() as u32;
-                // An infinite condition marks a point for the ladder.
+                // An infinite condition marks a point for the remedies.
                 let condition = match layers.get(q as usize) {
                     Some(layer) if layer.is_full() => Some(1.0),
                     Some(layer) if !layer.is_empty() => conditions[lane].filter(|&c| c < MOST_CONDITION),
@@ -108,7 +108,7 @@ impl Approximation {
         if failed { self.mend::<GRAD>(points, &fit, chunk) } else { Ok(()) }
     }
 
-    /// Rows of maximum entropy, one point after another.
+    /// Computes rows of maximum entropy point by point.
     #[inline(always)]
     fn fill_by_entropy<const GRAD: bool>(
         &self,
@@ -139,7 +139,7 @@ impl Approximation {
         Ok(())
     }
 
-    /// Condition numbers of a group's fits, `None` where a fit failed or cannot be.
+    /// Returns the condition numbers of a group's fits, `None` if a fit failed or is impossible.
     #[inline(always)]
     pub(super) fn fit<const GRAD: bool>(
         &self,
@@ -161,7 +161,7 @@ impl Approximation {
 }
 
 on_path! {
-    /// Values of the own functions at some points, in wide registers.
+    /// Values of the cloud's own functions at some points, in wide registers.
     fn fill_values(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_values_in
 }
 
@@ -175,7 +175,7 @@ fn fill_values_in<const FMA: bool>(
 }
 
 on_path! {
-    /// Values and gradients of the own functions at some points, in wide registers.
+    /// Values and gradients of the cloud's own functions at some points, in wide registers.
     pub(super) fn fill_gradients(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_gradients_in
 }
 

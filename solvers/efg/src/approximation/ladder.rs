@@ -1,4 +1,4 @@
-//! The ladder: what is done at a point where the neighbours do not determine the basis.
+//! Remedies ("ladder") at points whose neighbours do not determine the basis.
 
 use shape::{Point3, Vector3};
 
@@ -10,19 +10,22 @@ use crate::mls::{Group, Moments};
 use crate::row_list::RowList;
 use crate::{Basis, EfgError};
 
-/// Supports are enlarged to this much beyond the neighbour that makes twice as many as the basis has terms.
+/// Ratio of an enlarged support to the distance of the neighbour whose number is twice that of the basis
+/// terms.
 const BEYOND_NEIGHBOUR: f64 = 1.4;
-/// Supports are enlarged no further: beyond, the point is not near the cloud at all.
+/// Largest enlargement of supports; a point that needs more is not near the cloud.
 const MOST_ENLARGEMENT: f64 = 3.0;
-/// Regularisation of the quadratic block on the ladder, relative to the sum of the weights.
+/// Regularisation of the quadratic block as a remedy, relative to the sum of the weights.
 const REGULARISATION: f64 = 1e-7;
-/// The same of the linear block, where neighbours lie in one plane: ten times the least pivot.
+/// Regularisation of the linear block for neighbours in one plane: ten times the smallest pivot.
 const FLAT: f64 = 1e-9;
-/// What then may be missed of the moments, relative to the largest radius: more than rounding leaves of moments in that plane.
+/// Tolerance of the moments in this case, relative to the largest radius. Rounding leaves less for moments in
+/// the plane.
 const MISSED: f64 = 1e-6;
 
 impl Approximation {
-    /// Climbs the ladder at the points of a chunk whose plain fit failed, and joins their rows with the others.
+    /// Applies the remedies at the points of a chunk whose plain fit failed, and inserts their rows among the
+    /// others.
     #[cold]
     pub(super) fn mend<const GRAD: bool>(
         &self,
@@ -47,7 +50,7 @@ impl Approximation {
         Ok(())
     }
 
-    /// The ladder, for a point at which the plain fit failed. Appends its row.
+    /// Applies the remedies at a point whose plain fit failed, and appends its row.
     fn climb<const GRAD: bool>(
         &self,
         x: &Point3,
@@ -80,7 +83,8 @@ impl Approximation {
         let moments = layer.map_or(Moments::COMPLETE, |layer| layer.moments);
         group.aim(0, &moments);
         let rungs: &[(Basis, f64)] = match asked.basis {
-            // Beside elements the moments to be made may lie in the plane of the neighbours, which then is all it takes.
+            // Next to elements the required moments may lie in the plane of the neighbours. A regularised fit
+            // then suffices.
             Basis::Linear if layer.is_some_and(|layer| !layer.is_empty()) => {
                 &[(Basis::Linear, 0.0), (Basis::Linear, FLAT)]
             }
@@ -120,7 +124,7 @@ impl Approximation {
         }
     }
 
-    /// How far the first of a group is from its moments, relative to the largest radius.
+    /// Returns the error of the moments of the first point of a group, relative to the largest radius.
     fn missed(&self, x: &Point3, nodes: &[u32], group: &Group, moments: &Moments) -> f64 {
         let mut values = vec![0.0; nodes.len()];
         group.store(0, &mut values, &mut []);
@@ -134,16 +138,16 @@ impl Approximation {
         left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
     }
 
-    /// Detours from a point to all nodes, m: path through the body minus straight distance; empty in a body
-    /// without gaps.
+    /// Returns the detours from a point to all nodes, m: the length of the path through the body minus the
+    /// straight distance. The list is empty for a body without gaps.
     fn detours(&self, x: &Point3, cell: Option<u32>) -> Vec<f64> {
         let (Some(gaps), Some(cell)) = (&self.gaps, cell) else { return Vec::new() };
         gaps.detours(x, cell, &self.nodes[..self.balls.len()], MOST_ENLARGEMENT * self.widest())
     }
 }
 
-/// Factor on all support radii by which `count` of the nodes (all, if there are fewer) cover a point
-/// comfortably, from their relative distances.
+/// Returns the factor on all support radii at which `count` of the nodes (all, if there are fewer) cover a
+/// point with a margin, from their relative distances.
 fn enlargement(relative: impl Fn(u32) -> f64, nodes: impl Iterator<Item = u32>, count: usize) -> f64 {
     let mut ratios: Vec<f64> = nodes.map(relative).collect();
     let Some(last) = count.min(ratios.len()).checked_sub(1) else { return 1.0 };

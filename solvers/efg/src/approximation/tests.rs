@@ -8,7 +8,8 @@ fn wide_registers_and_the_company_in_a_group_leave_the_bits_alone() {
     let nodes: Vec<Point3> = (0..216)
         .map(|i| Point3::new((i % 6) as f64, (i / 6 % 6) as f64 + 0.1 * (i % 5) as f64, (i / 36) as f64))
         .collect();
-    // Every sixteenth point lies just beyond all supports, and climbs the ladder between others that do not.
+    // Every sixteenth point lies just beyond all supports and needs the remedies; its neighbours in the list
+    // do not.
     let at = |q: usize| {
         let x = Point3::new(0.077, 0.053, 0.061) * q as f64 + Vector3::repeat(0.1);
         if q % 16 == 7 { Point3::new(7.7, x.y, x.z) } else { x }

@@ -1,4 +1,4 @@
-//! Shortest ways along the edges of a background of linear tetrahedra.
+//! Shortest paths along the edges of a background of linear tetrahedra.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -6,11 +6,12 @@ use std::collections::BinaryHeap;
 use geometry::{CellKind, Mesh, edges};
 use shape::Point3;
 
-/// A way through a face may touch its edges: barycentric coordinates of rounding below zero.
+/// Smallest barycentric coordinate of a point in a face. A path may touch the edges of the face, with
+/// rounding below zero.
 const ON_EDGE: f64 = -1e-9;
 
-/// Vertices and the straight ways between them: edges, and through a face from one side's vertex to the
-/// other's.
+/// Vertices and the straight links between them: edges, and links through a face between the two opposite
+/// vertices.
 pub(super) struct Graph {
     points: Vec<Point3>,
     offsets: Vec<usize>,
@@ -68,11 +69,11 @@ fn crosses(points: &[Point3], face: [u32; 3], from: u32, to: u32) -> bool {
     [part(&p, &q), part(&q, &r), part(&r, &p)].iter().all(|&part| part >= ON_EDGE)
 }
 
-/// Lengths of the shortest ways from one place. Reused from place to place.
+/// Lengths of the shortest paths from a point. The buffers are reused from point to point.
 pub(super) struct Ways {
     lengths: Vec<f64>,
     reached: Vec<u32>,
-    /// Lengths by their bits, whose order is theirs.
+    /// Open vertices by the bits of their lengths, which have the same order as the lengths.
     open: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
@@ -81,7 +82,8 @@ impl Ways {
         Ways { lengths: vec![f64::INFINITY; vertices], reached: Vec::new(), open: BinaryHeap::new() }
     }
 
-    /// Walks from a place in the cell of these corners, no farther than `farthest` (Dijkstra 1959).
+    /// Finds the shortest paths from a point in the cell with these corners, up to length `farthest`
+    /// (Dijkstra 1959).
     pub fn walk(
         &mut self,
         graph: &Graph,
@@ -114,7 +116,7 @@ impl Ways {
         }
     }
 
-    /// Length of the way to a vertex; infinite where none is short enough.
+    /// Returns the length of the path to a vertex; infinite if no path is short enough.
     pub fn to(&self, vertex: u32) -> f64 {
         self.lengths[vertex as usize]
     }

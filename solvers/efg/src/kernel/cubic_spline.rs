@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// `2/3 - 4q^2 + 4q^3` up to 1/2, then `4/3 (1 - q)^3`, here times 3/2. C2.
+/// Weight `2/3 - 4q^2 + 4q^3` up to 1/2, then `4/3 (1 - q)^3`, scaled by 3/2. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicSpline;
 
@@ -18,7 +18,7 @@ impl Weight for CubicSpline {
     #[inline(always)]
     fn weight(self) -> impl Fn(f64) -> (f64, f64) {
         |q| {
-            // Both branches are computed and one is selected, so that the loop over a list vectorises.
+            // Both branches are computed and one is selected, so the loop over a list vectorises.
             let s = 1.0 - q;
             let inner = (1.0 - 6.0 * q * q * s, q * (18.0 * q - 12.0));
             let outer = (2.0 * s * s * s, -6.0 * s * s);

@@ -2,7 +2,7 @@
 
 use super::{Dimension, Entry, KernelEntry, Kind, Parameter, Problem, Range, Values, Weight, gaussian};
 
-/// `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, flat-topped for `k > 1`.
+/// Weight `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, flat-topped for `k > 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponential {
     alpha: f64,
@@ -31,7 +31,7 @@ impl Weight for Exponential {
     }
 }
 
-/// The part that does not depend on `q` is computed once per list.
+/// Returns the weight function; the part that does not depend on `q` is computed once per list.
 #[inline(always)]
 pub(super) fn exponential(alpha: f64, power: u32) -> impl Fn(f64) -> (f64, f64) {
     let k = power as i32;

@@ -4,13 +4,14 @@ use super::{
     Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight, exponential::exponential,
 };
 
-/// `(e^{-(q/alpha)^2} - e^{-(1/alpha)^2}) / (1 - e^{-(1/alpha)^2})`.
+/// Weight `(e^{-(q/alpha)^2} - e^{-(1/alpha)^2}) / (1 - e^{-(1/alpha)^2})`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gaussian {
     alpha: f64,
 }
 
-/// Below 0.05 the kernel is zero to rounding before it has reached a neighbour; above 10 it has no shape left.
+/// Parameter `alpha`, the relative width. Below 0.05 the kernel is zero to rounding at the nearest neighbour;
+/// above 10 it has no shape.
 pub(super) const fn width(default: f64) -> Parameter {
     Parameter::default("alpha", Dimension::None, default, "width relative to the support radius")
         .within(Range::Within(0.05, 10.0))

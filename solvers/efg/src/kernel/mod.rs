@@ -1,20 +1,21 @@
-//! Kernels (weight functions) of moving least squares: radial, of compact support, one at the centre.
+//! Kernels (weight functions) of moving least squares: radial, with compact support, one at the centre.
 //!
-//! Each kernel is a file with its function and its [`KernelEntry`], and a line of the list below. Settings are checked when a
-//! kernel is made, so that every [`Kernel`] is sound.
+//! Each kernel is a file with its function and its [`KernelEntry`], and a line in the list below. Parameters
+//! are checked when a kernel is built, so every [`Kernel`] is valid.
 
 use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Values};
 
 /// A kernel that scene files can name.
 pub type KernelEntry = Entry<fn(&Values) -> Result<Kernel, Problem>>;
 
-/// What a kernel is: the function of `q < 1` that gives `(w, dw/dq)`. What does not depend on `q` is computed before it.
+/// Weight function of a kernel: `q < 1` gives `(w, dw/dq)`. All terms that do not depend on `q` are computed
+/// beforehand.
 trait Weight: Copy {
     fn weight(self) -> impl Fn(f64) -> (f64, f64);
 }
 
-/// Declares the files of the kernels, the closed enum that tells them apart without a call through a pointer, and the slice of
-/// their entries.
+/// Declares the files of the kernels, the enum that dispatches to them without a call through a pointer, and
+/// the slice of their entries.
 macro_rules! kernels {
     ($($file:ident::$kernel:ident,)*) => {
         $(
@@ -34,18 +35,18 @@ macro_rules! kernels {
             $($kernel($kernel),)*
         }
 
-        /// Every kernel, in the order tables list them.
+        /// Entries of all kernels, in the order of tables.
         pub static KERNELS: &[KernelEntry] = &[$($file::ENTRY),*];
 
         impl Kernel {
-            /// The name used in scene files and tables.
+            /// Returns the name used in scene files and tables.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Kernel::$kernel(_) => $file::ENTRY.name,)*
                 }
             }
 
-            /// Value and derivative `(w, dw/dq)` at the relative distance `q >= 0`.
+            /// Returns value and derivative `(w, dw/dq)` at the relative distance `q >= 0`.
             #[inline]
             pub fn eval(self, q: f64) -> (f64, f64) {
                 if q >= 1.0 {
@@ -56,7 +57,8 @@ macro_rules! kernels {
                 }
             }
 
-            /// [`Kernel::eval`] over a list, all `q < 1`: one branch on the kind for the list, not one per node.
+            /// Evaluates [`Kernel::eval`] over a list with all `q < 1`, with one branch on the kind per list
+            /// instead of per node.
             #[inline(always)]
             pub(crate) fn eval_all(self, q: &[f64], w: &mut [f64], dw: &mut [f64]) {
                 match self {
@@ -79,13 +81,13 @@ kernels! {
 }
 
 impl Kernel {
-    /// Every kernel with its default parameters, in the order tables list them.
+    /// Returns every kernel with its default parameters, in the order of tables.
     pub fn all() -> impl Iterator<Item = Kernel> {
         // No parameter of a kernel is required.
         KERNELS.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
     }
 
-    /// The kernel of that name with its default parameters.
+    /// Returns the kernel with this name and default parameters.
     pub fn from_name(name: &str) -> Option<Kernel> {
         Kernel::all().find(|kernel| kernel.name() == name)
     }

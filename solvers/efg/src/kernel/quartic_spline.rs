@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// `1 - 6q^2 + 8q^3 - 3q^4`. C2.
+/// Weight `1 - 6q^2 + 8q^3 - 3q^4`. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuarticSpline;
 
@@ -19,7 +19,7 @@ impl Weight for QuarticSpline {
     fn weight(self) -> impl Fn(f64) -> (f64, f64) {
         |q| {
             let s = 1.0 - q;
-            // 1 - 6q^2 + 8q^3 - 3q^4 factored, free of cancellation near the rim.
+            // 1 - 6q^2 + 8q^3 - 3q^4 in factored form, without cancellation near q = 1.
             (s * s * s * (1.0 + 3.0 * q), -12.0 * q * s * s)
         }
     }

@@ -2,7 +2,8 @@
 
 use super::{Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight};
 
-/// `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`: almost interpolating shape functions.
+/// Weight `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`, for almost interpolating shape
+/// functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegularisedInterpolating {
     eps: f64,

@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// `(1 - q)^4 (4q + 1)`.
+/// Weight `(1 - q)^4 (4q + 1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC2;
 

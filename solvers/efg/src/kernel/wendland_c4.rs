@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// `(1 - q)^6 (35q^2 + 18q + 3) / 3`.
+/// Weight `(1 - q)^6 (35q^2 + 18q + 3) / 3`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC4;
 

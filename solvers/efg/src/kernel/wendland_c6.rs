@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`.
+/// Weight `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC6;
 

@@ -1,4 +1,4 @@
-//! Relative distances that are not those of balls, and the directions in which they grow.
+//! Relative distances in other metrics than those of balls, and the directions in which they grow.
 
 use lanes::LANES;
 use shape::Point3;
@@ -8,7 +8,7 @@ use crate::Ellipsoid;
 use crate::gaps::Detour;
 
 impl Group {
-    /// Relative distances and their directions in the metrics of ellipsoids.
+    /// Computes relative distances and their directions in the metrics of ellipsoids.
     #[inline(always)]
     pub(super) fn stretch<'a>(
         &mut self,
@@ -41,7 +41,7 @@ impl Group {
         }
     }
 
-    /// Lengthens the distances of neighbours by their detours, one list for each point loaded.
+    /// Adds the detours to the distances of the neighbours, with one list for each loaded point.
     #[inline(always)]
     pub(crate) fn bend<'a>(&mut self, detours: impl Iterator<Item = &'a [Detour]> + Clone) {
         if detours.clone().flatten().all(|detour| detour.longer == 0.0) {
@@ -61,7 +61,7 @@ impl Group {
         }
     }
 
-    /// Balls as ellipsoids.
+    /// Converts balls to ellipsoids.
     fn normals_of_balls(&mut self) {
         let longest = self.longest();
         self.normal.resize(longest, [[0.0; LANES]; 3]);

@@ -1,4 +1,4 @@
-//! Clouds and backgrounds the tests share.
+//! Clouds and backgrounds shared by the tests.
 #![allow(dead_code)] // each test file uses its own part
 
 use efg::{Approximation, Basis, Kernel, Support};
@@ -6,14 +6,15 @@ use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Cloud, Mesh, cloud_from_mesh};
 use shape::{Point3, Vector3};
 
-/// A box of 40 x 30 x 30 mm, `n` cells along the short sides, inner nodes jittered by a quarter of the spacing.
+/// A box of 40 x 30 x 30 mm with `n` cells along the short sides; the inner nodes of tet4 are jittered by a
+/// fifth of the spacing.
 pub fn jittered_box(kind: CellKind, n: usize) -> Mesh {
     let jitter = (kind == CellKind::Tet4).then_some(Jitter { fraction: 0.2, seed: 7 });
     let max = Point3::new(0.04, 0.03, 0.03);
     box_mesh(kind, Point3::origin(), max, [n + 1, n, n], [1.0; 3], jitter).unwrap()
 }
 
-/// A dilatation at which the basis is well determined everywhere.
+/// Returns a support scale at which the basis is well determined everywhere.
 pub fn dilatation(basis: Basis) -> f64 {
     match basis {
         Basis::Linear => 1.6,
