@@ -64,7 +64,7 @@ fn mixed_meshes_come_back() {
     let long = text.replace("7e-300", &format!("{:.300}", 7e-300));
     assert!(long.len() > text.len() + 290);
     assert_eq!(files::read_bytes(long.as_bytes(), Path::new("long.msh"), 1.0).unwrap().0, mesh);
-    // Two sets of groups times two types of faces, and three runs of cells.
+    // Two sets of groups, each with two types of faces, and three runs of cells.
     let entities = text.split("$Entities\n").nth(1).unwrap();
     assert!(entities.starts_with("0 0 2 2\n"), "{entities}");
     let elements: Vec<&str> = text.split("$Elements\n").nth(1).unwrap().lines().collect();
